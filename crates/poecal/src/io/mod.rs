@@ -1,0 +1,1 @@
+//! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.

@@ -1,0 +1,127 @@
+//! Twists: elements of se(3).
+
+use nalgebra::{Matrix6, Vector3, Vector6};
+
+use super::{hat, series};
+
+/// A twist `ξ = (v; ω)`: linear part `v` (metres), angular part `ω` (radians), in the frame that the name or the text states.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::lie::Twist;
+/// let a = Twist::new(Vector3::new(0.1, 0.0, 0.0), Vector3::new(0.0, 0.0, 1.0));
+/// let b = Twist::new(Vector3::new(0.0, 2.0, 0.0), Vector3::new(1.0, 0.0, 0.0));
+/// // [a, b] = ad_a b = -[b, a]
+/// assert!((a.bracket(&b).to_vector() + b.bracket(&a).to_vector()).norm() < 1e-15);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twist {
+    /// Linear part, metres.
+    pub v: Vector3<f64>,
+    /// Angular part, radians.
+    pub w: Vector3<f64>,
+}
+
+impl Twist {
+    /// The twist `(v; w)`.
+    #[must_use]
+    pub fn new(v: Vector3<f64>, w: Vector3<f64>) -> Self {
+        Twist { v, w }
+    }
+
+    /// The zero twist.
+    #[must_use]
+    pub fn zero() -> Self {
+        Twist::new(Vector3::zeros(), Vector3::zeros())
+    }
+
+    /// The six numbers `[v; ω]`, linear part first.
+    #[must_use]
+    pub fn to_vector(&self) -> Vector6<f64> {
+        Vector6::new(self.v.x, self.v.y, self.v.z, self.w.x, self.w.y, self.w.z)
+    }
+
+    /// The twist of six numbers `[v; ω]`, linear part first.
+    #[must_use]
+    pub fn from_vector(vector: &Vector6<f64>) -> Self {
+        Twist::new(
+            Vector3::new(vector[0], vector[1], vector[2]),
+            Vector3::new(vector[3], vector[4], vector[5]),
+        )
+    }
+
+    /// `ad_ξ = [[ω̂, v̂], [0, ω̂]]` acting on `[v; ω]`.
+    #[must_use]
+    pub fn ad(&self) -> Matrix6<f64> {
+        let mut ad = Matrix6::zeros();
+        ad.fixed_view_mut::<3, 3>(0, 0).copy_from(&hat(&self.w));
+        ad.fixed_view_mut::<3, 3>(0, 3).copy_from(&hat(&self.v));
+        ad.fixed_view_mut::<3, 3>(3, 3).copy_from(&hat(&self.w));
+        ad
+    }
+
+    /// The Lie bracket `[self, other] = ad_self other`.
+    #[must_use]
+    pub fn bracket(&self, other: &Twist) -> Twist {
+        Twist::new(self.w.cross(&other.v) + self.v.cross(&other.w), self.w.cross(&other.w))
+    }
+
+    /// The left Jacobian `J_l(ξ) = ∫₀¹ Ad(exp(ξ s)) ds`, the integral of equations (5) and (18) of lou2009 in closed form:
+    /// `I + a ad + b ad² + c ad³ + d ad⁴` with coefficients of the angle alone (park1994).
+    #[must_use]
+    pub fn left_jacobian(&self) -> Matrix6<f64> {
+        let angle_squared = self.w.norm_squared();
+        let (sinc, cosc, sincc) =
+            (series::sinc(angle_squared), series::cosc(angle_squared), series::sincc(angle_squared));
+        let ad = self.ad();
+        let ad2 = ad * ad;
+        // On se(3) ad satisfies ad⁵ = -2θ² ad³ - θ⁴ ad; matching Σ adᵏ/(k+1)! gives the four coefficients.
+        let (c, d) = if angle_squared < series::SWITCH {
+            let x = angle_squared;
+            (
+                1.0 / 24.0 - x / 360.0 + x * x / 13_440.0 - x * x * x / 907_200.0
+                    + x * x * x * x / 95_800_320.0,
+                1.0 / 120.0 - x / 2_520.0 + x * x / 120_960.0 - x * x * x / 9_979_200.0
+                    + x * x * x * x / 1_245_404_160.0,
+            )
+        } else {
+            (
+                (2.0 * cosc - sinc) / (2.0 * angle_squared),
+                // (2 + cos θ - 3 sinc) / (2 θ⁴) written with sincc to cancel less.
+                (3.0 * sincc - cosc) / (2.0 * angle_squared),
+            )
+        };
+        let a = cosc + angle_squared * c;
+        let b = sincc + angle_squared * d;
+        Matrix6::identity() + ad * a + ad2 * b + ad2 * ad * c + ad2 * ad2 * d
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn left_jacobian_is_the_integral_of_the_adjoint() {
+        for scale in [0.0, 1e-8, 0.099, 0.101, 1.0, 3.1] {
+            let direction = Twist::new(Vector3::new(0.3, -0.2, 0.5), Vector3::new(0.6, -0.48, 0.64));
+            let twist = Twist::new(direction.v * scale, direction.w * scale);
+            // Gauss-Legendre with 5 points on 16 panels: exact to rounding for angles up to π.
+            let nodes = [0.0, 0.538_469_310_105_683_1, 0.906_179_845_938_664];
+            let weights = [0.568_888_888_888_888_9, 0.478_628_670_499_366_47, 0.236_926_885_056_189_08];
+            let mut integral = Matrix6::zeros();
+            for panel in 0..16 {
+                for (k, &node) in nodes.iter().enumerate() {
+                    for sign in if k == 0 { &[1.0][..] } else { &[-1.0, 1.0][..] } {
+                        let s = (f64::from(panel) + 0.5 + 0.5 * sign * node) / 16.0;
+                        let pose = crate::lie::Pose::exp(&Twist::new(twist.v * s, twist.w * s));
+                        integral += pose.adjoint() * (weights[k] / 32.0);
+                    }
+                }
+            }
+            let error = (twist.left_jacobian() - integral).norm();
+            println!("scale {scale}: {error:.1e}");
+            assert!(error < 1e-13, "{error}");
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! All measurements of a calibration: configurations, targets and what was seen.
+
+use super::Measurement;
+use crate::error::{Error, ErrorKind, Result};
+use std::path::PathBuf;
+
+/// What a row is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Set {
+    /// Used to fit.
+    Fit,
+    /// Kept back to judge the fit.
+    HeldOut,
+}
+
+/// Where a row came from: index into [`Dataset::files`] and line (from 1; 0 if it has none).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Source {
+    /// Index into [`Dataset::files`].
+    pub file: u32,
+    /// Line in that file, from 1.
+    pub line: u32,
+}
+
+/// One row: which target was seen how, and how well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// Index into [`Dataset::targets`].
+    pub target: usize,
+    /// What was seen.
+    pub measurement: Measurement,
+    /// Standard deviation of each position component, metres, if the row states it.
+    pub sigma_position_m: Option<f64>,
+    /// Standard deviation of each rotation component, radians, if the row states it.
+    pub sigma_rotation_rad: Option<f64>,
+    /// What the row is for, if it states it.
+    pub set: Option<Set>,
+    /// Where it came from.
+    pub source: Source,
+}
+
+/// Measurements with the configurations they were taken in. Readings are stored flat, one after the other.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::measurement::{Dataset, Measurement, PointMeasurement};
+/// let mut data = Dataset::new(vec!["joint1".into(), "joint2".into()]);
+/// let seen = Measurement::Point(PointMeasurement { position: Vector3::new(0.1, 0.2, 0.3) });
+/// data.push(&[0.1, -0.4], None, seen)?;
+/// assert_eq!((data.len(), data.readings(0)), (1, &[0.1, -0.4][..]));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Dataset {
+    reading_names: Vec<String>,
+    readings: Vec<f64>,
+    /// Names of the targets; `None` is the single unnamed target, which is the tip itself.
+    pub targets: Vec<Option<String>>,
+    /// The rows.
+    pub observations: Vec<Observation>,
+    /// The rows' `id`, empty if there is no such column.
+    pub ids: Vec<String>,
+    /// Files that the rows came from.
+    pub files: Vec<PathBuf>,
+}
+
+impl Dataset {
+    /// No rows yet; configurations will consist of these readings.
+    #[must_use]
+    pub fn new(reading_names: Vec<String>) -> Self {
+        Dataset { reading_names, ..Dataset::default() }
+    }
+
+    /// Names of the readings of a configuration.
+    #[must_use]
+    pub fn reading_names(&self) -> &[String] {
+        &self.reading_names
+    }
+
+    /// Adds a measurement of a target (`None`: the tip) in a configuration (radians, metres).
+    ///
+    /// # Errors
+    /// [`ErrorKind::Measurement`] if the number of readings is wrong, or a number is not finite.
+    pub fn push(&mut self, readings: &[f64], target: Option<&str>, measurement: Measurement) -> Result<()> {
+        let target = self.target_index(target);
+        self.push_observation(
+            readings,
+            Observation {
+                target,
+                measurement,
+                sigma_position_m: None,
+                sigma_rotation_rad: None,
+                set: None,
+                source: Source::default(),
+            },
+        )
+    }
+
+    /// Adds a row whose target index is known.
+    ///
+    /// # Errors
+    /// As [`Dataset::push`].
+    pub fn push_observation(&mut self, readings: &[f64], observation: Observation) -> Result<()> {
+        if readings.len() != self.reading_names.len() {
+            return Err(Error::new(
+                ErrorKind::Measurement,
+                format!(
+                    "found {} joint readings, expected {}: {}",
+                    readings.len(),
+                    self.reading_names.len(),
+                    self.reading_names.join(", ")
+                ),
+            ));
+        }
+        let pose = observation.measurement.pose();
+        let finite = readings.iter().chain(pose.translation.iter()).chain(pose.rotation.iter());
+        if !finite.copied().all(f64::is_finite) {
+            return Err(Error::new(
+                ErrorKind::Measurement,
+                "found a number that is not finite, expected finite joint readings and measurements",
+            ));
+        }
+        self.readings.extend_from_slice(readings);
+        self.observations.push(observation);
+        Ok(())
+    }
+
+    /// Index of a target, added if it is new.
+    pub fn target_index(&mut self, name: Option<&str>) -> usize {
+        if let Some(index) = self.targets.iter().position(|target| target.as_deref() == name) {
+            return index;
+        }
+        self.targets.push(name.map(str::to_owned));
+        self.targets.len() - 1
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.observations.len()
+    }
+
+    /// Whether there is no row.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.observations.is_empty()
+    }
+
+    /// The readings of a row (radians, metres).
+    #[must_use]
+    pub fn readings(&self, row: usize) -> &[f64] {
+        let n = self.reading_names.len();
+        &self.readings[row * n..(row + 1) * n]
+    }
+
+    /// Whether some row measured this target's orientation.
+    #[must_use]
+    pub fn target_is_frame(&self, target: usize) -> bool {
+        self.observations.iter().any(|row| row.target == target && row.measurement.sees_orientation())
+    }
+
+    /// The rows of another data set after these; readings are matched by name.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Measurement`] if the other set lacks one of these readings.
+    pub fn extend(&mut self, other: &Dataset) -> Result<()> {
+        let order: Vec<usize> = self
+            .reading_names
+            .iter()
+            .map(|name| {
+                other.reading_names.iter().position(|candidate| candidate == name).ok_or_else(|| {
+                    Error::new(
+                        ErrorKind::Measurement,
+                        format!("found no reading of joint `{name}`, expected one in every file"),
+                    )
+                })
+            })
+            .collect::<Result<_>>()?;
+        let first_file = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
+        self.files.extend(other.files.iter().cloned());
+        let mut readings = Vec::with_capacity(order.len());
+        for row in 0..other.len() {
+            readings.clear();
+            readings.extend(order.iter().map(|&index| other.readings(row)[index]));
+            let mut observation = other.observations[row];
+            observation.target = self.target_index(other.targets[observation.target].as_deref());
+            observation.source.file += first_file;
+            self.push_observation(&readings, observation)?;
+        }
+        if !self.ids.is_empty() || !other.ids.is_empty() {
+            let known = self.len() - other.len();
+            self.ids.resize(known, String::new());
+            self.ids.extend(other.ids.iter().cloned());
+            self.ids.resize(self.len(), String::new());
+        }
+        Ok(())
+    }
+}

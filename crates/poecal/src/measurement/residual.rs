@@ -1,0 +1,53 @@
+//! The contract of every measurement type: residual, and sensitivity of the prediction.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::lie::Pose;
+
+/// An infinitesimal motion of a target about its own origin, in the device's axes: `v` moves the origin (metres), `w` turns the
+/// target (radians). With `p` the target's place it is `(v_s + ω_s × p; ω_s)` of the spatial twist `(v_s; ω_s)`: the factor
+/// `[I -p̂]` of equation (23) of lou2009 is already applied.
+pub type TargetTwist = (Vector3<f64>, Vector3<f64>);
+
+/// Standard deviations by which a residual is whitened.
+///
+/// ```
+/// let noise = poecal::measurement::Noise { position_m: 5e-5, rotation_rad: 1e-4 };
+/// assert_eq!(noise.position_m, 5e-5);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Of each position component, metres.
+    pub position_m: f64,
+    /// Of each rotation component, radians.
+    pub rotation_rad: f64,
+}
+
+/// What a measurement type provides. `e = measured ⊖ predicted`, and the *prediction* moves by `S · twist` under a target twist.
+pub trait Residual {
+    /// Number of residual rows.
+    fn dim(&self) -> usize;
+
+    /// Writes the whitened residual for the predicted `device_from_target` into `out[..dim]`.
+    fn residual(&self, predicted: &Pose, noise: &Noise, out: &mut [f64]);
+
+    /// Writes the whitened sensitivity of the prediction to each column twist: `out[row * stride + column]`, for `dim` rows.
+    fn project(
+        &self,
+        predicted: &Pose,
+        columns: &[TargetTwist],
+        noise: &Noise,
+        stride: usize,
+        out: &mut [f64],
+    );
+
+    /// First residual row that does not see the linear part of a target twist: those rows are zero in columns that only shift
+    /// the target, which the solver's accumulation then skips. `dim` if there is none.
+    fn rotation_row(&self) -> usize;
+
+    /// Measured position, metres, device frame.
+    fn position(&self) -> Vector3<f64>;
+
+    /// Measured `device_from_target` rotation, if any.
+    fn orientation(&self) -> Option<Matrix3<f64>>;
+}

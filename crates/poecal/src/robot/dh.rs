@@ -1,0 +1,89 @@
+//! Denavit-Hartenberg tables to screws, in the standard and in Craig's modified convention.
+
+use nalgebra::Vector3;
+
+use super::{Joint, JointKind, Limits, Reading, Robot};
+use crate::error::Result;
+use crate::lie::{Pose, Screw, rotation};
+
+/// Which of the two conventions a table follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DhConvention {
+    /// `A_i = Rz(θ_i) Tz(d_i) Tx(a_i) Rx(α_i)`: the joint turns about z of the *previous* frame.
+    Standard,
+    /// `A_i = Rx(α_i) Tx(a_i) Rz(θ_i) Tz(d_i)` (Craig, with α and a of the same row): the joint turns about z of its *own* frame.
+    Modified,
+}
+
+/// One row of a DH table, metres and radians.
+///
+/// ```
+/// use poecal::robot::{DhConvention, DhRow, JointKind, Robot};
+/// use poecal::lie::Pose;
+/// let row = |a_m, d_m, alpha_rad| DhRow { name: String::new(), kind: JointKind::Revolute, a_m, alpha_rad, d_m, theta_rad: 0.0, limits: None };
+/// let rows: Vec<DhRow> = [(0.3, 0.0), (0.2, 0.1)].iter().enumerate()
+///     .map(|(i, &(a, d))| DhRow { name: format!("joint{}", i + 1), ..row(a, d, 0.0) }).collect();
+/// let robot = Robot::from_dh("planar", DhConvention::Standard, &rows, Pose::identity(), Pose::identity())?;
+/// assert!((robot.forward_kinematics(&[0.0, 0.0]).translation.x - 0.5).abs() < 1e-15);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct DhRow {
+    /// Joint name.
+    pub name: String,
+    /// Revolute: the reading adds to θ. Prismatic: the reading adds to d.
+    pub kind: JointKind,
+    /// Link length a, metres.
+    pub a_m: f64,
+    /// Link twist α, radians.
+    pub alpha_rad: f64,
+    /// Link offset d, metres.
+    pub d_m: f64,
+    /// Joint angle θ at zero reading, radians.
+    pub theta_rad: f64,
+    /// Limits of the reading.
+    pub limits: Option<Limits>,
+}
+
+impl Robot {
+    /// The robot of a DH table between `base_from_first` (the frame of row 0) and `last_from_tip`.
+    ///
+    /// # Errors
+    /// As [`Robot::new`].
+    pub fn from_dh(
+        name: &str,
+        convention: DhConvention,
+        rows: &[DhRow],
+        base_from_first: Pose,
+        last_from_tip: Pose,
+    ) -> Result<Self> {
+        let mut base_from_frame = base_from_first;
+        let mut joints = Vec::with_capacity(rows.len());
+        for row in rows {
+            let along_z = Pose::new(rotation::about(2, row.theta_rad), Vector3::new(0.0, 0.0, row.d_m));
+            let along_x = Pose::new(rotation::about(0, row.alpha_rad), Vector3::new(row.a_m, 0.0, 0.0));
+            let base_from_joint = match convention {
+                DhConvention::Standard => base_from_frame,
+                DhConvention::Modified => base_from_frame * along_x,
+            };
+            let axis = base_from_joint.rotation.column(2).into_owned();
+            let screw = match row.kind {
+                JointKind::Revolute => Screw::revolute(&axis, &base_from_joint.translation),
+                JointKind::Prismatic => Screw::prismatic(&axis),
+            };
+            joints.push(Joint {
+                name: row.name.clone(),
+                kind: row.kind,
+                screw,
+                frame: base_from_joint,
+                limits: row.limits,
+                reading: Reading::own(&row.name),
+            });
+            base_from_frame = match convention {
+                DhConvention::Standard => base_from_joint * along_z * along_x,
+                DhConvention::Modified => base_from_joint * along_z,
+            };
+        }
+        Robot::new(name, joints, base_from_frame * last_from_tip)
+    }
+}

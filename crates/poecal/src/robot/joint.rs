@@ -1,0 +1,124 @@
+//! One joint: its screw, its frame, and how a reading becomes a joint value.
+
+use crate::lie::{Pose, Screw, rotation};
+use nalgebra::Matrix3;
+
+/// What a joint does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turns about an axis; value in radians. URDF's continuous joints are revolute ones without limits.
+    Revolute,
+    /// Slides along a direction; value in metres.
+    Prismatic,
+}
+
+impl JointKind {
+    /// The word used in files: `revolute` or `prismatic`.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            JointKind::Revolute => "revolute",
+            JointKind::Prismatic => "prismatic",
+        }
+    }
+}
+
+/// Lower and upper limit of a joint's value, radians or metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Smallest value.
+    pub lower: f64,
+    /// Largest value.
+    pub upper: f64,
+}
+
+/// Where a joint's value comes from: `θ = multiplier · reading + offset`. Multiplier 1 and offset 0 but for mimic joints.
+///
+/// ```
+/// let own = poecal::robot::Reading::own("joint1");
+/// assert_eq!(own.value(0.3), 0.3);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// Name of the measured joint: this one, or the leader of a mimic joint.
+    pub name: String,
+    /// Factor on the reading.
+    pub multiplier: f64,
+    /// Added after the factor, radians or metres.
+    pub offset: f64,
+}
+
+impl Reading {
+    /// A joint that is read itself.
+    #[must_use]
+    pub fn own(name: &str) -> Self {
+        Reading { name: name.to_owned(), multiplier: 1.0, offset: 0.0 }
+    }
+
+    /// The joint value of a reading.
+    #[must_use]
+    pub fn value(&self, reading: f64) -> f64 {
+        self.multiplier * reading + self.offset
+    }
+}
+
+/// A moving joint. Its frame is fixed to the link that it moves; at zero joint value it stands at `base_from_joint`, with the
+/// origin on the axis.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::{lie::Screw, robot::Joint};
+/// let joint = Joint::revolute("elbow", Screw::revolute(&Vector3::y(), &Vector3::new(0.15, 0.0, 0.57)));
+/// assert_eq!(joint.frame.translation, Vector3::new(0.15, 0.0, 0.57));
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Name, as in the model.
+    pub name: String,
+    /// Revolute or prismatic.
+    pub kind: JointKind,
+    /// Screw in the base frame at zero configuration.
+    pub screw: Screw,
+    /// `base_from_joint` at zero configuration (URDF: the joint's and its child link's frame).
+    pub frame: Pose,
+    /// Limits of the value.
+    pub limits: Option<Limits>,
+    /// How the value is read.
+    pub reading: Reading,
+}
+
+impl Joint {
+    /// A revolute joint with its own reading, no limits, and a frame with z along the axis and the origin nearest to the base's.
+    #[must_use]
+    pub fn revolute(name: &str, screw: Screw) -> Self {
+        Joint::with_screw(name, JointKind::Revolute, screw)
+    }
+
+    /// A prismatic joint with its own reading, no limits, and a frame at the base's origin with z along the direction.
+    #[must_use]
+    pub fn prismatic(name: &str, screw: Screw) -> Self {
+        Joint::with_screw(name, JointKind::Prismatic, screw)
+    }
+
+    fn with_screw(name: &str, kind: JointKind, screw: Screw) -> Self {
+        Joint {
+            name: name.to_owned(),
+            kind,
+            screw,
+            frame: axis_frame(&screw),
+            limits: None,
+            reading: Reading::own(name),
+        }
+    }
+}
+
+/// A frame with z along the screw, and its origin at the point of the axis nearest to the base's origin.
+fn axis_frame(screw: &Screw) -> Pose {
+    let z = screw.direction();
+    let turn = if z.z.abs() > 1.0 - 1e-12 && z.z > 0.0 {
+        Matrix3::identity()
+    } else {
+        rotation::shortest_arc(&nalgebra::Vector3::z(), &z)
+    };
+    Pose::new(turn, screw.nearest_point(&nalgebra::Vector3::zeros()))
+}

@@ -1,0 +1,32 @@
+//! Forward kinematics by the product of exponentials.
+
+use super::Robot;
+use crate::lie::Pose;
+
+impl Robot {
+    /// Joint values of a configuration given as readings (order of [`Robot::reading_names`]); mimic joints follow their leader.
+    #[must_use]
+    pub fn joint_values(&self, readings: &[f64]) -> Vec<f64> {
+        let indices = self.reading_indices();
+        self.joints
+            .iter()
+            .zip(indices)
+            .map(|(joint, index)| joint.reading.value(readings.get(index).copied().unwrap_or(0.0)))
+            .collect()
+    }
+
+    /// `base_from_tip` at a configuration given as readings (radians, metres; order of [`Robot::reading_names`]).
+    #[must_use]
+    pub fn forward_kinematics(&self, readings: &[f64]) -> Pose {
+        self.motion(&self.joint_values(readings)) * self.home
+    }
+
+    /// The rigid motion `T_n = exp(ξ₁θ₁) … exp(ξₙθₙ)` of the last link from its place at zero, for *joint values* θ.
+    #[must_use]
+    pub fn motion(&self, joint_values: &[f64]) -> Pose {
+        self.joints
+            .iter()
+            .zip(joint_values)
+            .fold(Pose::identity(), |base_from_link, (joint, &value)| base_from_link * joint.screw.exp(value))
+    }
+}

@@ -1,0 +1,143 @@
+//! Serial robots: joints with screws, a home pose, forward kinematics. No estimation here, and no files.
+
+mod dh;
+mod joint;
+mod kinematics;
+
+pub use dh::{DhConvention, DhRow};
+pub use joint::{Joint, JointKind, Limits, Reading};
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::{Pose, Screw};
+
+/// A serial robot at its zero configuration, `base_from_tip(θ) = exp(ξ₁θ₁) … exp(ξₙθₙ) M` (lou2009 equation 2).
+///
+/// All screws and frames are in the base frame. A robot is a value: forward kinematics changes nothing in it.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::lie::{Pose, Screw};
+/// use poecal::robot::{Joint, Robot};
+/// let joint = Joint::revolute("shoulder", Screw::revolute(&Vector3::z(), &Vector3::zeros()));
+/// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::new(0.5, 0.0, 0.0)))?;
+/// let tip = robot.forward_kinematics(&[std::f64::consts::FRAC_PI_2]);
+/// assert!((tip.translation - Vector3::new(0.0, 0.5, 0.0)).norm() < 1e-15);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    /// The robot's name.
+    pub name: String,
+    /// Name of the base frame (URDF: the chain's first link).
+    pub base_name: String,
+    /// Name of the tip frame (URDF: the chain's last link).
+    pub tip_name: String,
+    /// The moving joints from base to tip.
+    pub joints: Vec<Joint>,
+    /// Home pose `M = base_from_tip(0)`.
+    pub home: Pose,
+    /// Tool points and frames that the model itself knows, in the tip frame.
+    pub targets: Vec<(String, Pose)>,
+}
+
+impl Robot {
+    /// A robot of its joints and home pose `base_from_tip` at zero joint values, with frames named `base` and `tip`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if there is no joint or two joints share a name.
+    pub fn new(name: &str, joints: Vec<Joint>, home: Pose) -> Result<Self> {
+        if joints.is_empty() {
+            return Err(Error::new(
+                ErrorKind::Model,
+                format!(
+                    "robot `{name}` has no moving joint, expected at least one revolute, continuous or prismatic joint"
+                ),
+            ));
+        }
+        for (i, joint) in joints.iter().enumerate() {
+            if joints[..i].iter().any(|other| other.name == joint.name) {
+                return Err(Error::new(
+                    ErrorKind::Model,
+                    format!("robot `{name}` has two joints named `{}`, expected unique names", joint.name),
+                ));
+            }
+        }
+        Ok(Robot {
+            name: name.to_owned(),
+            base_name: "base".to_owned(),
+            tip_name: "tip".to_owned(),
+            joints,
+            home,
+            targets: Vec::new(),
+        })
+    }
+
+    /// Names of the readings that a configuration consists of, in order: each joint's own, once; a mimic joint has its leader's.
+    #[must_use]
+    pub fn reading_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for joint in &self.joints {
+            if !names.contains(&joint.reading.name) {
+                names.push(joint.reading.name.clone());
+            }
+        }
+        names
+    }
+
+    /// For each joint, the index of its reading in [`Robot::reading_names`].
+    #[must_use]
+    pub fn reading_indices(&self) -> Vec<usize> {
+        let names = self.reading_names();
+        self.joints
+            .iter()
+            .map(|joint| names.iter().position(|name| *name == joint.reading.name).unwrap_or(0))
+            .collect()
+    }
+
+    /// The same robot with other screws (one a joint). Each joint frame follows its axis by the smallest motion
+    /// ([`Screw::smallest_motion_to`] seen from the frame's origin); home pose and targets stay.
+    #[must_use]
+    pub fn with_screws(&self, screws: &[Screw]) -> Self {
+        let mut robot = self.clone();
+        for (joint, screw) in robot.joints.iter_mut().zip(screws) {
+            let motion = joint.screw.smallest_motion_to(screw, &joint.frame.translation);
+            joint.frame = (motion * joint.frame).orthonormalized();
+            joint.screw = *screw;
+        }
+        robot
+    }
+
+    /// Pose of the tip frame in the last joint's frame, at any configuration.
+    #[must_use]
+    pub fn last_joint_from_tip(&self) -> Pose {
+        match self.joints.last() {
+            Some(joint) => joint.frame.inverse() * self.home,
+            None => self.home,
+        }
+    }
+
+    /// A length that says how large the robot is (metres): the longest way from axis to axis to the tip, at least 1 cm.
+    #[must_use]
+    pub fn reach_m(&self) -> f64 {
+        let mut at: Option<Vector3<f64>> = None;
+        let mut reach = 0.0;
+        for joint in self.joints.iter().filter(|joint| joint.kind == JointKind::Revolute) {
+            let from = at.unwrap_or(joint.frame.translation);
+            let next = joint.screw.nearest_point(&from);
+            reach += (next - from).norm();
+            at = Some(next);
+        }
+        let last = at.unwrap_or_else(Vector3::zeros);
+        let slides: f64 = self
+            .joints
+            .iter()
+            .filter(|joint| joint.kind == JointKind::Prismatic)
+            .filter_map(|joint| joint.limits)
+            .map(|limits| limits.upper - limits.lower)
+            .filter(|span| span.is_finite())
+            .sum();
+        (reach + slides + (self.home.translation - last).norm()).max(0.01)
+    }
+}
