@@ -153,6 +153,12 @@ impl Dataset {
         &self.readings[row * n..(row + 1) * n]
     }
 
+    /// The readings of all rows, one after the other.
+    #[must_use]
+    pub fn all_readings(&self) -> &[f64] {
+        &self.readings
+    }
+
     /// Whether some row measured this target's orientation.
     #[must_use]
     pub fn target_is_frame(&self, target: usize) -> bool {

@@ -7,7 +7,7 @@ use crate::lie::{Pose, hat, rotation, series};
 
 /// Measured frame, `e = [y - p; log(Y Rᵀ)]` at the target and in the device's axes (docs/theory.md, section 4).
 ///
-/// The rotation rows of the sensitivity are `J_l(r)⁻¹`, exact also for large residuals `r = log(Y Rᵀ)`.
+/// The rotation rows of the sensitivity are `J_r(r)⁻¹`, exact also for large residuals `r = log(Y Rᵀ)`.
 ///
 /// ```
 /// use poecal::lie::Pose;

@@ -1,0 +1,130 @@
+//! How far the three models are from what was measured.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Models;
+use crate::estimate::{Chain, Estimate, Linkage, Packed};
+use crate::lie::rotation;
+use crate::measurement::Dataset;
+use nalgebra::Vector3;
+
+/// Mean, root mean square, 95th percentile (linear between ranks) and maximum of errors.
+///
+/// ```
+/// use poecal::calibration::Statistic;
+/// let s = Statistic::of(vec![3.0, 4.0]).expect("two values");
+/// assert_eq!((s.mean, s.rms, s.max), (3.5, 12.5_f64.sqrt(), 4.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Statistic {
+    /// Mean.
+    pub mean: f64,
+    /// Root mean square.
+    pub rms: f64,
+    /// 95th percentile.
+    pub p95: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+impl Statistic {
+    /// Statistic of absolute errors; `None` without any.
+    #[must_use]
+    pub fn of(mut errors: Vec<f64>) -> Option<Self> {
+        if errors.is_empty() {
+            return None;
+        }
+        let count = errors.len() as f64;
+        let mean = errors.iter().sum::<f64>() / count;
+        let rms = (errors.iter().map(|e| e * e).sum::<f64>() / count).sqrt();
+        errors.sort_by(f64::total_cmp);
+        let rank = 0.95 * (errors.len() - 1) as f64;
+        let (below, above) = (rank.floor() as usize, rank.ceil() as usize);
+        let p95 = errors[below] + (errors[above] - errors[below]) * (rank - rank.floor());
+        Some(Statistic { mean, rms, p95, max: errors[errors.len() - 1] })
+    }
+}
+
+/// Errors of one model on one set of rows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ModelAccuracy {
+    /// Distance from measured to predicted position, millimetres.
+    pub position_mm: Statistic,
+    /// Angle from measured to predicted orientation, degrees; null where no orientation was measured.
+    pub rotation_deg: Option<Statistic>,
+}
+
+/// Errors of the three models on one set of rows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SetAccuracy {
+    /// Number of measurements.
+    pub count: usize,
+    /// The model as delivered; only an unknown device frame is fitted.
+    pub nominal: ModelAccuracy,
+    /// Device frame and targets fitted, screws nominal.
+    pub registered: ModelAccuracy,
+    /// Screws fitted too.
+    pub calibrated: ModelAccuracy,
+}
+
+/// Errors on the rows that were fitted and on those that were not.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Accuracy {
+    /// On the rows that were fitted.
+    pub training: SetAccuracy,
+    /// On the rows that were not; null if none was held out.
+    pub held_out: Option<SetAccuracy>,
+}
+
+/// Error of one row: measured less predicted, device axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowError {
+    /// Position, metres.
+    pub position_m: Vector3<f64>,
+    /// Rotation vector, radians, if orientation was measured.
+    pub rotation_rad: Option<Vector3<f64>>,
+}
+
+/// Errors of an estimate, one a row.
+#[must_use]
+pub fn row_errors(data: &Dataset, packed: &Packed, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
+    let linkage = Linkage::new(estimate);
+    let mut chain = Chain::default();
+    rows.iter()
+        .map(|&row| {
+            let observation = &data.observations[row as usize];
+            let model = observation.measurement.residual_model();
+            chain.evaluate(&linkage, packed, row as usize, observation.target);
+            RowError {
+                position_m: model.position() - chain.target.translation,
+                rotation_rad: model
+                    .orientation()
+                    .map(|measured| rotation::log(&(measured * chain.target.rotation.transpose()))),
+            }
+        })
+        .collect()
+}
+
+/// Errors of the three models on some rows (at least one).
+#[must_use]
+pub fn set_accuracy(data: &Dataset, packed: &Packed, rows: &[u32], models: &Models) -> SetAccuracy {
+    let of = |estimate: &Estimate| model_accuracy(&row_errors(data, packed, rows, estimate));
+    SetAccuracy {
+        count: rows.len(),
+        nominal: of(&models.nominal),
+        registered: of(&models.registered),
+        calibrated: of(&models.calibrated),
+    }
+}
+
+fn model_accuracy(errors: &[RowError]) -> ModelAccuracy {
+    let nothing = Statistic { mean: 0.0, rms: 0.0, p95: 0.0, max: 0.0 };
+    ModelAccuracy {
+        position_mm: Statistic::of(errors.iter().map(|e| e.position_m.norm() * 1e3).collect())
+            .unwrap_or(nothing),
+        rotation_deg: Statistic::of(
+            errors.iter().filter_map(|e| e.rotation_rad.map(|w| w.norm().to_degrees())).collect(),
+        ),
+    }
+}

@@ -1,0 +1,237 @@
+//! The fit of the screws: from registration to the optimum, with re-weighting and, if need be, further starts.
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::{CalibrationOptions, NoiseSource, SolverReport, estimate_noise, row_errors};
+use crate::error::{Error, ErrorKind, Result};
+use crate::estimate::{Estimate, Packed};
+use crate::gauge;
+use crate::measurement::{Dataset, Noise};
+use crate::parameters::{Parameter, ScrewAxis};
+use crate::problem::{Layout, Problem};
+use crate::robot::Robot;
+use crate::simulate::random;
+use crate::solve::{LeastSquares, Normal, Options, Summary, minimize};
+use crate::start::target_parameters;
+
+/// Rows beyond which a fit begins on a sample of this many.
+const SAMPLE: usize = 1000;
+/// Rows on which further starts are compared.
+const RESTART_SAMPLE: usize = 200;
+/// Root mean square position error, as a share of the arm's reach, above which a fit may have ended beside the optimum: real robots,
+/// gears and links giving, are left with a tenth of it, false optima with several times it.
+const SUSPICIOUS: f64 = 3e-3;
+/// Share of the largest eigenvalue below which a direction is exactly null: rounding of normal equations.
+const NULL: f64 = 1e-13;
+
+/// A finished fit, in the gauge of its start.
+pub(super) struct Fitted {
+    pub(super) estimate: Estimate,
+    pub(super) normal: Normal,
+    pub(super) layout: Layout,
+    pub(super) noise: Noise,
+    pub(super) report: SolverReport,
+}
+
+/// All screws and targets: what a fit with a settled device frame frees.
+fn free_parameters(estimate: &Estimate, data: &Dataset) -> Vec<Parameter> {
+    let screws = estimate
+        .kinds
+        .iter()
+        .enumerate()
+        .map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
+    screws.chain(target_parameters(data)).collect()
+}
+
+/// One fit of all screws and targets from a start, the device's frame staying where it is: Levenberg-Marquardt, begun on a sample
+/// if the rows are many.
+pub fn fit_screws(
+    data: &Dataset,
+    packed: &Packed,
+    rows: &[u32],
+    start: Estimate,
+    noise: Noise,
+    length_m: f64,
+    options: &Options,
+) -> (Estimate, Normal, Summary) {
+    let problem = |rows: Vec<u32>, estimate: &Estimate| {
+        Problem::new(data, packed, rows, free_parameters(estimate, data), noise, length_m)
+    };
+    let mut start = start;
+    let mut before = None;
+    if rows.len() > 4 * SAMPLE {
+        let stride = rows.len() / SAMPLE;
+        let sample: Vec<u32> = rows.iter().step_by(stride).copied().collect();
+        let (estimate, _, summary) = minimize(&problem(sample, &start), start, options);
+        start = estimate;
+        before = Some(summary);
+    }
+    let (estimate, normal, mut summary) = minimize(&problem(rows.to_vec(), &start), start, options);
+    if let Some(before) = before {
+        summary.iterations += before.iterations;
+        summary.trace.splice(0..0, before.trace);
+    }
+    (estimate, normal, summary)
+}
+
+#[allow(clippy::too_many_arguments)]
+pub(super) fn fit(
+    robot: &Robot,
+    data: &Dataset,
+    packed: &Packed,
+    rows: &[u32],
+    registered: &Estimate,
+    noise: Noise,
+    source: NoiseSource,
+    length_m: f64,
+    options: &CalibrationOptions,
+) -> Result<Fitted> {
+    let task = Task { robot, data, packed, rows, length_m, options };
+    let mut start = registered.clone();
+    start.recentre(data, packed, rows);
+    let (mut estimate, mut normal, mut summary) = task.fit(start, noise);
+    let mut report = SolverReport {
+        iterations: summary.iterations,
+        termination: summary.termination,
+        restarts: 0,
+        trace: summary.trace.clone(),
+    };
+    if let Some((better, tried)) = task.restart(registered, &estimate, noise) {
+        report.restarts = tried;
+        if let Some(better) = better {
+            (estimate, normal, summary) = task.fit(better, noise);
+            report.iterations += summary.iterations;
+            report.trace.extend(summary.trace.iter());
+        }
+    }
+    let mut noise = noise;
+    if source == NoiseSource::Estimated {
+        for _ in 0..6 {
+            let unknowns = normal.dim();
+            let found = estimate_noise(data, packed, rows, &estimate, unknowns, noise);
+            let change =
+                (found.position_m * noise.rotation_rad / (found.rotation_rad * noise.position_m)).ln();
+            let unchanged = found == noise;
+            noise = task.stated(found);
+            if unchanged || change.abs() < 0.02 && normal.mean_square().ln().abs() < 0.5 {
+                break;
+            }
+            (estimate, normal, summary) = task.fit(estimate, noise);
+            report.iterations += summary.iterations;
+            report.trace.extend(summary.trace.iter());
+        }
+    }
+    (estimate, normal) = task.settle_null_directions(estimate, normal, noise);
+    report.termination = summary.termination;
+    if !normal.cost.is_finite() {
+        return Err(Error::new(
+            ErrorKind::Solver,
+            "found residuals that are not finite numbers, expected a fit: check the measurements' units and joint columns",
+        ));
+    }
+    let layout = task.problem(&estimate, noise).layout().clone();
+    Ok(Fitted { estimate, normal, layout, noise, report })
+}
+
+struct Task<'a> {
+    robot: &'a Robot,
+    data: &'a Dataset,
+    packed: &'a Packed,
+    rows: &'a [u32],
+    length_m: f64,
+    options: &'a CalibrationOptions,
+}
+
+impl Task<'_> {
+    fn fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
+        fit_screws(self.data, self.packed, self.rows, start, noise, self.length_m, &self.options.solver)
+    }
+
+    fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
+        let free = free_parameters(estimate, self.data);
+        Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m)
+    }
+
+    /// The noise found, where the user has not stated a part of it.
+    fn stated(&self, found: Noise) -> Noise {
+        Noise {
+            position_m: self.options.sigma_position_m.unwrap_or(found.position_m),
+            rotation_rad: self.options.sigma_rotation_rad.unwrap_or(found.rotation_rad),
+        }
+    }
+
+    /// Further starts, when what the fit leaves is more than a robot's own errors: random screws around the registered ones, on a
+    /// sample of the rows. Returns a start that ends clearly lower, if one does, and how many were tried.
+    fn restart(
+        &self,
+        registered: &Estimate,
+        fitted: &Estimate,
+        noise: Noise,
+    ) -> Option<(Option<Estimate>, usize)> {
+        let stride = self.rows.len().div_ceil(RESTART_SAMPLE).max(1);
+        let sample: Vec<u32> = self.rows.iter().step_by(stride).copied().collect();
+        let problem = |estimate: &Estimate| {
+            let free = free_parameters(estimate, self.data);
+            Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m)
+        };
+        if self.options.restarts == 0 || self.position_rms(fitted) < SUSPICIOUS * self.robot.reach_m() {
+            return None;
+        }
+        let after = problem(fitted).normal(fitted).cost;
+        let options = Options { iterations: 40, decrement: 1e-3, ..self.options.solver };
+        let mut generator = ChaCha8Rng::seed_from_u64(self.options.seed ^ 0x5eed);
+        let mut best: (f64, Option<Estimate>) = (0.8 * after, None);
+        let mut tried = 0;
+        while tried < self.options.restarts {
+            tried += 1;
+            let scale = [0.05, 0.1, 0.2, 0.4][tried % 4];
+            let start = self.scattered(registered, scale, &mut generator);
+            let (found, normal, _) = minimize(&problem(&start), start, &options);
+            if normal.cost < best.0 {
+                best.0 = 0.999 * normal.cost;
+                if self.position_rms(&found) < SUSPICIOUS * self.robot.reach_m() {
+                    best.1 = Some(found);
+                    break;
+                }
+                best.1 = Some(found);
+            }
+        }
+        Some((best.1, tried))
+    }
+
+    /// Root mean square distance from prediction to measurement, metres.
+    fn position_rms(&self, estimate: &Estimate) -> f64 {
+        let errors = row_errors(self.data, self.packed, self.rows, estimate);
+        let sum: f64 = errors.iter().map(|e| e.position_m.norm_squared()).sum();
+        (sum / errors.len().max(1) as f64).sqrt()
+    }
+
+    /// The estimate with every axis tilted by about `scale` radians and shifted by as much of the arm's length.
+    fn scattered(&self, estimate: &Estimate, scale: f64, generator: &mut ChaCha8Rng) -> Estimate {
+        let layout = self.problem(estimate, Noise { position_m: 1.0, rotation_rad: 1.0 }).layout().clone();
+        let step: Vec<f64> =
+            (0..layout.dim()).map(|_| scale * self.length_m * random::normal(generator)).collect();
+        layout.retract(estimate, &step)
+    }
+
+    /// Moves along exactly null directions to the screws nearest to nominal; the fit is renewed after each move.
+    fn settle_null_directions(&self, estimate: Estimate, normal: Normal, noise: Noise) -> (Estimate, Normal) {
+        let (mut estimate, mut normal) = (estimate, normal);
+        for _ in 0..8 {
+            let problem = self.problem(&estimate, noise);
+            let Some(step) = gauge::null_step(&estimate, self.robot, problem.layout(), &normal.gram, NULL)
+            else {
+                break;
+            };
+            let length = step.iter().map(|s| s * s).sum::<f64>().sqrt();
+            let (moved, moved_normal, _) =
+                minimize(&problem, problem.retract(&estimate, &step), &self.options.solver);
+            if length < 1e-10 || moved_normal.cost > normal.cost * (1.0 + 1e-6) + 1e-12 {
+                break;
+            }
+            (estimate, normal) = (moved, moved_normal);
+        }
+        (estimate, normal)
+    }
+}

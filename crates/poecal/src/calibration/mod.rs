@@ -1,0 +1,277 @@
+//! From a robot and measurements to a calibrated robot: the steps by name, and nothing computed here.
+
+mod accuracy;
+mod fit;
+mod noise;
+mod split;
+
+pub use accuracy::{Accuracy, ModelAccuracy, RowError, SetAccuracy, Statistic, row_errors, set_accuracy};
+pub use fit::fit_screws;
+pub use noise::{NoiseSource, estimate_noise};
+pub use split::split_rows;
+
+use crate::analysis::{Identifiability, identifiability};
+use crate::error::{Error, ErrorKind, Result};
+use crate::estimate::{Estimate, Packed};
+use crate::gauge;
+use crate::lie::Pose;
+use crate::measurement::{Dataset, Noise};
+use crate::robot::Robot;
+use crate::solve;
+use crate::start::{Registration, register};
+
+/// What is known of the measuring device's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum DeviceFrameKnowledge {
+    /// The device stands anywhere: its frame is found (and is exactly redundant with the screws, docs/theory.md §8).
+    #[default]
+    Unknown,
+    /// Measurements are in the robot's base frame, as in lou2009.
+    Base,
+}
+
+/// How to calibrate.
+///
+/// ```
+/// use poecal::calibration::CalibrationOptions;
+/// let options = CalibrationOptions { held_out: 0.2, ..Default::default() };
+/// assert_eq!(options.seed, 1);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CalibrationOptions {
+    /// What is known of the device's frame.
+    pub frame: DeviceFrameKnowledge,
+    /// Standard deviation of each measured position component, metres; estimated from the data if absent.
+    pub sigma_position_m: Option<f64>,
+    /// Standard deviation of each measured rotation component, radians; estimated from the data if absent.
+    pub sigma_rotation_rad: Option<f64>,
+    /// Share of the configurations held out where the data do not say (0 to below 1).
+    pub held_out: f64,
+    /// Seed of that choice and of restarts.
+    pub seed: u64,
+    /// Options of the solver.
+    pub solver: solve::Options,
+    /// Further starts tried when the fit looks as if it ended beside the optimum.
+    pub restarts: usize,
+}
+
+impl Default for CalibrationOptions {
+    fn default() -> Self {
+        CalibrationOptions {
+            frame: DeviceFrameKnowledge::Unknown,
+            sigma_position_m: None,
+            sigma_rotation_rad: None,
+            held_out: 0.3,
+            seed: 1,
+            solver: solve::Options::default(),
+            restarts: 24,
+        }
+    }
+}
+
+/// A target as calibrated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedTarget {
+    /// Its name; `None` is the tip itself.
+    pub name: Option<String>,
+    /// Whether its orientation was measured; if not, only the position means something.
+    pub is_frame: bool,
+    /// `tip_from_target` in the calibrated robot.
+    pub tip_from_target: Pose,
+}
+
+/// How the minimisation went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolverReport {
+    /// Iterations of the full fit, re-weighted rounds included.
+    pub iterations: usize,
+    /// Why it ended.
+    pub termination: solve::Termination,
+    /// Further starts that were tried.
+    pub restarts: usize,
+    /// Root mean square whitened residual by iteration.
+    pub trace: Vec<f64>,
+}
+
+/// The three models that every result is stated for, as estimates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Models {
+    /// As delivered: only an unknown device frame is fitted.
+    pub nominal: Estimate,
+    /// Device frame and targets fitted, screws nominal.
+    pub registered: Estimate,
+    /// Screws, targets and device frame fitted.
+    pub calibrated: Estimate,
+}
+
+/// A finished calibration.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let simulation = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
+/// let made = simulation.run(&elbow(), Kind::Pose)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let held_out = calibration.accuracy.held_out.expect("30 % are held out");
+/// assert!(held_out.calibrated.position_mm.max < 1e-6);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// The robot as delivered.
+    pub nominal: Robot,
+    /// The calibrated robot. The single unnamed target is its tip.
+    pub robot: Robot,
+    /// The targets.
+    pub targets: Vec<CalibratedTarget>,
+    /// What was known of the device's frame.
+    pub frame: DeviceFrameKnowledge,
+    /// `base_from_device`.
+    pub base_from_device: Pose,
+    /// The three models.
+    pub models: Models,
+    /// Errors of the three models on training and held-out rows.
+    pub accuracy: Accuracy,
+    /// The minimisation.
+    pub solver: SolverReport,
+    /// What the measurements can tell.
+    pub identifiability: Identifiability,
+    /// Noise by which residuals were whitened where a row stated none.
+    pub noise: Noise,
+    /// Where that noise came from.
+    pub noise_source: NoiseSource,
+    /// Rows fitted.
+    pub fit_rows: Vec<u32>,
+    /// Rows held out.
+    pub held_out_rows: Vec<u32>,
+}
+
+/// Calibrates a robot from measurements.
+///
+/// # Errors
+/// [`ErrorKind::Problem`] if there are too few measurements, [`ErrorKind::Option`] for options out of range, [`ErrorKind::Solver`]
+/// if no finite result could be reached.
+pub fn calibrate(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> Result<Calibration> {
+    let (fit_rows, held_out_rows) = split_rows(data, options)?;
+    check_count(robot, data, &fit_rows)?;
+    let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
+    let delivered = delivered(robot, data);
+    let length_m = robot.reach_m() / 3.0;
+    let (mut noise, source) = noise::first_guess(options);
+    let registration = |noise: Noise, targets_free: bool| Registration {
+        data,
+        packed: &packed,
+        rows: &fit_rows,
+        noise,
+        length_m,
+        device_free: options.frame == DeviceFrameKnowledge::Unknown,
+        targets_free,
+    };
+    let (mut registered, _) = register(&registration(noise, true), &delivered);
+    if source == NoiseSource::Estimated {
+        noise = estimate_noise(data, &packed, &fit_rows, &registered, 6, noise);
+        registered = register(&registration(noise, true), &registered).0;
+    }
+    let fitted = fit::fit(robot, data, &packed, &fit_rows, &registered, noise, source, length_m, options)?;
+    noise = fitted.noise;
+    let nominal = register(&registration(noise, false), &delivered).0;
+    let calibrated = match options.frame {
+        DeviceFrameKnowledge::Unknown => {
+            let motion = gauge::base_motion(&fitted.estimate, robot, &delivered.base_from_target, length_m);
+            fitted.estimate.rebased(&motion)
+        }
+        DeviceFrameKnowledge::Base => fitted.estimate,
+    };
+    let identifiability = identifiability(robot, data, &fitted.layout, &fitted.normal);
+    let models = Models { nominal, registered, calibrated };
+    let accuracy = Accuracy {
+        training: set_accuracy(data, &packed, &fit_rows, &models),
+        held_out: (!held_out_rows.is_empty()).then(|| set_accuracy(data, &packed, &held_out_rows, &models)),
+    };
+    let (calibrated_robot, targets) = place_tip(robot, data, &models.calibrated);
+    Ok(Calibration {
+        nominal: robot.clone(),
+        robot: calibrated_robot,
+        targets,
+        frame: options.frame,
+        base_from_device: models.calibrated.device_from_base.inverse(),
+        models,
+        accuracy,
+        solver: fitted.report,
+        identifiability,
+        noise,
+        noise_source: source,
+        fit_rows,
+        held_out_rows,
+    })
+}
+
+/// The model as delivered: nominal screws, each target where the model has it or else at the tip, device at the base.
+#[must_use]
+pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
+    let base_from_target = data
+        .targets
+        .iter()
+        .map(|name| {
+            let known = robot.targets.iter().find(|(target, _)| Some(target) == name.as_ref());
+            robot.home * known.map_or_else(Pose::identity, |(_, tip_from_target)| *tip_from_target)
+        })
+        .collect();
+    Estimate::new(robot, base_from_target, Pose::identity())
+}
+
+/// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (with points alone its
+/// orientation keeps the nominal relation to the last joint); otherwise the tip keeps its whole nominal relation to the last joint.
+fn place_tip(robot: &Robot, data: &Dataset, estimate: &Estimate) -> (Robot, Vec<CalibratedTarget>) {
+    let mut calibrated = robot.with_screws(&estimate.screws());
+    let last_joint = calibrated.joints.last().map_or_else(Pose::identity, |joint| joint.frame);
+    calibrated.home = last_joint * robot.last_joint_from_tip();
+    for (target, name) in data.targets.iter().enumerate() {
+        if name.is_none() {
+            let seen = estimate.base_from_target[target];
+            let rotation =
+                if data.target_is_frame(target) { seen.rotation } else { calibrated.home.rotation };
+            calibrated.home = Pose::new(rotation, seen.translation);
+        }
+    }
+    let tip_from_base = calibrated.home.inverse();
+    let targets = data
+        .targets
+        .iter()
+        .enumerate()
+        .map(|(target, name)| {
+            let is_frame = data.target_is_frame(target);
+            let tip_from_target = tip_from_base * estimate.base_from_target[target];
+            let rotation = if is_frame { tip_from_target.rotation } else { nalgebra::Matrix3::identity() };
+            CalibratedTarget {
+                name: name.clone(),
+                is_frame,
+                tip_from_target: Pose::new(rotation, tip_from_target.translation),
+            }
+        })
+        .collect();
+    (calibrated, targets)
+}
+
+/// Refuses problems with fewer measured numbers than unknowns that data of this kind could determine.
+fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
+    use crate::robot::JointKind;
+    let screws: usize =
+        robot.joints.iter().map(|joint| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum();
+    let targets: usize =
+        (0..data.targets.len()).map(|target| if data.target_is_frame(target) { 6 } else { 3 }).sum();
+    let needed = screws + targets;
+    let given: usize =
+        fit_rows.iter().map(|&row| data.observations[row as usize].measurement.residual_model().dim()).sum();
+    if given < needed {
+        return Err(Error::new(
+            ErrorKind::Problem,
+            format!(
+                "found {} measurements to fit with {given} measured numbers, expected at least {needed} numbers \
+                 ({screws} of the screws, {targets} of the targets): measure more configurations, or hold out fewer",
+                fit_rows.len()
+            ),
+        ));
+    }
+    Ok(())
+}

@@ -1,0 +1,66 @@
+//! Which rows are fitted and which are held out.
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::CalibrationOptions;
+use crate::error::{Error, ErrorKind, Result};
+use crate::measurement::{Dataset, Set};
+use crate::simulate::random;
+
+/// Rows to fit and rows held out, each in the order of the data. Where a row states its set, that holds (and rows that state none
+/// are then fitted); otherwise a seeded share of the *configurations* is held out, so that several targets seen in one
+/// configuration never stand on both sides.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if the share is not in `[0, 1)`, [`ErrorKind::Problem`] if nothing is left to fit.
+pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u32>, Vec<u32>)> {
+    if !(0.0..1.0).contains(&options.held_out) {
+        return Err(Error::new(
+            ErrorKind::Option,
+            format!("found a held-out share of {}, expected a number from 0 to below 1", options.held_out),
+        ));
+    }
+    let count = u32::try_from(data.len()).map_err(|_| {
+        Error::new(ErrorKind::Problem, format!("found {} rows, expected at most {}", data.len(), u32::MAX))
+    })?;
+    let stated = data.observations.iter().any(|row| row.set.is_some());
+    let held_out: Vec<bool> = if stated {
+        data.observations.iter().map(|row| row.set == Some(Set::HeldOut)).collect()
+    } else {
+        random_share(data, options)
+    };
+    let (kept_back, fitted): (Vec<u32>, Vec<u32>) = (0..count).partition(|&row| held_out[row as usize]);
+    if fitted.is_empty() {
+        return Err(Error::new(
+            ErrorKind::Problem,
+            format!("found {count} rows of which none is to be fitted, expected some in the set `fit`"),
+        ));
+    }
+    Ok((fitted, kept_back))
+}
+
+/// A seeded share of the configurations (rows with the same readings are one).
+fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..data.len()).collect();
+    let key = |row: usize| data.readings(row).iter().map(|value| value.to_bits());
+    order.sort_by(|&a, &b| key(a).cmp(key(b)).then(a.cmp(&b)));
+    let mut configuration = vec![0usize; data.len()];
+    let mut configurations: Vec<usize> = Vec::new();
+    for (k, &row) in order.iter().enumerate() {
+        if k == 0 || !key(row).eq(key(order[k - 1])) {
+            // Named by its first row, so that the choice does not depend on the values of the readings.
+            configurations.push(row);
+        }
+        configuration[row] = configurations.last().copied().unwrap_or(row);
+    }
+    configurations.sort_unstable();
+    let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
+    random::shuffle(&mut generator, &mut configurations);
+    let count = (options.held_out * configurations.len() as f64).round() as usize;
+    let mut chosen = vec![false; data.len()];
+    for &first in &configurations[..count] {
+        chosen[first] = true;
+    }
+    configuration.iter().map(|&first| chosen[first]).collect()
+}

@@ -1,0 +1,111 @@
+//! The kinematic chain of one row in the device's axes.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Estimate, Packed};
+use crate::lie::Pose;
+use crate::robot::JointKind;
+
+/// An estimate as frames relative to the frame before, so that a row is a product of one fixed pose and one elementary motion a joint.
+///
+/// ```
+/// # use nalgebra::Vector3;
+/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot}};
+/// use poecal::estimate::{Chain, Estimate, Linkage, Packed};
+/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
+/// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
+/// let linkage = Linkage::new(&Estimate::new(&robot, vec![robot.home], Pose::identity()));
+/// let mut chain = Chain::default();
+/// chain.evaluate(&linkage, &Packed::new(&robot, &[0.7], 1), 0, 0);
+/// assert!((chain.target.translation - robot.forward_kinematics(&[0.7]).translation).norm() < 1e-15);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Linkage {
+    kinds: Vec<JointKind>,
+    /// `device_from_axis_1`, then `axis_(i-1)_from_axis_i`.
+    steps: Vec<Pose>,
+    /// `axis_n_from_target`.
+    ends: Vec<Pose>,
+}
+
+impl Linkage {
+    /// The relative frames of an estimate.
+    #[must_use]
+    pub fn new(estimate: &Estimate) -> Self {
+        let mut axis_from_base = estimate.device_from_base;
+        let mut steps = Vec::with_capacity(estimate.base_from_axis.len());
+        for &base_from_axis in &estimate.base_from_axis {
+            steps.push(axis_from_base * base_from_axis);
+            axis_from_base = base_from_axis.inverse();
+        }
+        let ends = estimate.base_from_target.iter().map(|&target| axis_from_base * target).collect();
+        Linkage { kinds: estimate.kinds.clone(), steps, ends }
+    }
+}
+
+/// One joint in the device's axes, before its own motion: the axis frame's directions and origin, and the change that the motion makes.
+#[derive(Clone, Copy, Debug)]
+pub struct JointView {
+    /// Revolute or prismatic.
+    pub kind: JointKind,
+    /// x of the axis frame.
+    pub x: Vector3<f64>,
+    /// y of the axis frame.
+    pub y: Vector3<f64>,
+    /// z of the axis frame: the direction of the screw.
+    pub z: Vector3<f64>,
+    /// Origin of the axis frame, metres.
+    pub origin: Vector3<f64>,
+    /// cos θ (revolute) or θ in metres (prismatic).
+    pub cosine_or_value: f64,
+    /// sin θ (revolute) or 0 (prismatic).
+    pub sine: f64,
+}
+
+/// A row's joints and target in the device's axes. Reused from row to row.
+#[derive(Clone, Debug)]
+pub struct Chain {
+    /// The joints from base to tip.
+    pub joints: Vec<JointView>,
+    /// The last link's frame after all motions (the moved frame of the last axis).
+    pub last: Pose,
+    /// Predicted `device_from_target`.
+    pub target: Pose,
+}
+
+impl Default for Chain {
+    fn default() -> Self {
+        Chain { joints: Vec::new(), last: Pose::identity(), target: Pose::identity() }
+    }
+}
+
+impl Chain {
+    /// Evaluates the chain for a row and a target.
+    pub fn evaluate(&mut self, linkage: &Linkage, packed: &Packed, row: usize, target: usize) {
+        self.joints.clear();
+        let mut moved = Pose::identity();
+        for ((step, &kind), &(cosine_or_value, sine)) in
+            linkage.steps.iter().zip(&linkage.kinds).zip(packed.row(row))
+        {
+            let frame = moved * *step;
+            let x = frame.rotation.column(0).into_owned();
+            let y = frame.rotation.column(1).into_owned();
+            let z = frame.rotation.column(2).into_owned();
+            moved = match kind {
+                JointKind::Revolute => Pose::new(
+                    Matrix3::from_columns(&[
+                        x * cosine_or_value + y * sine,
+                        y * cosine_or_value - x * sine,
+                        z,
+                    ]),
+                    frame.translation,
+                ),
+                JointKind::Prismatic => Pose::new(frame.rotation, frame.translation + z * cosine_or_value),
+            };
+            self.joints.push(JointView { kind, x, y, z, origin: frame.translation, cosine_or_value, sine });
+        }
+        self.last = moved;
+        self.target = moved * linkage.ends[target];
+    }
+}

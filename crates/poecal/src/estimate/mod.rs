@@ -1,0 +1,122 @@
+//! What the estimation moves: axis frames, targets and the device's frame; and what a row of data sees of them.
+//!
+//! The state is the full set of screws, each carried by a frame on its axis: `A_i = base_from_axis` at zero configuration, z along
+//! the screw. A local step `A_i ← A_i exp(ε)` is the adjoint update `ξ_i ← Ad_exp(η) ξ_i` with `η = Ad_A_i ε` (docs/theory.md §5).
+
+mod chain;
+mod packing;
+
+pub use chain::{Chain, JointView, Linkage};
+pub use packing::Packed;
+
+use nalgebra::Vector3;
+
+use crate::lie::{Pose, Screw, rotation};
+use crate::measurement::Dataset;
+use crate::robot::{JointKind, Robot};
+
+/// The current estimate of everything that may be unknown.
+///
+/// ```
+/// # use nalgebra::Vector3;
+/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot}};
+/// use poecal::estimate::Estimate;
+/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
+/// # let robot = Robot::new("r", vec![joint], Pose::identity())?;
+/// let estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
+/// assert!((estimate.screws()[0].w() - Vector3::y()).norm() < 1e-15);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Revolute or prismatic, a joint.
+    pub kinds: Vec<JointKind>,
+    /// `base_from_axis` of each joint at zero configuration: z along the screw, origin on the axis.
+    pub base_from_axis: Vec<Pose>,
+    /// `base_from_target` of each target with all joint values zero (lou2009: M, or the point P_c0).
+    pub base_from_target: Vec<Pose>,
+    /// The base in the measuring device's frame.
+    pub device_from_base: Pose,
+}
+
+impl Estimate {
+    /// The estimate that a robot's screws, targets at zero configuration and a device frame make.
+    #[must_use]
+    pub fn new(robot: &Robot, base_from_target: Vec<Pose>, device_from_base: Pose) -> Self {
+        Estimate {
+            kinds: robot.joints.iter().map(|joint| joint.kind).collect(),
+            base_from_axis: robot
+                .joints
+                .iter()
+                .map(|joint| axis_frame(&joint.screw, &joint.frame.translation))
+                .collect(),
+            base_from_target,
+            device_from_base,
+        }
+    }
+
+    /// The joint screws in the base frame.
+    #[must_use]
+    pub fn screws(&self) -> Vec<Screw> {
+        self.kinds
+            .iter()
+            .zip(&self.base_from_axis)
+            .map(|(kind, frame)| {
+                let direction = frame.rotation.column(2).into_owned();
+                match kind {
+                    JointKind::Revolute => Screw::revolute(&direction, &frame.translation),
+                    JointKind::Prismatic => Screw::prismatic(&direction),
+                }
+            })
+            .collect()
+    }
+
+    /// The same estimate with its screws replaced (one a joint); frames keep their place along each axis.
+    #[must_use]
+    pub fn with_screws(&self, screws: &[Screw]) -> Self {
+        let mut estimate = self.clone();
+        for (frame, screw) in estimate.base_from_axis.iter_mut().zip(screws) {
+            *frame = axis_frame(screw, &frame.translation);
+        }
+        estimate
+    }
+
+    /// The same physical robot seen from a base frame moved by `G`: screws and targets move by `Ad_G`, the device's frame by
+    /// `G⁻¹`, predictions in the device's frame do not change (docs/theory.md §8).
+    #[must_use]
+    pub fn rebased(&self, motion: &Pose) -> Self {
+        Estimate {
+            kinds: self.kinds.clone(),
+            base_from_axis: self.base_from_axis.iter().map(|&frame| *motion * frame).collect(),
+            base_from_target: self.base_from_target.iter().map(|&pose| *motion * pose).collect(),
+            device_from_base: self.device_from_base * motion.inverse(),
+        }
+    }
+
+    /// Moves each axis frame's origin along its axis to where the data can be described with least leverage: nearest to the
+    /// targets' mean place as seen from that joint. Screws do not change.
+    pub(crate) fn recentre(&mut self, data: &Dataset, packed: &Packed, rows: &[u32]) {
+        let stride = (rows.len() / 200).max(1);
+        let count = rows.len().div_ceil(stride) as f64;
+        let linkage = Linkage::new(self);
+        let mut chain = Chain::default();
+        let mut along = vec![0.0; self.kinds.len()];
+        for &row in rows.iter().step_by(stride) {
+            chain.evaluate(&linkage, packed, row as usize, data.observations[row as usize].target);
+            for (sum, joint) in along.iter_mut().zip(&chain.joints) {
+                *sum += joint.z.dot(&(chain.target.translation - joint.origin)) / count;
+            }
+        }
+        for (frame, shift) in self.base_from_axis.iter_mut().zip(along) {
+            frame.translation += frame.rotation.column(2) * shift;
+        }
+    }
+}
+
+/// A frame with z along the screw and its origin at the axis point nearest to `near`.
+fn axis_frame(screw: &Screw, near: &Vector3<f64>) -> Pose {
+    let z = screw.direction();
+    let x = rotation::perpendicular(&z);
+    let turn = nalgebra::Matrix3::from_columns(&[x, z.cross(&x), z]);
+    Pose::new(turn, screw.nearest_point(near))
+}

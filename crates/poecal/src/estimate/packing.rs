@@ -1,0 +1,62 @@
+//! Joint values of every row with their sines and cosines, computed once: no trigonometry inside the iterations.
+
+use crate::robot::{JointKind, Robot};
+
+/// Joint values of all rows, flat: `n` joints a row. For a revolute joint `(cos θ, sin θ)`, for a prismatic one `(θ, 0)`.
+///
+/// ```
+/// # use nalgebra::Vector3;
+/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot}};
+/// use poecal::estimate::Packed;
+/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
+/// # let robot = Robot::new("r", vec![joint], Pose::identity())?;
+/// let packed = Packed::new(&robot, &[0.0, std::f64::consts::FRAC_PI_2], 1);
+/// assert_eq!(packed.rows(), 2);
+/// assert_eq!(packed.joint(1, 0).1, 1.0);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Packed {
+    joints: usize,
+    values: Vec<(f64, f64)>,
+}
+
+impl Packed {
+    /// Packs readings (radians, metres), `width` a row in the order of [`Robot::reading_names`].
+    #[must_use]
+    pub fn new(robot: &Robot, readings: &[f64], width: usize) -> Self {
+        let indices = robot.reading_indices();
+        let mut values = Vec::with_capacity(readings.len() / width.max(1) * robot.joints.len());
+        for row in readings.chunks_exact(width.max(1)) {
+            for (joint, &index) in robot.joints.iter().zip(&indices) {
+                let value = joint.reading.value(row[index]);
+                values.push(match joint.kind {
+                    JointKind::Revolute => {
+                        let (sine, cosine) = value.sin_cos();
+                        (cosine, sine)
+                    }
+                    JointKind::Prismatic => (value, 0.0),
+                });
+            }
+        }
+        Packed { joints: robot.joints.len(), values }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.values.len() / self.joints.max(1)
+    }
+
+    /// `(cos θ, sin θ)` of a revolute joint or `(θ, 0)` of a prismatic one.
+    #[must_use]
+    pub fn joint(&self, row: usize, joint: usize) -> (f64, f64) {
+        self.values[row * self.joints + joint]
+    }
+
+    /// All joints of a row.
+    #[must_use]
+    pub fn row(&self, row: usize) -> &[(f64, f64)] {
+        &self.values[row * self.joints..(row + 1) * self.joints]
+    }
+}

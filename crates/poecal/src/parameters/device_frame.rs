@@ -1,0 +1,49 @@
+//! Where the base stands in the measuring device's frame.
+
+use nalgebra::Vector3;
+
+use super::columns::{Column, Columns, Unit};
+use crate::estimate::{Chain, Estimate};
+use crate::lie::rotation;
+use crate::measurement::TargetTwist;
+
+/// The device's frame, stepped about the point `about` of the device's frame (the middle of the data, so that a turn and a shift
+/// hardly compete): columns `(e_k; 0)` and `(e_k × (p - about); e_k)`.
+///
+/// ```
+/// use poecal::parameters::{Columns, DeviceFrame};
+/// assert_eq!(DeviceFrame { about: nalgebra::Vector3::zeros() }.columns().len(), 6);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeviceFrame {
+    /// Point about which the step turns, metres, device frame.
+    pub about: Vector3<f64>,
+}
+
+const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
+const TURN: Column = Column { unit: Unit::Radian, shifts_only: false };
+
+impl Columns for DeviceFrame {
+    fn columns(&self) -> &'static [Column] {
+        &[SHIFT, SHIFT, SHIFT, TURN, TURN, TURN]
+    }
+
+    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+        let arm = chain.target.translation - self.about;
+        for k in 0..3 {
+            let mut axis = Vector3::zeros();
+            axis[k] = 1.0;
+            out[k] = (axis, Vector3::zeros());
+            out[3 + k] = (axis.cross(&arm), axis);
+        }
+    }
+
+    fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
+        let turn = rotation::exp(&Vector3::new(step[3], step[4], step[5]));
+        let shift = Vector3::new(step[0], step[1], step[2]);
+        let pose = &mut estimate.device_from_base;
+        pose.translation = turn * (pose.translation - self.about) + self.about + shift;
+        pose.rotation = turn * pose.rotation;
+        *pose = pose.orthonormalized();
+    }
+}

@@ -1,0 +1,44 @@
+//! What may be wrong with a robot. A parameter gives the motion of the target that its change causes; it knows no measurement.
+
+mod columns;
+mod device_frame;
+mod screw_axis;
+mod target_frame;
+mod target_place;
+
+pub use columns::{Column, Columns, Unit};
+pub use device_frame::DeviceFrame;
+pub use screw_axis::ScrewAxis;
+pub use target_frame::TargetFrame;
+pub use target_place::TargetPlace;
+
+/// A group of unknowns. A new one is one file with [`Columns`] and one variant here; the compiler lists the arms, all in this file.
+///
+/// ```
+/// use poecal::parameters::{Parameter, TargetPlace};
+/// assert_eq!(Parameter::TargetPlace(TargetPlace { target: 0 }).model().columns().len(), 3);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Parameter {
+    /// A joint's screw: where its axis lies (4 unknowns), or where it slides to (2).
+    ScrewAxis(ScrewAxis),
+    /// Place of a target point on the last link (3).
+    TargetPlace(TargetPlace),
+    /// Place and orientation of a target frame on the last link (6).
+    TargetFrame(TargetFrame),
+    /// Where the base stands in the measuring device's frame (6).
+    DeviceFrame(DeviceFrame),
+}
+
+impl Parameter {
+    /// The columns of this parameter.
+    #[must_use]
+    pub fn model(&self) -> &dyn Columns {
+        match self {
+            Parameter::ScrewAxis(axis) => axis,
+            Parameter::TargetPlace(place) => place,
+            Parameter::TargetFrame(frame) => frame,
+            Parameter::DeviceFrame(frame) => frame,
+        }
+    }
+}

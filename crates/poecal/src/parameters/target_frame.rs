@@ -1,0 +1,46 @@
+//! Place and orientation of a target frame on the last link.
+
+use nalgebra::Vector3;
+
+use super::columns::{Column, Columns, Unit};
+use crate::estimate::{Chain, Estimate};
+use crate::lie::rotation;
+use crate::measurement::TargetTwist;
+
+/// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`.
+///
+/// ```
+/// use poecal::parameters::{Columns, TargetFrame};
+/// assert_eq!(TargetFrame { target: 0 }.columns().len(), 6);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetFrame {
+    /// Index of the target.
+    pub target: usize,
+}
+
+const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
+const TURN: Column = Column { unit: Unit::Radian, shifts_only: false };
+
+impl Columns for TargetFrame {
+    fn columns(&self) -> &'static [Column] {
+        &[SHIFT, SHIFT, SHIFT, TURN, TURN, TURN]
+    }
+
+    fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
+        let zero = Vector3::zeros();
+        for k in 0..3 {
+            let axis =
+                if target == self.target { chain.target.rotation.column(k).into_owned() } else { zero };
+            out[k] = (axis, zero);
+            out[3 + k] = (zero, axis);
+        }
+    }
+
+    fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
+        let pose = &mut estimate.base_from_target[self.target];
+        pose.translation += pose.rotation * Vector3::new(step[0], step[1], step[2]);
+        pose.rotation *= rotation::exp(&Vector3::new(step[3], step[4], step[5]));
+        *pose = pose.orthonormalized();
+    }
+}

@@ -1,0 +1,42 @@
+//! Place of a target point on the last link.
+
+use nalgebra::Vector3;
+
+use super::columns::{Column, Columns, Unit};
+use crate::estimate::{Chain, Estimate};
+use crate::measurement::TargetTwist;
+
+/// The point `P_c0` of lou2009 equations (19) to (26), stepped in the target's own axes: columns `(R_target e_k; 0)`.
+///
+/// ```
+/// use poecal::parameters::{Columns, TargetPlace};
+/// assert_eq!(TargetPlace { target: 0 }.columns().len(), 3);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetPlace {
+    /// Index of the target.
+    pub target: usize,
+}
+
+const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
+
+impl Columns for TargetPlace {
+    fn columns(&self) -> &'static [Column] {
+        &[SHIFT; 3]
+    }
+
+    fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
+        for (k, twist) in out.iter_mut().enumerate() {
+            *twist = if target == self.target {
+                (chain.target.rotation.column(k).into_owned(), Vector3::zeros())
+            } else {
+                (Vector3::zeros(), Vector3::zeros())
+            };
+        }
+    }
+
+    fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
+        let pose = &mut estimate.base_from_target[self.target];
+        pose.translation += pose.rotation * Vector3::new(step[0], step[1], step[2]);
+    }
+}

@@ -1,0 +1,229 @@
+//! Rows × columns: measurements and parameters meet here and nowhere else. Assembly only, no algorithms.
+
+mod layout;
+
+pub use layout::Layout;
+
+use crate::estimate::{Chain, Estimate, Linkage, Packed};
+use crate::measurement::{Dataset, Noise, TargetTwist};
+use crate::parameters::Parameter;
+use crate::solve::{LeastSquares, Normal};
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
+const CHUNK: usize = 1024;
+/// Rows whose Jacobian is held at a time.
+const BLOCK: usize = 16;
+
+/// A calibration problem: which rows of which data, what is free, and the noise by which residuals are whitened.
+///
+/// ```
+/// # use nalgebra::Vector3;
+/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot, JointKind}, measurement::*};
+/// use poecal::{estimate::{Estimate, Packed}, parameters::*, problem::Problem, solve::{minimize, Options}};
+/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
+/// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
+/// # let mut data = Dataset::new(robot.reading_names());
+/// # for reading in [0.0, 1.0, 2.0] {
+/// #     let position = robot.forward_kinematics(&[reading]).act(&Vector3::new(0.01, 0.0, 0.0));
+/// #     data.push(&[reading], None, Measurement::Point(PointMeasurement { position }))?;
+/// # }
+/// let packed = Packed::new(&robot, data.all_readings(), 1);
+/// let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
+/// let noise = Noise { position_m: 1e-4, rotation_rad: 1e-4 };
+/// let problem = Problem::new(&data, &packed, vec![0, 1, 2], free, noise, 1.0);
+/// let start = Estimate::new(&robot, vec![robot.home], Pose::identity());
+/// let (found, _, _) = minimize(&problem, start, &Options::default());
+/// assert!((found.base_from_target[0].translation.x - 0.31).abs() < 1e-12);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Problem<'a> {
+    data: &'a Dataset,
+    packed: &'a Packed,
+    rows: Vec<u32>,
+    layout: Layout,
+    noise: Noise,
+    rounding_m: f64,
+}
+
+impl<'a> Problem<'a> {
+    /// A problem over some rows of the data. `noise` holds where a row states none; `length_m` makes radians comparable with metres.
+    #[must_use]
+    pub fn new(
+        data: &'a Dataset,
+        packed: &'a Packed,
+        rows: Vec<u32>,
+        free: Vec<Parameter>,
+        noise: Noise,
+        length_m: f64,
+    ) -> Self {
+        // A few roundings of the largest number in sight: the distance from the device.
+        let farthest =
+            rows.iter().map(|&row| data.observations[row as usize].measurement.pose().translation.amax());
+        let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
+        Problem { data, packed, rows, layout: Layout::new(free, length_m), noise, rounding_m }
+    }
+
+    /// The arrangement of the unknowns.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The rows that the problem takes in.
+    #[must_use]
+    pub fn rows(&self) -> &[u32] {
+        &self.rows
+    }
+
+    /// The noise that whitens a row.
+    #[must_use]
+    pub fn noise(&self, row: usize) -> Noise {
+        let observation = &self.data.observations[row];
+        Noise {
+            position_m: observation.sigma_position_m.unwrap_or(self.noise.position_m),
+            rotation_rad: observation.sigma_rotation_rad.unwrap_or(self.noise.rotation_rad),
+        }
+    }
+
+    /// Sums what `add` makes of each fixed chunk of rows, in the order of the rows whatever the number of threads.
+    fn sum_chunks(&self, add: impl Fn(&[u32]) -> Normal + Sync + Send) -> Normal {
+        if self.rows.len() <= CHUNK {
+            return add(&self.rows);
+        }
+        let parts: Vec<Normal> = self.rows.par_chunks(CHUNK).map(add).collect();
+        let mut total = Normal::new(self.layout.dim());
+        for part in &parts {
+            total.add(part);
+        }
+        total
+    }
+
+    /// Gathers the rows' Jacobian and residuals in blocks, and hands each block over.
+    fn for_blocks(
+        &self,
+        linkage: &Linkage,
+        rows: &[u32],
+        mut residual: impl FnMut(&Chain, usize, &mut [f64]),
+        normal: &mut Normal,
+    ) {
+        let n = self.layout.dim();
+        let mut chain = Chain::default();
+        let mut columns: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
+        let mut jacobian = vec![0.0; 6 * n];
+        let mut residuals = [0.0; 6];
+        let mut full = Block::default();
+        let mut turning = Block::default();
+        for (count, &row) in rows.iter().enumerate() {
+            let row = row as usize;
+            let observation = &self.data.observations[row];
+            let measurement = observation.measurement.residual_model();
+            chain.evaluate(linkage, self.packed, row, observation.target);
+            self.layout.target_twists(&chain, observation.target, &mut columns);
+            let (dim, split) = (measurement.dim(), measurement.rotation_row());
+            measurement.project(&chain.target, &columns, &self.noise(row), n, &mut jacobian);
+            residual(&chain, row, &mut residuals);
+            full.push(&jacobian[..split * n], &residuals[..split]);
+            turning.push(&jacobian[split * n..dim * n], &residuals[split..dim]);
+            if count % BLOCK == BLOCK - 1 {
+                full.flush(normal, 0);
+                turning.flush(normal, self.layout.shifts());
+            }
+        }
+        full.flush(normal, 0);
+        turning.flush(normal, self.layout.shifts());
+    }
+}
+
+/// Rows of the Jacobian waiting to be accumulated.
+#[derive(Default)]
+struct Block {
+    rows: Vec<f64>,
+    residuals: Vec<f64>,
+}
+
+impl Block {
+    fn push(&mut self, rows: &[f64], residuals: &[f64]) {
+        self.rows.extend_from_slice(rows);
+        self.residuals.extend_from_slice(residuals);
+    }
+
+    fn flush(&mut self, normal: &mut Normal, start: usize) {
+        normal.add_rows(&self.rows, &self.residuals, start);
+        self.rows.clear();
+        self.residuals.clear();
+    }
+}
+
+impl LeastSquares for Problem<'_> {
+    type State = Estimate;
+
+    fn dim(&self) -> usize {
+        self.layout.dim()
+    }
+
+    fn normal(&self, state: &Estimate) -> Normal {
+        let linkage = Linkage::new(state);
+        self.sum_chunks(|rows| {
+            let mut normal = Normal::new(self.layout.dim());
+            self.for_blocks(
+                &linkage,
+                rows,
+                |chain, row, out| {
+                    let measurement = self.data.observations[row].measurement.residual_model();
+                    measurement.residual(&chain.target, &self.noise(row), out);
+                },
+                &mut normal,
+            );
+            normal
+        })
+    }
+
+    fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {
+        // Central second difference along the step; 0.1 of the step keeps both truncation and rounding far below what a
+        // correction of the step needs.
+        const FRACTION: f64 = 0.1;
+        let along = |sign: f64| {
+            let part: Vec<f64> = step.iter().map(|s| sign * FRACTION * s).collect();
+            Linkage::new(&self.retract(state, &part))
+        };
+        let (ahead, behind) = (along(1.0), along(-1.0));
+        let linkage = Linkage::new(state);
+        let total = self.sum_chunks(|rows| {
+            let mut normal = Normal::new(self.layout.dim());
+            let mut chain = Chain::default();
+            let (mut e_ahead, mut e_behind) = ([0.0; 6], [0.0; 6]);
+            self.for_blocks(
+                &linkage,
+                rows,
+                |here, row, out| {
+                    let observation = &self.data.observations[row];
+                    let measurement = observation.measurement.residual_model();
+                    let noise = self.noise(row);
+                    chain.evaluate(&ahead, self.packed, row, observation.target);
+                    measurement.residual(&chain.target, &noise, &mut e_ahead);
+                    chain.evaluate(&behind, self.packed, row, observation.target);
+                    measurement.residual(&chain.target, &noise, &mut e_behind);
+                    measurement.residual(&here.target, &noise, out);
+                    for (e, (a, b)) in out.iter_mut().zip(e_ahead.iter().zip(&e_behind)) {
+                        *e = (a + b - 2.0 * *e) / (FRACTION * FRACTION);
+                    }
+                },
+                &mut normal,
+            );
+            normal
+        });
+        total.gradient
+    }
+
+    fn rounding(&self) -> f64 {
+        let noise = self.noise;
+        (self.rounding_m / noise.position_m).max(self.rounding_m / noise.rotation_rad).powi(2)
+    }
+
+    fn retract(&self, state: &Estimate, step: &[f64]) -> Estimate {
+        self.layout.retract(state, step)
+    }
+}

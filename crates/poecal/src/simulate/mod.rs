@@ -1,0 +1,183 @@
+//! Synthetic robots and measurements with seeded noise: for tests, for learning, and for planning.
+
+pub mod random;
+mod robots;
+
+pub use robots::{elbow, gantry, random_chain, scara, seven_axis};
+
+use nalgebra::Vector3;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use crate::error::Result;
+use crate::lie::{Pose, Twist, rotation};
+use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
+use crate::robot::{JointKind, Robot};
+
+/// What the simulated device sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The tip's position and orientation.
+    Pose,
+    /// The tip's position.
+    Point,
+    /// Poses and points in turn.
+    Mixed,
+}
+
+/// A simulated measurement session.
+///
+/// ```
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation { count: 20, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// assert_eq!(made.data.len(), 20);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Simulation {
+    /// Angle by which each axis, and the tip, is turned, radians.
+    pub error_rotation_rad: f64,
+    /// Distance by which each axis, and the tip, is shifted, metres.
+    pub error_position_m: f64,
+    /// Standard deviation of each position component, metres.
+    pub noise_position_m: f64,
+    /// Standard deviation of each rotation component, radians.
+    pub noise_rotation_rad: f64,
+    /// Number of configurations.
+    pub count: usize,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Whether the device stands somewhere unknown instead of at the robot's base.
+    pub device_anywhere: bool,
+}
+
+impl Default for Simulation {
+    fn default() -> Self {
+        Simulation {
+            error_rotation_rad: 1f64.to_radians(),
+            error_position_m: 2e-3,
+            noise_position_m: 5e-5,
+            noise_rotation_rad: 0.01f64.to_radians(),
+            count: 50,
+            seed: 1,
+            device_anywhere: true,
+        }
+    }
+}
+
+/// A simulated session with its truth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulated {
+    /// The robot as drawn.
+    pub nominal: Robot,
+    /// The robot that was measured.
+    pub actual: Robot,
+    /// `device_from_base` of the truth.
+    pub device_from_base: Pose,
+    /// What was measured.
+    pub data: Dataset,
+}
+
+impl Simulation {
+    /// Simulates a robot that deviates from `nominal`, measured in random configurations within its limits (±π and ±0.5 m where
+    /// there are none).
+    ///
+    /// # Errors
+    /// Does not fail for a finite robot.
+    pub fn run(&self, nominal: &Robot, kind: Kind) -> Result<Simulated> {
+        let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
+        let actual = self.perturbed(nominal, &mut generator);
+        self.measure(nominal, actual, kind, &mut generator)
+    }
+
+    /// Measures a given actual robot.
+    ///
+    /// # Errors
+    /// Does not fail for a finite robot.
+    pub fn measure(
+        &self,
+        nominal: &Robot,
+        actual: Robot,
+        kind: Kind,
+        generator: &mut ChaCha8Rng,
+    ) -> Result<Simulated> {
+        let device_from_base = if self.device_anywhere {
+            let turn = random::rotation(generator);
+            Pose::new(turn, random::direction(generator) * 3.0)
+        } else {
+            Pose::identity()
+        };
+        let mut data = Dataset::new(nominal.reading_names());
+        for row in 0..self.count {
+            let readings = random_configuration(nominal, generator);
+            let seen = device_from_base * actual.forward_kinematics(&readings);
+            let noise = random::normal_vector(generator) * self.noise_position_m;
+            let turn = random::normal_vector(generator) * self.noise_rotation_rad;
+            let position = seen.translation + noise;
+            let as_pose = match kind {
+                Kind::Pose => true,
+                Kind::Point => false,
+                Kind::Mixed => row % 2 == 0,
+            };
+            let measurement = if as_pose {
+                let pose = Pose::new(rotation::exp(&turn) * seen.rotation, position);
+                Measurement::Pose(PoseMeasurement { pose })
+            } else {
+                Measurement::Point(PointMeasurement { position })
+            };
+            data.push(&readings, None, measurement)?;
+        }
+        Ok(Simulated { nominal: nominal.clone(), actual, device_from_base, data })
+    }
+
+    /// A robot whose every axis, and tip, is turned and shifted by the stated amounts in random directions, about the joint's own
+    /// origin.
+    pub fn perturbed(&self, nominal: &Robot, generator: &mut ChaCha8Rng) -> Robot {
+        let mut motion_about = |point: &Vector3<f64>| {
+            let turn = rotation::exp(&(random::direction(generator) * self.error_rotation_rad));
+            let shift = random::direction(generator) * self.error_position_m;
+            Pose::new(turn, point + shift - turn * point)
+        };
+        let screws: Vec<_> = nominal
+            .joints
+            .iter()
+            .map(|joint| joint.screw.transformed(&motion_about(&joint.frame.translation)))
+            .collect();
+        let mut actual = nominal.with_screws(&screws);
+        actual.home = motion_about(&nominal.home.translation) * nominal.home;
+        actual.name = format!("{}_actual", nominal.name);
+        actual
+    }
+}
+
+/// Readings of a random configuration in which every joint is within its limits (±π and ±0.5 m where there are none).
+pub fn random_configuration(robot: &Robot, generator: &mut ChaCha8Rng) -> Vec<f64> {
+    robot
+        .reading_names()
+        .iter()
+        .map(|name| {
+            let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
+            let mut kind = JointKind::Revolute;
+            for joint in robot.joints.iter().filter(|joint| joint.reading.name == *name) {
+                kind = joint.kind;
+                if let Some(limits) = joint.limits
+                    && joint.reading.multiplier != 0.0
+                {
+                    let at = |value: f64| (value - joint.reading.offset) / joint.reading.multiplier;
+                    let (a, b) = (at(limits.lower), at(limits.upper));
+                    lower = lower.max(a.min(b));
+                    upper = upper.min(a.max(b));
+                }
+            }
+            let span = if kind == JointKind::Revolute { std::f64::consts::PI } else { 0.5 };
+            let lower = if lower.is_finite() { lower } else { -span };
+            let upper = if upper.is_finite() { upper } else { span };
+            lower + (upper - lower).max(0.0) * random::uniform(generator)
+        })
+        .collect()
+}
+
+/// A small random twist: rotation by `angle_rad` and shift by `distance_m` in random directions.
+pub fn random_twist(angle_rad: f64, distance_m: f64, generator: &mut ChaCha8Rng) -> Twist {
+    Twist::new(random::direction(generator) * distance_m, random::direction(generator) * angle_rad)
+}

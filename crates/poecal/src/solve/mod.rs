@@ -1,0 +1,30 @@
+//! Nonlinear least squares on a manifold. It knows no robots: a problem gives normal information and applies steps.
+
+mod levenberg_marquardt;
+mod normal;
+mod termination;
+
+pub use levenberg_marquardt::{Options, Summary, minimize};
+pub use normal::Normal;
+pub use termination::Termination;
+
+/// A problem `min ½ Σ e(x)²` whose unknowns are scaled so that one unit of each is comparable (metres, and radians times a length).
+pub trait LeastSquares {
+    /// A point of the manifold.
+    type State: Clone;
+
+    /// Number of unknowns of a step.
+    fn dim(&self) -> usize;
+
+    /// Residuals and their derivatives, as normal information.
+    fn normal(&self, state: &Self::State) -> Normal;
+
+    /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected.
+    fn second_order(&self, state: &Self::State, step: &[f64]) -> Vec<f64>;
+
+    /// Mean squared whitened residual that is nothing but rounding: below it there is nothing left to fit.
+    fn rounding(&self) -> f64;
+
+    /// The state after a step.
+    fn retract(&self, state: &Self::State, step: &[f64]) -> Self::State;
+}

@@ -1,0 +1,63 @@
+//! Normal information: what the solver needs of all residuals, in O(n²) memory.
+
+use crate::linalg;
+
+/// `JᵀJ` (upper triangle, row-major), `Jᵀe` and `½ Σ e²` of whitened residuals, with their number.
+///
+/// ```
+/// let mut normal = poecal::solve::Normal::new(2);
+/// normal.add_rows(&[1.0, 0.0, 0.0, 2.0], &[3.0, 4.0], 0);
+/// assert_eq!((normal.cost, normal.gradient[1], normal.gram[3]), (12.5, 8.0, 4.0));
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Normal {
+    /// Upper triangle of `JᵀJ`, row-major `n × n`.
+    pub gram: Vec<f64>,
+    /// `Jᵀe`, with J the derivative of the *prediction*: the direction of descent.
+    pub gradient: Vec<f64>,
+    /// `½ Σ e²`.
+    pub cost: f64,
+    /// Number of residuals.
+    pub residuals: usize,
+}
+
+impl Normal {
+    /// No residuals of `n` unknowns.
+    #[must_use]
+    pub fn new(n: usize) -> Self {
+        Normal { gram: vec![0.0; n * n], gradient: vec![0.0; n], cost: 0.0, residuals: 0 }
+    }
+
+    /// Number of unknowns.
+    #[must_use]
+    pub fn dim(&self) -> usize {
+        self.gradient.len()
+    }
+
+    /// Adds rows of the Jacobian (`n` numbers each, those before `start` being zero) with their residuals.
+    pub fn add_rows(&mut self, rows: &[f64], residuals: &[f64], start: usize) {
+        let n = self.dim();
+        linalg::add_gram(&mut self.gram, n, rows, start);
+        linalg::add_gradient(&mut self.gradient, rows, residuals);
+        self.cost += 0.5 * residuals.iter().map(|e| e * e).sum::<f64>();
+        self.residuals += residuals.len();
+    }
+
+    /// Adds the information of other residuals.
+    pub fn add(&mut self, other: &Normal) {
+        for (a, b) in self.gram.iter_mut().zip(&other.gram) {
+            *a += b;
+        }
+        for (a, b) in self.gradient.iter_mut().zip(&other.gradient) {
+            *a += b;
+        }
+        self.cost += other.cost;
+        self.residuals += other.residuals;
+    }
+
+    /// `2 cost / residuals`: the mean squared whitened residual.
+    #[must_use]
+    pub fn mean_square(&self) -> f64 {
+        2.0 * self.cost / self.residuals.max(1) as f64
+    }
+}

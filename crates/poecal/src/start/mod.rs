@@ -1,0 +1,8 @@
+//! Where the device stands and where the targets sit, found without an initial guess and with nominal screws (docs/theory.md §6).
+
+mod averaging;
+mod hand_eye;
+mod registration;
+
+pub(crate) use registration::target_parameters;
+pub use registration::{Registration, register};

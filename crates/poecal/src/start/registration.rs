@@ -1,0 +1,281 @@
+//! Registration: the device's frame and the targets, with the screws as they are.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::averaging::{mean_rotation, rigid_motion};
+use super::hand_eye;
+use crate::estimate::{Chain, Estimate, Linkage, Packed};
+use crate::lie::{Pose, rotation};
+use crate::measurement::{Dataset, Noise};
+use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
+use crate::problem::Problem;
+use crate::solve::{Options, minimize};
+
+/// Rows that the search for a start looks at; the polish afterwards takes all.
+const SAMPLE: usize = 60;
+/// Candidates that are polished and compared.
+const FINALISTS: usize = 4;
+/// Root mean square distance, as a share of the data's own spread, above which the closed forms are not trusted alone.
+const GOOD_MISFIT: f64 = 0.05;
+
+/// What is registered: which rows, by which noise, and what is free.
+#[derive(Clone, Copy, Debug)]
+pub struct Registration<'a> {
+    /// The measurements.
+    pub data: &'a Dataset,
+    /// Their joint values.
+    pub packed: &'a Packed,
+    /// Rows to use.
+    pub rows: &'a [u32],
+    /// Noise of rows that state none.
+    pub noise: Noise,
+    /// Metres that one radian counts.
+    pub length_m: f64,
+    /// Whether the device's frame is unknown (otherwise it stays as in the start).
+    pub device_free: bool,
+    /// Whether the targets are unknown (otherwise they stay as in the start).
+    pub targets_free: bool,
+}
+
+/// Registers the data to an estimate's screws: several closed-form starts, the best polished to the optimum. Its cost (`½ Σ e²`
+/// of whitened residuals) is returned with it.
+#[must_use]
+pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64) {
+    let stride = problem.rows.len().div_ceil(SAMPLE).max(1);
+    let sample: Vec<u32> = problem.rows.iter().step_by(stride).copied().collect();
+    let seen = Seen::new(problem, start, &sample);
+    let mut best = seen.best_of(problem, start, &sample, seen.closed_forms(problem, start));
+    if problem.device_free && problem.targets_free && seen.misfit(&best.0) > GOOD_MISFIT {
+        let turned = cube_rotations().map(|turn| seen.at_rotation(turn, start)).collect();
+        let other = seen.best_of(problem, start, &sample, turned);
+        // A later start must be clearly better, so that rounding does not choose between equal ones.
+        if other.1 < best.1 * (1.0 - 1e-6) {
+            best = other;
+        }
+    }
+    polish(problem, best.0, problem.rows.to_vec(), 50)
+}
+
+/// The rest of the way to the optimum by least squares.
+fn polish(problem: &Registration<'_>, start: Estimate, rows: Vec<u32>, iterations: usize) -> (Estimate, f64) {
+    let free = free_parameters(problem, &rows);
+    let least_squares =
+        Problem::new(problem.data, problem.packed, rows, free, problem.noise, problem.length_m);
+    let options = Options { iterations, trust: 10.0, ..Options::default() };
+    let (estimate, normal, _) = minimize(&least_squares, start, &options);
+    (estimate, normal.cost)
+}
+
+fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<Parameter> {
+    let mut free = Vec::new();
+    if problem.device_free {
+        let sum: Vector3<f64> = rows
+            .iter()
+            .map(|&row| problem.data.observations[row as usize].measurement.residual_model().position())
+            .sum();
+        free.push(Parameter::DeviceFrame(DeviceFrame { about: sum / rows.len().max(1) as f64 }));
+    }
+    if problem.targets_free {
+        free.extend(target_parameters(problem.data));
+    }
+    free
+}
+
+/// The free parameters of all targets: frames where orientation was measured, places elsewhere.
+pub(crate) fn target_parameters(data: &Dataset) -> impl Iterator<Item = Parameter> {
+    (0..data.targets.len()).map(|target| {
+        if data.target_is_frame(target) {
+            Parameter::TargetFrame(TargetFrame { target })
+        } else {
+            Parameter::TargetPlace(TargetPlace { target })
+        }
+    })
+}
+
+/// The sampled rows: the arm's motion from zero in the base frame, and what was seen.
+struct Seen {
+    base_motion: Vec<Pose>,
+    measured: Vec<Vector3<f64>>,
+    turned: Vec<Option<Matrix3<f64>>>,
+    target: Vec<usize>,
+}
+
+impl Seen {
+    fn new(problem: &Registration<'_>, start: &Estimate, sample: &[u32]) -> Self {
+        let mut in_base = start.clone();
+        in_base.device_from_base = Pose::identity();
+        let linkage = Linkage::new(&in_base);
+        let mut chain = Chain::default();
+        let mut seen =
+            Seen { base_motion: Vec::new(), measured: Vec::new(), turned: Vec::new(), target: Vec::new() };
+        for &row in sample {
+            let observation = &problem.data.observations[row as usize];
+            chain.evaluate(&linkage, problem.packed, row as usize, observation.target);
+            let home = start.base_from_target[observation.target];
+            seen.base_motion.push(chain.target * home.inverse());
+            let model = observation.measurement.residual_model();
+            seen.measured.push(model.position());
+            seen.turned.push(model.orientation());
+            seen.target.push(observation.target);
+        }
+        seen
+    }
+
+    /// The lowest optimum that a few of the candidates reach, with its cost on the sample.
+    fn best_of(
+        &self,
+        problem: &Registration<'_>,
+        start: &Estimate,
+        sample: &[u32],
+        devices: Vec<Pose>,
+    ) -> (Estimate, f64) {
+        let mut candidates: Vec<(f64, Estimate)> = devices
+            .into_iter()
+            .map(|device_from_base| {
+                let candidate = self.alternate(problem, start, device_from_base);
+                let (polished, cost) = polish(problem, candidate, sample.to_vec(), 1);
+                (cost, polished)
+            })
+            .collect();
+        candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+        candidates.truncate(FINALISTS);
+        let mut best = (start.clone(), f64::INFINITY);
+        for (_, candidate) in candidates {
+            let (polished, cost) = polish(problem, candidate, sample.to_vec(), 50);
+            if cost < best.1 * (1.0 - 1e-6) {
+                best = (polished, cost);
+            }
+        }
+        best
+    }
+
+    /// Root mean square distance from prediction to measurement over that of the measurements to their mean.
+    fn misfit(&self, estimate: &Estimate) -> f64 {
+        let count = self.measured.len().max(1) as f64;
+        let mean = self.measured.iter().sum::<Vector3<f64>>() / count;
+        let spread: f64 = self.measured.iter().map(|place| (place - mean).norm_squared()).sum();
+        let missed: f64 = (0..self.measured.len())
+            .map(|k| {
+                let home = estimate.base_from_target[self.target[k]].translation;
+                let predicted = estimate.device_from_base.act(&self.base_motion[k].act(&home));
+                (self.measured[k] - predicted).norm_squared()
+            })
+            .sum();
+        (missed / spread.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// Device frames worth trying: the given one; rigid motions of nominal targets and of targets on the last axis; the hand-eye
+    /// rotation; and, for orientation-poor data, the rotation that nominal target orientations ask for.
+    fn closed_forms(&self, problem: &Registration<'_>, start: &Estimate) -> Vec<Pose> {
+        if !problem.device_free {
+            return vec![start.device_from_base];
+        }
+        let mut candidates = vec![self.rigid(&start.base_from_target)];
+        let framed: Vec<usize> = (0..self.turned.len()).filter(|&k| self.turned[k].is_some()).collect();
+        if framed.len() >= 3 {
+            let arm: Vec<_> = framed.iter().map(|&k| self.base_motion[k].rotation).collect();
+            let seen: Vec<_> = framed.iter().filter_map(|&k| self.turned[k]).collect();
+            let (turn, excitation) = hand_eye::device_rotation(&arm, &seen);
+            if excitation > 1e-3 {
+                candidates.push(self.at_rotation(turn, start));
+            }
+            // Orientation-poor data: the rotation that a nominal target orientation asks for.
+            let nominal = mean_rotation(framed.iter().zip(&seen).map(|(&k, turned)| {
+                let arm = self.base_motion[k].rotation;
+                turned * (arm * start.base_from_target[self.target[k]].rotation).transpose()
+            }));
+            candidates.push(self.at_rotation(nominal, start));
+        }
+        if problem.targets_free {
+            let shrunk: Vec<Pose> =
+                start.base_from_target.iter().map(|pose| self.on_last_axis(start, pose)).collect();
+            candidates.push(self.rigid(&shrunk));
+        }
+        candidates
+    }
+
+    /// The target moved onto the last axis: the place that the last joint cannot move.
+    fn on_last_axis(&self, start: &Estimate, target: &Pose) -> Pose {
+        let place =
+            start.screws().last().map_or(target.translation, |s| s.nearest_point(&target.translation));
+        Pose::new(target.rotation, place)
+    }
+
+    fn rigid(&self, targets: &[Pose]) -> Pose {
+        let from: Vec<_> = self
+            .base_motion
+            .iter()
+            .zip(&self.target)
+            .map(|(motion, &target)| motion.act(&targets[target].translation))
+            .collect();
+        rigid_motion(&from, &self.measured)
+    }
+
+    /// The device frame of a given rotation that centres the data with nominal targets.
+    fn at_rotation(&self, turn: Matrix3<f64>, start: &Estimate) -> Pose {
+        let count = self.measured.len().max(1) as f64;
+        let shift: Vector3<f64> = (0..self.measured.len())
+            .map(|k| {
+                let place = self.base_motion[k].act(&start.base_from_target[self.target[k]].translation);
+                self.measured[k] - turn * place
+            })
+            .sum();
+        Pose::new(turn, shift / count)
+    }
+
+    /// Alternates the targets given the device's frame with the device's frame given the targets.
+    fn alternate(&self, problem: &Registration<'_>, start: &Estimate, device_from_base: Pose) -> Estimate {
+        const ROUNDS: usize = 4;
+        let mut estimate = start.clone();
+        estimate.device_from_base = device_from_base;
+        if problem.targets_free {
+            for round in 0..ROUNDS {
+                self.place_targets(&mut estimate);
+                if problem.device_free && round + 1 < ROUNDS {
+                    estimate.device_from_base = self.rigid(&estimate.base_from_target);
+                }
+            }
+        }
+        estimate
+    }
+
+    /// Each target's best place and orientation on the last link, given the device's frame.
+    fn place_targets(&self, estimate: &mut Estimate) {
+        let base_from_device = estimate.device_from_base.inverse();
+        for target in 0..estimate.base_from_target.len() {
+            let rows = || (0..self.target.len()).filter(move |&k| self.target[k] == target);
+            let count = rows().count();
+            if count == 0 {
+                continue;
+            }
+            let sum: Vector3<f64> = rows()
+                .map(|k| self.base_motion[k].inverse().act(&base_from_device.act(&self.measured[k])))
+                .sum();
+            let pose = &mut estimate.base_from_target[target];
+            pose.translation = sum / count as f64;
+            if rows().any(|k| self.turned[k].is_some()) {
+                pose.rotation = mean_rotation(rows().filter_map(|k| {
+                    let link_from_device =
+                        (base_from_device.inverse().rotation * self.base_motion[k].rotation).transpose();
+                    self.turned[k].map(|turned| link_from_device * turned)
+                }));
+            }
+        }
+    }
+}
+
+/// The 24 proper rotations of a cube.
+fn cube_rotations() -> impl Iterator<Item = Matrix3<f64>> {
+    use std::f64::consts::FRAC_PI_2;
+    (0..6).flat_map(|face| {
+        let up = match face {
+            0 => Matrix3::identity(),
+            1 => rotation::about(0, FRAC_PI_2),
+            2 => rotation::about(0, -FRAC_PI_2),
+            3 => rotation::about(0, 2.0 * FRAC_PI_2),
+            4 => rotation::about(1, FRAC_PI_2),
+            _ => rotation::about(1, -FRAC_PI_2),
+        };
+        (0..4).map(move |quarter| up * rotation::about(2, f64::from(quarter) * FRAC_PI_2))
+    })
+}
