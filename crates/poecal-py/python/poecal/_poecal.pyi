@@ -1,0 +1,2 @@
+def version() -> str:
+    """The version of poecal that this module was built from."""
