@@ -1,1 +1,7 @@
 //! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.
+
+mod mimic;
+pub mod model;
+pub mod robot_toml;
+mod source_text;
+pub mod urdf;

@@ -1,0 +1,218 @@
+//! Robot models of any form: which reader a file needs, and conversion between the forms.
+
+use std::path::{Path, PathBuf};
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+
+use super::urdf::{self, ChainSelection, UrdfDocument};
+use super::{robot_toml, source_text};
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::rotation;
+use crate::robot::{JointKind, Robot};
+
+/// What a model was read from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ModelSource {
+    /// A URDF text, which can be written back with other values.
+    Urdf(Box<UrdfDocument>),
+    /// A TOML model.
+    Toml,
+}
+
+/// A robot and the file it came from.
+///
+/// ```no_run
+/// use poecal::io::model::{Model, ModelFormat, convert};
+/// let model = Model::read("robot.urdf", &Default::default())?;
+/// let converted = convert(&model, ModelFormat::Toml)?;
+/// assert!(converted.text.starts_with("poecal_robot = 1"));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model {
+    /// The robot.
+    pub robot: Robot,
+    /// What it was read from.
+    pub source: ModelSource,
+    /// The file, as the user named it.
+    pub path: PathBuf,
+}
+
+/// The forms of a robot model that can be written.
+///
+/// ```
+/// use poecal::io::model::ModelFormat;
+/// assert_eq!(ModelFormat::of_path("out/robot.urdf"), Some(ModelFormat::Urdf));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelFormat {
+    /// URDF.
+    Urdf,
+    /// TOML, as a table of screws.
+    Toml,
+}
+
+impl ModelFormat {
+    /// The form that a file's extension names.
+    #[must_use]
+    pub fn of_path(path: impl AsRef<Path>) -> Option<Self> {
+        match path.as_ref().extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "urdf" | "xml" | "xacro" => Some(ModelFormat::Urdf),
+            "toml" => Some(ModelFormat::Toml),
+            _ => None,
+        }
+    }
+
+    /// The form that a text looks like.
+    fn of_text(text: &str) -> Self {
+        match text.trim_start_matches('\u{feff}').trim_start().chars().next() {
+            Some('<') => ModelFormat::Urdf,
+            _ => ModelFormat::Toml,
+        }
+    }
+}
+
+impl Model {
+    /// Reads a robot model: by the file's extension, or else by how its text begins. `selection` is for URDF.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] if the file cannot be read; [`ErrorKind::Option`] if a chain is selected in a model that has only one;
+    /// else as the reader of its form.
+    pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
+        let path = path.as_ref();
+        let text = source_text::read(path, "a robot model (URDF or TOML)")?;
+        let (robot, source) = match ModelFormat::of_path(path).unwrap_or(ModelFormat::of_text(&text)) {
+            ModelFormat::Urdf => {
+                let urdf = UrdfDocument::parse(&text, path, selection)?;
+                (urdf.robot().clone(), ModelSource::Urdf(Box::new(urdf)))
+            }
+            ModelFormat::Toml => {
+                refuse_selection(path, selection)?;
+                (robot_toml::parse(&text, path)?, ModelSource::Toml)
+            }
+        };
+        Ok(Model { robot, source, path: path.to_path_buf() })
+    }
+}
+
+fn refuse_selection(path: &Path, selection: &ChainSelection) -> Result<()> {
+    if *selection == ChainSelection::default() {
+        return Ok(());
+    }
+    let message = "found --base-link or --tip-link, expected neither: this model has one chain only";
+    Err(Error::new(ErrorKind::Option, message).in_file(path))
+}
+
+/// A model in another form.
+///
+/// ```
+/// use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
+/// let text = r#"
+/// poecal_robot = 1
+/// name = "slide"
+/// length_unit = "m"
+/// angle_unit = "rad"
+/// joint = [{ name = "x", type = "prismatic", direction = [1, 0, 0], limits = [0, 0.5] }]
+/// home = { position = [0, 0, 0.1] }
+/// "#;
+/// let robot = poecal::io::robot_toml::parse(text, "slide.toml")?;
+/// let model = Model { robot, source: ModelSource::Toml, path: "slide.toml".into() };
+/// let converted = convert(&model, ModelFormat::Urdf)?;
+/// assert!(converted.text.contains("<joint name=\"x\" type=\"prismatic\">"));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Converted {
+    /// The whole text.
+    pub text: String,
+    /// What could not be carried, or had to be added, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Writes a model in another form, reads it back and compares forward kinematics on 1,000 configurations.
+///
+/// # Errors
+/// [`ErrorKind::Export`] if the form cannot hold the model, or what was read back differs by more than 1e-12 m or rad (of a robot
+/// larger than 1 m: 1e-12 of its size).
+pub fn convert(model: &Model, to: ModelFormat) -> Result<Converted> {
+    let robot = &model.robot;
+    let (converted, again) = match to {
+        ModelFormat::Urdf => {
+            let urdf = urdf::write_new(robot)?;
+            let selection = ChainSelection {
+                base_link: Some(robot.base_name.clone()),
+                tip_link: Some(robot.tip_name.clone()),
+            };
+            let again = UrdfDocument::parse(&urdf.text, &model.path, &selection);
+            (Converted { text: urdf.text, notes: urdf.notes }, again.map(|document| document.robot().clone()))
+        }
+        ModelFormat::Toml => {
+            let text = robot_toml::write(robot);
+            let again = robot_toml::parse(&text, &model.path);
+            (Converted { text, notes: toml_notes(model) }, again)
+        }
+    };
+    let again = again.map_err(|error| {
+        export(model, format!("the converted model cannot be read back: {}", error.message()))
+    })?;
+    verify(model, &again)?;
+    Ok(converted)
+}
+
+fn toml_notes(model: &Model) -> Vec<String> {
+    match &model.source {
+        ModelSource::Urdf(_) => {
+            vec!["link frames, fixed joints, meshes and inertias are not part of a TOML model and were left out".to_owned()]
+        }
+        ModelSource::Toml => Vec::new(),
+    }
+}
+
+fn export(model: &Model, message: String) -> Error {
+    Error::new(ErrorKind::Export, message).in_file(&model.path)
+}
+
+/// Compares the forward kinematics of a model and of what was read back.
+fn verify(model: &Model, again: &Robot) -> Result<()> {
+    let robot = &model.robot;
+    if again.reading_names() != robot.reading_names() {
+        return Err(export(model, "the converted model has other joints, expected the same".to_owned()));
+    }
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let (mut position_m, mut rotation_rad) = (0.0_f64, 0.0_f64);
+    for _ in 0..1000 {
+        let readings = random_readings(robot, &mut rng);
+        let (a, b) = (robot.forward_kinematics(&readings), again.forward_kinematics(&readings));
+        position_m = larger(position_m, (a.translation - b.translation).norm());
+        rotation_rad = larger(rotation_rad, rotation::log(&(a.rotation.transpose() * b.rotation)).norm());
+    }
+    let tolerance_m = 1e-12 * robot.reach_m().max(1.0);
+    if position_m <= tolerance_m && rotation_rad <= 1e-12 {
+        return Ok(());
+    }
+    let message = format!(
+        "the converted model differs by {position_m:.1e} m and {rotation_rad:.1e} rad, expected at most {tolerance_m:.1e} m and 1e-12 rad"
+    );
+    Err(export(model, message))
+}
+
+/// The larger number, or NaN if either is: a difference that is no number must not pass.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// One uniform reading each, within ±π rad or ±1 m.
+fn random_readings(robot: &Robot, rng: &mut ChaCha8Rng) -> Vec<f64> {
+    robot
+        .reading_names()
+        .iter()
+        .map(|name| {
+            let kind = robot.joints.iter().find(|joint| joint.reading.name == *name).map(|joint| joint.kind);
+            let span = if kind == Some(JointKind::Prismatic) { 1.0 } else { std::f64::consts::PI };
+            // 53 random bits make a number in [0, 1).
+            let unit = (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+            span * (2.0 * unit - 1.0)
+        })
+        .collect()
+}

@@ -1,0 +1,142 @@
+//! Numbers of the file to SI, checked, with the place they stand at.
+
+use std::ops::Range;
+use std::path::Path;
+
+use nalgebra::{Matrix3, Vector3, Vector4};
+use toml::Spanned;
+
+use super::file::{AngleUnit, LengthUnit, PoseTable};
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::source_text::position;
+use crate::lie::{Pose, rotation};
+use crate::robot::JointKind;
+
+/// No length of a robot (metres) and no angle (radians) comes near this; larger numbers are slips.
+const LARGEST_NUMBER: f64 = 1e6;
+/// Rounding that a table of four digits has, in unit vectors, quaternions and rotation matrices.
+pub(super) const TABLE_ROUNDING: f64 = 2e-3;
+
+/// The text, for places, and its units.
+pub(super) struct Context<'a> {
+    pub(super) text: &'a str,
+    pub(super) path: &'a Path,
+    pub(super) length: LengthUnit,
+    pub(super) angle: AngleUnit,
+}
+
+impl Context<'_> {
+    pub(super) fn error(&self, span: Range<usize>, message: String) -> Error {
+        let (line, column) = position(self.text, span.start);
+        Error::new(ErrorKind::Model, message).at(self.path, line, column)
+    }
+
+    /// The numbers, if all are finite and none is beyond all sense.
+    pub(super) fn checked<const N: usize>(
+        &self,
+        numbers: [f64; N],
+        span: Range<usize>,
+        of: &str,
+    ) -> Result<[f64; N]> {
+        for number in numbers {
+            if !number.is_finite() {
+                return Err(self.error(span, format!("found {number} in {of}, expected finite numbers")));
+            }
+            if number.abs() > LARGEST_NUMBER {
+                let message =
+                    format!("found {number} in {of}, expected numbers of metres or radians below 1e6");
+                return Err(self.error(span, message));
+            }
+        }
+        Ok(numbers)
+    }
+
+    pub(super) fn metres<const N: usize>(
+        &self,
+        lengths: [f64; N],
+        span: Range<usize>,
+        of: &str,
+    ) -> Result<[f64; N]> {
+        self.checked(lengths.map(|length| self.length.to_metres(length)), span, of)
+    }
+
+    pub(super) fn radians<const N: usize>(
+        &self,
+        angles: [f64; N],
+        span: Range<usize>,
+        of: &str,
+    ) -> Result<[f64; N]> {
+        self.checked(angles.map(|angle| self.angle.to_radians(angle)), span, of)
+    }
+
+    /// A joint's value in radians or metres.
+    pub(super) fn joint_value(&self, kind: JointKind, value: f64) -> f64 {
+        match kind {
+            JointKind::Revolute => self.angle.to_radians(value),
+            JointKind::Prismatic => self.length.to_metres(value),
+        }
+    }
+
+    /// A name that must not be empty.
+    pub(super) fn name(&self, name: &Spanned<String>, of: &str) -> Result<String> {
+        if name.get_ref().trim().is_empty() {
+            return Err(self.error(name.span(), format!("the name of {of} is empty, expected a name")));
+        }
+        Ok(name.get_ref().clone())
+    }
+
+    pub(super) fn pose(&self, table: &PoseTable, of: &str) -> Result<Pose> {
+        let position = self.metres(*table.position.get_ref(), table.position.span(), of)?;
+        let given = [
+            table.quaternion_xyzw.as_ref().map(Spanned::span),
+            table.rpy.as_ref().map(Spanned::span),
+            table.rotation.as_ref().map(Spanned::span),
+        ];
+        if let Some(second) = given.into_iter().flatten().nth(1) {
+            let message = format!(
+                "{of} has more than one orientation, expected one of quaternion_xyzw, rpy and rotation"
+            );
+            return Err(self.error(second, message));
+        }
+        let mut turn = Matrix3::identity();
+        if let Some(quaternion) = &table.quaternion_xyzw {
+            turn = self.quaternion(quaternion, of)?;
+        } else if let Some(rpy) = &table.rpy {
+            let [roll, pitch, yaw] = self.radians(*rpy.get_ref(), rpy.span(), of)?;
+            turn = rotation::from_rpy(roll, pitch, yaw);
+        } else if let Some(rows) = &table.rotation {
+            turn = self.rotation(rows, of)?;
+        }
+        Ok(Pose::new(turn, Vector3::from(position)))
+    }
+
+    fn quaternion(&self, quaternion: &Spanned<[f64; 4]>, of: &str) -> Result<Matrix3<f64>> {
+        let q = Vector4::from(self.checked(*quaternion.get_ref(), quaternion.span(), of)?);
+        if (q.norm() - 1.0).abs() > TABLE_ROUNDING {
+            let message = format!(
+                "the quaternion of {of} has length {:.4}, expected a unit quaternion (x, y, z, w)",
+                q.norm()
+            );
+            return Err(self.error(quaternion.span(), message));
+        }
+        Ok(rotation::from_quaternion_xyzw(&q))
+    }
+
+    fn rotation(&self, rows: &Spanned<[[f64; 3]; 3]>, of: &str) -> Result<Matrix3<f64>> {
+        let mut matrix = Matrix3::zeros();
+        for (row, numbers) in rows.get_ref().iter().enumerate() {
+            let numbers = self.checked(*numbers, rows.span(), of)?;
+            matrix.set_row(row, &Vector3::from(numbers).transpose());
+        }
+        let skew = (matrix.transpose() * matrix - Matrix3::identity()).amax();
+        if skew > 2.0 * TABLE_ROUNDING || matrix.determinant() < 0.0 {
+            let message = format!(
+                "the rotation of {of} is off a rotation matrix by {skew:.4} (determinant {:.4}), expected three rows that are perpendicular unit vectors, right-handed",
+                matrix.determinant()
+            );
+            return Err(self.error(rows.span(), message));
+        }
+        // Each step squares the error of at most 4e-3, so three reach rounding.
+        Ok((0..3).fold(matrix, |matrix, _| rotation::orthonormalized(&matrix)))
+    }
+}

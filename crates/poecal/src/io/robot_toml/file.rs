@@ -1,0 +1,165 @@
+//! The tables and keys of the file, as serde reads them.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::robot::JointKind;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct File {
+    pub(super) poecal_robot: Spanned<i64>,
+    pub(super) name: Spanned<String>,
+    pub(super) length_unit: LengthUnit,
+    pub(super) angle_unit: AngleUnit,
+    #[serde(default)]
+    pub(super) convention: Convention,
+    pub(super) base_link: Option<Spanned<String>>,
+    pub(super) tip_link: Option<Spanned<String>>,
+    pub(super) joint: Vec<JointTable>,
+    pub(super) home: Option<Spanned<PoseTable>>,
+    pub(super) base: Option<Spanned<PoseTable>>,
+    pub(super) tool: Option<Spanned<PoseTable>>,
+    #[serde(default)]
+    pub(super) target: Vec<TargetTable>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+pub(super) enum LengthUnit {
+    #[serde(rename = "m")]
+    Metre,
+    #[serde(rename = "cm")]
+    Centimetre,
+    #[serde(rename = "mm")]
+    Millimetre,
+    #[serde(rename = "um")]
+    Micrometre,
+}
+
+impl LengthUnit {
+    /// Divided, not multiplied: 834 mm are exactly the number 0.834.
+    pub(super) fn to_metres(self, length: f64) -> f64 {
+        match self {
+            LengthUnit::Metre => length,
+            LengthUnit::Centimetre => length / 1e2,
+            LengthUnit::Millimetre => length / 1e3,
+            LengthUnit::Micrometre => length / 1e6,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Deserialize)]
+pub(super) enum AngleUnit {
+    #[serde(rename = "rad")]
+    Radian,
+    #[serde(rename = "deg")]
+    Degree,
+}
+
+impl AngleUnit {
+    pub(super) fn to_radians(self, angle: f64) -> f64 {
+        match self {
+            AngleUnit::Radian => angle,
+            AngleUnit::Degree => angle.to_radians(),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Default, Deserialize, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Convention {
+    #[default]
+    Screws,
+    StandardDh,
+    ModifiedDh,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum JointWord {
+    #[default]
+    Revolute,
+    Prismatic,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct JointTable {
+    pub(super) name: Spanned<String>,
+    #[serde(default, rename = "type")]
+    pub(super) kind: JointWord,
+    pub(super) screw: Option<Spanned<ScrewTable>>,
+    pub(super) point: Option<Spanned<[f64; 3]>>,
+    pub(super) direction: Option<Spanned<[f64; 3]>>,
+    pub(super) a: Option<Spanned<f64>>,
+    pub(super) alpha: Option<Spanned<f64>>,
+    pub(super) d: Option<Spanned<f64>>,
+    pub(super) theta: Option<Spanned<f64>>,
+    pub(super) limits: Option<Spanned<[f64; 2]>>,
+    pub(super) mimic: Option<Spanned<MimicTable>>,
+}
+
+impl JointTable {
+    pub(super) fn name(&self) -> &str {
+        self.name.get_ref()
+    }
+
+    pub(super) fn kind(&self) -> JointKind {
+        match self.kind {
+            JointWord::Revolute => JointKind::Revolute,
+            JointWord::Prismatic => JointKind::Prismatic,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ScrewTable {
+    pub(super) v: [f64; 3],
+    #[serde(default)]
+    pub(super) w: [f64; 3],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MimicTable {
+    pub(super) joint: String,
+    #[serde(default = "one")]
+    pub(super) multiplier: f64,
+    #[serde(default)]
+    pub(super) offset: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PoseTable {
+    pub(super) position: Spanned<[f64; 3]>,
+    pub(super) quaternion_xyzw: Option<Spanned<[f64; 4]>>,
+    pub(super) rpy: Option<Spanned<[f64; 3]>>,
+    pub(super) rotation: Option<Spanned<[[f64; 3]; 3]>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TargetTable {
+    pub(super) name: Spanned<String>,
+    position: Spanned<[f64; 3]>,
+    quaternion_xyzw: Option<Spanned<[f64; 4]>>,
+    rpy: Option<Spanned<[f64; 3]>>,
+    rotation: Option<Spanned<[[f64; 3]; 3]>>,
+}
+
+impl TargetTable {
+    pub(super) fn pose(&self) -> PoseTable {
+        PoseTable {
+            position: self.position.clone(),
+            quaternion_xyzw: self.quaternion_xyzw.clone(),
+            rpy: self.rpy.clone(),
+            rotation: self.rotation.clone(),
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! The project's own robot model: a TOML file written by hand from a table of screws, or of DH parameters.
+//!
+//! ```toml
+//! poecal_robot = 1            # version of the format
+//! name = "planar"
+//! length_unit = "mm"          # m, cm, mm or um
+//! angle_unit = "deg"          # rad or deg
+//! joint = [
+//!   { name = "joint1", screw = { v = [0, 0, 0], w = [0, 0, 1] }, limits = [-170, 170] },
+//!   { name = "joint2", point = [300, 0, 0], direction = [0, 0, 1] },
+//!   { name = "slide", type = "prismatic", direction = [0, 0, -1], limits = [0, 150] },
+//! ]
+//!
+//! [home]                      # the tip in the base at zero joint values
+//! position = [500, 0, 100]
+//! rpy = [180, 0, 0]           # or quaternion_xyzw, or rotation = [[..], [..], [..]]
+//! ```
+
+mod build;
+mod context;
+mod file;
+mod write;
+
+use std::path::Path;
+
+pub use write::write;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::source_text;
+use crate::robot::Robot;
+use context::Context;
+
+/// Reads a robot from a TOML file.
+///
+/// # Errors
+/// [`ErrorKind::File`] if the file cannot be read, and as [`parse`].
+pub fn read(path: impl AsRef<Path>) -> Result<Robot> {
+    let path = path.as_ref();
+    parse(&source_text::read(path, "a robot model in TOML")?, path)
+}
+
+/// Reads a robot from a TOML text; `path` is for the messages only.
+///
+/// ```
+/// let text = r#"
+/// poecal_robot = 1
+/// name = "puma_wrist"
+/// length_unit = "mm"
+/// angle_unit = "deg"
+/// convention = "standard_dh"
+/// joint = [
+///   { name = "joint1", a = 0, alpha = -90, d = 430, theta = 0 },
+///   { name = "joint2", a = 0, alpha = 90, d = 0, theta = 0, limits = [-100, 100] },
+/// ]
+/// [tool]
+/// position = [0, 0, 56]
+/// "#;
+/// let robot = poecal::io::robot_toml::parse(text, "wrist.toml")?;
+/// assert!((robot.home.translation.z - 0.486).abs() < 1e-15);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+///
+/// # Errors
+/// [`ErrorKind::Syntax`] if the text is not TOML or has other keys than a robot model, [`ErrorKind::Model`] if the model cannot be
+/// used.
+pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Robot> {
+    let path = path.as_ref();
+    let file: file::File = toml::from_str(text).map_err(|error| syntax_error(&error, text, path))?;
+    let context = Context { text, path, length: file.length_unit, angle: file.angle_unit };
+    build::robot(&context, &file)
+}
+
+/// The parser's complaint as one sentence with its place.
+fn syntax_error(error: &toml::de::Error, text: &str, path: &Path) -> Error {
+    let complaint = error.message().trim().replace('\n', ", ");
+    let message = match complaint.as_str() {
+        "missing field `poecal_robot`" => {
+            "found no `poecal_robot`, expected a robot model with poecal_robot = 1, the version of its format"
+                .to_owned()
+        }
+        "missing field `length_unit`" => {
+            "found no `length_unit`, expected one of m, cm, mm, um: units are stated, not guessed".to_owned()
+        }
+        "missing field `angle_unit`" => {
+            "found no `angle_unit`, expected one of rad, deg: units are stated, not guessed".to_owned()
+        }
+        _ => match complaint.strip_prefix("missing field ") {
+            Some(field) => format!("found no {field} in this table, expected it to be given"),
+            None => complaint,
+        },
+    };
+    let (line, column) = source_text::position(text, error.span().map_or(0, |span| span.start));
+    Error::new(ErrorKind::Syntax, message).at(path, line, column)
+}

@@ -1,0 +1,84 @@
+//! A robot as a TOML model of screws, in metres and radians, with numbers that read back exactly.
+
+use std::fmt::Write;
+
+use crate::lie::Pose;
+use crate::robot::{Joint, JointKind, Robot};
+
+/// The robot as a TOML text of screws, SI units. Numbers are the shortest decimals that read back the same.
+///
+/// Joint frames are not part of the format: a screw and the home pose are all that forward kinematics needs.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::io::robot_toml;
+/// use poecal::lie::{Pose, Screw};
+/// use poecal::robot::{Joint, Robot};
+/// let joint = Joint::revolute("shoulder", Screw::revolute(&Vector3::y(), &Vector3::new(0.0, 0.0, 0.4)));
+/// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::new(0.5, 0.0, 0.4)))?;
+/// assert_eq!(robot_toml::parse(&robot_toml::write(&robot), "one_axis.toml")?, robot);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[must_use]
+pub fn write(robot: &Robot) -> String {
+    let mut text = format!(
+        "poecal_robot = 1\nname = {}\nlength_unit = \"m\"\nangle_unit = \"rad\"\nbase_link = {}\ntip_link = {}\n\njoint = [\n",
+        quoted(&robot.name),
+        quoted(&robot.base_name),
+        quoted(&robot.tip_name)
+    );
+    for joint in &robot.joints {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "  {{ {} }},", joint_keys(joint));
+    }
+    let _ = write!(text, "]\n\n[home]\n{}", pose_keys(&robot.home));
+    for (name, pose) in &robot.targets {
+        let _ = write!(text, "\n[[target]]\nname = {}\n{}", quoted(name), pose_keys(pose));
+    }
+    text
+}
+
+fn joint_keys(joint: &Joint) -> String {
+    let (v, w) = (array(joint.screw.v().into()), array(joint.screw.w().into()));
+    let screw = match joint.kind {
+        JointKind::Revolute => format!("screw = {{ v = {v}, w = {w} }}"),
+        JointKind::Prismatic => format!("screw = {{ v = {v} }}"),
+    };
+    let mut keys = format!("name = {}, type = \"{}\", {screw}", quoted(&joint.name), joint.kind.word());
+    if let Some(limits) = joint.limits {
+        let _ = write!(keys, ", limits = [{}, {}]", number(limits.lower), number(limits.upper));
+    }
+    let reading = &joint.reading;
+    if reading.name != joint.name {
+        let _ = write!(
+            keys,
+            ", mimic = {{ joint = {}, multiplier = {}, offset = {} }}",
+            quoted(&reading.name),
+            number(reading.multiplier),
+            number(reading.offset)
+        );
+    }
+    keys
+}
+
+fn pose_keys(pose: &Pose) -> String {
+    let mut keys = format!("position = {}\n", array(pose.translation.into()));
+    if pose.rotation != nalgebra::Matrix3::identity() {
+        let _ = writeln!(keys, "quaternion_xyzw = {}", array(pose.quaternion_xyzw()));
+    }
+    keys
+}
+
+fn array<const N: usize>(numbers: [f64; N]) -> String {
+    format!("[{}]", numbers.map(number).join(", "))
+}
+
+/// The shortest decimal that reads back as the same number; negative zero is zero.
+fn number(number: f64) -> String {
+    let text = format!("{:?}", number + 0.0);
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+fn quoted(name: &str) -> String {
+    toml::Value::String(name.to_owned()).to_string()
+}

@@ -1,0 +1,56 @@
+//! Text files: reading them whole, and turning byte offsets into lines and columns.
+
+use std::path::Path;
+
+use crate::error::{Error, ErrorKind, Result};
+
+/// The text of a file. `expected` names what the file should be, for the messages.
+///
+/// # Errors
+/// [`ErrorKind::File`] if it is a directory, missing, unreadable, empty or not UTF-8.
+pub(super) fn read(path: &Path, expected: &str) -> Result<String> {
+    let file_error = |message: String| Error::new(ErrorKind::File, message).in_file(path);
+    if path.is_dir() {
+        return Err(file_error(format!("found a directory, expected {expected}")));
+    }
+    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            file_error(format!("found no such file, expected {expected}: check the path"))
+        }
+        _ => file_error(format!("the file cannot be read ({error}), expected {expected}")),
+    })?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let (line, column) = position(&String::from_utf8_lossy(error.as_bytes()), valid);
+        Error::new(
+            ErrorKind::File,
+            format!("found bytes that are not UTF-8, expected {expected} as UTF-8 text"),
+        )
+        .at(path, line, column)
+    })?;
+    if text.trim_start_matches('\u{feff}').trim().is_empty() {
+        return Err(file_error(format!("the file is empty, expected {expected}")));
+    }
+    Ok(text)
+}
+
+/// Line and column (from 1, the column in characters) of a byte offset.
+pub(super) fn position(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let line = before.matches('\n').count() + 1;
+    (line, before.get(line_start..).unwrap_or("").trim_start_matches('\u{feff}').chars().count() + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::position;
+
+    #[test]
+    fn positions_count_characters_from_one() {
+        assert_eq!(position("ab\r\nµm x", 0), (1, 1));
+        assert_eq!(position("ab\r\nµm x", 7), (2, 3));
+        assert_eq!(position("\u{feff}ab", 4), (1, 2));
+        assert_eq!(position("ab", 99), (1, 3));
+    }
+}

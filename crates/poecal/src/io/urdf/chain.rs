@@ -1,0 +1,158 @@
+//! The chain from base to tip: as asked for, or the only one there is.
+
+use super::ChainSelection;
+use super::tree::Tree;
+use super::xml::Source;
+use crate::error::{Error, ErrorKind, Result, nearest};
+
+/// A chain through the tree: links and joints as indices into the tree, joints from base to tip.
+pub(super) struct Chain {
+    pub(super) base: usize,
+    pub(super) tip: usize,
+    pub(super) joints: Vec<usize>,
+}
+
+pub(super) fn select(tree: &Tree, selection: &ChainSelection) -> Result<Chain> {
+    let find =
+        |name: &Option<String>, option| name.as_deref().map(|name| find_link(tree, name, option)).transpose();
+    let base = find(&selection.base_link, "--base-link")?;
+    let tip = match find(&selection.tip_link, "--tip-link")? {
+        Some(tip) => tip,
+        None => only_tip(tree, base)?,
+    };
+    let chain = way_up(tree, base, tip)?;
+    check_joints(tree, &chain)?;
+    Ok(chain)
+}
+
+fn error(source: &Source, message: String) -> Error {
+    Error::new(ErrorKind::Model, message).in_file(source.path)
+}
+
+fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {
+    tree.link(name).ok_or_else(|| {
+        let known = nearest(name, tree.links.iter().copied())
+            .map_or("but there is none".into(), |near| format!("the nearest is `{near}`"));
+        error(&tree.source, format!("{option} names link `{name}`, expected a link of this file, {known}"))
+    })
+}
+
+/// The only link without children that has a moving joint above it (below `base`, if that is given).
+fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
+    let mut is_parent = vec![false; tree.links.len()];
+    for joint in &tree.joints {
+        if let Some(flag) = is_parent.get_mut(joint.parent) {
+            *flag = true;
+        }
+    }
+    let mut tips: Vec<Chain> = is_parent
+        .iter()
+        .enumerate()
+        .filter(|(_, is_parent)| !**is_parent)
+        .filter_map(|(link, _)| way_up(tree, base, link).ok())
+        .filter(|chain| moving(tree, chain).next().is_some())
+        .collect();
+    if tips.len() > 1 {
+        tips.retain(|chain| !only_leads(tree, chain));
+    }
+    match tips.as_slice() {
+        [chain] => Ok(chain.tip),
+        [] => Err(error(
+            &tree.source,
+            format!(
+                "found no end link with a moving joint above it{}, expected a serial chain: choose one with --base-link and --tip-link",
+                base.map_or(String::new(), |base| format!(" below base link `{}`", tree.link_name(base)))
+            ),
+        )),
+        several => Err(error(
+            &tree.source,
+            format!(
+                "found {} end links with a moving joint above them ({}), expected one: choose it with --tip-link, and the base, if it is not the root, with --base-link",
+                several.len(),
+                list(several.iter().map(|chain| tree.link_name(chain.tip)))
+            ),
+        )),
+    }
+}
+
+/// Whether all that moves on a chain leads mimic joints elsewhere, as the motor beside a telescopic column does.
+fn only_leads(tree: &Tree, chain: &Chain) -> bool {
+    moving(tree, chain).all(|joint| {
+        tree.joints.iter().enumerate().any(|(index, follower)| {
+            !chain.joints.contains(&index)
+                && tree
+                    .source
+                    .children(follower.node, "mimic")
+                    .any(|mimic| mimic.attribute("joint") == Some(joint))
+        })
+    })
+}
+
+/// Names of the moving joints of a chain.
+fn moving<'a>(tree: &'a Tree, chain: &'a Chain) -> impl Iterator<Item = &'a str> {
+    chain
+        .joints
+        .iter()
+        .filter_map(|&joint| tree.joints.get(joint))
+        .filter(|joint| joint.kind.moves())
+        .map(|joint| joint.name)
+}
+
+/// The way from `tip` up to `base`, or to the root.
+fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<Chain> {
+    let mut at = tip;
+    let mut joints = Vec::new();
+    for (index, joint) in tree.ancestors(tip) {
+        if base == Some(at) {
+            break;
+        }
+        joints.push(index);
+        at = joint.parent;
+    }
+    joints.reverse();
+    match base {
+        Some(base) if base != at => {
+            let above: Vec<_> = tree.ancestors(tip).map(|(_, joint)| tree.link_name(joint.parent)).collect();
+            Err(error(
+                &tree.source,
+                format!(
+                    "tip link `{}` is not below base link `{}`, expected a base link above the tip ({})",
+                    tree.link_name(tip),
+                    tree.link_name(base),
+                    if above.is_empty() { "there is none".to_owned() } else { list(above) }
+                ),
+            ))
+        }
+        _ => Ok(Chain { base: at, tip, joints }),
+    }
+}
+
+fn check_joints(tree: &Tree, chain: &Chain) -> Result<()> {
+    let (base, tip) = (tree.link_name(chain.base), tree.link_name(chain.tip));
+    for joint in chain.joints.iter().filter_map(|&joint| tree.joints.get(joint)) {
+        if !joint.kind.moves() && joint.kind != super::tree::JointType::Fixed {
+            let message = format!(
+                "joint `{}` between `{base}` and `{tip}` is {}, expected revolute, continuous, prismatic or fixed: choose a chain without it with --base-link and --tip-link",
+                joint.name,
+                joint.kind.word()
+            );
+            return Err(tree.source.error(joint.node, message));
+        }
+    }
+    if moving(tree, chain).next().is_none() {
+        let message = format!(
+            "found no moving joint between base link `{base}` and tip link `{tip}`, expected at least one: choose others with --base-link and --tip-link"
+        );
+        return Err(error(&tree.source, message));
+    }
+    Ok(())
+}
+
+/// Names in backticks; of many, the first twelve.
+fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<_> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    match names.get(..12) {
+        Some(first) if names.len() > 12 => format!("{} and {} more", first.join(", "), names.len() - 12),
+        _ => names.join(", "),
+    }
+}

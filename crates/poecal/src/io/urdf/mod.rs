@@ -1,0 +1,144 @@
+//! URDF: a serial chain read from a robot description, and written back into the same text.
+//!
+//! Read: links, joints (fixed, revolute, continuous, prismatic), origins, axes, limits, mimic relations. Everything else in the
+//! file (meshes, inertias, controllers, comments) is neither looked at nor changed.
+
+mod chain;
+mod parts;
+mod patch;
+mod splice;
+mod tree;
+mod write;
+mod xml;
+
+use std::path::{Path, PathBuf};
+
+use roxmltree::Document;
+
+pub use patch::PatchedUrdf;
+pub use write::{NewUrdf, write_new};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::source_text;
+use crate::robot::Robot;
+use parts::Part;
+use tree::Tree;
+use xml::Source;
+
+/// Which chain of the tree is meant. What is left out must be unique: the base is then the root above the tip, and the tip the
+/// only end link with a moving joint above it.
+///
+/// ```
+/// let selection = poecal::io::urdf::ChainSelection { tip_link: Some("tool0".into()), ..Default::default() };
+/// assert!(selection.base_link.is_none());
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ChainSelection {
+    /// First link of the chain.
+    pub base_link: Option<String>,
+    /// Last link of the chain.
+    pub tip_link: Option<String>,
+}
+
+/// A URDF text with the serial chain that was read from it.
+///
+/// ```
+/// use poecal::io::urdf::{ChainSelection, UrdfDocument};
+/// let text = r#"<robot name="one_axis">
+///   <link name="base"/> <link name="arm"/> <link name="tool"/>
+///   <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/></joint>
+///   <joint name="mount" type="fixed"><parent link="arm"/><child link="tool"/><origin xyz="0.5 0 0"/></joint>
+/// </robot>"#;
+/// let urdf = UrdfDocument::parse(text, "one_axis.urdf", &ChainSelection::default())?;
+/// assert_eq!(urdf.robot().tip_name, "tool");
+/// assert_eq!(urdf.robot().home.translation.x, 0.5);
+///
+/// // A robot with another home pose, written into the same text: one attribute changes.
+/// let mut calibrated = urdf.robot().clone();
+/// calibrated.home.translation.x = 0.501;
+/// assert_eq!(urdf.patched(&calibrated)?.text, text.replace("0.5 0 0", "0.501 0 0"));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct UrdfDocument {
+    text: String,
+    path: PathBuf,
+    robot: Robot,
+    parts: Vec<Part>,
+}
+
+impl UrdfDocument {
+    /// Reads a URDF file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] if the file cannot be read, and as [`UrdfDocument::parse`].
+    pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
+        let path = path.as_ref();
+        Self::parse(&source_text::read(path, "a URDF robot description")?, path, selection)
+    }
+
+    /// Reads the chain from a text; `path` is for the messages only.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Syntax`] if the text is not XML or no URDF, [`ErrorKind::Model`] if it is not a tree of links, the chain is
+    /// not unique or not there, or a joint of it cannot be used.
+    pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
+        let path = path.as_ref();
+        let document = Document::parse(text).map_err(|error| xml_error(&error, path))?;
+        let source = Source { document: &document, path };
+        let robot_element = document.root_element();
+        if robot_element.tag_name().name() != "robot" {
+            let name = robot_element.tag_name().name();
+            let message = format!("found root element <{name}>, expected <robot>, as in every URDF file");
+            return Err(source.syntax_error(robot_element, message));
+        }
+        refuse_xacro(&source)?;
+        let tree = Tree::read(source)?;
+        let chain = chain::select(&tree, selection)?;
+        let (parts, joints, home) = parts::read(&tree, &chain)?;
+        let name = robot_element.attribute("name").unwrap_or("robot");
+        let mut robot = Robot::new(name, joints, home).map_err(|error| error.in_file(path))?;
+        tree.link_name(chain.base).clone_into(&mut robot.base_name);
+        tree.link_name(chain.tip).clone_into(&mut robot.tip_name);
+        Ok(UrdfDocument { text: text.to_owned(), path: path.to_path_buf(), robot, parts })
+    }
+
+    /// The robot of the chain; frames and screws are in the base link.
+    #[must_use]
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// The text as it was read.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+}
+
+/// The parser's complaint as one sentence with its place.
+fn xml_error(error: &roxmltree::Error, path: &Path) -> Error {
+    let place = error.pos();
+    let (line, column) = (place.row as usize, place.col as usize);
+    let message = match error {
+        roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => XACRO.to_owned(),
+        _ => {
+            let complaint = error.to_string().replace(&format!(" at {place}"), "");
+            format!("found broken XML ({complaint}), expected a URDF robot description")
+        }
+    };
+    Error::new(ErrorKind::Syntax, message).at(path, line, column)
+}
+
+const XACRO: &str =
+    "found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`";
+
+/// An expanded file may still declare the prefix, but has no elements of it.
+fn refuse_xacro(source: &Source) -> Result<()> {
+    let is_xacro =
+        |node: &roxmltree::Node| node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"));
+    match source.document.descendants().find(is_xacro) {
+        Some(node) => Err(source.syntax_error(node, XACRO.to_owned())),
+        None => Ok(()),
+    }
+}

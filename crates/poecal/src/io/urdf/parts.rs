@@ -1,0 +1,180 @@
+//! The joints of the chain: origins, axes, limits and mimic relations, and where they stand in the text.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+use roxmltree::Node;
+
+use super::chain::Chain;
+use super::tree::{JointType, Tree, TreeJoint};
+use super::xml::{Source, value_range};
+use crate::error::{Result, nearest};
+use crate::io::mimic::{self, Mimic};
+use crate::lie::{Pose, Screw};
+use crate::robot::{Joint, JointKind, Limits, Reading};
+
+/// A fixed or moving joint of the chain, with all that is needed to write it back.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Part {
+    /// `<origin>`: pose of the joint's frame in its parent link.
+    pub(super) parent_from_joint: Pose,
+    /// Unit `<axis>` in the joint's frame; `None` for a fixed joint.
+    pub(super) axis: Option<Vector3<f64>>,
+    pub(super) place: Place,
+}
+
+/// Byte positions in the text of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Place {
+    /// The whole `<joint>` element.
+    pub(super) element: Range<usize>,
+    /// Start of its first child element.
+    pub(super) first_child: usize,
+    /// The byte after `<origin`.
+    pub(super) origin: Option<usize>,
+    pub(super) xyz: Option<Range<usize>>,
+    pub(super) rpy: Option<Range<usize>>,
+    /// The byte after `<axis`.
+    pub(super) axis: Option<usize>,
+    pub(super) axis_xyz: Option<Range<usize>>,
+}
+
+/// The parts of the chain and the moving joints among them, frames and screws in the base link.
+pub(super) fn read(tree: &Tree, chain: &Chain) -> Result<(Vec<Part>, Vec<Joint>, Pose)> {
+    let mut base_from_link = Pose::identity();
+    let (mut parts, mut joints) = (Vec::new(), Vec::new());
+    for joint in chain.joints.iter().filter_map(|&joint| tree.joints.get(joint)) {
+        let part = read_part(&tree.source, joint)?;
+        base_from_link = base_from_link * part.parent_from_joint;
+        if let Some(axis) = part.axis {
+            joints.push(moving_joint(tree, joint, &axis, base_from_link)?);
+        }
+        parts.push(part);
+    }
+    Ok((parts, joints, base_from_link))
+}
+
+fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {
+    let direction = base_from_joint.rotation * axis;
+    let (kind, screw) = match joint.kind {
+        JointType::Prismatic => (JointKind::Prismatic, Screw::prismatic(&direction)),
+        _ => (JointKind::Revolute, Screw::revolute(&direction, &base_from_joint.translation)),
+    };
+    Ok(Joint {
+        name: joint.name.to_owned(),
+        kind,
+        screw,
+        frame: base_from_joint,
+        limits: read_limits(&tree.source, joint)?,
+        reading: read_reading(tree, joint)?,
+    })
+}
+
+fn read_part<'a>(source: &Source<'a>, joint: &TreeJoint<'a>) -> Result<Part> {
+    let child = |name| source.children(joint.node, name).next();
+    let (origin, axis) = (child("origin"), child("axis"));
+    let of = format!("<origin> of joint `{}`", joint.name);
+    let (mut xyz, mut rpy) = ([0.0; 3], [0.0; 3]);
+    if let Some(origin) = origin {
+        if origin.has_attribute("quat_xyzw") {
+            let message = format!("{of} has a quaternion, expected roll, pitch and yaw in `rpy`");
+            return Err(source.error(origin, message));
+        }
+        xyz = source.numbers(origin, "xyz", &of)?.unwrap_or(xyz);
+        rpy = source.numbers(origin, "rpy", &of)?.unwrap_or(rpy);
+    }
+    let unit_axis = if joint.kind.moves() { Some(read_axis(source, joint, axis)?) } else { None };
+    let attribute = |node: Option<Node>, name| node.and_then(|node| value_range(node, name));
+    Ok(Part {
+        parent_from_joint: Pose::from_xyz_rpy(xyz, rpy),
+        axis: unit_axis,
+        place: Place {
+            element: joint.node.range(),
+            first_child: joint
+                .node
+                .first_element_child()
+                .map_or(joint.node.range().end, |child| child.range().start),
+            origin: origin.map(|node| source.after_name(node)),
+            xyz: attribute(origin, "xyz"),
+            rpy: attribute(origin, "rpy"),
+            axis: axis.map(|node| source.after_name(node)),
+            axis_xyz: attribute(axis, "xyz"),
+        },
+    })
+}
+
+/// The unit axis in the joint's frame; without an `<axis>` it is x.
+fn read_axis<'a>(
+    source: &Source<'a>,
+    joint: &TreeJoint<'a>,
+    axis: Option<Node<'a, 'a>>,
+) -> Result<Vector3<f64>> {
+    let of = format!("<axis> of joint `{}`", joint.name);
+    let Some(node) = axis else { return Ok(Vector3::x()) };
+    let axis = Vector3::from(source.numbers(node, "xyz", &of)?.unwrap_or([1.0, 0.0, 0.0]));
+    if axis == Vector3::zeros() {
+        return Err(source.error(node, format!("{of} is 0 0 0, expected a direction, such as 0 0 1")));
+    }
+    // Scaled first, so that tiny numbers do not vanish when squared.
+    Ok((axis / axis.amax()).normalize())
+}
+
+/// Limits, unless the joint is continuous or its range is empty (as exporters write what they do not know).
+fn read_limits<'a>(source: &Source<'a>, joint: &TreeJoint<'a>) -> Result<Option<Limits>> {
+    let Some(node) = source.children(joint.node, "limit").next() else { return Ok(None) };
+    if joint.kind == JointType::Continuous {
+        return Ok(None);
+    }
+    let of = format!("<limit> of joint `{}`", joint.name);
+    let number = |name| source.numbers::<1>(node, name, &of).map(|number| number.map_or(0.0, |[only]| only));
+    let limits = Limits { lower: number("lower")?, upper: number("upper")? };
+    if limits.lower > limits.upper {
+        let message =
+            format!("{of} has lower {} above upper {}, expected lower < upper", limits.lower, limits.upper);
+        return Err(source.error(node, message));
+    }
+    Ok(Some(limits).filter(|limits| limits.lower < limits.upper))
+}
+
+/// The reading that gives a joint its value, through all mimic relations.
+fn read_reading(tree: &Tree, joint: &TreeJoint) -> Result<Reading> {
+    let reading = mimic::reading(joint.name, |name| match tree.joint(name) {
+        Some(follower) => read_mimic(tree, follower),
+        None => Ok(None),
+    })?;
+    reading.ok_or_else(|| {
+        let message = format!(
+            "joint `{}` mimics itself through its leaders, expected a leader that is measured",
+            joint.name
+        );
+        tree.source.error(joint.node, message)
+    })
+}
+
+fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Mimic>> {
+    let source = &tree.source;
+    let Some(node) = source.children(follower.node, "mimic").next() else { return Ok(None) };
+    let of = format!("<mimic> of joint `{}`", follower.name);
+    let (name, attribute) = source.required(node, "joint", &of)?;
+    let error = |message| Err(source.error_at(attribute.range_value().start, message));
+    let Some(leader) = tree.joint(name) else {
+        let near = nearest(name, tree.joints.iter().map(|joint| joint.name)).unwrap_or("");
+        return error(format!(
+            "{of} names joint `{name}`, expected a joint of this file, the nearest is `{near}`"
+        ));
+    };
+    if !leader.kind.moves() {
+        return error(format!(
+            "{of} names joint `{name}`, which is {}, expected a revolute, continuous or prismatic joint",
+            leader.kind.word()
+        ));
+    }
+    let number = |name, default| {
+        source.numbers::<1>(node, name, &of).map(|number| number.map_or(default, |[only]| only))
+    };
+    Ok(Some(Mimic {
+        leader: name.to_owned(),
+        multiplier: number("multiplier", 1.0)?,
+        offset: number("offset", 0.0)?,
+    }))
+}

@@ -1,0 +1,200 @@
+//! The tree of links and joints: names, parents and children, checked for being a tree at all.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use roxmltree::Node;
+
+use super::xml::Source;
+use crate::error::{Result, nearest};
+
+/// The types of joints in URDF.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum JointType {
+    Fixed,
+    Revolute,
+    Continuous,
+    Prismatic,
+    Floating,
+    Planar,
+}
+
+impl JointType {
+    const WORDS: [(&'static str, JointType); 6] = [
+        ("revolute", JointType::Revolute),
+        ("continuous", JointType::Continuous),
+        ("prismatic", JointType::Prismatic),
+        ("fixed", JointType::Fixed),
+        ("floating", JointType::Floating),
+        ("planar", JointType::Planar),
+    ];
+
+    fn of_word(word: &str) -> Option<Self> {
+        Self::WORDS.iter().find(|(known, _)| *known == word).map(|&(_, kind)| kind)
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, kind)| *kind == self).map_or("", |&(word, _)| word)
+    }
+
+    /// Whether the joint has one degree of freedom.
+    pub(super) fn moves(self) -> bool {
+        matches!(self, JointType::Revolute | JointType::Continuous | JointType::Prismatic)
+    }
+}
+
+/// A joint between two links, which are indices into [`Tree::links`].
+pub(super) struct TreeJoint<'a> {
+    pub(super) name: &'a str,
+    pub(super) kind: JointType,
+    pub(super) parent: usize,
+    pub(super) child: usize,
+    pub(super) node: Node<'a, 'a>,
+}
+
+/// All links and joints; every link has at most one joint above it, and there is no loop.
+pub(super) struct Tree<'a> {
+    pub(super) source: Source<'a>,
+    pub(super) links: Vec<&'a str>,
+    pub(super) joints: Vec<TreeJoint<'a>>,
+    /// For each link, the index of the joint that carries it.
+    joint_above: Vec<Option<usize>>,
+}
+
+impl<'a> Tree<'a> {
+    pub(super) fn read(source: Source<'a>) -> Result<Self> {
+        let robot = source.document.root_element();
+        let (links, index) = read_links(source, robot)?;
+        let mut tree = Tree { source, joint_above: vec![None; links.len()], links, joints: Vec::new() };
+        let mut joint_names = BTreeSet::new();
+        for node in source.children(robot, "joint") {
+            let joint = read_joint(source, node, &index)?;
+            if !joint_names.insert(joint.name) {
+                let message =
+                    format!("found a second joint named `{}`, expected unique joint names", joint.name);
+                return Err(source.error(node, message));
+            }
+            tree.add(joint)?;
+        }
+        tree.check_no_loop()?;
+        Ok(tree)
+    }
+
+    fn add(&mut self, joint: TreeJoint<'a>) -> Result<()> {
+        let index = self.joints.len();
+        if let Some(above) = self.joint_above.get_mut(joint.child) {
+            if let Some(first) = above.and_then(|first| self.joints.get(first)) {
+                let message = format!(
+                    "link `{}` is the child of joint `{}` and again of joint `{}`, expected one parent: a closed chain cannot be read",
+                    self.link_name(joint.child),
+                    first.name,
+                    joint.name
+                );
+                return Err(self.source.error(joint.node, message));
+            }
+            *above = Some(index);
+        }
+        self.joints.push(joint);
+        Ok(())
+    }
+
+    /// The joint that carries a link, with its index.
+    pub(super) fn above(&self, link: usize) -> Option<(usize, &TreeJoint<'a>)> {
+        let index = self.joint_above.get(link).copied().flatten()?;
+        Some((index, self.joints.get(index)?))
+    }
+
+    /// The joints above a link, from the link up.
+    pub(super) fn ancestors(&self, link: usize) -> impl Iterator<Item = (usize, &TreeJoint<'a>)> {
+        std::iter::successors(self.above(link), |(_, joint)| self.above(joint.parent))
+    }
+
+    pub(super) fn link_name(&self, link: usize) -> &'a str {
+        self.links.get(link).copied().unwrap_or("")
+    }
+
+    pub(super) fn link(&self, name: &str) -> Option<usize> {
+        self.links.iter().position(|link| *link == name)
+    }
+
+    pub(super) fn joint(&self, name: &str) -> Option<&TreeJoint<'a>> {
+        self.joints.iter().find(|joint| joint.name == name)
+    }
+
+    /// Every way up must end: the links of a loop, each with one parent, have no root above them.
+    fn check_no_loop(&self) -> Result<()> {
+        let mut rooted = vec![false; self.links.len()];
+        for link in 0..self.links.len() {
+            let mut way = vec![link];
+            while let Some(&at) = way.last() {
+                if rooted.get(at).copied().unwrap_or(true) {
+                    break;
+                }
+                let Some((_, joint)) = self.above(at) else { break };
+                // A way longer than there are links comes by some link twice.
+                if way.len() > self.links.len() {
+                    let message = format!(
+                        "joint `{}` closes a loop of links, expected a tree with one root link",
+                        joint.name
+                    );
+                    return Err(self.source.error(joint.node, message));
+                }
+                way.push(joint.parent);
+            }
+            for at in way {
+                if let Some(flag) = rooted.get_mut(at) {
+                    *flag = true;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The links' names in the order of the file, and their indices by name.
+type Links<'a> = (Vec<&'a str>, BTreeMap<&'a str, usize>);
+
+fn read_links<'a>(source: Source<'a>, robot: Node<'a, 'a>) -> Result<Links<'a>> {
+    let (mut links, mut index) = (Vec::new(), BTreeMap::new());
+    for node in source.children(robot, "link") {
+        let (name, _) = source.required(node, "name", "the link")?;
+        if index.insert(name, links.len()).is_some() {
+            let message = format!("found a second link named `{name}`, expected unique link names");
+            return Err(source.error(node, message));
+        }
+        links.push(name);
+    }
+    Ok((links, index))
+}
+
+fn read_joint<'a>(
+    source: Source<'a>,
+    node: Node<'a, 'a>,
+    links: &BTreeMap<&'a str, usize>,
+) -> Result<TreeJoint<'a>> {
+    let (name, _) = source.required(node, "name", "the joint")?;
+    let of = format!("joint `{name}`");
+    let (word, attribute) = source.required(node, "type", &of)?;
+    let kind = JointType::of_word(word).ok_or_else(|| {
+        source.error_at(
+            attribute.range_value().start,
+            format!(
+                "{of} has type `{word}`, expected revolute, continuous, prismatic, fixed, floating or planar"
+            ),
+        )
+    })?;
+    let link = |role: &'static str| -> Result<usize> {
+        let Some(element) = source.children(node, role).next() else {
+            return Err(source.error(node, format!("{of} has no <{role}>, expected <{role} link=\"...\"/>")));
+        };
+        let (link, attribute) = source.required(element, "link", &format!("<{role}> of {of}"))?;
+        links.get(link).copied().ok_or_else(|| {
+            let known = nearest(link, links.keys().copied())
+                .map_or("but there is no link".into(), |near| format!("the nearest is `{near}`"));
+            source.error_at(
+                attribute.range_value().start,
+                format!("{of} names link `{link}`, expected a link of this file, {known}"),
+            )
+        })
+    };
+    Ok(TreeJoint { name, kind, parent: link("parent")?, child: link("child")?, node })
+}

@@ -1,0 +1,187 @@
+//! A new, minimal URDF of any robot: links without shape, the moving joints, and a fixed joint to the tip.
+
+use std::fmt::Write;
+
+use super::patch::{frame_on_axis, origin_values};
+use super::splice::{escaped, number, triple, without_dust};
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::Pose;
+use crate::robot::{Joint, JointKind, Robot};
+
+/// Limit written for a prismatic joint without limits, metres: URDF demands one.
+const WIDE_LIMIT_M: f64 = 1000.0;
+
+/// A new URDF text.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::io::urdf::{ChainSelection, UrdfDocument, write_new};
+/// use poecal::lie::{Pose, Screw};
+/// use poecal::robot::{Joint, Robot};
+/// let joint = Joint::revolute("shoulder", Screw::revolute(&Vector3::y(), &Vector3::new(0.0, 0.0, 0.4)));
+/// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::new(0.5, 0.0, 0.4)))?;
+/// let urdf = write_new(&robot)?;
+/// let again = UrdfDocument::parse(&urdf.text, "one_axis.urdf", &ChainSelection::default())?;
+/// let (a, b) = (robot.forward_kinematics(&[0.3]), again.robot().forward_kinematics(&[0.3]));
+/// assert!((a.translation - b.translation).norm() < 1e-15);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NewUrdf {
+    /// The whole text.
+    pub text: String,
+    /// What could not be carried, or had to be added, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint. Numbers read back exactly.
+///
+/// # Errors
+/// [`ErrorKind::Export`] if a joint's reading cannot be said in URDF (a factor or offset on its own reading).
+pub fn write_new(robot: &Robot) -> Result<NewUrdf> {
+    let mut writer = Writer { text: String::new(), notes: Vec::new(), links: Vec::new() };
+    writer.line(0, "<?xml version=\"1.0\"?>");
+    writer.line(0, &format!("<robot name=\"{}\">", escaped(&robot.name)));
+    writer.links.push(robot.tip_name.clone());
+    let base = writer.link(&robot.base_name);
+    writer.leaders(robot, &base);
+    let (mut parent, mut base_from_link) = (base, Pose::identity());
+    for joint in &robot.joints {
+        let frame = frame_on_axis(&joint.frame, &joint.screw);
+        let child = writer.link(&format!("{}_link", joint.name));
+        let origin = base_from_link.inverse() * frame;
+        base_from_link = base_from_link * writer.joint(joint, &parent, &child, &origin)?;
+        parent = child;
+    }
+    let mut mount = format!("{}_mount", robot.tip_name);
+    while robot.joints.iter().any(|joint| joint.name == mount || joint.reading.name == mount) {
+        mount.push('_');
+    }
+    writer.line(1, &format!("<link name=\"{}\"/>", escaped(&robot.tip_name)));
+    writer.open_joint(&mount, "fixed", &parent, &robot.tip_name);
+    writer.origin(&(base_from_link.inverse() * robot.home));
+    writer.line(1, "</joint>");
+    writer.line(0, "</robot>");
+    if !robot.targets.is_empty() {
+        writer.notes.push("targets are not part of a URDF and were left out".to_owned());
+    }
+    Ok(NewUrdf { text: writer.text, notes: writer.notes })
+}
+
+fn export(message: String) -> Error {
+    Error::new(ErrorKind::Export, message)
+}
+
+struct Writer {
+    text: String,
+    notes: Vec<String>,
+    links: Vec<String>,
+}
+
+impl Writer {
+    fn line(&mut self, depth: usize, line: &str) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.text, "{:width$}{line}", "", width = 2 * depth);
+    }
+
+    /// Writes a link with a name not yet taken, and returns the name.
+    fn link(&mut self, wanted: &str) -> String {
+        let mut name = wanted.to_owned();
+        while self.links.contains(&name) {
+            name.push('_');
+        }
+        self.links.push(name.clone());
+        self.line(1, &format!("<link name=\"{}\"/>", escaped(&name)));
+        name
+    }
+
+    fn open_joint(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
+        self.line(1, &format!("<joint name=\"{}\" type=\"{kind}\">", escaped(name)));
+        self.line(2, &format!("<parent link=\"{}\"/>", escaped(parent)));
+        self.line(2, &format!("<child link=\"{}\"/>", escaped(child)));
+    }
+
+    /// Writes an origin and returns it as the text has it.
+    fn origin(&mut self, pose: &Pose) -> Pose {
+        let (xyz, rpy) = origin_values(pose);
+        self.line(2, &format!("<origin xyz=\"{}\" rpy=\"{}\"/>", triple(xyz), triple(rpy)));
+        Pose::from_xyz_rpy(xyz, rpy)
+    }
+
+    fn limit(&mut self, lower: f64, upper: f64) {
+        let limits = format!("lower=\"{}\" upper=\"{}\"", number(lower), number(upper));
+        self.line(2, &format!("<limit {limits} effort=\"0\" velocity=\"0\"/>"));
+        let note = "effort and velocity limits are not known and were written as 0, since URDF demands them";
+        if !self.notes.iter().any(|known| known == note) {
+            self.notes.push(note.to_owned());
+        }
+    }
+
+    /// The motion a joint without limits of its own allows.
+    fn wide_limit(&mut self, name: &str) {
+        self.limit(-WIDE_LIMIT_M, WIDE_LIMIT_M);
+        self.notes.push(format!(
+            "joint `{name}` has no limits; URDF demands them of a prismatic joint, so ±{WIDE_LIMIT_M} m were written"
+        ));
+    }
+
+    /// Leaders of mimic joints that are not on the chain, as joints beside it.
+    fn leaders(&mut self, robot: &Robot, base: &str) {
+        for name in robot.reading_names() {
+            let Some(follower) = robot.joints.iter().find(|joint| joint.reading.name == name) else {
+                continue;
+            };
+            if robot.joints.iter().any(|joint| joint.name == name) {
+                continue;
+            }
+            let child = self.link(&format!("{name}_link"));
+            match follower.kind {
+                JointKind::Revolute => {
+                    self.open_joint(&name, "continuous", base, &child);
+                }
+                JointKind::Prismatic => {
+                    self.open_joint(&name, "prismatic", base, &child);
+                    self.wide_limit(&name);
+                }
+            }
+            self.line(1, "</joint>");
+            self.notes.push(format!(
+                "joint `{name}` leads mimic joints from beside the chain; it was added at `{base}` to carry the reading only"
+            ));
+        }
+    }
+
+    /// Writes a moving joint; returns its origin as the text has it.
+    fn joint(&mut self, joint: &Joint, parent: &str, child: &str, origin: &Pose) -> Result<Pose> {
+        let kind = match (joint.kind, joint.limits) {
+            (JointKind::Prismatic, _) => "prismatic",
+            (JointKind::Revolute, Some(_)) => "revolute",
+            (JointKind::Revolute, None) => "continuous",
+        };
+        self.open_joint(&joint.name, kind, parent, child);
+        let origin = self.origin(origin);
+        let direction = joint.frame.rotation.transpose() * joint.screw.direction();
+        self.line(2, &format!("<axis xyz=\"{}\"/>", triple(without_dust(direction.into()))));
+        match (joint.limits, joint.kind) {
+            (Some(limits), _) => self.limit(limits.lower, limits.upper),
+            (None, JointKind::Prismatic) => self.wide_limit(&joint.name),
+            (None, JointKind::Revolute) => {}
+        }
+        let reading = &joint.reading;
+        if reading.name != joint.name {
+            let relation = format!(
+                "multiplier=\"{}\" offset=\"{}\"",
+                number(reading.multiplier),
+                number(reading.offset)
+            );
+            self.line(2, &format!("<mimic joint=\"{}\" {relation}/>", escaped(&reading.name)));
+        } else if reading.multiplier != 1.0 || reading.offset != 0.0 {
+            return Err(export(format!(
+                "joint `{}` has a factor or an offset on its own reading, expected factor 1 and offset 0: URDF has them for mimic joints only",
+                joint.name
+            )));
+        }
+        self.line(1, "</joint>");
+        Ok(origin)
+    }
+}

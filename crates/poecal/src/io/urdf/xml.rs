@@ -1,0 +1,131 @@
+//! Attributes of an XML element, with errors that know their line and column.
+
+use std::ops::Range;
+use std::path::Path;
+
+use roxmltree::{Attribute, Document, Node};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::source_text::position;
+
+/// No length of a robot (metres) and no angle (radians) comes near this; larger numbers are slips.
+const LARGEST_NUMBER: f64 = 1e6;
+
+/// A parsed XML text and the name of its file.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) document: &'a Document<'a>,
+    pub(super) path: &'a Path,
+}
+
+impl<'a> Source<'a> {
+    /// An error at a byte offset of the text.
+    pub(super) fn error_at(&self, offset: usize, message: String) -> Error {
+        let (line, column) = position(self.document.input_text(), offset);
+        Error::new(ErrorKind::Model, message).at(self.path, line, column)
+    }
+
+    /// An error at the start of an element.
+    pub(super) fn error(&self, node: Node<'a, 'a>, message: String) -> Error {
+        self.error_at(node.range().start, message)
+    }
+
+    /// The same for a text that is no URDF at all.
+    pub(super) fn syntax_error(&self, node: Node<'a, 'a>, message: String) -> Error {
+        let (line, column) = position(self.document.input_text(), node.range().start);
+        Error::new(ErrorKind::Syntax, message).at(self.path, line, column)
+    }
+
+    /// The children of an element that are elements of this name.
+    pub(super) fn children(
+        self,
+        node: Node<'a, 'a>,
+        name: &'static str,
+    ) -> impl Iterator<Item = Node<'a, 'a>> {
+        node.children().filter(move |child| child.is_element() && child.tag_name().name() == name)
+    }
+
+    /// An attribute that must be there and not be empty; `of` names its owner.
+    pub(super) fn required(
+        &self,
+        node: Node<'a, 'a>,
+        name: &str,
+        of: &str,
+    ) -> Result<(&'a str, Attribute<'a, 'a>)> {
+        match node.attribute_node(name) {
+            Some(attribute) if !attribute.value().trim().is_empty() => Ok((attribute.value(), attribute)),
+            Some(attribute) => Err(self.error_at(
+                attribute.range().start,
+                format!("{of} has an empty attribute `{name}`, expected a value"),
+            )),
+            None => Err(self.error(node, format!("{of} has no attribute `{name}`, expected {name}=\"...\""))),
+        }
+    }
+
+    /// The numbers of an attribute, if it is there.
+    pub(super) fn numbers<const N: usize>(
+        &self,
+        node: Node<'a, 'a>,
+        name: &str,
+        of: &str,
+    ) -> Result<Option<[f64; N]>> {
+        let Some(attribute) = node.attribute_node(name) else { return Ok(None) };
+        let range = attribute.range_value();
+        let raw = self.document.input_text().get(range.clone()).unwrap_or("");
+        let mut numbers = [0.0; N];
+        let mut count = 0;
+        let mut offset = range.start;
+        for word in raw.split(|character: char| character.is_ascii_whitespace()) {
+            if !word.is_empty() {
+                let number = self.number(word, offset, name, of)?;
+                if let Some(slot) = numbers.get_mut(count) {
+                    *slot = number;
+                }
+                count += 1;
+            }
+            offset += word.len() + 1;
+        }
+        if count == N {
+            return Ok(Some(numbers));
+        }
+        let numbers = if N == 1 { "1 number".to_owned() } else { format!("{N} numbers separated by spaces") };
+        Err(self.error_at(
+            range.start,
+            format!("found {count} numbers in `{name}` of {of} (`{}`), expected {numbers}", raw.trim()),
+        ))
+    }
+
+    fn number(&self, word: &str, offset: usize, name: &str, of: &str) -> Result<f64> {
+        let found = |expected: &str| {
+            self.error_at(offset, format!("found `{word}` in `{name}` of {of}, expected {expected}"))
+        };
+        if word.contains("${") || word.contains("$(") {
+            return Err(found(
+                "a number: this is a xacro file, expand it first with `xacro robot.xacro > robot.urdf`",
+            ));
+        }
+        let number: f64 = word.parse().map_err(|_| found("a number"))?;
+        if !number.is_finite() {
+            return Err(found("a finite number"));
+        }
+        if number.abs() > LARGEST_NUMBER {
+            return Err(found("a number of metres or radians below 1e6"));
+        }
+        Ok(number)
+    }
+
+    /// The byte after `<name` of an element: where another attribute can be inserted.
+    pub(super) fn after_name(&self, node: Node<'a, 'a>) -> usize {
+        let start = node.range().start;
+        let tag = self.document.input_text().get(start..).unwrap_or("");
+        let length = tag
+            .find(|character: char| character.is_whitespace() || character == '/' || character == '>')
+            .unwrap_or(tag.len());
+        start + length
+    }
+}
+
+/// Where the value of an attribute stands in the text, without its quotes.
+pub(super) fn value_range(node: Node, name: &str) -> Option<Range<usize>> {
+    node.attribute_node(name).map(|attribute| attribute.range_value())
+}
