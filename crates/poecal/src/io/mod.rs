@@ -1,1 +1,3 @@
 //! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.
+
+pub mod measurements;
