@@ -1,5 +1,6 @@
 //! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.
 
+pub mod measurements;
 mod mimic;
 pub mod model;
 pub mod robot_toml;

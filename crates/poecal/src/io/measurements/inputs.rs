@@ -1,0 +1,90 @@
+//! The numbers of a row, in metres and radians.
+
+use super::layout::{Input, Source};
+use super::number::Numbers;
+use super::table::Row;
+use super::understanding::Range;
+use crate::error::{Error, Result};
+
+/// Reads the inputs of row after row into the same buffers.
+pub(super) struct InputReader<'a> {
+    pub(super) numbers: Numbers,
+    /// Smallest and largest value of each input.
+    pub(super) ranges: Vec<Range>,
+    inputs: &'a [Input],
+    values: Vec<Option<f64>>,
+    readings: Vec<f64>,
+}
+
+impl<'a> InputReader<'a> {
+    pub(super) fn new(inputs: &'a [Input], numbers: Numbers) -> Self {
+        InputReader {
+            numbers,
+            ranges: vec![Range::default(); inputs.len()],
+            inputs,
+            values: Vec::with_capacity(inputs.len()),
+            readings: Vec::new(),
+        }
+    }
+
+    /// Takes in a row's numbers; an empty cell is no number.
+    pub(super) fn read(&mut self, row: &Row<'_>) -> Result<()> {
+        self.values.clear();
+        for (input, range) in self.inputs.iter().zip(&mut self.ranges) {
+            let value = match input.source {
+                Source::Constant(value) => Some(value),
+                Source::Column(column) => match row.cells.get(column).map_or("", |cell| cell.raw) {
+                    "" => None,
+                    text => Some(self.numbers.parse(text, row.line).map_err(|expected| {
+                        row.error(
+                            column,
+                            format!("found `{text}` in column `{}`, expected {expected}", input.name),
+                        )
+                    })?),
+                }
+                .map(|value| input.unit.to_si(value)),
+            };
+            if let Some(value) = value {
+                range.include(value);
+            }
+            self.values.push(value);
+        }
+        Ok(())
+    }
+
+    /// The value of an input in the current row.
+    pub(super) fn value(&self, input: usize) -> Option<f64> {
+        self.values.get(input).copied().flatten()
+    }
+
+    /// The values of inputs in the current row.
+    pub(super) fn all<const N: usize>(&self, inputs: [usize; N]) -> [Option<f64>; N] {
+        inputs.map(|input| self.value(input))
+    }
+
+    /// The first inputs of the current row, which are the joint readings and must be there.
+    pub(super) fn readings(&mut self, row: &Row<'_>, count: usize) -> Result<&[f64]> {
+        self.readings.clear();
+        for (input, value) in self.values.iter().take(count).enumerate() {
+            match value {
+                Some(value) => self.readings.push(*value),
+                None => return Err(self.error(row, input, "found an empty cell", "a joint reading")),
+            }
+        }
+        Ok(&self.readings)
+    }
+
+    /// An error at the cell of an input: "`found` in column …, expected `expected`".
+    pub(super) fn error(&self, row: &Row<'_>, input: usize, found: &str, expected: &str) -> Error {
+        let name = self.inputs.get(input).map_or("", |input| &input.name);
+        row.error(self.column(input), format!("{found} in column `{name}`, expected {expected}"))
+    }
+
+    /// The file's column of an input, 0 for a constant.
+    pub(super) fn column(&self, input: usize) -> usize {
+        match self.inputs.get(input).map(|input| input.source) {
+            Some(Source::Column(column)) => column,
+            Some(Source::Constant(_)) | None => 0,
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Tables of joint readings alone, as predictions need them.
+
+use std::path::Path;
+
+use super::ReadOptions;
+use super::inputs::InputReader;
+use super::layout::Layout;
+use super::mapping::ColumnMap;
+use super::number::Numbers;
+use super::scale::JointWatch;
+use super::table::Table;
+use super::text::read_text;
+use crate::error::{Error, ErrorKind, Result};
+use crate::robot::Robot;
+
+/// Configurations of a file.
+///
+/// ```
+/// use poecal::io::measurements::JointsTable;
+/// let table = JointsTable { readings: vec![0.1, 0.2, 0.3, 0.4], rows: 2, ..JointsTable::default() };
+/// let configurations: Vec<&[f64]> = table.readings.chunks(table.readings.len() / table.rows).collect();
+/// assert_eq!(configurations[1], [0.3, 0.4]);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointsTable {
+    /// The rows' readings one after the other, in the order of [`Robot::reading_names`] (radians, metres).
+    pub readings: Vec<f64>,
+    /// Number of rows.
+    pub rows: usize,
+    /// The rows' `id`, empty if there is no such column.
+    pub ids: Vec<String>,
+    /// The rows' lines in the file, from 1.
+    pub lines: Vec<usize>,
+    /// What the user should know, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Reads the joint columns of a file, and `id` if there is one; other columns are left alone.
+///
+/// # Errors
+/// As [`super::read`], of what concerns joints.
+pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
+    let path = path.as_ref();
+    let no_map = ColumnMap::default();
+    let map = options.mapping.as_ref().unwrap_or(&no_map);
+    let text = read_text(path, "a file of joint readings (CSV)")?;
+    let mut table = Table::open(path, &text, map)?;
+    let layout = Layout::joints(&table.header, robot, map)?;
+    let mut inputs = InputReader::new(&layout.inputs, Numbers::new(map.decimal));
+    let mut watch = JointWatch::new(robot);
+    let mut joints = JointsTable::default();
+    while let Some(row) = table.next_row()? {
+        inputs.read(&row)?;
+        watch.observe(&row, &inputs);
+        joints.readings.extend_from_slice(inputs.readings(&row, layout.inputs.len())?);
+        joints.rows += 1;
+        joints.lines.push(row.line);
+        if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
+            joints.ids.push(cell.text().into_owned());
+        }
+    }
+    if joints.rows == 0 {
+        let message = "found a header and no rows, expected at least one row of joint readings";
+        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
+    }
+    joints.warnings = watch.finish(path, &layout)?;
+    Ok(joints)
+}

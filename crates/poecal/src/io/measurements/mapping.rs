@@ -1,0 +1,301 @@
+//! The mapping file: how a file with its own column names is to be read.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+
+use super::number::DecimalSign;
+use super::orientation::OrientationForm;
+use super::text::{Separator, read_text};
+use super::units::{Quantity, Unit};
+use crate::error::{Error, ErrorKind, Result};
+
+/// How a file's columns become ours, read from a TOML file (docs/file-formats.md, "Mapping file").
+///
+/// ```
+/// use poecal::io::measurements::ColumnMap;
+/// let text = "[position]\ncolumns = [\"px\", \"py\", \"pz\"]\nunit = \"mm\"\n";
+/// assert!(ColumnMap::parse(text, "map.toml").is_ok());
+/// let error = ColumnMap::parse("[position]\nunit = \"deg\"\n", "map.toml").unwrap_err();
+/// assert_eq!(error.to_string(), "map.toml:2:8: found the unit `deg`, expected a length (m, cm, mm, um, nm)");
+/// ```
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ColumnMap {
+    #[serde(skip)]
+    pub(super) path: PathBuf,
+    #[serde(deserialize_with = "separator")]
+    pub(super) separator: Option<Separator>,
+    #[serde(deserialize_with = "decimal_sign")]
+    pub(super) decimal: Option<DecimalSign>,
+    pub(super) skip_lines: usize,
+    pub(super) pose: PoseDirection,
+    pub(super) id: Option<String>,
+    pub(super) target: Option<String>,
+    pub(super) target_name: Option<String>,
+    pub(super) set: Option<SetSpec>,
+    pub(super) units: UnitDefaults,
+    pub(super) joints: BTreeMap<String, ColumnSpec>,
+    pub(super) position: Option<PositionSpec>,
+    pub(super) orientation: Option<OrientationSpec>,
+    pub(super) sigma_position: Option<ColumnSpec>,
+    pub(super) sigma_rotation: Option<ColumnSpec>,
+    pub(super) targets: Vec<TargetSpec>,
+}
+
+/// Which way the file's poses point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum PoseDirection {
+    #[default]
+    DeviceFromTarget,
+    TargetFromDevice,
+}
+
+/// Units of columns that state none.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct UnitDefaults {
+    #[serde(deserialize_with = "length_unit")]
+    pub(super) length: Option<Unit>,
+    #[serde(deserialize_with = "angle_unit")]
+    pub(super) angle: Option<Unit>,
+}
+
+impl UnitDefaults {
+    pub(super) fn of(self, quantity: Quantity) -> Option<Unit> {
+        match quantity {
+            Quantity::Length => self.length,
+            Quantity::Angle => self.angle,
+            Quantity::Number => None,
+        }
+    }
+}
+
+/// One column, or one value for all rows. In TOML a column's name, or a table.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ColumnSpec {
+    pub(super) column: Option<String>,
+    pub(super) value: Option<f64>,
+    pub(super) unit: Option<Unit>,
+}
+
+/// Which rows are fitted.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SetSpec {
+    pub(super) column: String,
+    pub(super) fit: Vec<String>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PositionSpec {
+    pub(super) columns: Option<[String; 3]>,
+    #[serde(default, deserialize_with = "length_unit")]
+    pub(super) unit: Option<Unit>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "OrientationFields")]
+pub(super) struct OrientationSpec {
+    pub(super) form: OrientationForm,
+    pub(super) columns: Vec<String>,
+    pub(super) unit: Option<Unit>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OrientationFields {
+    form: String,
+    columns: Option<Vec<String>>,
+    #[serde(default, deserialize_with = "angle_unit")]
+    unit: Option<Unit>,
+}
+
+/// One target of a layout that has several in a row.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TargetSpec {
+    pub(super) name: String,
+    pub(super) position: PositionSpec,
+    pub(super) orientation: Option<OrientationSpec>,
+    pub(super) sigma_position: Option<ColumnSpec>,
+    pub(super) sigma_rotation: Option<ColumnSpec>,
+}
+
+impl ColumnMap {
+    /// Reads a mapping file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] if it cannot be read, else as [`ColumnMap::parse`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        ColumnMap::parse(&read_text(path, "a column mapping (TOML)")?, path)
+    }
+
+    /// A mapping from its TOML text; `path` is what messages call it.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, or has a key or value that is not known.
+    pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let mut map: ColumnMap = toml::from_str(text).map_err(|error| {
+            let message = error.message().replace('\n', "; ");
+            let error_at = Error::new(ErrorKind::Syntax, message);
+            match error.span() {
+                Some(span) => {
+                    let before = text.get(..span.start).unwrap_or(text);
+                    let line = before.matches('\n').count() + 1;
+                    let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+                    error_at.at(path, line, column)
+                }
+                None => error_at.in_file(path),
+            }
+        })?;
+        map.path = path.to_path_buf();
+        map.check().map_err(|error| error.in_file(path))?;
+        Ok(map)
+    }
+
+    fn check(&self) -> Result<()> {
+        let error = |message: String| Err(Error::new(ErrorKind::Syntax, message));
+        if self.target.is_some() && self.target_name.is_some() {
+            return error("found both `target` and `target_name`, expected one of them".to_owned());
+        }
+        let single = [
+            ("target", self.target.is_some()),
+            ("target_name", self.target_name.is_some()),
+            ("position", self.position.is_some()),
+            ("orientation", self.orientation.is_some()),
+            ("sigma_position", self.sigma_position.is_some()),
+            ("sigma_rotation", self.sigma_rotation.is_some()),
+        ];
+        if let Some((key, _)) = single.iter().find(|(_, given)| *given && !self.targets.is_empty()) {
+            return error(format!(
+                "found both `{key}` and `[[targets]]`, expected `{key}` in each target only"
+            ));
+        }
+        for (i, target) in self.targets.iter().enumerate() {
+            if target.name.is_empty() {
+                return error("found a target with an empty name, expected a name".to_owned());
+            }
+            if self.targets.iter().take(i).any(|other| other.name == target.name) {
+                return error(format!("found two targets named `{}`, expected unique names", target.name));
+            }
+        }
+        if self.set.as_ref().is_some_and(|set| set.fit.is_empty()) {
+            return error("found no value in `fit`, expected the values that mark a row to fit".to_owned());
+        }
+        Ok(())
+    }
+}
+
+impl TryFrom<OrientationFields> for OrientationSpec {
+    type Error = Error;
+
+    fn try_from(fields: OrientationFields) -> Result<Self> {
+        let form: OrientationForm = fields.form.parse()?;
+        let own_names = || form.column_names().iter().map(|name| (*name).to_owned()).collect();
+        let columns: Vec<String> = fields.columns.unwrap_or_else(own_names);
+        let error = |message: String| Err(Error::new(ErrorKind::Syntax, message));
+        if columns.len() != form.len() {
+            return error(format!("found {} columns, expected {} for a {form}", columns.len(), form.len()));
+        }
+        if fields.unit.is_some() && form.quantity() == Quantity::Number {
+            return error("found a unit for a quaternion, expected none".to_owned());
+        }
+        Ok(OrientationSpec { form, columns, unit: fields.unit })
+    }
+}
+
+impl<'de> Deserialize<'de> for ColumnSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_any(ColumnSpecVisitor)
+    }
+}
+
+struct ColumnSpecVisitor;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ColumnFields {
+    column: Option<String>,
+    value: Option<f64>,
+    #[serde(default, deserialize_with = "any_unit")]
+    unit: Option<Unit>,
+}
+
+impl<'de> Visitor<'de> for ColumnSpecVisitor {
+    type Value = ColumnSpec;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a column name, or a table with `column` or `value`, and `unit`")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, column: &str) -> std::result::Result<ColumnSpec, E> {
+        Ok(ColumnSpec { column: Some(column.to_owned()), ..ColumnSpec::default() })
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<ColumnSpec, A::Error> {
+        let fields = ColumnFields::deserialize(MapAccessDeserializer::new(map))?;
+        if fields.column.is_some() && fields.value.is_some() {
+            return Err(A::Error::custom("found both `column` and `value`, expected one of them"));
+        }
+        if fields.value.is_some_and(|value| !value.is_finite()) {
+            return Err(A::Error::custom("found a value that is not finite, expected a finite number"));
+        }
+        Ok(ColumnSpec { column: fields.column, value: fields.value, unit: fields.unit })
+    }
+}
+
+/// A string that `parse` understands; its error is the TOML error's message.
+fn parsed<'de, D: Deserializer<'de>, T>(
+    deserializer: D,
+    parse: impl Fn(&str) -> Result<T>,
+) -> std::result::Result<Option<T>, D::Error> {
+    let text = String::deserialize(deserializer)?;
+    parse(&text).map(Some).map_err(D::Error::custom)
+}
+
+fn length_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {
+    parsed(deserializer, |text| Unit::parse(text, Quantity::Length))
+}
+
+fn angle_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {
+    parsed(deserializer, |text| Unit::parse(text, Quantity::Angle))
+}
+
+fn any_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {
+    parsed(deserializer, Unit::parse_any)
+}
+
+fn separator<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Separator>, D::Error> {
+    parsed(deserializer, |text| match text {
+        "," => Ok(Separator::Comma),
+        ";" => Ok(Separator::Semicolon),
+        "\t" | "tab" => Ok(Separator::Tab),
+        " " | "whitespace" => Ok(Separator::Whitespace),
+        _ => Err(Error::new(
+            ErrorKind::Syntax,
+            format!("found the separator `{text}`, expected `,`, `;`, `tab` or `whitespace`"),
+        )),
+    })
+}
+
+fn decimal_sign<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<Option<DecimalSign>, D::Error> {
+    parsed(deserializer, |text| match text {
+        "." => Ok(DecimalSign::Point),
+        "," => Ok(DecimalSign::Comma),
+        _ => Err(Error::new(
+            ErrorKind::Syntax,
+            format!("found the decimal sign `{text}`, expected `.` or `,`"),
+        )),
+    })
+}

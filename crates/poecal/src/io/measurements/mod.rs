@@ -1,0 +1,74 @@
+//! Measurement files: CSV with one row a configuration and target (docs/file-formats.md, "Measurements").
+//!
+//! Text becomes lines and cells ([`text`]), a table with places for messages ([`table`]), columns with a meaning and a unit
+//! ([`layout`], from header, mapping and robot), numbers in SI ([`inputs`]) and at last measurements ([`read()`]), which are
+//! judged for their scale ([`scale`]).
+
+mod fit_where;
+mod inputs;
+mod joints;
+mod layout;
+mod mapping;
+mod number;
+mod orientation;
+mod read;
+mod scale;
+mod table;
+mod text;
+mod understanding;
+mod units;
+
+pub use fit_where::FitWhere;
+pub use joints::{JointsTable, read_joints};
+pub use mapping::ColumnMap;
+pub use number::DecimalSign;
+pub use read::read;
+pub use text::Separator;
+pub use understanding::{ColumnUnderstanding, FileUnderstanding, UnitSource};
+pub use units::{Quantity, Unit};
+
+use crate::measurement::Dataset;
+
+/// How to read measurement files.
+///
+/// ```
+/// use poecal::io::measurements::ReadOptions;
+/// let options = ReadOptions { fit_where: Some("stage=1,2".parse()?), ..ReadOptions::default() };
+/// assert!(options.mapping.is_none());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct ReadOptions {
+    /// How the columns of files that are not of our own form become ours; it applies to every file.
+    pub mapping: Option<ColumnMap>,
+    /// Which rows are fitted; goes before the `set` column and the mapping's `set`.
+    pub fit_where: Option<FitWhere>,
+}
+
+/// What measurement files hold, and how they were understood.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::io::measurements::{self, ReadOptions};
+/// use poecal::lie::{Pose, Screw};
+/// use poecal::robot::{Joint, Robot};
+/// let joint = Joint::revolute("joint1", Screw::revolute(&Vector3::z(), &Vector3::zeros()));
+/// let robot = Robot::new("one_axis", vec![joint], Pose::from_translation(Vector3::x()))?;
+/// let path = std::env::temp_dir().join("poecal_measurement_file_example.csv");
+/// # let write = |text: &str| std::fs::write(&path, text).unwrap();
+/// write("joint1[deg],x[mm],y[mm],z[mm]\n90,0,1000,0\n");
+/// let file = measurements::read(&[&path], &robot, &ReadOptions::default())?;
+/// # std::fs::remove_file(&path).unwrap();
+/// assert_eq!(file.data.readings(0), [std::f64::consts::FRAC_PI_2]);
+/// assert_eq!(file.understood[0].columns[1].unit, Some("mm"));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MeasurementFile {
+    /// The rows of all files, in order.
+    pub data: Dataset,
+    /// How each file was understood.
+    pub understood: Vec<FileUnderstanding>,
+    /// What the user should know, a sentence each.
+    pub warnings: Vec<String>,
+}

@@ -1,0 +1,100 @@
+//! Numbers with a decimal point or a decimal comma.
+
+use serde::Serialize;
+
+/// What stands before the decimals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DecimalSign {
+    /// `.`
+    Point,
+    /// `,`
+    Comma,
+}
+
+/// Reads numbers; the first one with a decimal sign decides which sign the file has.
+pub(super) struct Numbers {
+    sign: Option<(DecimalSign, Option<usize>)>,
+    buffer: String,
+}
+
+impl Numbers {
+    /// Numbers with a sign that is stated or not.
+    pub(super) fn new(stated: Option<DecimalSign>) -> Self {
+        Numbers { sign: stated.map(|sign| (sign, None)), buffer: String::new() }
+    }
+
+    /// The sign, a point if no number has had one.
+    pub(super) fn sign(&self) -> DecimalSign {
+        self.sign.map_or(DecimalSign::Point, |(sign, _)| sign)
+    }
+
+    /// A finite number, or what was expected.
+    pub(super) fn parse(&mut self, text: &str, line: usize) -> Result<f64, String> {
+        let (mut points, mut commas) = (0, 0);
+        for byte in text.bytes() {
+            match byte {
+                b'.' => points += 1,
+                b',' => commas += 1,
+                b'0'..=b'9' | b'+' | b'-' | b'e' | b'E' => {}
+                // Rust's own parser would take `nan` and `inf`.
+                _ => return Err("a finite number".to_owned()),
+            }
+        }
+        let found = match (points, commas) {
+            (0, 0) => None,
+            (1, 0) => Some(DecimalSign::Point),
+            (0, 1) => Some(DecimalSign::Comma),
+            _ => return Err("a number with one decimal sign and no thousands separators".to_owned()),
+        };
+        if let Some(found) = found {
+            let (sign, since) = *self.sign.get_or_insert((found, Some(line)));
+            if sign != found {
+                let word = match sign {
+                    DecimalSign::Point => "point",
+                    DecimalSign::Comma => "comma",
+                };
+                let origin = match since {
+                    Some(line) => format!("as in line {line}"),
+                    None => "as the mapping says".to_owned(),
+                };
+                return Err(format!("a number with a decimal {word} {origin}"));
+            }
+        }
+        let value: Result<f64, _> = if commas == 0 {
+            text.parse()
+        } else {
+            self.buffer.clear();
+            self.buffer.extend(text.chars().map(|c| if c == ',' { '.' } else { c }));
+            self.buffer.parse()
+        };
+        value.ok().filter(|value| value.is_finite()).ok_or_else(|| "a finite number".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_decimal_sign_decides() {
+        let mut numbers = Numbers::new(None);
+        assert_eq!(numbers.parse("12", 2), Ok(12.0));
+        assert_eq!(numbers.parse("-2,02011E+13", 3), Ok(-2.020_11e13));
+        assert_eq!(numbers.parse("1.5", 4), Err("a number with a decimal comma as in line 3".to_owned()));
+        let mut numbers = Numbers::new(Some(DecimalSign::Point));
+        assert_eq!(
+            numbers.parse("1,5", 4),
+            Err("a number with a decimal point as the mapping says".to_owned())
+        );
+    }
+
+    #[test]
+    fn what_is_no_finite_number_is_refused() {
+        for text in
+            ["nan", "NaN", "inf", "-infinity", "1e999", "abc", "", "1e", "--1", "0x10", "1_0", "1,234.5"]
+        {
+            assert!(Numbers::new(None).parse(text, 1).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! Values that only another unit explains, and joints beyond their limits.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use super::inputs::InputReader;
+use super::layout::{Input, Layout};
+use super::table::Row;
+use super::understanding::UnitSource;
+use super::units::{Quantity, Unit};
+use crate::error::{Error, ErrorKind, Result};
+use crate::measurement::Observation;
+use crate::robot::{Joint, Limits, Robot};
+
+/// Without limits, a reading beyond this many radians or metres must have its unit stated.
+const LARGEST_UNLIMITED: f64 = 50.0;
+/// What a reading taken as another unit must stay below, where there are no limits (two turns in radians, and metres).
+const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
+/// Share of rows that must look wrong: a few corrupt rows are no other unit.
+const SHARE: f64 = 0.1;
+/// Positions that spread further than this many reaches are not in the stated unit.
+const REACHES: f64 = 20.0;
+/// Readings may exceed their limit by rounding.
+const ROUNDING: f64 = 1e-6;
+/// Lines that a warning names.
+const NAMED_LINES: usize = 5;
+
+/// Watches the joint values of a file row by row.
+pub(super) struct JointWatch<'a> {
+    joints: Vec<OneJoint<'a>>,
+    rows: usize,
+}
+
+struct OneJoint<'a> {
+    joint: &'a Joint,
+    reading: usize,
+    lowest: f64,
+    highest: f64,
+    beyond: usize,
+    first_lines: Vec<usize>,
+    extreme: f64,
+    extreme_place: (usize, usize),
+}
+
+impl<'a> JointWatch<'a> {
+    pub(super) fn new(robot: &'a Robot) -> Self {
+        let joints = robot.joints.iter().zip(robot.reading_indices());
+        let joints = joints.map(|(joint, reading)| OneJoint {
+            joint,
+            reading,
+            lowest: f64::INFINITY,
+            highest: f64::NEG_INFINITY,
+            beyond: 0,
+            first_lines: Vec::new(),
+            extreme: 0.0,
+            extreme_place: (0, 0),
+        });
+        JointWatch { joints: joints.collect(), rows: 0 }
+    }
+
+    /// Takes in the readings of a row.
+    pub(super) fn observe(&mut self, row: &Row<'_>, inputs: &InputReader<'_>) {
+        self.rows += 1;
+        for one in &mut self.joints {
+            let Some(reading) = inputs.value(one.reading) else { continue };
+            one.lowest = one.lowest.min(reading);
+            one.highest = one.highest.max(reading);
+            if one.allows(reading, ROUNDING) {
+                continue;
+            }
+            one.beyond += 1;
+            if one.first_lines.len() < NAMED_LINES {
+                one.first_lines.push(row.line);
+            }
+            if reading.abs() > one.extreme {
+                one.extreme = reading.abs();
+                one.extreme_place = row.place(inputs.column(one.reading));
+            }
+        }
+    }
+
+    /// A warning for each joint beyond its limits.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unit`] if another unit explains the readings and the stated one does not.
+    pub(super) fn finish(&self, path: &Path, layout: &Layout) -> Result<Vec<String>> {
+        let mut warnings = Vec::new();
+        for one in self.joints.iter().filter(|one| one.beyond > 0) {
+            let Some(input) = layout.inputs.get(one.reading) else { continue };
+            if let Some(likely) = one.other_unit(input, self.rows) {
+                let (line, column) = one.extreme_place;
+                return Err(
+                    Error::new(ErrorKind::Unit, one.unit_message(input, likely)).at(path, line, column)
+                );
+            }
+            if let Some(limits) = one.joint.limits {
+                warnings.push(one.limit_warning(path, limits, input.unit.quantity().si_unit()));
+            }
+        }
+        Ok(warnings)
+    }
+}
+
+impl OneJoint<'_> {
+    /// Whether a reading lies inside the limits widened by `slack`, or is not too large where there are none.
+    fn allows(&self, reading: f64, slack: f64) -> bool {
+        let value = self.joint.reading.value(reading);
+        match self.joint.limits {
+            Some(limits) => value >= limits.lower - slack && value <= limits.upper + slack,
+            None => reading.abs() <= LARGEST_UNLIMITED,
+        }
+    }
+
+    /// The unit that explains readings which lie far outside.
+    fn other_unit(&self, input: &Input, rows: usize) -> Option<Unit> {
+        let candidates: &[&str] = match input.unit.symbol() {
+            "rad" => &["deg", "mrad"],
+            "m" => &["mm", "um"],
+            "cm" => &["mm"],
+            "mm" => &["um"],
+            _ => &[],
+        };
+        let quantity = input.unit.quantity();
+        if !self.is_far_outside(quantity, input.unit_from) || (self.beyond as f64) < SHARE * rows as f64 {
+            return None;
+        }
+        let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
+        candidates.iter().find_map(|symbol| {
+            let unit = Unit::parse(symbol, quantity).ok()?;
+            let fits = [self.lowest, self.highest].into_iter().all(|reading| {
+                let reading = unit.to_si(input.unit.from_si(reading));
+                let plausible = self.joint.limits.is_some() || reading.abs() <= LARGEST_OTHERWISE;
+                plausible && self.allows(reading, 0.1 * span)
+            });
+            fits.then_some(unit)
+        })
+    }
+
+    /// Whether some reading lies so far outside that the joint cannot have been there.
+    fn is_far_outside(&self, quantity: Quantity, unit_from: UnitSource) -> bool {
+        match self.joint.limits {
+            Some(limits) => {
+                let span = limits.upper - limits.lower;
+                // Limits may be narrow or wrong: only readings that are large in themselves count.
+                let (large, spans) = match quantity {
+                    Quantity::Length => (5.0, 5.0),
+                    Quantity::Angle | Quantity::Number => (std::f64::consts::TAU, 0.5),
+                };
+                [self.lowest, self.highest]
+                    .into_iter()
+                    .any(|reading| reading.abs() > large && !self.allows(reading, spans * span))
+            }
+            None => unit_from == UnitSource::Si,
+        }
+    }
+
+    fn unit_message(&self, input: &Input, likely: Unit) -> String {
+        let stated = input.unit.symbol();
+        let symbol = likely.symbol();
+        let outside = match self.joint.limits {
+            Some(limits) => {
+                let si = input.unit.quantity().si_unit().symbol();
+                format!(
+                    "far outside the limits {} to {} {si} of joint `{}`",
+                    short(limits.lower),
+                    short(limits.upper),
+                    self.joint.name
+                )
+            }
+            None => format!("too far for joint `{}`", self.joint.name),
+        };
+        format!(
+            "found readings of up to {} {stated}, {outside}, expected another unit, most likely {symbol}; \
+             write `{}[{symbol}]` in the header, or the unit in the mapping",
+            short(input.unit.from_si(self.extreme)),
+            input.name
+        )
+    }
+
+    fn limit_warning(&self, path: &Path, limits: Limits, unit: Unit) -> String {
+        let lines: Vec<String> = self.first_lines.iter().map(usize::to_string).collect();
+        let more = if self.beyond > lines.len() { ", …" } else { "" };
+        let (rows, line_word) = if self.beyond == 1 { ("row", "line") } else { ("rows", "lines") };
+        format!(
+            "{}: joint `{}` lies beyond its limits {} to {} {} in {} {rows} ({line_word} {}{more})",
+            path.display(),
+            self.joint.name,
+            short(limits.lower),
+            short(limits.upper),
+            unit.symbol(),
+            self.beyond,
+            lines.join(", ")
+        )
+    }
+}
+
+/// Refuses positions of a file that spread so far that their unit must be a smaller one.
+pub(super) fn check_positions(
+    path: &Path,
+    robot: &Robot,
+    layout: &Layout,
+    slides_m: f64,
+    rows: &[Observation],
+) -> Result<()> {
+    let Some(input) = layout.targets.first().and_then(|target| layout.inputs.get(target.position[0])) else {
+        return Ok(());
+    };
+    let smaller = match input.unit.symbol() {
+        "m" => "mm",
+        "mm" => "um",
+        "um" => "nm",
+        _ => return Ok(()),
+    };
+    // A slide without limits is not in the reach.
+    let reach = robot.reach_m() + slides_m;
+    let positions: Vec<Vector3<f64>> =
+        rows.iter().map(|row| row.measurement.residual_model().position()).collect();
+    let middle = middle(&positions);
+    let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();
+    let furthest = positions
+        .iter()
+        .zip(rows)
+        .map(|(position, row)| ((position - middle).norm(), row.source.line))
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((spread, line)) = furthest else { return Ok(()) };
+    if spread <= REACHES * reach || spread > 1e3 * REACHES * reach || (far as f64) < SHARE * rows.len() as f64
+    {
+        return Ok(());
+    }
+    let message = format!(
+        "found positions up to {} {stated} from their middle, where the robot reaches {} {stated}, expected another \
+         unit, most likely {smaller}; write `x[{smaller}],y[{smaller}],z[{smaller}]` in the header, or the unit in \
+         the mapping",
+        short(input.unit.from_si(spread)),
+        short(input.unit.from_si(reach)),
+        stated = input.unit.symbol(),
+    );
+    Err(Error::new(ErrorKind::Unit, message).at_line(path, line as usize))
+}
+
+/// The median of each coordinate, which a few corrupt rows do not move.
+fn middle(positions: &[Vector3<f64>]) -> Vector3<f64> {
+    let mut middle = Vector3::zeros();
+    for (axis, coordinate) in middle.iter_mut().enumerate() {
+        let mut values: Vec<f64> = positions.iter().map(|position| position[axis]).collect();
+        let half = values.len() / 2;
+        if half < values.len() {
+            *coordinate = *values.select_nth_unstable_by(half, f64::total_cmp).1;
+        }
+    }
+    middle
+}
+
+/// A number to four significant digits.
+fn short(value: f64) -> String {
+    format!("{value:.3e}").parse::<f64>().unwrap_or(value).to_string()
+}
+
+/// How far the slides without limits move in all (metres).
+pub(super) fn unlimited_slides(robot: &Robot, watch: &JointWatch<'_>) -> f64 {
+    let slides = robot.joints.iter().zip(&watch.joints);
+    slides
+        .filter(|(joint, _)| joint.kind == crate::robot::JointKind::Prismatic && joint.limits.is_none())
+        .map(|(joint, one)| (joint.reading.multiplier * (one.highest - one.lowest)).abs())
+        .filter(|span| span.is_finite())
+        .sum()
+}

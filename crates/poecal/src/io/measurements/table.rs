@@ -1,0 +1,183 @@
+//! A file as a table: header and rows with their places.
+
+use std::path::Path;
+
+use super::mapping::ColumnMap;
+use super::text::{Cell, Lines, Separator, character_column, split};
+use crate::error::{Error, ErrorKind, Result, nearest};
+
+/// A column of the header: `name[unit]`.
+#[derive(Clone, Debug)]
+pub(super) struct HeaderCell {
+    /// As it stands in the file.
+    pub(super) text: String,
+    /// Without the unit.
+    pub(super) name: String,
+    /// What the brackets hold.
+    pub(super) unit: Option<String>,
+    column: usize,
+}
+
+/// The line that names the columns.
+pub(super) struct Header<'a> {
+    pub(super) path: &'a Path,
+    pub(super) line: usize,
+    pub(super) cells: Vec<HeaderCell>,
+}
+
+/// A row, as long as the next one is not read.
+pub(super) struct Row<'t> {
+    pub(super) path: &'t Path,
+    pub(super) line: usize,
+    pub(super) text: &'t str,
+    pub(super) cells: &'t [Cell<'t>],
+}
+
+/// A file being read line by line.
+pub(super) struct Table<'a> {
+    pub(super) header: Header<'a>,
+    pub(super) separator: Separator,
+    lines: Lines<'a>,
+    cells: Vec<Cell<'a>>,
+}
+
+impl<'a> Table<'a> {
+    /// Reads the header; the separator is the mapping's or recognised.
+    pub(super) fn open(path: &'a Path, text: &'a str, map: &ColumnMap) -> Result<Self> {
+        let mut lines = Lines::new(text, map.skip_lines);
+        let Some((line, header)) = lines.next() else {
+            let message = "found no line with text, expected a header and rows";
+            return Err(Error::new(ErrorKind::Syntax, message).in_file(path));
+        };
+        let separator = map.separator.unwrap_or_else(|| Separator::recognised(header));
+        let mut cells = Vec::new();
+        split_line(path, line, header, separator, &mut cells)?;
+        let header = Header {
+            path,
+            line,
+            cells: cells
+                .iter()
+                .map(|cell| HeaderCell::new(&cell.text(), character_column(header, cell.offset)))
+                .collect(),
+        };
+        if header.cells.iter().all(|cell| cell.text.replace(',', ".").parse::<f64>().is_ok()) {
+            let message = "found a line of numbers, expected a header that names the columns \
+                           (a line that begins with `#` is a comment)";
+            return Err(Error::new(ErrorKind::Syntax, message).at_line(path, line));
+        }
+        Ok(Table { header, separator, lines, cells })
+    }
+
+    /// The next row that is not empty.
+    pub(super) fn next_row(&mut self) -> Result<Option<Row<'_>>> {
+        let Header { path, line: header_line, .. } = self.header;
+        loop {
+            let Some((line, text)) = self.lines.next() else { return Ok(None) };
+            split_line(path, line, text, self.separator, &mut self.cells)?;
+            let (found, expected) = (self.cells.len(), self.header.cells.len());
+            if self.cells.iter().all(|cell| cell.raw.is_empty()) {
+                continue;
+            }
+            if found != expected {
+                let place = match self.cells.get(expected) {
+                    Some(extra) => character_column(text, extra.offset),
+                    None => text.trim_end().chars().count() + 1,
+                };
+                let message = format!(
+                    "found {found} cells, expected {expected} as in the header (line {header_line}){}",
+                    self.decimal_comma_hint(found, expected)
+                );
+                return Err(Error::new(ErrorKind::Syntax, message).at(path, line, place));
+            }
+            return Ok(Some(Row { path, line, text, cells: &self.cells }));
+        }
+    }
+
+    fn decimal_comma_hint(&self, found: usize, expected: usize) -> &'static str {
+        if self.separator == Separator::Comma && found > expected {
+            "; numbers with a decimal comma need another separator, such as `;`, or quotes"
+        } else {
+            ""
+        }
+    }
+}
+
+fn split_line<'a>(
+    path: &Path,
+    line: usize,
+    text: &'a str,
+    separator: Separator,
+    cells: &mut Vec<Cell<'a>>,
+) -> Result<()> {
+    split(text, separator, cells).map_err(|(offset, message)| {
+        Error::new(ErrorKind::Syntax, message).at(path, line, character_column(text, offset))
+    })
+}
+
+impl HeaderCell {
+    fn new(text: &str, column: usize) -> Self {
+        let bracketed = text.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
+        let (name, unit) = match bracketed {
+            Some((name, unit)) => (name.trim_end(), Some(unit.trim().to_owned())),
+            None => (text, None),
+        };
+        HeaderCell {
+            text: text.to_owned(),
+            name: name.to_owned(),
+            unit: unit.filter(|unit| !unit.is_empty()),
+            column,
+        }
+    }
+}
+
+impl Header<'_> {
+    /// Index of the column of this name, which may include the unit as the file writes it.
+    pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
+        let mut matches =
+            self.cells.iter().enumerate().filter(|(_, cell)| cell.name == name || cell.text == name);
+        let first = matches.next().map(|(index, _)| index);
+        match matches.next() {
+            Some((second, _)) => {
+                let message =
+                    format!("found a second column `{name}`, expected one; rename or remove one of them");
+                Err(self.error(ErrorKind::Measurement, second, message))
+            }
+            None => Ok(first),
+        }
+    }
+
+    /// As [`Header::find`], but the column must be there; `known` are names that another column cannot be a misspelling of.
+    pub(super) fn require(&self, name: &str, purpose: &str, known: &[&str]) -> Result<usize> {
+        if let Some(index) = self.find(name)? {
+            return Ok(index);
+        }
+        let names = || self.cells.iter().map(|cell| cell.name.as_str()).filter(|found| !found.is_empty());
+        let near =
+            nearest(name, names().filter(|found| !known.contains(found))).or_else(|| nearest(name, names()));
+        let message = format!(
+            "found no column `{name}`, expected one {purpose}; the nearest name found is `{}`",
+            near.unwrap_or_default()
+        );
+        Err(Error::new(ErrorKind::Measurement, message).at_line(self.path, self.line))
+    }
+
+    /// An error at a column's name.
+    pub(super) fn error(&self, kind: ErrorKind, index: usize, message: impl Into<String>) -> Error {
+        let column = self.cells.get(index).map_or(1, |cell| cell.column);
+        Error::new(kind, message).at(self.path, self.line, column)
+    }
+}
+
+impl Row<'_> {
+    /// Line and column (characters, from 1) of a cell.
+    pub(super) fn place(&self, index: usize) -> (usize, usize) {
+        let offset = self.cells.get(index).map_or(0, |cell| cell.offset);
+        (self.line, character_column(self.text, offset))
+    }
+
+    /// An error at a cell.
+    pub(super) fn error(&self, index: usize, message: impl Into<String>) -> Error {
+        let (line, column) = self.place(index);
+        Error::new(ErrorKind::Measurement, message).at(self.path, line, column)
+    }
+}

@@ -1,0 +1,243 @@
+//! The text of a file, its lines and the cells of a line.
+
+use std::borrow::Cow;
+use std::io;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::error::{Error, ErrorKind, Result};
+
+/// The whole text of a file; `expected` says what it should be.
+pub(super) fn read_text(path: &Path, expected: &str) -> Result<String> {
+    let file_error = |found: &str| {
+        Error::new(ErrorKind::File, format!("found {found}, expected {expected}; check the name"))
+            .in_file(path)
+    };
+    if path.is_dir() {
+        return Err(file_error("a directory"));
+    }
+    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => file_error("no file of this name"),
+        _ => Error::new(ErrorKind::File, format!("cannot be read ({error}), expected {expected}"))
+            .in_file(path),
+    })?;
+    String::from_utf8(bytes)
+        .map_err(|error| not_utf8(path, error.as_bytes(), error.utf8_error().valid_up_to()))
+}
+
+fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        let message = "found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`";
+        return Error::new(ErrorKind::Syntax, message).in_file(path);
+    }
+    let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
+    let found = bytes.get(valid).copied().unwrap_or_default();
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+    let message = format!("found the byte 0x{found:02X}, expected UTF-8 text; save the file as `CSV UTF-8`");
+    Error::new(ErrorKind::Syntax, message).at(path, line, column)
+}
+
+/// What stands between two cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Separator {
+    /// `,`
+    Comma,
+    /// `;`
+    Semicolon,
+    /// A tab.
+    Tab,
+    /// Any run of blanks and tabs.
+    Whitespace,
+}
+
+impl Separator {
+    fn matches(self, c: char) -> bool {
+        match self {
+            Separator::Comma => c == ',',
+            Separator::Semicolon => c == ';',
+            Separator::Tab => c == '\t',
+            Separator::Whitespace => c.is_whitespace(),
+        }
+    }
+
+    /// The first of semicolon, tab and comma that the header has outside quotes, else whitespace.
+    pub(super) fn recognised(header: &str) -> Self {
+        let unquoted = |separator: &Separator| {
+            let mut quoted = false;
+            header.chars().any(|c| {
+                quoted ^= c == '"';
+                !quoted && separator.matches(c)
+            })
+        };
+        [Separator::Semicolon, Separator::Tab, Separator::Comma]
+            .into_iter()
+            .find(unquoted)
+            .unwrap_or(Separator::Whitespace)
+    }
+}
+
+/// Lines with their number (from 1) that are neither blank nor a comment (`#`).
+pub(super) struct Lines<'a> {
+    rest: std::str::Split<'a, char>,
+    number: usize,
+    skip: usize,
+}
+
+impl<'a> Lines<'a> {
+    /// The lines of a text after the first `skip`.
+    pub(super) fn new(text: &'a str, skip: usize) -> Self {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let newline = if text.contains('\n') { '\n' } else { '\r' };
+        Lines { rest: text.split(newline), number: 0, skip }
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (usize, &'a str);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let line = self.rest.next()?;
+            self.number += 1;
+            let line = line.strip_suffix('\r').unwrap_or(line);
+            let content = line.trim_start();
+            if self.number > self.skip && !content.is_empty() && !content.starts_with('#') {
+                return Some((self.number, line));
+            }
+        }
+    }
+}
+
+/// One cell: its text without padding and quotes, and where it starts in the line (bytes).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Cell<'a> {
+    /// Text, in which a quote may still be doubled.
+    pub(super) raw: &'a str,
+    /// Byte offset of its first character, the quote if it has one.
+    pub(super) offset: usize,
+    escaped: bool,
+}
+
+impl<'a> Cell<'a> {
+    /// The text as meant.
+    pub(super) fn text(&self) -> Cow<'a, str> {
+        if self.escaped { Cow::Owned(self.raw.replace("\"\"", "\"")) } else { Cow::Borrowed(self.raw) }
+    }
+}
+
+/// Column (from 1, in characters) of a byte offset.
+pub(super) fn character_column(line: &str, offset: usize) -> usize {
+    line.char_indices().take_while(|(index, _)| *index < offset).count() + 1
+}
+
+/// Splits a line into cells.
+///
+/// On failure returns the byte offset and what was found and expected.
+pub(super) fn split<'a>(
+    line: &'a str,
+    separator: Separator,
+    cells: &mut Vec<Cell<'a>>,
+) -> std::result::Result<(), (usize, &'static str)> {
+    cells.clear();
+    let mut rest = line;
+    loop {
+        rest =
+            rest.trim_start_matches(|c: char| c.is_whitespace() && separator != Separator::Tab || c == ' ');
+        if rest.is_empty() && separator == Separator::Whitespace {
+            return Ok(());
+        }
+        let offset = line.len() - rest.len();
+        let (cell, after) = match rest.strip_prefix('"') {
+            Some(quoted) => {
+                let end = closing_quote(quoted).ok_or((
+                    offset,
+                    "found a quote that is not closed on its line, expected a closing `\"`",
+                ))?;
+                let (raw, after) = quoted.split_at(end);
+                (Cell { raw, offset, escaped: raw.contains('"') }, after.strip_prefix('"').unwrap_or(after))
+            }
+            None => {
+                let (raw, after) = rest.split_at(rest.find(|c| separator.matches(c)).unwrap_or(rest.len()));
+                (Cell { raw: raw.trim_end(), offset, escaped: false }, after)
+            }
+        };
+        cells.push(cell);
+        let after = after.trim_start_matches(|c: char| c.is_whitespace() && !separator.matches(c));
+        let mut characters = after.chars();
+        match characters.next() {
+            None => return Ok(()),
+            Some(c) if separator.matches(c) => rest = characters.as_str(),
+            Some(_) => {
+                return Err((
+                    line.len() - after.len(),
+                    "found text after a closing quote, expected a separator",
+                ));
+            }
+        }
+    }
+}
+
+/// Byte index of the quote that ends a quoted cell; a doubled quote is part of the text.
+fn closing_quote(text: &str) -> Option<usize> {
+    let mut from = 0;
+    loop {
+        let at = from + text.get(from..)?.find('"')?;
+        if !text.get(at + 1..)?.starts_with('"') {
+            return Some(at);
+        }
+        from = at + 2;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(line: &str, separator: Separator) -> Vec<(String, usize)> {
+        let mut cells = Vec::new();
+        split(line, separator, &mut cells).unwrap();
+        cells.iter().map(|cell| (cell.text().into_owned(), cell.offset)).collect()
+    }
+
+    fn owned(cells: &[(&str, usize)]) -> Vec<(String, usize)> {
+        cells.iter().map(|(text, offset)| ((*text).to_owned(), *offset)).collect()
+    }
+
+    #[test]
+    fn cells_keep_their_place() {
+        assert_eq!(texts("a, b ,,d", Separator::Comma), owned(&[("a", 0), ("b", 3), ("", 6), ("d", 7)]));
+        assert_eq!(texts("a;", Separator::Semicolon), owned(&[("a", 0), ("", 2)]));
+        assert_eq!(texts("a\t\t b", Separator::Tab), owned(&[("a", 0), ("", 2), ("b", 4)]));
+        assert_eq!(texts("  1,5 \t 2 ", Separator::Whitespace), owned(&[("1,5", 2), ("2", 8)]));
+    }
+
+    #[test]
+    fn quotes_hold_separators_and_doubled_quotes() {
+        assert_eq!(
+            texts("\"a,b\" , \"say \"\"hi\"\"\",\"\"", Separator::Comma),
+            owned(&[("a,b", 0), ("say \"hi\"", 8), ("", 21)])
+        );
+        let mut cells = Vec::new();
+        assert_eq!(split("a,\"b", Separator::Comma, &mut cells).unwrap_err().0, 2);
+        assert_eq!(split("\"b\"c,d", Separator::Comma, &mut cells).unwrap_err().0, 3);
+    }
+
+    #[test]
+    fn the_separator_follows_from_the_header() {
+        assert_eq!(Separator::recognised("a;b,c"), Separator::Semicolon);
+        assert_eq!(Separator::recognised("\"a;b\",c"), Separator::Comma);
+        assert_eq!(Separator::recognised("a\tb c"), Separator::Tab);
+        assert_eq!(Separator::recognised("a b"), Separator::Whitespace);
+    }
+
+    #[test]
+    fn blank_lines_and_comments_count_but_are_passed_over() {
+        let lines: Vec<_> = Lines::new("\u{feff}# note\r\n\r\na\r\n  # b\r\nc", 0).collect();
+        assert_eq!(lines, [(3, "a"), (5, "c")]);
+        assert_eq!(Lines::new("title\na", 1).collect::<Vec<_>>(), [(2, "a")]);
+        assert_eq!(Lines::new("a\rb", 0).collect::<Vec<_>>(), [(1, "a"), (2, "b")]);
+    }
+}

@@ -1,0 +1,184 @@
+//! Units of lengths and angles as files state them.
+
+use std::f64::consts::PI;
+
+use crate::error::{Error, ErrorKind, Result, nearest};
+
+/// What a number measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// SI unit metre.
+    Length,
+    /// SI unit radian.
+    Angle,
+    /// A pure number, such as a part of a quaternion.
+    Number,
+}
+
+impl Quantity {
+    /// The SI unit: `m`, `rad` or `1`.
+    #[must_use]
+    pub fn si_unit(self) -> Unit {
+        match self {
+            Quantity::Length => METRE,
+            Quantity::Angle => RADIAN,
+            Quantity::Number => ONE,
+        }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Quantity::Length => "a length",
+            Quantity::Angle => "an angle",
+            Quantity::Number => "a number without unit",
+        }
+    }
+
+    fn known_units(self) -> impl Iterator<Item = &'static Unit> {
+        UNITS.iter().filter(move |unit| unit.quantity == self)
+    }
+}
+
+/// A unit: its symbol, what it measures, and how it becomes SI.
+///
+/// ```
+/// use poecal::io::measurements::{Quantity, Unit};
+/// assert_eq!(Unit::parse("mm", Quantity::Length)?.to_si(250.0), 0.25);
+/// let error = Unit::parse("mm", Quantity::Angle).unwrap_err();
+/// assert_eq!(error.message(), "found the unit `mm`, expected an angle (rad, mrad, deg, arcmin, arcsec)");
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    symbol: &'static str,
+    quantity: Quantity,
+    // Lengths divide by a power of ten, which is exact, where a factor such as 0.001 is not.
+    factor: f64,
+    divisor: f64,
+}
+
+const fn unit(symbol: &'static str, quantity: Quantity, factor: f64, divisor: f64) -> Unit {
+    Unit { symbol, quantity, factor, divisor }
+}
+
+const METRE: Unit = unit("m", Quantity::Length, 1.0, 1.0);
+const RADIAN: Unit = unit("rad", Quantity::Angle, 1.0, 1.0);
+const ONE: Unit = unit("1", Quantity::Number, 1.0, 1.0);
+const UNITS: [Unit; 11] = [
+    METRE,
+    unit("cm", Quantity::Length, 1.0, 1e2),
+    unit("mm", Quantity::Length, 1.0, 1e3),
+    unit("um", Quantity::Length, 1.0, 1e6),
+    unit("nm", Quantity::Length, 1.0, 1e9),
+    RADIAN,
+    unit("mrad", Quantity::Angle, 1.0, 1e3),
+    unit("deg", Quantity::Angle, PI / 180.0, 1.0),
+    unit("arcmin", Quantity::Angle, PI / 10_800.0, 1.0),
+    unit("arcsec", Quantity::Angle, PI / 648_000.0, 1.0),
+    ONE,
+];
+
+impl Unit {
+    /// The unit of this symbol for this quantity; `µm` and `°` are known beside `um` and `deg`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unit`] if it is unknown or measures something else.
+    pub fn parse(symbol: &str, quantity: Quantity) -> Result<Unit> {
+        Unit::parse_for(symbol, quantity, "")
+    }
+
+    /// As [`Unit::parse`]; `purpose` (` for …`) says in the message what the unit is for.
+    pub(super) fn parse_for(symbol: &str, quantity: Quantity, purpose: &str) -> Result<Unit> {
+        let plain = match symbol {
+            "µm" | "μm" => "um",
+            "°" => "deg",
+            "-" => "1",
+            other => other,
+        };
+        if let Some(unit) = quantity.known_units().find(|unit| unit.symbol == plain) {
+            return Ok(*unit);
+        }
+        let symbols: Vec<&str> = quantity.known_units().map(|unit| unit.symbol).collect();
+        let known_elsewhere = UNITS.iter().any(|unit| unit.symbol == plain);
+        let hint = match nearest(plain, symbols.iter().copied()) {
+            Some(near) if !known_elsewhere && near.eq_ignore_ascii_case(plain) => {
+                format!("; did you mean `{near}`?")
+            }
+            _ => String::new(),
+        };
+        Err(Error::new(
+            ErrorKind::Unit,
+            format!(
+                "found the unit `{symbol}`{purpose}, expected {} ({}){hint}",
+                quantity.words(),
+                symbols.join(", ")
+            ),
+        ))
+    }
+
+    /// The unit of this symbol, whatever it measures.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Unit`] if it is unknown.
+    pub fn parse_any(symbol: &str) -> Result<Unit> {
+        Unit::parse(symbol, Quantity::Length).or_else(|_| Unit::parse(symbol, Quantity::Angle)).map_err(
+            |_| {
+                let symbols: Vec<&str> =
+                    UNITS.iter().filter(|unit| **unit != ONE).map(|unit| unit.symbol).collect();
+                Error::new(
+                    ErrorKind::Unit,
+                    format!("found the unit `{symbol}`, expected one of {}", symbols.join(", ")),
+                )
+            },
+        )
+    }
+
+    /// A value in this unit, in metres, radians or as it is.
+    #[must_use]
+    pub fn to_si(self, value: f64) -> f64 {
+        value * self.factor / self.divisor
+    }
+
+    /// A value in metres or radians, in this unit.
+    #[must_use]
+    pub fn from_si(self, value: f64) -> f64 {
+        value * self.divisor / self.factor
+    }
+
+    /// The symbol, in ASCII.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        self.symbol
+    }
+
+    /// What it measures.
+    #[must_use]
+    pub fn quantity(self) -> Quantity {
+        self.quantity
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_unit_converts_there_and_back() {
+        for unit in UNITS {
+            assert_eq!(Unit::parse(unit.symbol, unit.quantity).unwrap(), unit);
+            assert!((unit.from_si(unit.to_si(0.7)) - 0.7).abs() < 1e-15, "{}", unit.symbol);
+        }
+        assert_eq!(Unit::parse("µm", Quantity::Length).unwrap().to_si(3.0), 3e-6);
+        assert_eq!(Unit::parse("deg", Quantity::Angle).unwrap().to_si(180.0), PI);
+    }
+
+    #[test]
+    fn unknown_units_name_what_is_known() {
+        let message = |symbol, quantity| Unit::parse(symbol, quantity).unwrap_err().to_string();
+        assert_eq!(
+            message("MM", Quantity::Length),
+            "found the unit `MM`, expected a length (m, cm, mm, um, nm); did you mean `mm`?"
+        );
+        assert_eq!(message("m", Quantity::Number), "found the unit `m`, expected a number without unit (1)");
+    }
+}
