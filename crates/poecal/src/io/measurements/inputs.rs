@@ -38,7 +38,7 @@ impl<'a> InputReader<'a> {
                     text => Some(self.numbers.parse(text, row.line).map_err(|expected| {
                         row.error(
                             column,
-                            format!("found `{text}` in column `{}`, expected {expected}", input.name),
+                            format!("found `{text}` in column `{}`, expected {expected}", input.label),
                         )
                     })?),
                 }
@@ -76,7 +76,7 @@ impl<'a> InputReader<'a> {
 
     /// An error at the cell of an input: "`found` in column …, expected `expected`".
     pub(super) fn error(&self, row: &Row<'_>, input: usize, found: &str, expected: &str) -> Error {
-        let name = self.inputs.get(input).map_or("", |input| &input.name);
+        let name = self.inputs.get(input).map_or("", |input| &input.label);
         row.error(self.column(input), format!("{found} in column `{name}`, expected {expected}"))
     }
 

@@ -111,7 +111,8 @@ pub(super) struct OrientationSpec {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct OrientationFields {
-    form: String,
+    #[serde(deserialize_with = "orientation_form")]
+    form: OrientationForm,
     columns: Option<Vec<String>>,
     #[serde(default, deserialize_with = "angle_unit")]
     unit: Option<Unit>,
@@ -199,12 +200,14 @@ impl TryFrom<OrientationFields> for OrientationSpec {
     type Error = Error;
 
     fn try_from(fields: OrientationFields) -> Result<Self> {
-        let form: OrientationForm = fields.form.parse()?;
-        let own_names = || form.column_names().iter().map(|name| (*name).to_owned()).collect();
-        let columns: Vec<String> = fields.columns.unwrap_or_else(own_names);
+        let form = fields.form;
+        let columns: Vec<String> = match fields.columns {
+            Some(columns) => columns,
+            None => form.own_columns().iter().map(|name| (*name).to_owned()).collect(),
+        };
         let error = |message: String| Err(Error::new(ErrorKind::Syntax, message));
         if columns.len() != form.len() {
-            return error(format!("found {} columns, expected {} for a {form}", columns.len(), form.len()));
+            return error(format!("found {} `columns`, expected {} ({form})", columns.len(), form.len()));
         }
         if fields.unit.is_some() && form.quantity() == Quantity::Number {
             return error("found a unit for a quaternion, expected none".to_owned());
@@ -272,6 +275,12 @@ fn angle_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result
 
 fn any_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {
     parsed(deserializer, Unit::parse_any)
+}
+
+fn orientation_form<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<OrientationForm, D::Error> {
+    String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
 }
 
 fn separator<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Separator>, D::Error> {

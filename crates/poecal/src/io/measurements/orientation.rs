@@ -46,8 +46,19 @@ impl OrientationForm {
         if self.len() == 4 { Quantity::Number } else { Quantity::Angle }
     }
 
-    /// Names of its columns in messages, in order.
-    pub(super) fn column_names(self) -> &'static [&'static str] {
+    /// Names of its columns in files of our own form, in order; none for Euler angles, which such files do not have.
+    pub(super) fn own_columns(self) -> &'static [&'static str] {
+        match self {
+            OrientationForm::Extrinsic([0, 1, 2])
+            | OrientationForm::QuaternionXyzw
+            | OrientationForm::QuaternionWxyz
+            | OrientationForm::RotationVector => self.part_names(),
+            OrientationForm::Intrinsic(_) | OrientationForm::Extrinsic(_) => &[],
+        }
+    }
+
+    /// What its columns hold, in order.
+    pub(super) fn part_names(self) -> &'static [&'static str] {
         match self {
             OrientationForm::QuaternionXyzw => &["qx", "qy", "qz", "qw"],
             OrientationForm::QuaternionWxyz => &["qw", "qx", "qy", "qz"],

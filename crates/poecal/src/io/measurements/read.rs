@@ -229,7 +229,11 @@ impl Reader<'_> {
         {
             let message =
                 format!("found no row with `{value}` in column `{column}`, expected at least one to fit");
-            return Err(Error::new(ErrorKind::Option, message));
+            let error = Error::new(ErrorKind::Option, message);
+            return Err(match self.data.files.as_slice() {
+                [only] => error.in_file(only),
+                _ => error,
+            });
         }
         Ok(MeasurementFile { data: self.data, understood: self.understood, warnings: self.warnings })
     }

@@ -152,12 +152,11 @@ impl Header<'_> {
             return Ok(index);
         }
         let names = || self.cells.iter().map(|cell| cell.name.as_str()).filter(|found| !found.is_empty());
-        let near =
-            nearest(name, names().filter(|found| !known.contains(found))).or_else(|| nearest(name, names()));
-        let message = format!(
-            "found no column `{name}`, expected one {purpose}; the nearest name found is `{}`",
-            near.unwrap_or_default()
-        );
+        let hint = match nearest(name, names().filter(|found| !known.contains(found))) {
+            Some(near) => format!("the nearest name found is `{near}`"),
+            None => format!("the columns are {}", names().collect::<Vec<_>>().join(", ")),
+        };
+        let message = format!("found no column `{name}`, expected one {purpose}; {hint}");
         Err(Error::new(ErrorKind::Measurement, message).at_line(self.path, self.line))
     }
 

@@ -1,0 +1,298 @@
+//! Finding the columns that a layout needs.
+
+use super::layout::{Input, Source, TargetLayout, reading_quantity};
+use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
+use super::orientation::OrientationForm;
+use super::table::Header;
+use super::understanding::UnitSource;
+use super::units::{Quantity, Unit};
+use crate::error::{Error, ErrorKind, Result, edit_distance};
+use crate::robot::Robot;
+
+const DEFAULT_FORMS: [OrientationForm; 3] =
+    [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
+
+/// Names that have a meaning in every file, beside the joints'.
+const OUR_NAMES: [&str; 18] = [
+    "x",
+    "y",
+    "z",
+    "qx",
+    "qy",
+    "qz",
+    "qw",
+    "rx",
+    "ry",
+    "rz",
+    "roll",
+    "pitch",
+    "yaw",
+    "target",
+    "sigma_position",
+    "sigma_rotation",
+    "id",
+    "set",
+];
+
+/// Finds one thing after the other in a header and keeps account of the columns used.
+pub(super) struct Builder<'a> {
+    header: &'a Header<'a>,
+    map: &'a ColumnMap,
+    readings: Vec<String>,
+    pub(super) inputs: Vec<Input>,
+    used: Vec<bool>,
+}
+
+impl<'a> Builder<'a> {
+    /// Finds the joints' columns.
+    pub(super) fn new(header: &'a Header<'a>, robot: &Robot, map: &'a ColumnMap) -> Result<Self> {
+        let readings = robot.reading_names();
+        if let Some(name) = map.joints.keys().find(|name| !readings.contains(name)) {
+            let message = format!("found the joint `{name}`, expected one of {}", readings.join(", "));
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(&map.path));
+        }
+        let used = vec![false; header.cells.len()];
+        let mut builder = Builder { header, map, readings: readings.clone(), inputs: Vec::new(), used };
+        let default = ColumnSpec::default();
+        for name in &readings {
+            let spec = map.joints.get(name).unwrap_or(&default);
+            let purpose = format!("for joint `{name}`");
+            builder.spec_input(name, spec, reading_quantity(robot, name), &purpose)?;
+        }
+        Ok(builder)
+    }
+
+    /// Adds a number that has a column or a value.
+    fn spec_input(
+        &mut self,
+        name: &str,
+        spec: &ColumnSpec,
+        quantity: Quantity,
+        purpose: &str,
+    ) -> Result<usize> {
+        if let Some(unit) = spec.unit.filter(|unit| unit.quantity() != quantity) {
+            Unit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
+                .map_err(|error| error.in_file(&self.map.path))?;
+        }
+        let Some(value) = spec.value else {
+            let column = spec.column.as_deref().unwrap_or(name);
+            return self.column_input(name, column, quantity, spec.unit, purpose);
+        };
+        let stated = spec.unit.or(self.map.units.of(quantity));
+        let unit = stated.unwrap_or(quantity.si_unit());
+        let unit_from = if stated.is_some() { UnitSource::Mapping } else { UnitSource::Si };
+        let source = Source::Constant(unit.to_si(value));
+        let (name, label) = (name.to_owned(), name.to_owned());
+        self.inputs.push(Input { name, label, source, unit, unit_from });
+        Ok(self.inputs.len() - 1)
+    }
+
+    /// Adds a number that has a column.
+    fn column_input(
+        &mut self,
+        name: &str,
+        column: &str,
+        quantity: Quantity,
+        mapped: Option<Unit>,
+        purpose: &str,
+    ) -> Result<usize> {
+        let index = self.text_column(column, purpose)?;
+        let in_header = self.header.cells.get(index).and_then(|cell| cell.unit.as_deref());
+        let (unit, unit_from) = match (mapped, in_header, self.map.units.of(quantity)) {
+            (Some(unit), _, _) => (unit, UnitSource::Mapping),
+            (None, Some(symbol), _) => {
+                let unit = Unit::parse_for(symbol, quantity, &format!(" {purpose}"))
+                    .map_err(|error| self.header.error(ErrorKind::Unit, index, error.message()))?;
+                (unit, UnitSource::Header)
+            }
+            (None, None, Some(unit)) => (unit, UnitSource::Mapping),
+            (None, None, None) => (quantity.si_unit(), UnitSource::Si),
+        };
+        let (name, label, source) = (name.to_owned(), column.to_owned(), Source::Column(index));
+        self.inputs.push(Input { name, label, source, unit, unit_from });
+        Ok(self.inputs.len() - 1)
+    }
+
+    /// Index of a column that must be there.
+    pub(super) fn text_column(&mut self, name: &str, purpose: &str) -> Result<usize> {
+        let known: Vec<&str> = self
+            .readings
+            .iter()
+            .map(String::as_str)
+            .chain(OUR_NAMES)
+            .filter(|known| *known != name)
+            .collect();
+        let index = self.header.require(name, purpose, &known)?;
+        self.mark(index);
+        Ok(index)
+    }
+
+    /// Index of a column that may be there and is not used for something else.
+    pub(super) fn optional_text_column(&mut self, name: &str) -> Result<Option<usize>> {
+        let index = self.header.find(name)?.filter(|&index| !self.is_used(index));
+        if let Some(index) = index {
+            self.mark(index);
+        }
+        Ok(index)
+    }
+
+    pub(super) fn id_column(&mut self) -> Result<Option<usize>> {
+        match &self.map.id {
+            Some(column) => self.text_column(column, "for the row's id").map(Some),
+            None => self.optional_text_column("id"),
+        }
+    }
+
+    fn mark(&mut self, index: usize) {
+        if let Some(used) = self.used.get_mut(index) {
+            *used = true;
+        }
+    }
+
+    fn is_used(&self, index: usize) -> bool {
+        self.used.get(index).copied().unwrap_or(false)
+    }
+
+    /// The target of a layout with one target a row.
+    pub(super) fn single_target(&mut self) -> Result<TargetLayout> {
+        let map = self.map;
+        let position = self.position("", map.position.as_ref().unwrap_or(&PositionSpec::default()))?;
+        let orientation = match &map.orientation {
+            Some(spec) => Some(self.mapped_orientation("", spec)?),
+            None => self.default_orientation()?,
+        };
+        let sigma_position =
+            self.sigma("sigma_position", map.sigma_position.as_ref(), Quantity::Length, true)?;
+        let sigma_rotation =
+            self.sigma("sigma_rotation", map.sigma_rotation.as_ref(), Quantity::Angle, true)?;
+        Ok(TargetLayout {
+            name: map.target_name.clone(),
+            position,
+            orientation,
+            sigma_position,
+            sigma_rotation,
+        })
+    }
+
+    /// One target of a layout with several targets a row.
+    pub(super) fn named_target(&mut self, target: &TargetSpec) -> Result<TargetLayout> {
+        let prefix = format!("{} ", target.name);
+        let position = self.position(&prefix, &target.position)?;
+        let orientation =
+            target.orientation.as_ref().map(|spec| self.mapped_orientation(&prefix, spec)).transpose()?;
+        let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
+            self.sigma(&format!("{prefix}{name}"), spec, quantity, false)
+        };
+        let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Quantity::Length)?;
+        let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Quantity::Angle)?;
+        Ok(TargetLayout {
+            name: Some(target.name.clone()),
+            position,
+            orientation,
+            sigma_position,
+            sigma_rotation,
+        })
+    }
+
+    fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {
+        let mut indices = [0; 3];
+        for (i, (axis, index)) in ["x", "y", "z"].into_iter().zip(&mut indices).enumerate() {
+            let column =
+                spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(axis, String::as_str);
+            let purpose = format!("for the position {prefix}{axis}");
+            *index =
+                self.column_input(&format!("{prefix}{axis}"), column, Quantity::Length, spec.unit, &purpose)?;
+        }
+        Ok(indices)
+    }
+
+    fn mapped_orientation(
+        &mut self,
+        prefix: &str,
+        spec: &OrientationSpec,
+    ) -> Result<(OrientationForm, Vec<usize>)> {
+        let indices = spec.columns.iter().zip(spec.form.part_names()).map(|(column, name)| {
+            let purpose = format!("for the {}orientation ({})", prefix, spec.form);
+            self.column_input(&format!("{prefix}{name}"), column, spec.form.quantity(), spec.unit, &purpose)
+        });
+        let indices = indices.collect::<Result<_>>()?;
+        Ok((spec.form, indices))
+    }
+
+    /// The orientation columns of our own names, of which all of one form must be there or none.
+    fn default_orientation(&mut self) -> Result<Option<(OrientationForm, Vec<usize>)>> {
+        let mut chosen: Option<(OrientationForm, &str)> = None;
+        for form in DEFAULT_FORMS {
+            for name in form.own_columns() {
+                let Some(index) = self.header.find(name)?.filter(|&index| !self.is_used(index)) else {
+                    continue;
+                };
+                match chosen {
+                    Some((other, first)) if other != form => {
+                        let message = format!(
+                            "found the orientation columns `{first}` and `{name}`, expected one form only"
+                        );
+                        return Err(self.header.error(ErrorKind::Measurement, index, message));
+                    }
+                    Some(_) => {}
+                    None => chosen = Some((form, name)),
+                }
+            }
+        }
+        let Some((form, _)) = chosen else { return Ok(None) };
+        let purpose = format!("for the orientation ({form})");
+        let names = form.own_columns().iter();
+        let indices = names.map(|name| self.column_input(name, name, form.quantity(), None, &purpose));
+        Ok(Some((form, indices.collect::<Result<_>>()?)))
+    }
+
+    fn sigma(
+        &mut self,
+        name: &str,
+        spec: Option<&ColumnSpec>,
+        quantity: Quantity,
+        by_our_name: bool,
+    ) -> Result<Option<usize>> {
+        let default = ColumnSpec::default();
+        let spec = match spec {
+            Some(spec) => spec,
+            None if by_our_name && self.header.find(name)?.is_some() => &default,
+            None => return Ok(None),
+        };
+        self.spec_input(name, spec, quantity, &format!("for `{name}`")).map(Some)
+    }
+
+    /// Refuses a column that is two things at once. (One sigma may serve several targets.)
+    pub(super) fn check_distinct(&self) -> Result<()> {
+        let distinct = |input: &&Input| !input.name.contains("sigma_");
+        for (i, input) in self.inputs.iter().enumerate() {
+            let Source::Column(index) = input.source else { continue };
+            let earlier =
+                self.inputs.iter().take(i).filter(distinct).find(|other| other.source == input.source);
+            if let (Some(other), true) = (earlier, distinct(&input)) {
+                let message = format!(
+                    "found one column for both `{}` and `{}`, expected a column for each; \
+                     name them in a mapping file (--columns)",
+                    other.name, input.name
+                );
+                return Err(self.header.error(ErrorKind::Measurement, index, message));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn ignored(&self) -> Vec<(String, Option<&'static str>)> {
+        let cells = self.header.cells.iter().enumerate();
+        cells
+            .filter(|(index, cell)| !self.is_used(*index) && !cell.text.is_empty())
+            .map(|(_, cell)| (cell.text.clone(), self.meant(&cell.name)))
+            .collect()
+    }
+
+    /// The name of ours that a column without meaning is a slip of the pen away from.
+    fn meant(&self, name: &str) -> Option<&'static str> {
+        let missing = |ours: &&str| !self.header.cells.iter().any(|cell| cell.name == *ours);
+        let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
+        OUR_NAMES.into_iter().filter(missing).find(|ours| edit_distance(name, ours) <= slips(ours))
+    }
+}
