@@ -54,7 +54,10 @@ fn forward_kinematics_agrees_with_pinocchio() {
         println!("{:20} {:.1e} m, {:.1e} in the rotation matrix", expected.urdf, own.0, own.1);
         largest = (largest.0.max(own.0), largest.1.max(own.1));
     }
-    println!("largest difference from Pinocchio {}: {:.1e} m, {:.1e}", reference.pinocchio, largest.0, largest.1);
+    println!(
+        "largest difference from Pinocchio {}: {:.1e} m, {:.1e}",
+        reference.pinocchio, largest.0, largest.1
+    );
     assert!(largest.0 < TOLERANCE && largest.1 < TOLERANCE);
 }
 
