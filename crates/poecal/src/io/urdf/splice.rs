@@ -106,9 +106,13 @@ pub(super) fn number(number: f64) -> String {
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
-/// Metres or radians freed of what is mere rounding around zero (and of negative zero).
-pub(super) fn without_dust(numbers: [f64; 3]) -> [f64; 3] {
-    numbers.map(|number| if number.abs() < 1e-16 { 0.0 } else { number })
+/// Metres or radians freed of the rounding of products: numbers within 1e-15 of one with twelve decimals are that one.
+pub(super) fn tidy(numbers: [f64; 3]) -> [f64; 3] {
+    numbers.map(|number| {
+        let rounded = (number * 1e12).round() / 1e12;
+        // Adding zero makes negative zero positive.
+        if (rounded - number).abs() < 1e-15 { rounded + 0.0 } else { number }
+    })
 }
 
 /// A name as an attribute value.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::patch::{frame_on_axis, origin_values};
-use super::splice::{escaped, number, triple, without_dust};
+use super::splice::{escaped, number, tidy, triple};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
 use crate::robot::{Joint, JointKind, Robot};
@@ -161,7 +161,7 @@ impl Writer {
         self.open_joint(&joint.name, kind, parent, child);
         let origin = self.origin(origin);
         let direction = joint.frame.rotation.transpose() * joint.screw.direction();
-        self.line(2, &format!("<axis xyz=\"{}\"/>", triple(without_dust(direction.into()))));
+        self.line(2, &format!("<axis xyz=\"{}\"/>", triple(tidy(direction.into()))));
         match (joint.limits, joint.kind) {
             (Some(limits), _) => self.limit(limits.lower, limits.upper),
             (None, JointKind::Prismatic) => self.wide_limit(&joint.name),
