@@ -2,6 +2,7 @@
 
 mod mimic;
 pub mod model;
+mod numbers;
 pub mod robot_toml;
 mod source_text;
 pub mod urdf;

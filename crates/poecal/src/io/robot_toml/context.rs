@@ -8,12 +8,11 @@ use toml::Spanned;
 
 use super::file::{AngleUnit, LengthUnit, PoseTable};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::numbers::LARGEST_NUMBER;
 use crate::io::source_text::position;
 use crate::lie::{Pose, rotation};
 use crate::robot::JointKind;
 
-/// No length of a robot (metres) and no angle (radians) comes near this; larger numbers are slips.
-const LARGEST_NUMBER: f64 = 1e6;
 /// Rounding that a table of four digits has, in unit vectors, quaternions and rotation matrices.
 pub(super) const TABLE_ROUNDING: f64 = 2e-3;
 

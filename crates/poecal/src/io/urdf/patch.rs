@@ -4,8 +4,9 @@ use nalgebra::Vector3;
 
 use super::UrdfDocument;
 use super::parts::{Part, Place};
-use super::splice::{Splice, escaped, tidy, triple};
+use super::splice::{Splice, escaped, triple};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::numbers::tidy;
 use crate::lie::{Pose, Screw, rotation};
 use crate::robot::{Joint, Robot};
 

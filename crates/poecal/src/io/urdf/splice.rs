@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::parts::Place;
+use crate::io::numbers::shortest;
 
 /// Replacements in a text.
 pub(super) struct Splice<'a> {
@@ -95,24 +96,9 @@ impl<'a> Splice<'a> {
     }
 }
 
-/// Three numbers as an attribute value, each the shortest that reads back the same.
+/// Three numbers as an attribute value.
 pub(super) fn triple(numbers: [f64; 3]) -> String {
-    numbers.map(number).join(" ")
-}
-
-/// The shortest decimal that reads back as the same number.
-pub(super) fn number(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
-}
-
-/// Metres or radians freed of the rounding of products: numbers within 1e-15 of one with twelve decimals are that one.
-pub(super) fn tidy(numbers: [f64; 3]) -> [f64; 3] {
-    numbers.map(|number| {
-        let rounded = (number * 1e12).round() / 1e12;
-        // Adding zero makes negative zero positive.
-        if (rounded - number).abs() < 1e-15 { rounded + 0.0 } else { number }
-    })
+    numbers.map(shortest).join(" ")
 }
 
 /// A name as an attribute value.
