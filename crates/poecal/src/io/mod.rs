@@ -3,6 +3,7 @@
 pub mod measurements;
 mod mimic;
 pub mod model;
+mod numbers;
 pub mod robot_toml;
 mod source_text;
 pub mod urdf;

@@ -8,12 +8,11 @@ use toml::Spanned;
 
 use super::file::{AngleUnit, LengthUnit, PoseTable};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::numbers::LARGEST_NUMBER;
 use crate::io::source_text::position;
 use crate::lie::{Pose, rotation};
 use crate::robot::JointKind;
 
-/// No length of a robot (metres) and no angle (radians) comes near this; larger numbers are slips.
-const LARGEST_NUMBER: f64 = 1e6;
 /// Rounding that a table of four digits has, in unit vectors, quaternions and rotation matrices.
 pub(super) const TABLE_ROUNDING: f64 = 2e-3;
 
@@ -44,7 +43,7 @@ impl Context<'_> {
             }
             if number.abs() > LARGEST_NUMBER {
                 let message =
-                    format!("found {number} in {of}, expected numbers of metres or radians below 1e6");
+                    format!("found {number:?} m or rad in {of}, expected numbers below 1e6 m or rad");
                 return Err(self.error(span, message));
             }
         }
@@ -129,11 +128,15 @@ impl Context<'_> {
             matrix.set_row(row, &Vector3::from(numbers).transpose());
         }
         let skew = (matrix.transpose() * matrix - Matrix3::identity()).amax();
-        if skew > 2.0 * TABLE_ROUNDING || matrix.determinant() < 0.0 {
+        if skew > 2.0 * TABLE_ROUNDING {
             let message = format!(
-                "the rotation of {of} is off a rotation matrix by {skew:.4} (determinant {:.4}), expected three rows that are perpendicular unit vectors, right-handed",
-                matrix.determinant()
+                "the rows of the rotation of {of} are off perpendicular unit vectors by {skew:.4}, expected a rotation matrix"
             );
+            return Err(self.error(rows.span(), message));
+        }
+        if matrix.determinant() < 0.0 {
+            let message =
+                format!("the rotation of {of} is a reflection, expected a rotation matrix (determinant +1)");
             return Err(self.error(rows.span(), message));
         }
         // Each step squares the error of at most 4e-3, so three reach rounding.

@@ -1,11 +1,13 @@
-//! A robot as a TOML model of screws, in metres and radians, with numbers that read back exactly.
+//! A robot as a TOML model of screws, in metres and radians.
 
 use std::fmt::Write;
 
+use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
 use crate::robot::{Joint, JointKind, Robot};
 
-/// The robot as a TOML text of screws, SI units. Numbers are the shortest decimals that read back the same.
+/// The robot as a TOML text of screws, SI units. Numbers are the shortest decimals that read back the same, freed of rounding
+/// below 1e-15.
 ///
 /// Joint frames are not part of the format: a screw and the home pose are all that forward kinematics needs.
 ///
@@ -46,7 +48,7 @@ fn joint_keys(joint: &Joint) -> String {
     };
     let mut keys = format!("name = {}, type = \"{}\", {screw}", quoted(&joint.name), joint.kind.word());
     if let Some(limits) = joint.limits {
-        let _ = write!(keys, ", limits = [{}, {}]", number(limits.lower), number(limits.upper));
+        let _ = write!(keys, ", limits = [{}, {}]", shortest(limits.lower), shortest(limits.upper));
     }
     let reading = &joint.reading;
     if reading.name != joint.name {
@@ -54,8 +56,8 @@ fn joint_keys(joint: &Joint) -> String {
             keys,
             ", mimic = {{ joint = {}, multiplier = {}, offset = {} }}",
             quoted(&reading.name),
-            number(reading.multiplier),
-            number(reading.offset)
+            shortest(reading.multiplier),
+            shortest(reading.offset)
         );
     }
     keys
@@ -63,20 +65,14 @@ fn joint_keys(joint: &Joint) -> String {
 
 fn pose_keys(pose: &Pose) -> String {
     let mut keys = format!("position = {}\n", array(pose.translation.into()));
-    if pose.rotation != nalgebra::Matrix3::identity() {
+    if (pose.rotation - nalgebra::Matrix3::identity()).amax() > 1e-15 {
         let _ = writeln!(keys, "quaternion_xyzw = {}", array(pose.quaternion_xyzw()));
     }
     keys
 }
 
 fn array<const N: usize>(numbers: [f64; N]) -> String {
-    format!("[{}]", numbers.map(number).join(", "))
-}
-
-/// The shortest decimal that reads back as the same number; negative zero is zero.
-fn number(number: f64) -> String {
-    let text = format!("{:?}", number + 0.0);
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+    format!("[{}]", tidy(numbers).map(shortest).join(", "))
 }
 
 fn quoted(name: &str) -> String {

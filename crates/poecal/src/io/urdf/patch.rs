@@ -4,8 +4,9 @@ use nalgebra::Vector3;
 
 use super::UrdfDocument;
 use super::parts::{Part, Place};
-use super::splice::{Splice, escaped, triple, without_dust};
+use super::splice::{Splice, escaped, triple};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::numbers::tidy;
 use crate::lie::{Pose, Screw, rotation};
 use crate::robot::{Joint, Robot};
 
@@ -127,7 +128,7 @@ fn write_joint(
     let written = write_origin(splice, part, base_from_link, &frame);
     let direction = written.rotation.transpose() * joint.screw.direction();
     if (direction - axis).norm() > AXIS_TOLERANCE {
-        splice.set_axis(&part.place, triple(without_dust(direction.into())));
+        splice.set_axis(&part.place, triple(tidy(direction.into())));
     }
     written
 }
@@ -165,7 +166,7 @@ fn write_origin(splice: &mut Splice, part: &Part, base_from_link: Pose, target: 
 
 /// `xyz` and `rpy` of an origin.
 pub(super) fn origin_values(pose: &Pose) -> ([f64; 3], [f64; 3]) {
-    (without_dust(pose.translation.into()), without_dust(rotation::to_rpy(&pose.rotation)))
+    (tidy(pose.translation.into()), tidy(rotation::to_rpy(&pose.rotation)))
 }
 
 fn close(a: &Pose, b: &Pose) -> bool {

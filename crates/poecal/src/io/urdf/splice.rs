@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::parts::Place;
+use crate::io::numbers::shortest;
 
 /// Replacements in a text.
 pub(super) struct Splice<'a> {
@@ -95,20 +96,9 @@ impl<'a> Splice<'a> {
     }
 }
 
-/// Three numbers as an attribute value, each the shortest that reads back the same.
+/// Three numbers as an attribute value.
 pub(super) fn triple(numbers: [f64; 3]) -> String {
-    numbers.map(number).join(" ")
-}
-
-/// The shortest decimal that reads back as the same number.
-pub(super) fn number(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
-}
-
-/// Metres or radians freed of what is mere rounding around zero (and of negative zero).
-pub(super) fn without_dust(numbers: [f64; 3]) -> [f64; 3] {
-    numbers.map(|number| if number.abs() < 1e-16 { 0.0 } else { number })
+    numbers.map(shortest).join(" ")
 }
 
 /// A name as an attribute value.

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::patch::{frame_on_axis, origin_values};
-use super::splice::{escaped, number, triple, without_dust};
+use super::splice::{escaped, triple};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
 use crate::robot::{Joint, JointKind, Robot};
 
@@ -34,7 +35,7 @@ pub struct NewUrdf {
     pub notes: Vec<String>,
 }
 
-/// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint. Numbers read back exactly.
+/// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint.
 ///
 /// # Errors
 /// [`ErrorKind::Export`] if a joint's reading cannot be said in URDF (a factor or offset on its own reading).
@@ -109,7 +110,7 @@ impl Writer {
     }
 
     fn limit(&mut self, lower: f64, upper: f64) {
-        let limits = format!("lower=\"{}\" upper=\"{}\"", number(lower), number(upper));
+        let limits = format!("lower=\"{}\" upper=\"{}\"", shortest(lower), shortest(upper));
         self.line(2, &format!("<limit {limits} effort=\"0\" velocity=\"0\"/>"));
         let note = "effort and velocity limits are not known and were written as 0, since URDF demands them";
         if !self.notes.iter().any(|known| known == note) {
@@ -161,7 +162,7 @@ impl Writer {
         self.open_joint(&joint.name, kind, parent, child);
         let origin = self.origin(origin);
         let direction = joint.frame.rotation.transpose() * joint.screw.direction();
-        self.line(2, &format!("<axis xyz=\"{}\"/>", triple(without_dust(direction.into()))));
+        self.line(2, &format!("<axis xyz=\"{}\"/>", triple(tidy(direction.into()))));
         match (joint.limits, joint.kind) {
             (Some(limits), _) => self.limit(limits.lower, limits.upper),
             (None, JointKind::Prismatic) => self.wide_limit(&joint.name),
@@ -171,8 +172,8 @@ impl Writer {
         if reading.name != joint.name {
             let relation = format!(
                 "multiplier=\"{}\" offset=\"{}\"",
-                number(reading.multiplier),
-                number(reading.offset)
+                shortest(reading.multiplier),
+                shortest(reading.offset)
             );
             self.line(2, &format!("<mimic joint=\"{}\" {relation}/>", escaped(&reading.name)));
         } else if reading.multiplier != 1.0 || reading.offset != 0.0 {

@@ -6,10 +6,8 @@ use std::path::Path;
 use roxmltree::{Attribute, Document, Node};
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::numbers::LARGEST_NUMBER;
 use crate::io::source_text::position;
-
-/// No length of a robot (metres) and no angle (radians) comes near this; larger numbers are slips.
-const LARGEST_NUMBER: f64 = 1e6;
 
 /// A parsed XML text and the name of its file.
 #[derive(Clone, Copy)]

@@ -1,0 +1,36 @@
+//! Numbers in model files.
+
+/// No length of a robot (metres) and no angle (radians) comes near this; larger numbers are slips.
+pub(super) const LARGEST_NUMBER: f64 = 1e6;
+
+/// The shortest decimal that reads back as the same number.
+pub(super) fn shortest(number: f64) -> String {
+    let text = format!("{number:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+/// Numbers freed of the rounding of products: what is within 1e-15 of a number with twelve decimals becomes that one, as 0.2025
+/// for 0.20249999999999999 and 0 for 6e-17.
+pub(super) fn tidy<const N: usize>(numbers: [f64; N]) -> [f64; N] {
+    numbers.map(|number| {
+        let rounded = (number * 1e12).round() / 1e12;
+        // Adding zero makes negative zero positive.
+        if (rounded - number).abs() < 1e-15 { rounded + 0.0 } else { number }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_read_back() {
+        assert_eq!(
+            tidy([0.202_499_999_999_999_99, -6e-17, 0.123_456_789_012_345_6]).map(shortest),
+            ["0.2025", "0", "0.1234567890123456"]
+        );
+        for number in [1.0, -0.1, 1e-7, 0.1 + 0.2, f64::MIN_POSITIVE] {
+            assert_eq!(shortest(number).parse(), Ok(number));
+        }
+    }
+}
