@@ -1,5 +1,7 @@
 //! The contract of every error parameter: columns of target motion, and the retraction that applies a step.
 
+use nalgebra::Vector3;
+
 use crate::estimate::{Chain, Estimate};
 use crate::measurement::TargetTwist;
 
@@ -27,7 +29,22 @@ pub struct Column {
     pub shifts_only: bool,
 }
 
-/// What a parameter provides.
+/// Force `f` at a target's origin and torque `τ`, device axes: the whitened residual pulled back through the measurement.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// let pull = poecal::parameters::Wrench { force: Vector3::x(), torque: Vector3::zeros() };
+/// assert_eq!(pull.force.x, 1.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench {
+    /// Force.
+    pub force: Vector3<f64>,
+    /// Torque.
+    pub torque: Vector3<f64>,
+}
+
+/// What a parameter provides. At most six unknowns.
 pub trait Columns {
     /// Its unknowns in order.
     fn columns(&self) -> &'static [Column];
@@ -35,6 +52,11 @@ pub trait Columns {
     /// Writes, for one row, the target's motion per unit of each unknown: shift of the target's origin and turn, both in the
     /// device's axes. `out` has one place an unknown and is not cleared.
     fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]);
+
+    /// Writes the second derivative of the target's motion by each pair of these unknowns, contracted with a wrench on the target:
+    /// `out[a * dim + b] = f · ∂²p/∂a∂b + τ · ∂²r/∂a∂b` (docs/theory.md §6). Pairs with unknowns of other parameters follow from
+    /// the twists alone. `out` is all zero before.
+    fn curvature(&self, _chain: &Chain, _wrench: &Wrench, _out: &mut [f64]) {}
 
     /// Applies a step (metres, radians) to an estimate.
     fn retract(&self, estimate: &mut Estimate, step: &[f64]);

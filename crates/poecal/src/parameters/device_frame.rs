@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Unit};
+use super::columns::{Column, Columns, Unit, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::rotation;
 use crate::measurement::TargetTwist;
@@ -35,6 +35,18 @@ impl Columns for DeviceFrame {
             axis[k] = 1.0;
             out[k] = (axis, Vector3::zeros());
             out[3 + k] = (axis.cross(&arm), axis);
+        }
+    }
+
+    fn curvature(&self, chain: &Chain, wrench: &Wrench, out: &mut [f64]) {
+        let arm = chain.target.translation - self.about;
+        for a in 0..3 {
+            for b in 0..3 {
+                // ½ (ω_a × (ω_b × d) + ω_b × (ω_a × d)), contracted: unit vectors along the axes.
+                let (fa, fb) = (wrench.force[a], wrench.force[b]);
+                let along = if a == b { wrench.force.dot(&arm) } else { 0.0 };
+                out[(3 + a) * 6 + 3 + b] = 0.5 * (fa * arm[b] + fb * arm[a]) - along;
+            }
         }
     }
 

@@ -6,13 +6,13 @@ mod screw_axis;
 mod target_frame;
 mod target_place;
 
-pub use columns::{Column, Columns, Unit};
+pub use columns::{Column, Columns, Unit, Wrench};
 pub use device_frame::DeviceFrame;
 pub use screw_axis::ScrewAxis;
 pub use target_frame::TargetFrame;
 pub use target_place::TargetPlace;
 
-/// A group of unknowns. A new one is one file with [`Columns`] and one variant here; the compiler lists the arms, all in this file.
+/// A group of unknowns. In a list of parameters the order is that of the chain: device frame, joints from base to tip, targets. A new one is one file with [`Columns`] and one variant here; the compiler lists the arms, all in this file.
 ///
 /// ```
 /// use poecal::parameters::{Parameter, TargetPlace};

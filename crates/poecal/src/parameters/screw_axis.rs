@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Unit};
+use super::columns::{Column, Columns, Unit, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{Pose, Twist};
 use crate::measurement::TargetTwist;
@@ -57,6 +57,55 @@ impl Columns for ScrewAxis {
             JointKind::Prismatic => {
                 out[0] = (joint.y * -joint.cosine_or_value, Vector3::zeros());
                 out[1] = (joint.x * joint.cosine_or_value, Vector3::zeros());
+            }
+        }
+    }
+
+    fn curvature(&self, chain: &Chain, wrench: &Wrench, out: &mut [f64]) {
+        let joint = &chain.joints[self.joint];
+        let arm = chain.target.translation - joint.origin;
+        let (turned_x, turned_y) = match self.kind {
+            JointKind::Revolute => (
+                joint.x * joint.cosine_or_value + joint.y * joint.sine,
+                joint.y * joint.cosine_or_value - joint.x * joint.sine,
+            ),
+            JointKind::Prismatic => (joint.x, joint.y),
+        };
+        // exp(ε) exp(ẑθ) exp(-ε): one twist before the joint's motion, its opposite after. As (linear velocity at the target, turn).
+        let zero = Vector3::zeros();
+        let (before, after): (Vec<TargetTwist>, Vec<TargetTwist>) = match self.kind {
+            JointKind::Revolute => (
+                vec![
+                    (joint.x, zero),
+                    (joint.y, zero),
+                    (joint.x.cross(&arm), joint.x),
+                    (joint.y.cross(&arm), joint.y),
+                ],
+                vec![
+                    (turned_x, zero),
+                    (turned_y, zero),
+                    (turned_x.cross(&arm), turned_x),
+                    (turned_y.cross(&arm), turned_y),
+                ],
+            ),
+            JointKind::Prismatic => {
+                let moved = arm - joint.z * joint.cosine_or_value;
+                (
+                    vec![(joint.x.cross(&arm), joint.x), (joint.y.cross(&arm), joint.y)],
+                    vec![(joint.x.cross(&moved), joint.x), (joint.y.cross(&moved), joint.y)],
+                )
+            }
+        };
+        let dim = before.len();
+        for a in 0..dim {
+            for b in 0..dim {
+                let second = |outer: &TargetTwist, inner: &TargetTwist| outer.1.cross(&inner.0);
+                let position = (second(&before[a], &before[b]) + second(&before[b], &before[a])) * 0.5
+                    + (second(&after[a], &after[b]) + second(&after[b], &after[a])) * 0.5
+                    - second(&before[a], &after[b])
+                    - second(&before[b], &after[a]);
+                let turn = (before[a].1.cross(&after[b].1) + before[b].1.cross(&after[a].1)) * -0.5;
+                out[a * dim + b] = wrench.force.dot(&position) + wrench.torque.dot(&turn);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::estimate::{Chain, Estimate};
 use crate::measurement::TargetTwist;
-use crate::parameters::{Parameter, Unit};
+use crate::parameters::{Parameter, Unit, Wrench};
 use nalgebra::Vector3;
 
 /// The free parameters and the place of each of their unknowns in a step: first those that only shift a target, whose rotation
@@ -72,6 +72,33 @@ impl Layout {
             parameter.model().target_twists(chain, target, &mut own[..places.len()]);
             for (&(place, scale), (v, w)) in places.iter().zip(&own) {
                 out[place] = if scale == 1.0 { (*v, *w) } else { (v / scale, w / scale) };
+            }
+        }
+    }
+
+    /// Adds `-wrench · ∂²(target's motion)` of every pair of unknowns to the upper triangle of a row-major matrix. With `a` before `b`
+    /// in the chain the target's second derivative is `ω_a × v_b`, and half `ω_a × ω_b` for its turn (docs/theory.md §6).
+    pub(crate) fn add_curvature(&self, chain: &Chain, target: usize, wrench: &Wrench, out: &mut [f64]) {
+        let n = self.dim();
+        let mut add = |a: usize, b: usize, value: f64| out[a.min(b) * n + a.max(b)] -= value;
+        let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); n];
+        self.target_twists(chain, target, &mut twists);
+        let mut own = [0.0; 36];
+        for (first, (parameter, places)) in self.parameters().enumerate() {
+            let dim = places.len();
+            own.fill(0.0);
+            parameter.model().curvature(chain, wrench, &mut own[..dim * dim]);
+            for (i, &(a, scale_a)) in places.iter().enumerate() {
+                for (j, &(b, scale_b)) in places.iter().enumerate().skip(i) {
+                    add(a, b, own[i * dim + j] / (scale_a * scale_b));
+                }
+                let turn = twists[a].1;
+                let (pull, twist) = (wrench.force.cross(&turn), wrench.torque.cross(&turn) * 0.5);
+                for (_, later) in self.parameters().skip(first + 1) {
+                    for &(b, _) in later {
+                        add(a, b, pull.dot(&twists[b].0) + twist.dot(&twists[b].1));
+                    }
+                }
             }
         }
     }

@@ -6,7 +6,7 @@ pub use layout::Layout;
 
 use crate::estimate::{Chain, Estimate, Linkage, Packed};
 use crate::measurement::{Dataset, Noise, TargetTwist};
-use crate::parameters::Parameter;
+use crate::parameters::{Parameter, Wrench};
 use crate::solve::{LeastSquares, Normal};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -216,6 +216,25 @@ impl LeastSquares for Problem<'_> {
             normal
         });
         total.gradient
+    }
+
+    fn curvature(&self, state: &Estimate) -> Vec<f64> {
+        let linkage = Linkage::new(state);
+        let total = self.sum_chunks(|rows| {
+            let mut normal = Normal::new(self.layout.dim());
+            let mut chain = Chain::default();
+            for &row in rows {
+                let row = row as usize;
+                let observation = &self.data.observations[row];
+                chain.evaluate(&linkage, self.packed, row, observation.target);
+                let measurement = observation.measurement.residual_model();
+                let (force, torque) = measurement.wrench(&chain.target, &self.noise(row));
+                let wrench = Wrench { force, torque };
+                self.layout.add_curvature(&chain, observation.target, &wrench, &mut normal.gram);
+            }
+            normal
+        });
+        total.gram
     }
 
     fn rounding(&self) -> f64 {

@@ -1,4 +1,5 @@
-//! Levenberg-Marquardt on a manifold with geodesic acceleration (docs/theory.md §6; more1978, transtrum2012).
+//! Levenberg-Marquardt on a manifold with geodesic acceleration and, near the optimum of a curved problem, the full Hessian
+//! (docs/theory.md §6; more1978, transtrum2012, dennis1981).
 
 use super::{LeastSquares, Normal, Termination};
 use crate::linalg;
@@ -20,7 +21,7 @@ pub struct Options {
     /// Standard deviation of a first, weak belief that the start is right (scaled units: metres): the first damping is
     /// `mean squared residual / trust²`. It shrinks with the residual, so that convergence stays quadratic.
     pub trust: f64,
-    /// Whether to follow curvature by geodesic acceleration.
+    /// Whether to follow curvature: geodesic acceleration and the full Hessian.
     pub acceleration: bool,
 }
 
@@ -53,6 +54,9 @@ const LARGEST_ACCELERATION: f64 = 0.75;
 /// A step of this length (scaled units: metres) that fails to lower the cost ends the search.
 const ROUNDING_STEP: f64 = 1e-9;
 
+/// Share of the largest diagonal element that rounding makes of the normal equations' small eigenvalues.
+const ROUNDING: f64 = 1e-13;
+
 /// Minimises from `start`; gives the state reached, its normal information and a summary.
 pub fn minimize<P: LeastSquares>(
     problem: &P,
@@ -70,12 +74,14 @@ struct Search<'a, P: LeastSquares> {
     options: Options,
     state: P::State,
     normal: Normal,
+    /// Upper triangle of what steps are solved with: `JᵀJ`, or the full Hessian where that is known and convex.
+    hessian: Vec<f64>,
     /// Damping as a multiple of the mean squared residual.
     damping: f64,
     /// Factor of the next increase of the damping (Nielsen): doubles with every rejection in a row.
     increase: f64,
-    /// Whether the quadratic model has been poor enough to pay for curvature.
-    curved: bool,
+    /// Whether a step has shown a poor quadratic model: from then on steps follow curvature, and damping falls with care.
+    nonlinear: bool,
     iterations: usize,
     trace: Vec<f64>,
 }
@@ -83,18 +89,17 @@ struct Search<'a, P: LeastSquares> {
 impl<'a, P: LeastSquares> Search<'a, P> {
     fn new(problem: &'a P, state: P::State, options: Options) -> Self {
         let normal = problem.normal(&state);
-        let trace = vec![normal.mean_square()];
-        let damping = 1.0 / (options.trust * options.trust);
         Search {
             problem,
             options,
             state,
+            hessian: normal.gram.clone(),
+            trace: vec![normal.mean_square()],
             normal,
-            damping,
-            increase: 4.0,
-            curved: false,
+            damping: 1.0 / (options.trust * options.trust),
+            increase: 2.0,
+            nonlinear: false,
             iterations: 0,
-            trace,
         }
     }
 
@@ -121,14 +126,28 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         (0..n).map(|i| self.normal.gram[i * n + i]).fold(0.0, f64::max)
     }
 
+    /// Takes the full Hessian where it is convex; far from the optimum it seldom is, and `JᵀJ` leads better there.
+    fn renew_hessian(&mut self) {
+        self.hessian.copy_from_slice(&self.normal.gram);
+        if !(self.nonlinear && self.options.acceleration) {
+            return;
+        }
+        let n = self.problem.dim();
+        let curvature = self.problem.curvature(&self.state);
+        let full: Vec<f64> = self.normal.gram.iter().zip(&curvature).map(|(gram, s)| gram + s).collect();
+        if linalg::cholesky(&full, n, ROUNDING * self.scale()).is_some() {
+            self.hessian = full;
+        }
+    }
+
     /// Judges the undamped step (damped only by rounding).
     fn converged(&self) -> Option<Termination> {
         let n = self.problem.dim();
-        let floor = 1e-13 * self.scale();
+        let floor = ROUNDING * self.scale();
         if n == 0 || floor == 0.0 {
             return Some(Termination::Optimum);
         }
-        let factor = linalg::cholesky(&self.normal.gram, n, floor)?;
+        let factor = linalg::cholesky(&self.hessian, n, floor)?;
         let step = linalg::cholesky_solve(&factor, &self.normal.gradient);
         let decrement = 0.5 * dot(&step, &self.normal.gradient);
         if norm(&step) < self.options.step || self.normal.mean_square() < self.problem.rounding() {
@@ -139,59 +158,80 @@ impl<'a, P: LeastSquares> Search<'a, P> {
 
     /// One trial step; `false` when steps have become too small to matter without having helped.
     fn iterate(&mut self) -> bool {
-        let n = self.problem.dim();
-        let mean_square = self.normal.mean_square();
-        let floor = 1e-14 * self.scale();
-        let damping = (self.damping * mean_square).max(floor);
-        let Some(factor) = linalg::cholesky(&self.normal.gram, n, damping) else {
+        self.iterations += 1;
+        let damping = (self.damping * self.normal.mean_square()).max(0.1 * ROUNDING * self.scale());
+        let Some(trial) = self.trial_step(damping) else {
+            self.trace.push(self.normal.mean_square());
             self.damping *= 10.0;
             return self.damping.is_finite();
         };
-        let mut step = linalg::cholesky_solve(&factor, &self.normal.gradient);
-        let predicted = 0.5 * (dot(&step, &self.normal.gradient) + damping * dot(&step, &step));
-        let mut too_curved = false;
-        if self.options.acceleration && self.curved {
-            let second = self.problem.second_order(&self.state, &step);
-            let correction = linalg::cholesky_solve(&factor, &second);
-            too_curved = norm(&correction) > LARGEST_ACCELERATION * norm(&step);
-            for (s, c) in step.iter_mut().zip(&correction) {
-                *s += 0.5 * c;
-            }
-        }
-        self.iterations += 1;
-        if too_curved {
-            self.trace.push(mean_square);
-            self.reject();
-            return true;
-        }
-        let state = self.problem.retract(&self.state, &step);
+        let state = self.problem.retract(&self.state, &trial.step);
         let normal = self.problem.normal(&state);
-        let gain = (self.normal.cost - normal.cost) / predicted;
+        let gain = (self.normal.cost - normal.cost) / trial.predicted;
         if normal.cost.is_finite() && gain > 1e-3 {
-            self.accept(state, normal, gain);
+            self.accept(state, normal, if trial.shortened { gain.min(0.5) } else { gain });
             return true;
         }
-        self.curved = true;
-        self.trace.push(mean_square);
+        let before = self.nonlinear;
         self.reject();
+        if !before {
+            self.renew_hessian();
+        }
         // Steps below a nanometre that do not help, or promise less than rounding, are rounding themselves.
-        norm(&step) > ROUNDING_STEP && predicted > 1e-15 * self.normal.cost && self.damping.is_finite()
+        norm(&trial.step) > ROUNDING_STEP
+            && trial.predicted > 1e-15 * self.normal.cost
+            && self.damping.is_finite()
+    }
+
+    /// The damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature, with t below one
+    /// where the acceleration `a` would overtake `v`.
+    fn trial_step(&self, damping: f64) -> Option<Trial> {
+        let n = self.problem.dim();
+        let factor = linalg::cholesky(&self.hessian, n, damping)?;
+        let velocity = linalg::cholesky_solve(&factor, &self.normal.gradient);
+        let descent = dot(&velocity, &self.normal.gradient);
+        let damped = damping * dot(&velocity, &velocity);
+        // Along the parabola the model promises t gᵀv - t² vᵀHv / 2, and vᵀHv is gᵀv less what the damping takes.
+        let promise = |t: f64| t * descent - 0.5 * t * t * (descent - damped);
+        if !(self.options.acceleration && self.nonlinear) {
+            return Some(Trial { step: velocity, predicted: promise(1.0), shortened: false });
+        }
+        let second = self.problem.second_order(&self.state, &velocity);
+        let acceleration = linalg::cholesky_solve(&factor, &second);
+        let t = (LARGEST_ACCELERATION * norm(&velocity) / norm(&acceleration)).min(1.0);
+        let step = velocity.iter().zip(&acceleration).map(|(v, a)| t * v + 0.5 * t * t * a).collect();
+        Some(Trial { step, predicted: promise(t), shortened: t < 1.0 })
     }
 
     fn accept(&mut self, state: P::State, normal: Normal, gain: f64) {
-        self.curved = !(0.8..1.25).contains(&gain);
-        let shrink = if gain > 0.75 { 0.1 } else { (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(0.3, 2.0) };
-        self.damping *= shrink;
-        self.increase = 4.0;
+        self.nonlinear |= !(0.8..1.25).contains(&gain);
+        self.damping *= if gain < 0.5 {
+            (1.0 - (2.0 * gain - 1.0).powi(3)).min(2.0)
+        } else if self.nonlinear {
+            0.3
+        } else {
+            0.1
+        };
+        self.increase = 2.0;
         self.state = state;
         self.normal = normal;
         self.trace.push(self.normal.mean_square());
+        self.renew_hessian();
     }
 
     fn reject(&mut self) {
+        self.nonlinear = true;
+        self.trace.push(self.normal.mean_square());
         self.damping *= self.increase;
         self.increase *= 2.0;
     }
+}
+
+/// A step to try, and the decrease of the cost that the quadratic model promises.
+struct Trial {
+    step: Vec<f64>,
+    predicted: f64,
+    shortened: bool,
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -22,6 +22,9 @@ pub trait LeastSquares {
     /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected.
     fn second_order(&self, state: &Self::State, step: &[f64]) -> Vec<f64>;
 
+    /// `-Σ e ∇²f` (upper triangle): what the Hessian has beside `JᵀJ`.
+    fn curvature(&self, state: &Self::State) -> Vec<f64>;
+
     /// Mean squared whitened residual that is nothing but rounding: below it there is nothing left to fit.
     fn rounding(&self) -> f64;
 
