@@ -12,6 +12,7 @@ mod linalg;
 pub mod measurement;
 pub mod parameters;
 pub mod problem;
+pub mod report;
 pub mod robot;
 pub mod simulate;
 pub mod solve;

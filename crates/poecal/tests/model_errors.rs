@@ -239,11 +239,11 @@ fn files_that_cannot_be_read_get_one_sentence_each() {
     write("one.toml", toml("a = 0", "convention = 'standard_dh'").as_bytes());
     #[rustfmt::skip]
     let cases = [
-        (".", ".: found a directory, expected a robot model (URDF or TOML)"),
-        ("none.urdf", "none.urdf: found no such file, expected a robot model (URDF or TOML): check the path"),
-        ("empty.urdf", "empty.urdf: the file is empty, expected a robot model (URDF or TOML)"),
+        (".", ".: found a directory, expected a robot model (URDF, TOML or calibration.json)"),
+        ("none.urdf", "none.urdf: found no such file, expected a robot model (URDF, TOML or calibration.json): check the path"),
+        ("empty.urdf", "empty.urdf: the file is empty, expected a robot model (URDF, TOML or calibration.json)"),
         ("latin1.urdf",
-         "latin1.urdf:2:6: found bytes that are not UTF-8, expected a robot model (URDF or TOML) as UTF-8 text"),
+         "latin1.urdf:2:6: found bytes that are not UTF-8, expected a robot model (URDF, TOML or calibration.json) as UTF-8 text"),
         ("one.toml",
          "one.toml: found --base-link or --tip-link, expected neither: this model has one chain only"),
     ];

@@ -152,6 +152,45 @@ pub struct Calibration {
 /// [`ErrorKind::Problem`] if there are too few measurements, [`ErrorKind::Option`] for options out of range, [`ErrorKind::Solver`]
 /// if no finite result could be reached.
 pub fn calibrate(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> Result<Calibration> {
+    calibrate_with_progress(robot, data, options, &mut |_| {})
+}
+
+/// What a calibration is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Finding the device's frame and the targets.
+    Registration,
+    /// Fitting the screws.
+    Fit,
+    /// Judging the three models.
+    Analysis,
+}
+
+impl Stage {
+    /// All stages in order.
+    pub const ALL: [Stage; 3] = [Stage::Registration, Stage::Fit, Stage::Analysis];
+
+    /// What to tell a user.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Stage::Registration => "finding the device frame and the targets",
+            Stage::Fit => "fitting the screws",
+            Stage::Analysis => "judging the result",
+        }
+    }
+}
+
+/// [`calibrate`], telling each stage as it begins.
+///
+/// # Errors
+/// As [`calibrate`].
+pub fn calibrate_with_progress(
+    robot: &Robot,
+    data: &Dataset,
+    options: &CalibrationOptions,
+    progress: &mut dyn FnMut(Stage),
+) -> Result<Calibration> {
     let (fit_rows, held_out_rows) = split_rows(data, options)?;
     check_count(robot, data, &fit_rows)?;
     let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
@@ -167,13 +206,16 @@ pub fn calibrate(robot: &Robot, data: &Dataset, options: &CalibrationOptions) ->
         device_free: options.frame == DeviceFrameKnowledge::Unknown,
         targets_free,
     };
+    progress(Stage::Registration);
     let (mut registered, _) = register(&registration(noise, true), &delivered);
     if source == NoiseSource::Estimated {
         noise = estimate_noise(data, &packed, &fit_rows, &registered, 6, noise);
         registered = register(&registration(noise, true), &registered).0;
     }
+    progress(Stage::Fit);
     let fitted = fit::fit(robot, data, &packed, &fit_rows, &registered, noise, source, length_m, options)?;
     noise = fitted.noise;
+    progress(Stage::Analysis);
     let nominal = register(&registration(noise, false), &delivered).0;
     let calibrated = match options.frame {
         DeviceFrameKnowledge::Unknown => {

@@ -1,9 +1,15 @@
 //! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.
 
+pub mod calibration_file;
 pub mod measurements;
 mod mimic;
 pub mod model;
 mod numbers;
+pub mod output;
+mod proof;
+pub mod residuals;
 pub mod robot_toml;
 mod source_text;
 pub mod urdf;
+
+pub use proof::Difference;

@@ -2,14 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use rand_chacha::ChaCha8Rng;
-use rand_core::{Rng, SeedableRng};
-
+use super::calibration_file::CalibrationFile;
+use super::proof::Difference;
 use super::urdf::{self, ChainSelection, UrdfDocument};
 use super::{robot_toml, source_text};
 use crate::error::{Error, ErrorKind, Result};
-use crate::lie::rotation;
-use crate::robot::{JointKind, Robot};
+use crate::robot::Robot;
 
 /// What a model was read from.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +16,8 @@ pub enum ModelSource {
     Urdf(Box<UrdfDocument>),
     /// A TOML model.
     Toml,
+    /// The calibrated robot of a `calibration.json`.
+    Calibration,
 }
 
 /// A robot and the file it came from.
@@ -81,7 +81,12 @@ impl Model {
     /// else as the reader of its form.
     pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
-        let text = source_text::read(path, "a robot model (URDF or TOML)")?;
+        let text = source_text::read(path, "a robot model (URDF, TOML or calibration.json)")?;
+        if looks_like_json(path, &text) {
+            refuse_selection(path, selection)?;
+            let robot = CalibrationFile::parse(&text, path)?.robot().map_err(|error| error.in_file(path))?;
+            return Ok(Model { robot, source: ModelSource::Calibration, path: path.to_path_buf() });
+        }
         let (robot, source) = match ModelFormat::of_path(path).unwrap_or(ModelFormat::of_text(&text)) {
             ModelFormat::Urdf => {
                 let urdf = UrdfDocument::parse(&text, path, selection)?;
@@ -94,6 +99,11 @@ impl Model {
         };
         Ok(Model { robot, source, path: path.to_path_buf() })
     }
+}
+
+fn looks_like_json(path: &Path, text: &str) -> bool {
+    let named = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+    named || text.trim_start_matches('\u{feff}').trim_start().starts_with('{')
 }
 
 fn refuse_selection(path: &Path, selection: &ChainSelection) -> Result<()> {
@@ -165,7 +175,7 @@ fn toml_notes(model: &Model) -> Vec<String> {
         ModelSource::Urdf(_) => {
             vec!["link frames, fixed joints, meshes and inertias are not part of a TOML model and were left out".to_owned()]
         }
-        ModelSource::Toml => Vec::new(),
+        ModelSource::Toml | ModelSource::Calibration => Vec::new(),
     }
 }
 
@@ -175,19 +185,11 @@ fn export(model: &Model, message: String) -> Error {
 
 /// Compares the forward kinematics of a model and of what was read back.
 fn verify(model: &Model, again: &Robot) -> Result<()> {
-    let robot = &model.robot;
-    if again.reading_names() != robot.reading_names() {
+    if again.reading_names() != model.robot.reading_names() {
         return Err(export(model, "the converted model has other joints, expected the same".to_owned()));
     }
-    let mut rng = ChaCha8Rng::seed_from_u64(1);
-    let (mut position_m, mut rotation_rad) = (0.0_f64, 0.0_f64);
-    for _ in 0..1000 {
-        let readings = random_readings(robot, &mut rng);
-        let (a, b) = (robot.forward_kinematics(&readings), again.forward_kinematics(&readings));
-        position_m = larger(position_m, (a.translation - b.translation).norm());
-        rotation_rad = larger(rotation_rad, rotation::log(&(a.rotation.transpose() * b.rotation)).norm());
-    }
-    let tolerance_m = 1e-12 * robot.reach_m().max(1.0);
+    let Difference { position_m, rotation_rad } = Difference::of(&model.robot, again, 1000);
+    let tolerance_m = 1e-12 * model.robot.reach_m().max(1.0);
     if position_m <= tolerance_m && rotation_rad <= 1e-12 {
         return Ok(());
     }
@@ -195,24 +197,4 @@ fn verify(model: &Model, again: &Robot) -> Result<()> {
         "the converted model differs by {position_m:.1e} m and {rotation_rad:.1e} rad, expected at most {tolerance_m:.1e} m and 1e-12 rad"
     );
     Err(export(model, message))
-}
-
-/// The larger number, or NaN if either is: a difference that is no number must not pass.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
-
-/// One uniform reading each, within ±π rad or ±1 m.
-fn random_readings(robot: &Robot, rng: &mut ChaCha8Rng) -> Vec<f64> {
-    robot
-        .reading_names()
-        .iter()
-        .map(|name| {
-            let kind = robot.joints.iter().find(|joint| joint.reading.name == *name).map(|joint| joint.kind);
-            let span = if kind == Some(JointKind::Prismatic) { 1.0 } else { std::f64::consts::PI };
-            // 53 random bits make a number in [0, 1).
-            let unit = (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
-            span * (2.0 * unit - 1.0)
-        })
-        .collect()
 }

@@ -1,0 +1,117 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use poecal::io::measurements::{ColumnMap, ReadOptions};
+use poecal::io::urdf::ChainSelection;
+
+use crate::quantity::{angle_rad, length_m};
+
+/// Finds the robot that is really there: kinematic calibration by the product of exponentials.
+#[derive(Debug, Parser)]
+#[command(name = "poecal", version, arg_required_else_help = true)]
+pub(crate) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Print nothing but errors and what was asked for with --json
+    #[arg(long, global = true)]
+    pub(crate) quiet: bool,
+    /// Number of threads (results do not depend on it)
+    #[arg(long, global = true, value_name = "N")]
+    pub(crate) threads: Option<usize>,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Calibrate a robot from measurements
+    Calibrate(Calibrate),
+}
+
+/// Which chain of a URDF.
+#[derive(Args, Debug)]
+pub(crate) struct Chain {
+    /// First link of the chain, where a URDF has several
+    #[arg(long, value_name = "LINK")]
+    pub(crate) base_link: Option<String>,
+    /// Last link of the chain, where a URDF has several
+    #[arg(long, value_name = "LINK")]
+    pub(crate) tip_link: Option<String>,
+}
+
+impl Chain {
+    pub(crate) fn selection(&self) -> ChainSelection {
+        ChainSelection { base_link: self.base_link.clone(), tip_link: self.tip_link.clone() }
+    }
+}
+
+/// How to read measurement files.
+#[derive(Args, Debug)]
+pub(crate) struct Reading {
+    /// Mapping file that says what the columns of other people's files mean
+    #[arg(long, value_name = "MAP.toml")]
+    pub(crate) columns: Option<PathBuf>,
+    /// Fit only rows whose COLUMN has one of these values, and hold out all others
+    #[arg(long, value_name = "COLUMN=VALUE[,VALUE]")]
+    pub(crate) fit_where: Option<String>,
+}
+
+impl Reading {
+    pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
+        let mapping = self.columns.as_ref().map(ColumnMap::read).transpose()?;
+        let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
+        Ok(ReadOptions { mapping, fit_where })
+    }
+}
+
+/// What is known of the measuring device's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Frame {
+    /// The device stands anywhere
+    Unknown,
+    /// Measurements are in the robot's base frame
+    Base,
+}
+
+/// Arguments of `poecal calibrate`.
+#[derive(Args, Debug)]
+pub(crate) struct Calibrate {
+    /// Robot model: URDF, TOML or calibration.json
+    pub(crate) model: PathBuf,
+    /// Measurement files (CSV), joined
+    #[arg(required = true)]
+    pub(crate) measurements: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) chain: Chain,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// The measuring device's frame
+    #[arg(long, value_enum, default_value = "unknown")]
+    pub(crate) frame: Frame,
+    /// Standard deviation of each measured position component, like 0.05mm [default: estimated from the data]
+    #[arg(long, value_name = "LENGTH", value_parser = length_m)]
+    pub(crate) sigma_position: Option<f64>,
+    /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
+    #[arg(long, value_name = "ANGLE", value_parser = angle_rad)]
+    pub(crate) sigma_rotation: Option<f64>,
+    /// Share of the configurations held out, where the files do not say
+    #[arg(long, value_name = "SHARE", default_value_t = 0.3)]
+    pub(crate) held_out: f64,
+    /// Seed of that choice
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Measurement file to judge by: all other rows are fitted
+    #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]
+    pub(crate) validate: Vec<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "poecal-out")]
+    pub(crate) out: PathBuf,
+    /// Overwrite results in an existing folder
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Print the calibration as JSON instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}

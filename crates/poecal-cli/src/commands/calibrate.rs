@@ -1,0 +1,90 @@
+//! `poecal calibrate`: model and measurements in, calibrated robot out.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, Stage, calibrate_with_progress};
+use poecal::io::calibration_file::{CalibrationFile, Inputs};
+use poecal::io::measurements;
+use poecal::io::model::Model;
+use poecal::io::output;
+use poecal::measurement::{Dataset, Set};
+use poecal::{Result, report};
+
+use crate::args::{Calibrate, Frame};
+use crate::console::Console;
+
+pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<ExitCode> {
+    output::check_folder(&arguments.out, arguments.force)?;
+    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    let data = read_measurements(arguments, &model, console)?;
+    let options = options(arguments);
+    let bar = console.progress(Stage::ALL.len() as u64);
+    let calibration = calibrate_with_progress(&model.robot, &data, &options, &mut |stage| {
+        bar.set_position(Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0) as u64);
+        bar.set_message(stage.words());
+    });
+    bar.finish_and_clear();
+    let calibration = calibration?;
+    let inputs = inputs(arguments);
+    let written =
+        output::write(&arguments.out, arguments.force, &model, &data, &calibration, inputs.clone())?;
+    for note in &written.notes {
+        console.warning(note);
+    }
+    if arguments.json {
+        console.result(&CalibrationFile::new(&calibration, &data, inputs).to_text()?);
+    } else {
+        console.say(&report::summary(&calibration, &data));
+        console.say(&format!(
+            "written       {}: {}\n              read back, on 1,000 configurations within {:.1e} m and {:.1e} rad of the fit\n",
+            written.folder.display(),
+            written.files.join(", "),
+            written.largest.position_m,
+            written.largest.rotation_rad
+        ));
+    }
+    Ok(if calibration.solver.termination.is_success() { ExitCode::SUCCESS } else { ExitCode::from(3) })
+}
+
+/// Reads and joins the files; with `--validate`, those rows are held out and all others fitted.
+fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) -> Result<Dataset> {
+    let options = arguments.reading.options()?;
+    let read = |paths: &[PathBuf]| -> Result<Dataset> {
+        let file = measurements::read(paths, &model.robot, &options)?;
+        for warning in &file.warnings {
+            console.warning(warning);
+        }
+        Ok(file.data)
+    };
+    let mut data = read(&arguments.measurements)?;
+    if !arguments.validate.is_empty() {
+        let mut other = read(&arguments.validate)?;
+        data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
+        other.observations.iter_mut().for_each(|row| row.set = Some(Set::HeldOut));
+        data.extend(&other)?;
+    }
+    Ok(data)
+}
+
+fn options(arguments: &Calibrate) -> CalibrationOptions {
+    CalibrationOptions {
+        frame: match arguments.frame {
+            Frame::Unknown => DeviceFrameKnowledge::Unknown,
+            Frame::Base => DeviceFrameKnowledge::Base,
+        },
+        sigma_position_m: arguments.sigma_position,
+        sigma_rotation_rad: arguments.sigma_rotation,
+        held_out: arguments.held_out,
+        seed: arguments.seed,
+        ..CalibrationOptions::default()
+    }
+}
+
+fn inputs(arguments: &Calibrate) -> Inputs {
+    let files = arguments.measurements.iter().chain(&arguments.validate);
+    Inputs {
+        model: arguments.model.display().to_string(),
+        measurements: files.map(|path| path.display().to_string()).collect(),
+    }
+}

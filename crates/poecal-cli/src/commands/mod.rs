@@ -1,0 +1,5 @@
+//! The commands, one a file.
+
+mod calibrate;
+
+pub(crate) use calibrate::calibrate;

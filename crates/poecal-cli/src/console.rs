@@ -1,0 +1,54 @@
+//! Standard output for results, standard error for everything else.
+
+use std::fmt::Display;
+use std::io::{IsTerminal as _, Write as _};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Where the program speaks.
+pub(crate) struct Console {
+    quiet: bool,
+}
+
+impl Console {
+    pub(crate) fn new(quiet: bool) -> Self {
+        Console { quiet }
+    }
+
+    /// A result. A reader that has gone away (a closed pipe) is no error.
+    pub(crate) fn result(&self, text: &str) {
+        let mut out = std::io::stdout().lock();
+        let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    }
+
+    /// A result that `--quiet` suppresses.
+    pub(crate) fn say(&self, text: &str) {
+        if !self.quiet {
+            self.result(text);
+        }
+    }
+
+    pub(crate) fn warning(&self, message: impl Display) {
+        if !self.quiet {
+            let _ = writeln!(std::io::stderr().lock(), "warning: {message}");
+        }
+    }
+
+    pub(crate) fn error(&self, message: impl Display) {
+        let _ = writeln!(std::io::stderr().lock(), "error: {message}");
+    }
+
+    /// A bar of `steps` on a terminal; nothing elsewhere.
+    pub(crate) fn progress(&self, steps: u64) -> ProgressBar {
+        if self.quiet || !std::io::stderr().is_terminal() {
+            return ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
+        }
+        let bar = ProgressBar::new(steps);
+        if let Ok(style) = ProgressStyle::with_template("{bar:20} {msg} {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(200));
+        bar
+    }
+}

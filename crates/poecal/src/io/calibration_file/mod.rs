@@ -1,0 +1,296 @@
+//! `calibration.json`: a finished calibration as a file, versioned, with everything that a prediction needs.
+
+mod schema;
+
+pub use schema::*;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::source_text;
+use crate::calibration::{Calibration, DeviceFrameKnowledge};
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::{Pose, Screw, Twist};
+use crate::measurement::Dataset;
+use crate::robot::{Joint, JointKind, Limits, Reading, Robot};
+use nalgebra::Vector3;
+
+/// Version word of the file; readers refuse others.
+pub const SCHEMA: &str = "poecal-calibration-1";
+
+impl CalibrationFile {
+    /// The file of a finished calibration. `inputs` are named as the user named them.
+    #[must_use]
+    pub fn new(calibration: &Calibration, data: &Dataset, inputs: Inputs) -> Self {
+        let robot = &calibration.robot;
+        let joints =
+            robot.joints.iter().zip(&calibration.nominal.joints).map(|(joint, nominal)| JointEntry {
+                name: joint.name.clone(),
+                kind: joint.kind.into(),
+                screw: (&joint.screw).into(),
+                nominal_screw: (&nominal.screw).into(),
+                base_from_joint: (&joint.frame).into(),
+                limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
+                reading: ReadingEntry {
+                    name: joint.reading.name.clone(),
+                    multiplier: joint.reading.multiplier,
+                    offset: joint.reading.offset,
+                },
+            });
+        let targets = calibration.targets.iter().filter_map(|target| {
+            let name = target.name.clone()?;
+            let quaternion_xyzw = target.is_frame.then(|| target.tip_from_target.quaternion_xyzw());
+            let position_m = target.tip_from_target.translation.into();
+            Some((name, TargetEntry { position_m, quaternion_xyzw }))
+        });
+        CalibrationFile {
+            schema: SCHEMA.to_owned(),
+            poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
+            inputs,
+            accuracy: calibration.accuracy,
+            solver: SolverEntry {
+                iterations: calibration.solver.iterations,
+                converged: calibration.solver.termination.is_success(),
+                termination: calibration.solver.termination,
+                restarts: calibration.solver.restarts,
+            },
+            identifiability: IdentifiabilityEntry {
+                parameters: calibration.identifiability.parameters,
+                rank: calibration.identifiability.rank,
+                condition: Some(calibration.identifiability.condition).filter(|c| c.is_finite()),
+                unidentifiable: calibration
+                    .identifiability
+                    .unidentifiable
+                    .iter()
+                    .map(|direction| DirectionEntry {
+                        description: direction.description.clone(),
+                        joints: direction.joints.clone(),
+                    })
+                    .collect(),
+            },
+            noise: NoiseEntry {
+                sigma_position_mm: calibration.noise.position_m * 1e3,
+                sigma_rotation_deg: (0..data.targets.len())
+                    .any(|target| data.target_is_frame(target))
+                    .then(|| calibration.noise.rotation_rad.to_degrees()),
+                source: calibration.noise_source,
+            },
+            robot: RobotEntry {
+                name: robot.name.clone(),
+                base_link: robot.base_name.clone(),
+                tip_link: robot.tip_name.clone(),
+                base_from_tip_at_zero: (&robot.home).into(),
+                nominal_base_from_tip_at_zero: (&calibration.nominal.home).into(),
+            },
+            joints: joints.collect(),
+            measurement_frame: FrameEntry {
+                known: match calibration.frame {
+                    DeviceFrameKnowledge::Unknown => FrameWord::Unknown,
+                    DeviceFrameKnowledge::Base => FrameWord::Base,
+                },
+                base_from_device: (&calibration.base_from_device).into(),
+            },
+            tool: (&robot.last_joint_from_tip()).into(),
+            targets: targets.collect(),
+        }
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] if it cannot be read, [`ErrorKind::Syntax`] if it is no calibration of this version.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        Self::parse(&source_text::read(path, "a calibration.json")?, path)
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Syntax`] if it is no calibration of this version.
+    pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let syntax = |error: &serde_json::Error| {
+            let reason = error.to_string();
+            let reason = reason.split(" at line ").next().unwrap_or("").to_owned();
+            let message = format!("found {reason}, expected a calibration written by `poecal calibrate`");
+            Error::new(ErrorKind::Syntax, message).at(path, error.line(), error.column())
+        };
+        let value: serde_json::Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
+        match value.get("schema").and_then(serde_json::Value::as_str) {
+            Some(SCHEMA) => {}
+            Some(other) => {
+                return Err(Error::new(
+                    ErrorKind::Syntax,
+                    format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version"),
+                )
+                .in_file(path));
+            }
+            None => {
+                return Err(Error::new(
+                    ErrorKind::Syntax,
+                    format!(
+                        "found JSON without the key `schema`, expected a calibration of schema `{SCHEMA}`"
+                    ),
+                )
+                .in_file(path));
+            }
+        }
+        serde_json::from_str(text).map_err(|error| syntax(&error))
+    }
+
+    /// The text of the file, with a line break at its end.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Export`] if a number is not finite.
+    pub fn to_text(&self) -> Result<String> {
+        let text = serde_json::to_string_pretty(self).map_err(|error| {
+            Error::new(ErrorKind::Export, format!("the calibration cannot be written: {error}"))
+        })?;
+        Ok(text + "\n")
+    }
+
+    /// The calibrated robot, with its named targets.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the file has been changed into no robot.
+    pub fn robot(&self) -> Result<Robot> {
+        self.robot_of(|joint| &joint.screw, &self.robot.base_from_tip_at_zero)
+    }
+
+    /// The robot as delivered, with the calibrated targets.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::robot`].
+    pub fn nominal_robot(&self) -> Result<Robot> {
+        self.robot_of(|joint| &joint.nominal_screw, &self.robot.nominal_base_from_tip_at_zero)
+    }
+
+    fn robot_of(&self, screw: impl Fn(&JointEntry) -> &ScrewEntry, home: &PoseEntry) -> Result<Robot> {
+        let joints = self.joints.iter().map(|entry| entry.joint(screw(entry))).collect::<Result<Vec<_>>>()?;
+        let mut robot = Robot::new(&self.robot.name, joints, home.pose()?)?;
+        robot.base_name.clone_from(&self.robot.base_link);
+        robot.tip_name.clone_from(&self.robot.tip_link);
+        robot.targets = self
+            .targets
+            .iter()
+            .map(|(name, target)| Ok((name.clone(), target.pose()?)))
+            .collect::<Result<Vec<_>>>()?;
+        Ok(robot)
+    }
+
+    /// `base_from_device` of the calibration.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the file has been changed into no pose.
+    pub fn base_from_device(&self) -> Result<Pose> {
+        self.measurement_frame.base_from_device.pose()
+    }
+
+    /// The JSON Schema (draft 2020-12) of the file.
+    #[must_use]
+    pub fn json_schema() -> String {
+        let schema = schemars::schema_for!(CalibrationFile);
+        serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
+    }
+
+    /// The targets' names with their entries.
+    #[must_use]
+    pub fn targets(&self) -> &BTreeMap<String, TargetEntry> {
+        &self.targets
+    }
+}
+
+impl JointEntry {
+    fn joint(&self, screw: &ScrewEntry) -> Result<Joint> {
+        let kind = JointKind::from(self.kind);
+        let twist = Twist::new(Vector3::from(screw.v_m), Vector3::from(screw.w));
+        let bad = || {
+            Error::new(
+                ErrorKind::Model,
+                format!(
+                    "found a screw of joint `{}` that is no {} screw, expected a unit one",
+                    self.name,
+                    kind.word()
+                ),
+            )
+        };
+        let screw = Screw::project(&twist).ok_or_else(bad)?;
+        let off = (screw.twist().to_vector() - twist.to_vector()).norm();
+        if screw.is_prismatic() != (kind == JointKind::Prismatic) || off.is_nan() || off > 1e-6 {
+            return Err(bad());
+        }
+        Ok(Joint {
+            name: self.name.clone(),
+            kind,
+            screw,
+            frame: self.base_from_joint.pose()?,
+            limits: self.limits.map(|[lower, upper]| Limits { lower, upper }),
+            reading: Reading {
+                name: self.reading.name.clone(),
+                multiplier: self.reading.multiplier,
+                offset: self.reading.offset,
+            },
+        })
+    }
+}
+
+impl TargetEntry {
+    /// `tip_from_target`; the orientation of a point is the tip's.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the quaternion is far from unit.
+    pub fn pose(&self) -> Result<Pose> {
+        let quaternion_xyzw = self.quaternion_xyzw.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+        PoseEntry { position_m: self.position_m, quaternion_xyzw }.pose()
+    }
+}
+
+impl PoseEntry {
+    /// The pose.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the quaternion is far from unit.
+    pub fn pose(&self) -> Result<Pose> {
+        let norm = self.quaternion_xyzw.iter().map(|q| q * q).sum::<f64>().sqrt();
+        if norm.is_nan() || (norm - 1.0).abs() > 1e-6 {
+            return Err(Error::new(
+                ErrorKind::Model,
+                format!(
+                    "found a quaternion of length {norm}, expected a unit quaternion in x, y, z, w order"
+                ),
+            ));
+        }
+        Ok(Pose::from_position_quaternion(self.position_m, self.quaternion_xyzw))
+    }
+}
+
+impl From<&Pose> for PoseEntry {
+    fn from(pose: &Pose) -> Self {
+        PoseEntry { position_m: pose.translation.into(), quaternion_xyzw: pose.quaternion_xyzw() }
+    }
+}
+
+impl From<&Screw> for ScrewEntry {
+    fn from(screw: &Screw) -> Self {
+        ScrewEntry { v_m: screw.v().into(), w: screw.w().into() }
+    }
+}
+
+impl From<JointKind> for KindWord {
+    fn from(kind: JointKind) -> Self {
+        match kind {
+            JointKind::Revolute => KindWord::Revolute,
+            JointKind::Prismatic => KindWord::Prismatic,
+        }
+    }
+}
+
+impl From<KindWord> for JointKind {
+    fn from(kind: KindWord) -> Self {
+        match kind {
+            KindWord::Revolute => JointKind::Revolute,
+            KindWord::Prismatic => JointKind::Prismatic,
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! The keys of `calibration.json`. Lengths in metres and angles in radians unless a key says otherwise.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::calibration::{Accuracy, NoiseSource};
+use crate::solve::Termination;
+
+/// A finished calibration.
+///
+/// ```no_run
+/// let file = poecal::io::calibration_file::CalibrationFile::read("poecal-out/calibration.json")?;
+/// let robot = file.robot()?;
+/// println!("{:?}", robot.forward_kinematics(&vec![0.0; robot.reading_names().len()]));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CalibrationFile {
+    /// Version of this form.
+    pub schema: String,
+    /// Version of the program that wrote it.
+    pub poecal_version: String,
+    /// What was read.
+    pub inputs: Inputs,
+    /// Errors of the nominal, registered and calibrated model on training and held-out rows.
+    pub accuracy: Accuracy,
+    /// How the minimisation went.
+    pub solver: SolverEntry,
+    /// What the measurements can tell.
+    pub identifiability: IdentifiabilityEntry,
+    /// Noise by which residuals were weighted.
+    pub noise: NoiseEntry,
+    /// The calibrated robot's frames.
+    pub robot: RobotEntry,
+    /// The calibrated joints from base to tip.
+    pub joints: Vec<JointEntry>,
+    /// Where the measuring device stands.
+    pub measurement_frame: FrameEntry,
+    /// Pose of the tip in the last joint's frame.
+    pub tool: PoseEntry,
+    /// Named targets in the tip frame.
+    pub targets: BTreeMap<String, TargetEntry>,
+}
+
+/// What was read.
+///
+/// ```
+/// let inputs = poecal::io::calibration_file::Inputs { model: "robot.urdf".into(), measurements: vec!["points.csv".into()] };
+/// assert_eq!(inputs.measurements.len(), 1);
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Inputs {
+    /// The robot model, as named by the user.
+    pub model: String,
+    /// The measurement files, as named by the user.
+    pub measurements: Vec<String>,
+}
+
+/// How the minimisation went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct SolverEntry {
+    /// Iterations of the full fit.
+    pub iterations: usize,
+    /// Whether an optimum was reached.
+    pub converged: bool,
+    /// Why it ended.
+    pub termination: Termination,
+    /// Further starts that were tried because the first fit looked as if it had ended beside the optimum.
+    pub restarts: usize,
+}
+
+/// What the measurements can tell.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct IdentifiabilityEntry {
+    /// Unknowns in the minimal basis.
+    pub parameters: usize,
+    /// Directions that the data determine against the noise.
+    pub rank: usize,
+    /// Condition number over those directions; null if there is none.
+    pub condition: Option<f64>,
+    /// Directions that the data leave open.
+    pub unidentifiable: Vec<DirectionEntry>,
+}
+
+/// A direction that the data leave open.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct DirectionEntry {
+    /// What it is, in words.
+    pub description: String,
+    /// The joints concerned.
+    pub joints: Vec<String>,
+}
+
+/// Noise by which residuals were weighted where a row stated none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct NoiseEntry {
+    /// Standard deviation of each position component, millimetres.
+    pub sigma_position_mm: f64,
+    /// Standard deviation of each rotation component, degrees; null where no orientation was measured.
+    pub sigma_rotation_deg: Option<f64>,
+    /// Where it came from.
+    pub source: NoiseSource,
+}
+
+/// The calibrated robot's frames.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RobotEntry {
+    /// Name.
+    pub name: String,
+    /// Name of the base frame.
+    pub base_link: String,
+    /// Name of the tip frame.
+    pub tip_link: String,
+    /// Pose of the tip in the base with all joint values zero.
+    pub base_from_tip_at_zero: PoseEntry,
+    /// The same of the model as delivered.
+    pub nominal_base_from_tip_at_zero: PoseEntry,
+}
+
+/// A calibrated joint.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct JointEntry {
+    /// Name.
+    pub name: String,
+    /// Kind.
+    pub kind: KindWord,
+    /// Calibrated screw in the base frame at zero.
+    pub screw: ScrewEntry,
+    /// Screw of the model as delivered.
+    pub nominal_screw: ScrewEntry,
+    /// Calibrated frame of the joint and of the link that it moves, at zero.
+    pub base_from_joint: PoseEntry,
+    /// Lower and upper limit, radians or metres.
+    pub limits: Option<[f64; 2]>,
+    /// How the joint's value follows from a reading.
+    pub reading: ReadingEntry,
+}
+
+/// Kind of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum KindWord {
+    /// Turns.
+    Revolute,
+    /// Slides.
+    Prismatic,
+}
+
+/// A screw, linear part first.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ScrewEntry {
+    /// Linear part: metres of an axis, a unit vector of a sliding direction.
+    pub v_m: [f64; 3],
+    /// Angular part: a unit vector of an axis, zero of a sliding direction.
+    pub w: [f64; 3],
+}
+
+/// `value = multiplier * reading + offset`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ReadingEntry {
+    /// The measured joint.
+    pub name: String,
+    /// Factor.
+    pub multiplier: f64,
+    /// Added after the factor, radians or metres.
+    pub offset: f64,
+}
+
+/// Where the measuring device stands.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FrameEntry {
+    /// Whether the frame was unknown or the base.
+    pub known: FrameWord,
+    /// Pose of the device in the base.
+    pub base_from_device: PoseEntry,
+}
+
+/// What was known of the device's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FrameWord {
+    /// It was found.
+    Unknown,
+    /// Measurements are in the base frame.
+    Base,
+}
+
+/// A pose.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PoseEntry {
+    /// Position, metres.
+    pub position_m: [f64; 3],
+    /// Unit quaternion x, y, z, w.
+    pub quaternion_xyzw: [f64; 4],
+}
+
+/// A target in the tip frame; a point has no orientation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TargetEntry {
+    /// Position, metres.
+    pub position_m: [f64; 3],
+    /// Unit quaternion x, y, z, w, where orientation was measured.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub quaternion_xyzw: Option<[f64; 4]>,
+}

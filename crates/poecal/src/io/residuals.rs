@@ -1,0 +1,70 @@
+//! `residuals.csv`: what each measurement leaves, row by row.
+
+use std::fmt::Write as _;
+
+use crate::calibration::{Calibration, RowError, row_errors};
+use crate::estimate::{Estimate, Packed};
+use crate::measurement::Dataset;
+
+/// The text of the file: rows in the order of the data, errors of the three models, and the calibrated model's residual (measured
+/// less predicted) by component in the device's axes.
+#[must_use]
+pub fn text(data: &Dataset, calibration: &Calibration) -> String {
+    let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
+    let rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+    let of = |estimate: &Estimate| row_errors(data, &packed, &rows, estimate);
+    let nominal = of(&calibration.models.nominal);
+    let registered = of(&calibration.models.registered);
+    let calibrated = of(&calibration.models.calibrated);
+    let mut held_out = vec![false; data.len()];
+    for &row in &calibration.held_out_rows {
+        held_out[row as usize] = true;
+    }
+    let mut out = String::with_capacity(data.len() * 160);
+    out.push_str(
+        "file,line,id,set,target,position_nominal[mm],position_registered[mm],position_calibrated[mm],x[mm],y[mm],z[mm],\
+         rotation_nominal[deg],rotation_registered[deg],rotation_calibrated[deg],rx[deg],ry[deg],rz[deg]\n",
+    );
+    for (row, observation) in data.observations.iter().enumerate() {
+        let file = data.files.get(observation.source.file as usize);
+        let file = file.map_or_else(String::new, |path| path.display().to_string());
+        let set = if held_out[row] { "held_out" } else { "fit" };
+        let id = data.ids.get(row).map_or("", String::as_str);
+        let target = data.targets[observation.target].as_deref().unwrap_or("");
+        let line = observation.source.line;
+        // Writing to a String cannot fail.
+        let _ = write!(out, "{},{line},{},{set},{}", quoted(&file), quoted(id), quoted(target));
+        let models = [&nominal[row], &registered[row], &calibrated[row]];
+        for error in models {
+            let _ = write!(out, ",{}", error.position_m.norm() * 1e3);
+        }
+        for component in &calibrated[row].position_m {
+            let _ = write!(out, ",{}", component * 1e3);
+        }
+        write_rotations(&mut out, models, &calibrated[row]);
+        out.push('\n');
+    }
+    out
+}
+
+fn write_rotations(out: &mut String, models: [&RowError; 3], calibrated: &RowError) {
+    let Some(components) = calibrated.rotation_rad else {
+        out.push_str(",,,,,,");
+        return;
+    };
+    for error in models {
+        let _ = write!(out, ",{}", error.rotation_rad.map_or(f64::NAN, |w| w.norm().to_degrees()));
+    }
+    for component in &components {
+        let _ = write!(out, ",{}", component.to_degrees());
+    }
+}
+
+/// A CSV cell, quoted where it must be.
+fn quoted(text: &str) -> std::borrow::Cow<'_, str> {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\"")).into()
+    } else {
+        text.into()
+    }
+}

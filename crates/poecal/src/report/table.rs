@@ -1,0 +1,189 @@
+//! The table of a calibration in 80 columns.
+
+use std::fmt::Write as _;
+
+use crate::calibration::{Calibration, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
+use crate::measurement::Dataset;
+use crate::robot::{JointKind, Robot};
+use crate::solve::Termination;
+
+/// Columns of the table: their heads and how to take them from the accuracy of a set.
+type Column<'a> = (&'a str, fn(&SetAccuracy) -> &ModelAccuracy);
+
+/// What a calibration did and how good it is, as text of lines up to 80 characters.
+#[must_use]
+pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
+    let mut out = String::new();
+    line(&mut out, "robot", &robot_words(&calibration.nominal));
+    line(&mut out, "measurements", &data_words(calibration, data));
+    line(&mut out, "noise", &noise_words(calibration, data));
+    out.push('\n');
+    out.push_str(&accuracy_table(&calibration.accuracy.training, calibration.accuracy.held_out.as_ref()));
+    out.push('\n');
+    let found = &calibration.identifiability;
+    let condition = if found.condition.is_finite() {
+        format!(", condition {:.3e}", found.condition)
+    } else {
+        String::new()
+    };
+    line(&mut out, "determined", &format!("{} of {} unknowns{condition}", found.rank, found.parameters));
+    let mut told: Vec<&str> = Vec::new();
+    for direction in &found.unidentifiable {
+        let words = direction.description.as_str();
+        if !told.contains(&words) {
+            told.push(words);
+            let count = found.unidentifiable.iter().filter(|other| other.description == words).count();
+            let times = if count > 1 { format!(" ({count} directions)") } else { String::new() };
+            line(&mut out, "", &format!("open: {words}{times}"));
+        }
+    }
+    line(&mut out, "solver", &solver_words(calibration));
+    out
+}
+
+/// Position and rotation errors of the three models, training and held out apart.
+#[must_use]
+pub fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccuracy>) -> String {
+    let columns: [Column<'_>; 3] = [
+        ("nominal", |set| &set.nominal),
+        ("registered", |set| &set.registered),
+        ("calibrated", |set| &set.calibrated),
+    ];
+    let mut out = String::new();
+    block(&mut out, "position, mm", &columns, training, held_out, |model| Some(model.position_mm));
+    if training.calibrated.rotation_deg.is_some() {
+        out.push('\n');
+        block(&mut out, "rotation, deg", &columns, training, held_out, |model| model.rotation_deg);
+    }
+    out
+}
+
+fn block(
+    out: &mut String,
+    title: &str,
+    columns: &[Column<'_>],
+    training: &SetAccuracy,
+    held_out: Option<&SetAccuracy>,
+    of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
+) {
+    // Writing to a String cannot fail.
+    let _ = write!(out, "{title:<26}");
+    for (head, _) in columns {
+        let _ = write!(out, "{head:>14}");
+    }
+    out.push('\n');
+    set_rows(out, "training", columns, training, &of);
+    match held_out {
+        Some(set) => set_rows(out, "held out", columns, set, &of),
+        None => out.push_str("  held out        none: every measurement was fitted\n"),
+    }
+}
+
+fn set_rows(
+    out: &mut String,
+    name: &str,
+    columns: &[Column<'_>],
+    set: &SetAccuracy,
+    of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
+) {
+    let rows: [(&str, fn(&Statistic) -> f64); 4] =
+        [("mean", |s| s.mean), ("RMS", |s| s.rms), ("95 %", |s| s.p95), ("max", |s| s.max)];
+    for (k, (label, value)) in rows.iter().enumerate() {
+        let head = if k == 0 { format!("{name} ({})", set.count) } else { String::new() };
+        let _ = write!(out, "  {head:<17} {label:<6}");
+        for (_, model) in columns {
+            let cell = of(model(set)).map_or_else(|| "-".to_owned(), |s| number(value(&s)));
+            let _ = write!(out, "{cell:>14}");
+        }
+        out.push('\n');
+    }
+}
+
+/// Four digits that matter, without an exponent where people read lengths.
+fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if value < 1e-3 {
+        return format!("{value:.1e}");
+    }
+    let digits = (3 - value.log10().floor() as i32).clamp(1, 4) as usize;
+    format!("{value:.digits$}")
+}
+
+fn robot_words(robot: &Robot) -> String {
+    let sliding = robot.joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
+    let turning = robot.joints.len() - sliding;
+    let kinds = match (turning, sliding) {
+        (turning, 0) => format!("{turning} revolute"),
+        (0, sliding) => format!("{sliding} prismatic"),
+        (turning, sliding) => format!("{turning} revolute, {sliding} prismatic"),
+    };
+    format!("{}: {kinds}, from {} to {}", robot.name, robot.base_name, robot.tip_name)
+}
+
+fn data_words(calibration: &Calibration, data: &Dataset) -> String {
+    let poses = data.observations.iter().filter(|row| row.measurement.sees_orientation()).count();
+    let points = data.len() - poses;
+    let kinds = match (poses, points) {
+        (poses, 0) => format!("{poses} poses"),
+        (0, points) => format!("{points} points"),
+        (poses, points) => format!("{poses} poses and {points} points"),
+    };
+    let targets = match data.targets.len() {
+        1 => String::new(),
+        count => format!(" of {count} targets"),
+    };
+    let held_out = calibration.held_out_rows.len();
+    format!("{kinds}{targets}: {} fitted, {held_out} held out", calibration.fit_rows.len())
+}
+
+fn noise_words(calibration: &Calibration, data: &Dataset) -> String {
+    let source = match calibration.noise_source {
+        NoiseSource::Given => "as given",
+        NoiseSource::Estimated => "estimated from the fit",
+    };
+    let stated = data.observations.iter().any(|row| row.sigma_position_m.is_some());
+    let rotation = if data.observations.iter().any(|row| row.measurement.sees_orientation()) {
+        format!(", {} deg", number(calibration.noise.rotation_rad.to_degrees()))
+    } else {
+        String::new()
+    };
+    let rows = if stated { "; rows that state theirs keep it" } else { "" };
+    format!("{} mm{rotation} each component, {source}{rows}", number(calibration.noise.position_m * 1e3))
+}
+
+fn solver_words(calibration: &Calibration) -> String {
+    let solver = &calibration.solver;
+    let end = match solver.termination {
+        Termination::Optimum | Termination::StepVanished | Termination::NoProgress => "at the optimum",
+        Termination::IterationLimit => "NOT converged: the limit of iterations was reached",
+        Termination::NotFinite => "NOT converged: residuals are not finite",
+    };
+    let restarts = match solver.restarts {
+        0 => String::new(),
+        1 => ", 1 further start tried".to_owned(),
+        count => format!(", {count} further starts tried"),
+    };
+    format!("{} iterations, {end}{restarts}", solver.iterations)
+}
+
+/// A labelled line, broken at 80 columns with the text aligned.
+fn line(out: &mut String, label: &str, text: &str) {
+    const INDENT: usize = 14;
+    let mut width = INDENT;
+    let _ = write!(out, "{label:<INDENT$}");
+    for (k, word) in text.split(' ').enumerate() {
+        let length = word.chars().count();
+        if k > 0 && width + 1 + length > 80 {
+            let _ = write!(out, "\n{:INDENT$}", "");
+            width = INDENT;
+        } else if k > 0 {
+            out.push(' ');
+            width += 1;
+        }
+        out.push_str(word);
+        width += length;
+    }
+    out.push('\n');
+}
