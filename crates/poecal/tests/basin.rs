@@ -1,5 +1,7 @@
 //! How far the start may be from the truth: random elbows whose axes are off by up to 40° and 200 mm.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
 use poecal::estimate::Packed;
 use poecal::measurement::{Dataset, Noise};
@@ -20,7 +22,8 @@ const SAME_OPTIMUM: f64 = 1.001;
 /// The noise by which that optimum is judged to be the right one: its mean squared whitened residual, one but for chance.
 const RIGHT_OPTIMUM: f64 = 1.5;
 
-/// Error of the start (deg, mm), trials, and the share of them that must reach the optimum.
+/// Error of the start (deg, mm), trials, and the share of them that must reach the optimum. With the device anywhere, which only
+/// adds the registration to it, a third of the trials is run.
 const BASINS: [(f64, f64, u64, f64); 4] =
     [(3.0, 15.0, 1000, 1.0), (10.0, 50.0, 300, 1.0), (20.0, 100.0, 300, 0.99), (40.0, 200.0, 300, 0.95)];
 
@@ -53,9 +56,9 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
     fit(&start) < optimum * SAME_OPTIMUM
 }
 
-fn basins(kind: Kind, frame: DeviceFrameKnowledge, share_of_trials: f64) {
+fn basins(kind: Kind, frame: DeviceFrameKnowledge) {
     for (deg, mm, trials, wanted) in BASINS {
-        let trials = (trials as f64 * share_of_trials) as u64;
+        let trials = if frame == DeviceFrameKnowledge::Base { trials } else { trials / 3 };
         let missed: Vec<u64> = (0..trials)
             .into_par_iter()
             .filter(|&seed| !reaches_the_optimum(deg, mm, kind, frame, seed))
@@ -72,20 +75,20 @@ fn basins(kind: Kind, frame: DeviceFrameKnowledge, share_of_trials: f64) {
 
 #[test]
 fn poses_in_the_base_frame() {
-    basins(Kind::Pose, DeviceFrameKnowledge::Base, 1.0);
+    basins(Kind::Pose, DeviceFrameKnowledge::Base);
 }
 
 #[test]
 fn points_in_the_base_frame() {
-    basins(Kind::Point, DeviceFrameKnowledge::Base, 1.0);
+    basins(Kind::Point, DeviceFrameKnowledge::Base);
 }
 
 #[test]
 fn poses_from_an_unknown_place() {
-    basins(Kind::Pose, DeviceFrameKnowledge::Unknown, 0.3);
+    basins(Kind::Pose, DeviceFrameKnowledge::Unknown);
 }
 
 #[test]
 fn points_from_an_unknown_place() {
-    basins(Kind::Point, DeviceFrameKnowledge::Unknown, 0.3);
+    basins(Kind::Point, DeviceFrameKnowledge::Unknown);
 }

@@ -1,5 +1,7 @@
 //! Of the many ways to write one robot: predictions are the same in all, and the one chosen is nearest to nominal.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use poecal::calibration::{Calibration, CalibrationOptions, calibrate, delivered};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::gauge::base_motion;
@@ -17,6 +19,8 @@ use rand_core::SeedableRng;
 const SAME: f64 = 1e-9;
 /// A gauge is settled to what its own iteration asks for.
 const SETTLED: f64 = 1e-9;
+/// Open directions are settled in a few rounds, each a thousandth of the one before; the last may leave nanometres.
+const STAYS: f64 = 1e-7;
 
 fn robots() -> Vec<Robot> {
     vec![elbow(), scara(), gantry(), seven_axis(), random_chain(5, 2), random_chain(9, 4)]
@@ -122,6 +126,8 @@ fn what_the_data_leave_open_stays_nominal() {
         let result = calibrated(&made);
         let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm.max * 1e-3;
         let deviation = joint_deviation(&result, joint);
+        // At zero the joint's own axis is open, and nothing else: it is exactly nominal. Elsewhere the later axes go with it.
+        assert!(value != 0.0 || deviation < STAYS, "{deviation:e}");
         println!(
             "joint {} at {value}: rank {} of {}, held out {held_out_m:.1e} m, its screw {deviation:.1e} off nominal",
             joint + 1,

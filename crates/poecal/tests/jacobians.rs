@@ -1,6 +1,8 @@
 //! Every measurement type against every parameter type: analytic derivatives and differences. A new type is one line in
 //! [`MEASUREMENTS`] or [`parameters`].
 
+#![allow(clippy::unwrap_used)]
+
 use nalgebra::{Matrix6, Vector3};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::lie::{Pose, Screw, Twist, hat, rotation};
@@ -20,7 +22,10 @@ const LENGTH_M: f64 = 0.7;
 /// Different for position and rotation, so that a mix-up shows.
 const NOISE: Noise = Noise { position_m: 0.5, rotation_rad: 0.8 };
 
-const MEASUREMENTS: [(&str, fn(Pose) -> Measurement); 2] = [
+/// Makes a measurement of a target that was seen at a pose.
+type Measure = fn(Pose) -> Measurement;
+
+const MEASUREMENTS: [(&str, Measure); 2] = [
     ("point", |seen| Measurement::Point(PointMeasurement { position: seen.translation })),
     ("pose", |seen| Measurement::Pose(PoseMeasurement { pose: seen })),
 ];
@@ -65,13 +70,7 @@ struct Row {
 
 impl Row {
     /// A measurement that is off the estimate's prediction by a shift and a turn.
-    fn new(
-        robot: &Robot,
-        estimate: &Estimate,
-        readings: &[f64],
-        make: fn(Pose) -> Measurement,
-        turn: f64,
-    ) -> Self {
+    fn new(robot: &Robot, estimate: &Estimate, readings: &[f64], make: Measure, turn: f64) -> Self {
         let packed = Packed::new(robot, readings, readings.len());
         let mut chain = Chain::default();
         chain.evaluate(&Linkage::new(estimate), &packed, 0, 0);
@@ -217,7 +216,7 @@ fn second_difference(problem: &Problem<'_>, estimate: &Estimate, (a, b): (usize,
 }
 
 /// Largest difference of `JᵀJ + curvature` from second differences, over the largest element.
-fn hessian_error(make: fn(Pose) -> Measurement, turn: f64) -> f64 {
+fn hessian_error(make: Measure, turn: f64) -> f64 {
     let robot = robot();
     let estimate = Estimate::new(&robot, vec![robot.home], device());
     let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], make, turn);

@@ -1,5 +1,7 @@
 //! Without noise a calibration is exact: it predicts configurations that it has not seen, and its rank is what theory says.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use nalgebra::Vector3;
 use poecal::analysis::identifiability;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};

@@ -1,6 +1,8 @@
 //! No initial guess: wherever the device stands and whatever the tool is, registration ends at the optimum that a registration
 //! from the truth reaches.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use nalgebra::{Matrix3, Vector3};
 use poecal::calibration::delivered;
 use poecal::estimate::{Estimate, Packed};

@@ -1,5 +1,7 @@
 //! With noise: the error of predictions is what the Cramér-Rao bound allows.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
