@@ -8,10 +8,12 @@ use crate::lie::{Pose, Screw, Twist, hat, rotation};
 use crate::linalg;
 use crate::parameters::Parameter;
 use crate::problem::Layout;
-use crate::robot::Robot;
+use crate::robot::{Joint, JointKind, Robot};
 
 /// Weight of a target's deviation beside that of the screws: it decides only what the screws leave open.
 const TARGET_WEIGHT: f64 = 1e-3;
+/// Share of the largest eigenvalue below which a direction is exactly null: rounding of normal equations.
+const NULL: f64 = 1e-13;
 
 /// The base motion that brings an estimate's screws nearest to the nominal robot's, rotations counted with `length_m`; apply it
 /// with [`Estimate::rebased`]. `nominal_targets` settle what the screws leave open.
@@ -27,7 +29,9 @@ pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose],
             gradient -= derivative.transpose() * residual;
         };
         for (screw, joint) in moved.screws().iter().zip(&robot.joints) {
-            add_screw(screw, &joint.screw, &joint.frame.translation, length_m, &mut add);
+            for (deviation, derivative) in deviations(screw, joint, length_m) {
+                add(derivative, deviation);
+            }
         }
         for (pose, nominal) in moved.base_from_target.iter().zip(nominal_targets) {
             let shift = point_derivative(&pose.translation) * TARGET_WEIGHT;
@@ -50,22 +54,19 @@ pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose],
     motion
 }
 
-/// Adds how far a moved screw is from nominal, with the derivative by a spatial motion of the base.
-fn add_screw(
-    screw: &Screw,
-    nominal: &Screw,
-    origin: &Vector3<f64>,
-    length_m: f64,
-    add: &mut impl FnMut(Matrix3x6<f64>, Vector3<f64>),
-) {
+/// How far a screw is from nominal: tilt (an arc at `length_m`) and shift as seen from the nominal joint's origin (an axis only),
+/// each with its derivative by a spatial motion of the screw.
+fn deviations(screw: &Screw, nominal: &Joint, length_m: f64) -> [(Vector3<f64>, Matrix3x6<f64>); 2] {
     let direction = screw.direction();
-    let tilt = (direction - nominal.direction()) * length_m;
-    add(turn_derivative(&-hat(&direction), length_m), tilt);
-    if !screw.is_prismatic() {
-        let at = screw.nearest_point(origin);
-        let across = nalgebra::Matrix3::identity() - direction * direction.transpose();
-        add(across * point_derivative(&at), at - origin);
+    let tilt = (direction - nominal.screw.direction()) * length_m;
+    let tilting = turn_derivative(&-hat(&direction), length_m);
+    if screw.is_prismatic() {
+        return [(tilt, tilting), (Vector3::zeros(), Matrix3x6::zeros())];
     }
+    let origin = &nominal.frame.translation;
+    let at = screw.nearest_point(origin);
+    let across = nalgebra::Matrix3::identity() - direction * direction.transpose();
+    [(tilt, tilting), (at - origin, across * point_derivative(&at))]
 }
 
 /// `[I, -p̂]`: a point's motion under a spatial twist.
@@ -82,59 +83,86 @@ fn turn_derivative(by_turn: &nalgebra::Matrix3<f64>, scale: f64) -> Matrix3x6<f6
     derivative
 }
 
-/// The step inside the null space of `gram` that brings the screws nearest to nominal, or `None` if there is no null space.
-/// `floor` is the share of the largest eigenvalue below which an eigenvalue is zero.
+/// The step inside the null space of `gram` that brings the screws nearest to nominal, or `None` if there is no null space. With
+/// `base_free` the base may follow ([`base_motion`] in turn): the step is then the best one together with that.
 #[must_use]
 pub fn null_step(
     estimate: &Estimate,
     robot: &Robot,
     layout: &Layout,
     gram: &[f64],
-    floor: f64,
+    length_m: f64,
+    base_free: bool,
 ) -> Option<Vec<f64>> {
     let n = layout.dim();
     let (values, vectors) = linalg::symmetric_eigen(gram, n);
     let largest = values.last().copied().unwrap_or(0.0);
-    let null = values.iter().take_while(|&&value| value <= floor * largest).count();
+    let null = values.iter().take_while(|&&value| value <= NULL * largest).count();
     if null == 0 {
         return None;
     }
-    let (wanted, weight) = way_to_nominal(estimate, robot, layout);
-    // min |W (z - N a)| over a, by normal equations of the few null directions.
-    let mut gram = vec![0.0; null * null];
-    let mut gradient = vec![0.0; null];
-    for i in 0..null {
-        for j in i..null {
-            gram[i * null + j] = (0..n).map(|k| weight[k] * vectors[(k, i)] * vectors[(k, j)]).sum();
-        }
-        gradient[i] = (0..n).map(|k| weight[k] * vectors[(k, i)] * wanted[k]).sum();
+    let screws = estimate.screws();
+    let deviations: Vec<_> =
+        screws.iter().zip(&robot.joints).map(|(screw, joint)| deviations(screw, joint, length_m)).collect();
+    let now: Vec<f64> = deviations
+        .iter()
+        .flatten()
+        .flat_map(|(deviation, _)| [deviation.x, deviation.y, deviation.z])
+        .collect();
+    // How motions of the screws change that.
+    let effect = |motions: &[Vector6<f64>]| -> Vec<f64> {
+        let changes = deviations
+            .iter()
+            .zip(motions)
+            .flat_map(|(of_screw, motion)| of_screw.iter().map(move |(_, derivative)| derivative * motion));
+        changes.flat_map(|change| [change.x, change.y, change.z]).collect()
+    };
+    let mut effects: Vec<Vec<f64>> = Vec::new();
+    for direction in vectors.column_iter().take(null) {
+        let (motions, targets) = motions(estimate, layout, direction.iter().copied().collect());
+        let mut change = effect(&motions);
+        change.extend(targets.iter().map(|change| TARGET_WEIGHT * change));
+        effects.push(change);
     }
-    let factor = linalg::cholesky(&gram, null, 1e-9)?;
-    let coefficients = linalg::cholesky_solve(&factor, &gradient);
+    if base_free {
+        for unit in Matrix6::<f64>::identity().column_iter() {
+            effects.push(effect(&vec![unit.into_owned(); screws.len()]));
+        }
+    }
+    let coefficients = least_squares(&effects, &now)?;
     Some((0..n).map(|k| (0..null).map(|i| vectors[(k, i)] * coefficients[i]).sum()).collect())
 }
 
-/// The step that would bring each screw to nominal (targets: zero), with the weight of each unknown.
-fn way_to_nominal(estimate: &Estimate, robot: &Robot, layout: &Layout) -> (Vec<f64>, Vec<f64>) {
-    let mut wanted = vec![0.0; layout.dim()];
-    let mut weight = vec![TARGET_WEIGHT * TARGET_WEIGHT; layout.dim()];
-    let screws = estimate.screws();
+/// The spatial motion of each screw in a step, and the step with the screws' part left out.
+fn motions(estimate: &Estimate, layout: &Layout, step: Vec<f64>) -> (Vec<Vector6<f64>>, Vec<f64>) {
+    let mut motions = vec![Vector6::zeros(); estimate.base_from_axis.len()];
+    let mut rest = step;
     for (parameter, places) in layout.parameters() {
         let Parameter::ScrewAxis(axis) = parameter else { continue };
-        let (screw, nominal) = (&screws[axis.joint], &robot.joints[axis.joint].screw);
-        let frame = &estimate.base_from_axis[axis.joint];
-        let to_axis = frame.rotation.transpose();
-        let turn = to_axis * rotation::log(&rotation::shortest_arc(&screw.direction(), &nominal.direction()));
-        let shift = to_axis * (nominal.nearest_point(&frame.translation) - frame.translation);
-        let own = if screw.is_prismatic() {
-            [turn.x, turn.y, 0.0, 0.0]
-        } else {
-            [shift.x, shift.y, turn.x, turn.y]
+        let own: Vec<f64> = places.iter().map(|&(place, scale)| rest[place] / scale).collect();
+        let local = match axis.kind {
+            JointKind::Revolute => {
+                Twist::new(Vector3::new(own[0], own[1], 0.0), Vector3::new(own[2], own[3], 0.0))
+            }
+            JointKind::Prismatic => Twist::new(Vector3::zeros(), Vector3::new(own[0], own[1], 0.0)),
         };
-        for (value, &(place, scale)) in own.iter().zip(places) {
-            wanted[place] = value * scale;
-            weight[place] = 1.0;
+        motions[axis.joint] = estimate.base_from_axis[axis.joint].transform(&local).to_vector();
+        places.iter().for_each(|&(place, _)| rest[place] = 0.0);
+    }
+    (motions, rest)
+}
+
+/// The combination of some columns that is nearest to `-target` (both zero beyond their length), by normal equations.
+fn least_squares(columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
+    let count = columns.len();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut gram = vec![0.0; count * count];
+    for i in 0..count {
+        for j in i..count {
+            gram[i * count + j] = dot(&columns[i], &columns[j]);
         }
     }
-    (wanted, weight)
+    let gradient: Vec<f64> = columns.iter().map(|column| -dot(column, target)).collect();
+    let factor = linalg::cholesky(&gram, count, 1e-9)?;
+    Some(linalg::cholesky_solve(&factor, &gradient))
 }

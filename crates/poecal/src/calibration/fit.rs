@@ -4,7 +4,10 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::noise::stated;
-use super::{CalibrationOptions, NoiseSource, SolverReport, estimate_noise, row_errors};
+use super::{
+    CalibrationOptions, DeviceFrameKnowledge, NoiseSource, SolverReport, delivered, estimate_noise,
+    row_errors,
+};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed};
 use crate::gauge;
@@ -23,10 +26,8 @@ const RESTART_SAMPLE: usize = 200;
 /// Root mean square position error, as a share of the arm's reach, above which a fit may have ended beside the optimum: real robots,
 /// gears and links giving, are left with a tenth of it, false optima with several times it.
 const SUSPICIOUS: f64 = 3e-3;
-/// Share of the largest eigenvalue below which a direction is exactly null: rounding of normal equations.
-const NULL: f64 = 1e-13;
 
-/// A finished fit, in the gauge of its start.
+/// A finished fit.
 pub(super) struct Fitted {
     pub(super) estimate: Estimate,
     pub(super) normal: Normal,
@@ -208,12 +209,21 @@ impl Task<'_> {
         layout.retract(estimate, &step)
     }
 
-    /// Moves along exactly null directions to the screws nearest to nominal; the fit is renewed after each move.
+    /// Moves along exactly null directions to the screws nearest to nominal; the fit is renewed after each move. An unknown device
+    /// frame lets the base follow, which changes no prediction.
     fn settle_null_directions(&self, estimate: Estimate, normal: Normal, noise: Noise) -> (Estimate, Normal) {
         let (mut estimate, mut normal) = (estimate, normal);
+        let base_free = self.options.frame == DeviceFrameKnowledge::Unknown;
+        let targets = delivered(self.robot, self.data).base_from_target;
         for _ in 0..8 {
+            if base_free {
+                let motion = gauge::base_motion(&estimate, self.robot, &targets, self.length_m);
+                estimate = estimate.rebased(&motion);
+            }
             let problem = self.problem(&estimate, noise);
-            let Some(step) = gauge::null_step(&estimate, self.robot, problem.layout(), &normal.gram, NULL)
+            let layout = problem.layout();
+            let Some(step) =
+                gauge::null_step(&estimate, self.robot, layout, &normal.gram, self.length_m, base_free)
             else {
                 break;
             };

@@ -15,6 +15,8 @@ use crate::solve::{Options, minimize};
 const SAMPLE: usize = 60;
 /// Candidates that are polished and compared.
 const FINALISTS: usize = 4;
+/// Times that targets and device frame of a closed form are found from each other.
+const ROUNDS: usize = 4;
 /// Root mean square distance, as a share of the data's own spread, above which the closed forms are not trusted alone.
 const GOOD_MISFIT: f64 = 0.05;
 
@@ -44,10 +46,11 @@ pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64)
     let stride = problem.rows.len().div_ceil(SAMPLE).max(1);
     let sample: Vec<u32> = problem.rows.iter().step_by(stride).copied().collect();
     let seen = Seen::new(problem, start, &sample);
-    let mut best = seen.best_of(problem, start, &sample, seen.closed_forms(problem, start));
+    let mut best = seen.best_of(problem, start, &sample, seen.closed_forms(problem, start), ROUNDS);
     if problem.device_free && problem.targets_free && seen.misfit(&best.0) > GOOD_MISFIT {
         let turned = cube_rotations().map(|turn| seen.at_rotation(turn, start)).collect();
-        let other = seen.best_of(problem, start, &sample, turned);
+        // Not alternated: that would draw them all to the same few device frames.
+        let other = seen.best_of(problem, start, &sample, turned, 1);
         // A later start must be clearly better, so that rounding does not choose between equal ones.
         if other.1 < best.1 * (1.0 - 1e-6) {
             best = other;
@@ -128,11 +131,12 @@ impl Seen {
         start: &Estimate,
         sample: &[u32],
         devices: Vec<Pose>,
+        rounds: usize,
     ) -> (Estimate, f64) {
         let mut candidates: Vec<(f64, Estimate)> = devices
             .into_iter()
             .map(|device_from_base| {
-                let candidate = self.alternate(problem, start, device_from_base);
+                let candidate = self.alternate(problem, start, device_from_base, rounds);
                 let (polished, cost) = polish(problem, candidate, sample.to_vec(), 1);
                 (cost, polished)
             })
@@ -223,15 +227,20 @@ impl Seen {
         Pose::new(turn, shift / count)
     }
 
-    /// Alternates the targets given the device's frame with the device's frame given the targets.
-    fn alternate(&self, problem: &Registration<'_>, start: &Estimate, device_from_base: Pose) -> Estimate {
-        const ROUNDS: usize = 4;
+    /// Alternates the targets given the device's frame with the device's frame given the targets; targets come first and last.
+    fn alternate(
+        &self,
+        problem: &Registration<'_>,
+        start: &Estimate,
+        device_from_base: Pose,
+        rounds: usize,
+    ) -> Estimate {
         let mut estimate = start.clone();
         estimate.device_from_base = device_from_base;
         if problem.targets_free {
-            for round in 0..ROUNDS {
+            for round in 0..rounds {
                 self.place_targets(&mut estimate);
-                if problem.device_free && round + 1 < ROUNDS {
+                if problem.device_free && round + 1 < rounds {
                     estimate.device_from_base = self.rigid(&estimate.base_from_target);
                 }
             }
