@@ -3,6 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::noise::stated;
 use super::{CalibrationOptions, NoiseSource, SolverReport, estimate_noise, row_errors};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed};
@@ -113,7 +114,7 @@ pub(super) fn fit(
             let change =
                 (found.position_m * noise.rotation_rad / (found.rotation_rad * noise.position_m)).ln();
             let unchanged = found == noise;
-            noise = task.stated(found);
+            noise = stated(options, found);
             if unchanged || change.abs() < 0.02 && normal.mean_square().ln().abs() < 0.5 {
                 break;
             }
@@ -151,14 +152,6 @@ impl Task<'_> {
     fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
         let free = free_parameters(estimate, self.data);
         Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m)
-    }
-
-    /// The noise found, where the user has not stated a part of it.
-    fn stated(&self, found: Noise) -> Noise {
-        Noise {
-            position_m: self.options.sigma_position_m.unwrap_or(found.position_m),
-            rotation_rad: self.options.sigma_rotation_rad.unwrap_or(found.rotation_rad),
-        }
     }
 
     /// Further starts, when what the fit leaves is more than a robot's own errors: random screws around the registered ones, on a

@@ -196,7 +196,7 @@ pub fn calibrate_with_progress(
     let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
     let delivered = delivered(robot, data);
     let length_m = robot.reach_m() / 3.0;
-    let (mut noise, source) = noise::first_guess(options);
+    let (mut noise, source) = noise::first_guess(data, options);
     let registration = |noise: Noise, targets_free: bool| Registration {
         data,
         packed: &packed,
@@ -209,7 +209,7 @@ pub fn calibrate_with_progress(
     progress(Stage::Registration);
     let (mut registered, _) = register(&registration(noise, true), &delivered);
     if source == NoiseSource::Estimated {
-        noise = estimate_noise(data, &packed, &fit_rows, &registered, 6, noise);
+        noise = noise::stated(options, estimate_noise(data, &packed, &fit_rows, &registered, 6, noise));
         registered = register(&registration(noise, true), &registered).0;
     }
     progress(Stage::Fit);

@@ -12,6 +12,8 @@ use crate::measurement::{Dataset, Noise};
 pub enum NoiseSource {
     /// The user stated it.
     Given,
+    /// Every row states its own.
+    Rows,
     /// It was estimated from the residuals of the fit.
     Estimated,
 }
@@ -20,17 +22,30 @@ pub enum NoiseSource {
 const ROUNDING: f64 = 1e-9;
 
 /// The stated noise, or 1 mm and 1 mrad to start with.
-pub(super) fn first_guess(options: &CalibrationOptions) -> (Noise, NoiseSource) {
+pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Noise, NoiseSource) {
     let source = if options.sigma_position_m.is_some() && options.sigma_rotation_rad.is_some() {
+        NoiseSource::Given
+    } else if data.observations.iter().all(|row| {
+        row.sigma_position_m.is_some()
+            && (row.sigma_rotation_rad.is_some() || !row.measurement.sees_orientation())
+    }) {
+        NoiseSource::Rows
+    } else if options.sigma_position_m.is_some()
+        && !data.observations.iter().any(|row| row.measurement.sees_orientation())
+    {
         NoiseSource::Given
     } else {
         NoiseSource::Estimated
     };
-    let noise = Noise {
-        position_m: options.sigma_position_m.unwrap_or(1e-3),
-        rotation_rad: options.sigma_rotation_rad.unwrap_or(1e-3),
-    };
-    (noise, source)
+    (stated(options, Noise { position_m: 1e-3, rotation_rad: 1e-3 }), source)
+}
+
+/// A noise with the parts that the user has stated put in their place.
+pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
+    Noise {
+        position_m: options.sigma_position_m.unwrap_or(found.position_m),
+        rotation_rad: options.sigma_rotation_rad.unwrap_or(found.rotation_rad),
+    }
 }
 
 /// Position and rotation noise as the residuals of an estimate show them, each component's variance separately, with the unknowns

@@ -86,13 +86,12 @@ fn set_rows(
     set: &SetAccuracy,
     of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
 ) {
-    let rows: [(&str, fn(&Statistic) -> f64); 4] =
-        [("mean", |s| s.mean), ("RMS", |s| s.rms), ("95 %", |s| s.p95), ("max", |s| s.max)];
-    for (k, (label, value)) in rows.iter().enumerate() {
+    for (k, label) in ["mean", "RMS", "95 %", "max"].into_iter().enumerate() {
         let head = if k == 0 { format!("{name} ({})", set.count) } else { String::new() };
         let _ = write!(out, "  {head:<17} {label:<6}");
         for (_, model) in columns {
-            let cell = of(model(set)).map_or_else(|| "-".to_owned(), |s| number(value(&s)));
+            let cell =
+                of(model(set)).map_or_else(|| "-".to_owned(), |s| number([s.mean, s.rms, s.p95, s.max][k]));
             let _ = write!(out, "{cell:>14}");
         }
         out.push('\n');
@@ -140,15 +139,16 @@ fn data_words(calibration: &Calibration, data: &Dataset) -> String {
 
 fn noise_words(calibration: &Calibration, data: &Dataset) -> String {
     let source = match calibration.noise_source {
+        NoiseSource::Rows => return "as each row states it".to_owned(),
         NoiseSource::Given => "as given",
         NoiseSource::Estimated => "estimated from the fit",
     };
-    let stated = data.observations.iter().any(|row| row.sigma_position_m.is_some());
     let rotation = if data.observations.iter().any(|row| row.measurement.sees_orientation()) {
         format!(", {} deg", number(calibration.noise.rotation_rad.to_degrees()))
     } else {
         String::new()
     };
+    let stated = data.observations.iter().any(|row| row.sigma_position_m.is_some());
     let rows = if stated { "; rows that state theirs keep it" } else { "" };
     format!("{} mm{rotation} each component, {source}{rows}", number(calibration.noise.position_m * 1e3))
 }
