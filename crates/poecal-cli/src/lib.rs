@@ -32,6 +32,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
     let result = match &arguments.command {
         Command::Calibrate(options) => commands::calibrate(options, &console),
+        Command::Simulate(options) => commands::simulate(options, &console),
     };
     match result {
         Ok(code) => code,

@@ -1,5 +1,7 @@
 //! Numbers with a unit on the command line: `0.05mm`, `0.01deg`.
 
+use std::str::FromStr;
+
 use poecal::io::measurements::{Quantity, Unit};
 use poecal::{Error, ErrorKind, Result};
 
@@ -28,6 +30,37 @@ pub(crate) fn parse(text: &str, quantity: Quantity) -> Result<f64> {
     Ok(Unit::parse(symbol.trim(), quantity)?.to_si(value))
 }
 
+/// A length and an angle as the user wrote them: `1deg,2mm` in either order; what is left out is zero.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LengthAndAngle {
+    pub(crate) text: String,
+    pub(crate) length_m: f64,
+    pub(crate) angle_rad: f64,
+}
+
+impl FromStr for LengthAndAngle {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        let (mut length_m, mut angle_rad) = (None, None);
+        for part in text.split(',').map(str::trim) {
+            let (place, value) = match parse(part, Quantity::Angle) {
+                Ok(angle) => (&mut angle_rad, angle),
+                Err(_) => (&mut length_m, parse(part, Quantity::Length)?),
+            };
+            if place.replace(value).is_some() {
+                let message = format!("found `{text}`, expected one length and one angle, like 2mm,1deg");
+                return Err(Error::new(ErrorKind::Option, message));
+            }
+        }
+        Ok(LengthAndAngle {
+            text: text.to_owned(),
+            length_m: length_m.unwrap_or(0.0),
+            angle_rad: angle_rad.unwrap_or(0.0),
+        })
+    }
+}
+
 /// Parser of a length for clap.
 pub(crate) fn length_m(text: &str) -> std::result::Result<f64, String> {
     parse(text, Quantity::Length).map_err(|error| error.to_string())
@@ -36,4 +69,21 @@ pub(crate) fn length_m(text: &str) -> std::result::Result<f64, String> {
 /// Parser of an angle for clap.
 pub(crate) fn angle_rad(text: &str) -> std::result::Result<f64, String> {
     parse(text, Quantity::Angle).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_length_and_an_angle_come_in_either_order() {
+        let both = |text: &str| text.parse::<LengthAndAngle>().map(|both| (both.length_m, both.angle_rad));
+        assert_eq!(both("1deg,2mm"), Ok((0.002, 1f64.to_radians())));
+        assert_eq!(both("2mm, 1deg"), both("1deg,2mm"));
+        assert_eq!(both("0.05mm"), Ok((5e-5, 0.0)));
+        let message = |text: &str| both(text).unwrap_err().to_string();
+        assert_eq!(message("1mm,2mm"), "found `1mm,2mm`, expected one length and one angle, like 2mm,1deg");
+        assert_eq!(message("1"), "found `1` without a unit, expected a number with a unit, like 0.05mm");
+        assert_eq!(message("2mm,1grad"), "found the unit `grad`, expected a length (m, cm, mm, um, nm)");
+    }
 }

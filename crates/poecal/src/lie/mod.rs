@@ -11,7 +11,7 @@ mod twist;
 
 pub use pose::Pose;
 pub use screw::Screw;
-pub use twist::Twist;
+pub use twist::{TargetTwist, Twist};
 
 /// The skew-symmetric matrix `â` with `â b = a × b`.
 ///

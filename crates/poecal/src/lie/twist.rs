@@ -4,6 +4,11 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::{hat, series};
 
+/// An infinitesimal motion of a target about its own origin, in the device's axes: `v` moves the origin (metres), `w` turns the
+/// target (radians). With `p` the target's place it is `(v_s + ω_s × p; ω_s)` of the spatial twist `(v_s; ω_s)`: the factor
+/// `[I -p̂]` of equation (23) of lou2009 is already applied.
+pub type TargetTwist = (Vector3<f64>, Vector3<f64>);
+
 /// A twist `ξ = (v; ω)`: linear part `v` (metres), angular part `ω` (radians), in the frame that the name or the text states.
 ///
 /// ```

@@ -8,7 +8,7 @@ mod residual;
 pub use dataset::{Dataset, Observation, Set, Source};
 pub use point::PointMeasurement;
 pub use pose::PoseMeasurement;
-pub use residual::{Noise, Residual, TargetTwist};
+pub use residual::{Noise, Residual};
 
 use crate::lie::Pose;
 

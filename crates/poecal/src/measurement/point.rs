@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Noise, Residual, TargetTwist};
-use crate::lie::Pose;
+use super::{Noise, Residual};
+use crate::lie::{Pose, TargetTwist};
 
 /// Measured position of a target point, `e = y - p`, `S = [I 0]` in target-centred form (docs/theory.md, section 4).
 ///

@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Noise, Residual, TargetTwist};
-use crate::lie::{Pose, hat, rotation, series};
+use super::{Noise, Residual};
+use crate::lie::{Pose, TargetTwist, hat, rotation, series};
 
 /// Measured frame, `e = [y - p; log(Y Rᵀ)]` at the target and in the device's axes (docs/theory.md, section 4).
 ///

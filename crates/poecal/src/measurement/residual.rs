@@ -2,12 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::lie::Pose;
-
-/// An infinitesimal motion of a target about its own origin, in the device's axes: `v` moves the origin (metres), `w` turns the
-/// target (radians). With `p` the target's place it is `(v_s + ω_s × p; ω_s)` of the spatial twist `(v_s; ω_s)`: the factor
-/// `[I -p̂]` of equation (23) of lou2009 is already applied.
-pub type TargetTwist = (Vector3<f64>, Vector3<f64>);
+use crate::lie::{Pose, TargetTwist};
 
 /// Standard deviations by which a residual is whitened.
 ///

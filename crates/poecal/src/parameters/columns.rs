@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::estimate::{Chain, Estimate};
-use crate::measurement::TargetTwist;
+use crate::lie::TargetTwist;
 
 /// Unit of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,8 +4,7 @@ use nalgebra::Vector3;
 
 use super::columns::{Column, Columns, Unit, Wrench};
 use crate::estimate::{Chain, Estimate};
-use crate::lie::rotation;
-use crate::measurement::TargetTwist;
+use crate::lie::{TargetTwist, rotation};
 
 /// The device's frame, stepped about the point `about` of the device's frame (the middle of the data, so that a turn and a shift
 /// hardly compete): columns `(e_k; 0)` and `(e_k × (p - about); e_k)`.

@@ -4,8 +4,7 @@ use nalgebra::Vector3;
 
 use super::columns::{Column, Columns, Unit, Wrench};
 use crate::estimate::{Chain, Estimate};
-use crate::lie::{Pose, Twist};
-use crate::measurement::TargetTwist;
+use crate::lie::{Pose, TargetTwist, Twist};
 use crate::robot::JointKind;
 
 /// The screw of joint `joint`, moved by the adjoint of a local step `ε` in its axis frame: `A ← A exp(ε)`, which is

@@ -4,8 +4,7 @@ use nalgebra::Vector3;
 
 use super::columns::{Column, Columns, Unit};
 use crate::estimate::{Chain, Estimate};
-use crate::lie::rotation;
-use crate::measurement::TargetTwist;
+use crate::lie::{TargetTwist, rotation};
 
 /// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`.
 ///

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::columns::{Column, Columns, Unit};
 use crate::estimate::{Chain, Estimate};
-use crate::measurement::TargetTwist;
+use crate::lie::TargetTwist;
 
 /// The point `P_c0` of lou2009 equations (19) to (26), stepped in the target's own axes: columns `(R_target e_k; 0)`.
 ///

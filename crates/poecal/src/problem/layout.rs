@@ -1,7 +1,7 @@
 //! How the unknowns of all parameters are arranged and scaled.
 
 use crate::estimate::{Chain, Estimate};
-use crate::measurement::TargetTwist;
+use crate::lie::TargetTwist;
 use crate::parameters::{Parameter, Unit, Wrench};
 use nalgebra::Vector3;
 

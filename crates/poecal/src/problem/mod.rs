@@ -5,7 +5,8 @@ mod layout;
 pub use layout::Layout;
 
 use crate::estimate::{Chain, Estimate, Linkage, Packed};
-use crate::measurement::{Dataset, Noise, TargetTwist};
+use crate::lie::TargetTwist;
+use crate::measurement::{Dataset, Noise};
 use crate::parameters::{Parameter, Wrench};
 use crate::solve::{LeastSquares, Normal};
 use nalgebra::Vector3;

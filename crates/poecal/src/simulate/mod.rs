@@ -25,6 +25,18 @@ pub enum Kind {
     Mixed,
 }
 
+impl Kind {
+    /// The word used in files: `pose`, `point` or `mixed`.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Kind::Pose => "pose",
+            Kind::Point => "point",
+            Kind::Mixed => "mixed",
+        }
+    }
+}
+
 /// A simulated measurement session.
 ///
 /// ```
@@ -107,10 +119,34 @@ impl Simulation {
         } else {
             Pose::identity()
         };
+        let data = self.observe(nominal, &actual, &device_from_base, kind, generator)?;
+        Ok(Simulated { nominal: nominal.clone(), actual, device_from_base, data })
+    }
+
+    /// Further configurations of a simulated session, free of noise: what a calibration from it should predict.
+    ///
+    /// # Errors
+    /// Does not fail for a finite robot.
+    pub fn held_out(&self, made: &Simulated, kind: Kind, count: usize) -> Result<Dataset> {
+        // Another stream of the same seed, so that these rows do not depend on how many were measured.
+        let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
+        generator.set_stream(1);
+        let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, count, ..*self };
+        exact.observe(&made.nominal, &made.actual, &made.device_from_base, kind, &mut generator)
+    }
+
+    fn observe(
+        &self,
+        nominal: &Robot,
+        actual: &Robot,
+        device_from_base: &Pose,
+        kind: Kind,
+        generator: &mut ChaCha8Rng,
+    ) -> Result<Dataset> {
         let mut data = Dataset::new(nominal.reading_names());
         for row in 0..self.count {
             let readings = random_configuration(nominal, generator);
-            let seen = device_from_base * actual.forward_kinematics(&readings);
+            let seen = *device_from_base * actual.forward_kinematics(&readings);
             let noise = random::normal_vector(generator) * self.noise_position_m;
             let turn = random::normal_vector(generator) * self.noise_rotation_rad;
             let position = seen.translation + noise;
@@ -127,7 +163,7 @@ impl Simulation {
             };
             data.push(&readings, None, measurement)?;
         }
-        Ok(Simulated { nominal: nominal.clone(), actual, device_from_base, data })
+        Ok(data)
     }
 
     /// A robot whose every axis, and tip, is turned and shifted by the stated amounts in random directions, about the joint's own
@@ -150,7 +186,8 @@ impl Simulation {
     }
 }
 
-/// Readings of a random configuration in which every joint is within its limits (±π and ±0.5 m where there are none).
+/// Readings of a random configuration in which every joint is within its limits (±π and ±0.5 m where there are none), in steps of
+/// 0.0001° and 0.001 mm, as controllers show them.
 pub fn random_configuration(robot: &Robot, generator: &mut ChaCha8Rng) -> Vec<f64> {
     robot
         .reading_names()
@@ -172,7 +209,12 @@ pub fn random_configuration(robot: &Robot, generator: &mut ChaCha8Rng) -> Vec<f6
             let span = if kind == JointKind::Revolute { std::f64::consts::PI } else { 0.5 };
             let lower = if lower.is_finite() { lower } else { -span };
             let upper = if upper.is_finite() { upper } else { span };
-            lower + (upper - lower).max(0.0) * random::uniform(generator)
+            let value = lower + (upper - lower).max(0.0) * random::uniform(generator);
+            let stepped = match kind {
+                JointKind::Revolute => ((value.to_degrees() * 1e4).round() / 1e4).to_radians(),
+                JointKind::Prismatic => (value * 1e6).round() / 1e3 / 1e3,
+            };
+            if (lower..=upper).contains(&stepped) { stepped } else { value }
         })
         .collect()
 }

@@ -23,20 +23,7 @@ impl CalibrationFile {
     #[must_use]
     pub fn new(calibration: &Calibration, data: &Dataset, inputs: Inputs) -> Self {
         let robot = &calibration.robot;
-        let joints =
-            robot.joints.iter().zip(&calibration.nominal.joints).map(|(joint, nominal)| JointEntry {
-                name: joint.name.clone(),
-                kind: joint.kind.into(),
-                screw: (&joint.screw).into(),
-                nominal_screw: (&nominal.screw).into(),
-                base_from_joint: (&joint.frame).into(),
-                limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
-                reading: ReadingEntry {
-                    name: joint.reading.name.clone(),
-                    multiplier: joint.reading.multiplier,
-                    offset: joint.reading.offset,
-                },
-            });
+        let joints = JointEntry::of_robot(robot, &calibration.nominal);
         let targets = calibration.targets.iter().filter_map(|target| {
             let name = target.name.clone()?;
             let quaternion_xyzw = target.is_frame.then(|| target.tip_from_target.quaternion_xyzw());
@@ -75,14 +62,8 @@ impl CalibrationFile {
                     .then(|| calibration.noise.rotation_rad.to_degrees()),
                 source: calibration.noise_source,
             },
-            robot: RobotEntry {
-                name: robot.name.clone(),
-                base_link: robot.base_name.clone(),
-                tip_link: robot.tip_name.clone(),
-                base_from_tip_at_zero: (&robot.home).into(),
-                nominal_base_from_tip_at_zero: (&calibration.nominal.home).into(),
-            },
-            joints: joints.collect(),
+            robot: RobotEntry::new(robot, &calibration.nominal),
+            joints,
             measurement_frame: FrameEntry {
                 known: match calibration.frame {
                     DeviceFrameKnowledge::Unknown => FrameWord::Unknown,
@@ -201,7 +182,40 @@ impl CalibrationFile {
     }
 }
 
+impl RobotEntry {
+    /// The frames of a robot and of its nominal model.
+    pub(in crate::io) fn new(robot: &Robot, nominal: &Robot) -> Self {
+        RobotEntry {
+            name: robot.name.clone(),
+            base_link: robot.base_name.clone(),
+            tip_link: robot.tip_name.clone(),
+            base_from_tip_at_zero: (&robot.home).into(),
+            nominal_base_from_tip_at_zero: (&nominal.home).into(),
+        }
+    }
+}
+
 impl JointEntry {
+    /// The joints of a robot and of its nominal model.
+    pub(in crate::io) fn of_robot(robot: &Robot, nominal: &Robot) -> Vec<Self> {
+        let pairs = robot.joints.iter().zip(&nominal.joints);
+        pairs
+            .map(|(joint, nominal)| JointEntry {
+                name: joint.name.clone(),
+                kind: joint.kind.into(),
+                screw: (&joint.screw).into(),
+                nominal_screw: (&nominal.screw).into(),
+                base_from_joint: (&joint.frame).into(),
+                limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
+                reading: ReadingEntry {
+                    name: joint.reading.name.clone(),
+                    multiplier: joint.reading.multiplier,
+                    offset: joint.reading.offset,
+                },
+            })
+            .collect()
+    }
+
     fn joint(&self, screw: &ScrewEntry) -> Result<Joint> {
         let kind = JointKind::from(self.kind);
         let twist = Twist::new(Vector3::from(screw.v_m), Vector3::from(screw.w));

@@ -18,6 +18,7 @@ mod table;
 mod text;
 mod understanding;
 mod units;
+mod write;
 
 pub use fit_where::FitWhere;
 pub use joints::{JointsTable, read_joints};
@@ -27,6 +28,7 @@ pub use read::read;
 pub use text::Separator;
 pub use understanding::{ColumnUnderstanding, FileUnderstanding, UnitSource};
 pub use units::{Quantity, Unit};
+pub(in crate::io) use write::text;
 
 use crate::measurement::Dataset;
 

@@ -1,0 +1,68 @@
+//! `poecal simulate`: a robot with known errors, and what a device would measure of it.
+
+use std::process::ExitCode;
+
+use poecal::Result;
+use poecal::io::model::Model;
+use poecal::io::output::{self, Session};
+use poecal::simulate::{Kind, Simulation};
+
+use crate::args::{Chain, Frame, Simulate, SimulatedKind};
+use crate::console::Console;
+
+pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<ExitCode> {
+    output::check_folder(&arguments.out, arguments.force)?;
+    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    let simulation = Simulation {
+        error_rotation_rad: arguments.errors.angle_rad,
+        error_position_m: arguments.errors.length_m,
+        noise_position_m: arguments.noise.length_m,
+        noise_rotation_rad: arguments.noise.angle_rad,
+        count: arguments.count as usize,
+        seed: arguments.seed,
+        device_anywhere: arguments.frame == Frame::Unknown,
+    };
+    let kind = match arguments.kind {
+        SimulatedKind::Pose => Kind::Pose,
+        SimulatedKind::Point => Kind::Point,
+        SimulatedKind::Mixed => Kind::Mixed,
+    };
+    let made = simulation.run(&model.robot, kind)?;
+    let held_out = match arguments.held_out_count {
+        0 => None,
+        count => Some(simulation.held_out(&made, kind, count as usize)?),
+    };
+    let command = command(arguments, kind);
+    let session = Session {
+        simulation: &simulation,
+        kind,
+        made: &made,
+        held_out: held_out.as_ref(),
+        command: &command,
+    };
+    let written = output::write_simulation(&arguments.out, arguments.force, &model, &session)?;
+    for note in &written.notes {
+        console.warning(note);
+    }
+    console.say(&format!("written  {}: {}\n", written.folder.display(), written.files.join(", ")));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The command that makes the same files anywhere: with every option that they depend on, and no output folder.
+fn command(arguments: &Simulate, kind: Kind) -> String {
+    let Chain { base_link, tip_link } = &arguments.chain;
+    let mut words = vec!["poecal simulate".to_owned(), arguments.model.display().to_string()];
+    for (option, link) in [("--base-link", base_link), ("--tip-link", tip_link)] {
+        words.extend(link.as_ref().map(|link| format!("{option} {link}")));
+    }
+    words.push(format!("--kind {} --count {} --seed {}", kind.word(), arguments.count, arguments.seed));
+    words.push(format!("--errors {} --noise {}", arguments.errors.text, arguments.noise.text));
+    if arguments.frame == Frame::Base {
+        words.push("--frame base".to_owned());
+    }
+    if arguments.held_out_count > 0 {
+        words.push(format!("--held-out-count {}", arguments.held_out_count));
+    }
+    // The command becomes a line of a file.
+    words.join(" ").replace(char::is_control, "?")
+}

@@ -1,0 +1,91 @@
+//! A measurement file of simulated rows.
+
+use std::fmt::Write as _;
+
+use super::units::{Quantity, Unit};
+use crate::error::Result;
+use crate::io::residuals::quoted;
+use crate::measurement::{Dataset, Noise};
+use crate::robot::{JointKind, Robot};
+
+/// Rows of the unnamed target as a file that begins with a comment: joints in degrees and millimetres, positions in millimetres,
+/// orientations as quaternions. Readings read back as the same numbers; measured ones are rounded to less than a thousandth of
+/// their noise.
+pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
+    let (deg, mm) = (Unit::parse("deg", Quantity::Angle)?, Unit::parse("mm", Quantity::Length)?);
+    let number = Quantity::Number.si_unit();
+    let units: Vec<Unit> = data
+        .reading_names()
+        .iter()
+        .map(|name| match robot.joints.iter().find(|joint| joint.reading.name == *name) {
+            Some(joint) if joint.kind == JointKind::Prismatic => mm,
+            _ => deg,
+        })
+        .collect();
+    let orientations = data.observations.iter().any(|row| row.measurement.sees_orientation());
+    let mut out = format!("# {comment}\n");
+    for (name, unit) in data.reading_names().iter().zip(&units) {
+        // Writing to a String cannot fail.
+        let _ = write!(out, "{},", quoted(&format!("{name}[{}]", unit.symbol())));
+    }
+    out.push_str(if orientations { "x[mm],y[mm],z[mm],qx,qy,qz,qw\n" } else { "x[mm],y[mm],z[mm]\n" });
+    let position_decimals = decimals(mm.from_si(noise.position_m));
+    // A rotation turns the quaternion by half its angle.
+    let quaternion_decimals = decimals(noise.rotation_rad / 2.0);
+    for (row, observation) in data.observations.iter().enumerate() {
+        for (&reading, &unit) in data.readings(row).iter().zip(&units) {
+            let _ = write!(out, "{},", decimal(reading, unit, None));
+        }
+        let pose = observation.measurement.pose();
+        let mut measured: Vec<String> =
+            pose.translation.iter().map(|&length| decimal(length, mm, position_decimals)).collect();
+        if observation.measurement.sees_orientation() {
+            measured.extend(pose.quaternion_xyzw().map(|part| decimal(part, number, quaternion_decimals)));
+        } else if orientations {
+            measured.resize(7, String::new());
+        }
+        let _ = writeln!(out, "{}", measured.join(","));
+    }
+    Ok(out)
+}
+
+/// Decimals that leave less than a thousandth of a noise; `None`, all that there are, without noise.
+fn decimals(noise: f64) -> Option<usize> {
+    (noise > 0.0).then(|| (3.0 - noise.log10()).ceil().clamp(0.0, 17.0) as usize)
+}
+
+/// A number in a unit: with the decimals asked for, else with as many as it takes to read back as the same number.
+fn decimal(si: f64, unit: Unit, decimals: Option<usize>) -> String {
+    let value = unit.from_si(si);
+    let with = |count: usize| format!("{value:.count$}");
+    match decimals {
+        Some(count) => with(count),
+        None => (0..=17)
+            .map(with)
+            .find(|text| text.parse().is_ok_and(|again| unit.to_si(again) == si))
+            .unwrap_or_else(|| format!("{value:?}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_read_back_the_same() {
+        let deg = Unit::parse("deg", Quantity::Angle).unwrap();
+        let mm = Unit::parse("mm", Quantity::Length).unwrap();
+        assert_eq!(decimal(deg.to_si(-12.3456), deg, None), "-12.3456");
+        assert_eq!(decimal(mm.to_si(250.001), mm, None), "250.001");
+        for si in [0.1 + 0.2, -1e-3, 3.0, 0.123_456_789_012_345_6] {
+            assert_eq!(mm.to_si(decimal(si, mm, None).parse().unwrap()), si);
+        }
+    }
+
+    #[test]
+    fn measured_numbers_are_as_long_as_their_noise_deserves() {
+        let mm = Unit::parse("mm", Quantity::Length).unwrap();
+        assert_eq!(decimal(0.812_310_012_345, mm, decimals(0.05)), "812.31001");
+        assert_eq!(decimals(0.0), None);
+    }
+}

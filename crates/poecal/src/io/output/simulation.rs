@@ -1,0 +1,122 @@
+//! A simulated session as files: both robots, the measurements and the truth.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::{NewFile, Written, check_folder, robot_files, write_files};
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::calibration_file::{FrameEntry, FrameWord, JointEntry, PoseEntry, RobotEntry};
+use crate::io::measurements;
+use crate::io::model::Model;
+use crate::measurement::{Dataset, Noise};
+use crate::simulate::{Kind, Simulated, Simulation};
+
+/// Version word of `truth.json`.
+const SCHEMA: &str = "poecal-truth-1";
+
+/// A simulated session and how it was made.
+#[derive(Clone, Copy, Debug)]
+pub struct Session<'a> {
+    /// What was simulated.
+    pub simulation: &'a Simulation,
+    /// What the device saw.
+    pub kind: Kind,
+    /// What came out.
+    pub made: &'a Simulated,
+    /// Further rows free of noise.
+    pub held_out: Option<&'a Dataset>,
+    /// The command that makes the same session, for the record.
+    pub command: &'a str,
+}
+
+/// What the measurements of a simulated session hide (`truth.json`). Lengths in metres and angles in radians unless a key says
+/// otherwise; "nominal" is the model given, the other entries are of the robot that was measured.
+#[derive(Serialize)]
+struct TruthFile {
+    schema: String,
+    poecal_version: String,
+    command: String,
+    seed: u64,
+    kind: String,
+    count: usize,
+    held_out_count: usize,
+    errors: Magnitudes,
+    noise: Magnitudes,
+    robot: RobotEntry,
+    joints: Vec<JointEntry>,
+    measurement_frame: FrameEntry,
+    tool: PoseEntry,
+}
+
+#[derive(Serialize)]
+struct Magnitudes {
+    position_mm: f64,
+    rotation_deg: f64,
+}
+
+impl Magnitudes {
+    fn new(position_m: f64, rotation_rad: f64) -> Self {
+        Magnitudes { position_mm: position_m * 1e3, rotation_deg: rotation_rad.to_degrees() }
+    }
+}
+
+impl TruthFile {
+    fn new(session: &Session) -> Self {
+        let Session { simulation, made, .. } = session;
+        TruthFile {
+            schema: SCHEMA.to_owned(),
+            poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
+            command: session.command.to_owned(),
+            seed: simulation.seed,
+            kind: session.kind.word().to_owned(),
+            count: made.data.len(),
+            held_out_count: session.held_out.map_or(0, Dataset::len),
+            errors: Magnitudes::new(simulation.error_position_m, simulation.error_rotation_rad),
+            noise: Magnitudes::new(simulation.noise_position_m, simulation.noise_rotation_rad),
+            robot: RobotEntry::new(&made.actual, &made.nominal),
+            joints: JointEntry::of_robot(&made.actual, &made.nominal),
+            measurement_frame: FrameEntry {
+                known: if simulation.device_anywhere { FrameWord::Unknown } else { FrameWord::Base },
+                base_from_device: (&made.device_from_base.inverse()).into(),
+            },
+            tool: (&made.actual.last_joint_from_tip()).into(),
+        }
+    }
+
+    fn to_text(&self) -> Result<String> {
+        let text = serde_json::to_string_pretty(self).map_err(|error| {
+            Error::new(ErrorKind::Export, format!("the truth cannot be written: {error}"))
+        })?;
+        Ok(text + "\n")
+    }
+}
+
+/// Writes a simulated session whole or not at all: `nominal` and `actual` model, `measurements.csv`, `held_out.csv` if there are
+/// such rows, and `truth.json`. Models are read back and compared with their robots on 1,000 configurations.
+///
+/// # Errors
+/// [`ErrorKind::File`] if something cannot be written; [`ErrorKind::Export`] if a model read back differs by more than 1e-9 m or
+/// rad. Nothing is left behind then.
+pub fn write_simulation(folder: &Path, force: bool, model: &Model, session: &Session) -> Result<Written> {
+    check_folder(folder, force)?;
+    let Session { simulation, made, command, .. } = session;
+    let noise =
+        Noise { position_m: simulation.noise_position_m, rotation_rad: simulation.noise_rotation_rad };
+    let exact = Noise { position_m: 0.0, rotation_rad: 0.0 };
+    let mut notes = Vec::new();
+    let mut files = robot_files("nominal", model, &made.nominal, &mut notes)?;
+    files.extend(robot_files("actual", model, &made.actual, &mut notes)?);
+    notes.sort();
+    notes.dedup();
+    let comment = format!("simulated by: {command}");
+    let measured = measurements::text(&made.data, &made.nominal, &noise, &comment)?;
+    files.push(NewFile::new("measurements.csv", measured));
+    if let Some(held_out) = session.held_out {
+        let comment = format!("{comment} (rows to judge by, free of noise)");
+        let text = measurements::text(held_out, &made.nominal, &exact, &comment)?;
+        files.push(NewFile::new("held_out.csv", text));
+    }
+    files.push(NewFile::new("truth.json", TruthFile::new(session).to_text()?));
+    write_files(folder, &files, notes)
+}
