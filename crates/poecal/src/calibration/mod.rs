@@ -18,7 +18,7 @@ use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
 use crate::robot::Robot;
 use crate::solve;
-use crate::start::{Registration, register};
+use crate::start::{Registration, register, register_again};
 
 /// What is known of the measuring device's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -210,7 +210,7 @@ pub fn calibrate_with_progress(
     let (mut registered, _) = register(&registration(noise, true), &delivered);
     if source == NoiseSource::Estimated {
         noise = noise::stated(options, estimate_noise(data, &packed, &fit_rows, &registered, 6, noise));
-        registered = register(&registration(noise, true), &registered).0;
+        registered = register_again(&registration(noise, true), &registered);
     }
     progress(Stage::Fit);
     let fitted = fit::fit(robot, data, &packed, &fit_rows, &registered, noise, source, length_m, options)?;

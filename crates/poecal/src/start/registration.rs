@@ -59,6 +59,12 @@ pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64)
     polish(problem, best.0, problem.rows.to_vec(), 50)
 }
 
+/// Registers again from a registration that was made with other noise.
+#[must_use]
+pub fn register_again(problem: &Registration<'_>, start: &Estimate) -> Estimate {
+    polish(problem, start.clone(), problem.rows.to_vec(), 50).0
+}
+
 /// The rest of the way to the optimum by least squares.
 fn polish(problem: &Registration<'_>, start: Estimate, rows: Vec<u32>, iterations: usize) -> (Estimate, f64) {
     let free = free_parameters(problem, &rows);
@@ -137,15 +143,20 @@ impl Seen {
             .into_iter()
             .map(|device_from_base| {
                 let candidate = self.alternate(problem, start, device_from_base, rounds);
-                let (polished, cost) = polish(problem, candidate, sample.to_vec(), 1);
-                (cost, polished)
+                (polish(problem, candidate.clone(), sample.to_vec(), 0).1, candidate)
             })
             .collect();
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
-        candidates.truncate(FINALISTS);
         let mut best = (start.clone(), f64::INFINITY);
+        let mut reached: Vec<Pose> = Vec::new();
         for (_, candidate) in candidates {
+            let device = candidate.device_from_base;
+            if reached.len() >= 2 * FINALISTS || reached.iter().any(|other| self.is_near(other, &device)) {
+                continue;
+            }
             let (polished, cost) = polish(problem, candidate, sample.to_vec(), 50);
+            reached.extend([device, polished.device_from_base]);
+            // A later start must be clearly better, so that rounding does not choose between equal ones.
             if cost < best.1 * (1.0 - 1e-6) {
                 best = (polished, cost);
             }
@@ -153,11 +164,23 @@ impl Seen {
         best
     }
 
+    /// Whether two device frames lead to one optimum for sure: a few degrees, and a tenth of the data's spread apart at most.
+    fn is_near(&self, a: &Pose, b: &Pose) -> bool {
+        let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
+        let middle = self.base_motion.first().map_or_else(Vector3::zeros, |motion| motion.translation);
+        turn < 0.1 && (a.act(&middle) - b.act(&middle)).norm() < 0.1 * self.spread()
+    }
+
+    /// Root mean square distance of the measurements from their mean.
+    fn spread(&self) -> f64 {
+        let count = self.measured.len().max(1) as f64;
+        let mean = self.measured.iter().sum::<Vector3<f64>>() / count;
+        (self.measured.iter().map(|place| (place - mean).norm_squared()).sum::<f64>() / count).sqrt()
+    }
+
     /// Root mean square distance from prediction to measurement over that of the measurements to their mean.
     fn misfit(&self, estimate: &Estimate) -> f64 {
         let count = self.measured.len().max(1) as f64;
-        let mean = self.measured.iter().sum::<Vector3<f64>>() / count;
-        let spread: f64 = self.measured.iter().map(|place| (place - mean).norm_squared()).sum();
         let missed: f64 = (0..self.measured.len())
             .map(|k| {
                 let home = estimate.base_from_target[self.target[k]].translation;
@@ -165,7 +188,7 @@ impl Seen {
                 (self.measured[k] - predicted).norm_squared()
             })
             .sum();
-        (missed / spread.max(f64::MIN_POSITIVE)).sqrt()
+        (missed / count).sqrt() / self.spread().max(f64::MIN_POSITIVE)
     }
 
     /// Device frames worth trying: the given one; rigid motions of nominal targets and of targets on the last axis; the hand-eye
