@@ -205,7 +205,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
 
     fn accept(&mut self, state: P::State, normal: Normal, gain: f64) {
         self.nonlinear |= !(0.8..1.25).contains(&gain);
-        self.damping *= if gain < 0.5 {
+        self.damping *= if gain <= 0.5 {
             (1.0 - (2.0 * gain - 1.0).powi(3)).min(2.0)
         } else if self.nonlinear {
             0.3
