@@ -1,5 +1,15 @@
 //! The commands, one a file.
 
 mod calibrate;
+mod check;
+mod convert;
+mod predict;
+mod schema;
+mod validate;
 
 pub(crate) use calibrate::calibrate;
+pub(crate) use check::check;
+pub(crate) use convert::convert;
+pub(crate) use predict::predict;
+pub(crate) use schema::schema;
+pub(crate) use validate::validate;

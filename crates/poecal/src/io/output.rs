@@ -87,7 +87,7 @@ pub fn write(
             notes.extend(patched.notes);
             files.push(("calibrated.urdf".to_owned(), patched.text));
         }
-        ModelSource::Toml | ModelSource::Calibration => {
+        ModelSource::Toml | ModelSource::Calibration(_) => {
             let mut robot = calibration.robot.clone();
             robot.targets = calibration
                 .targets

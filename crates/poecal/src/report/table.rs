@@ -100,7 +100,7 @@ fn set_rows(
 }
 
 /// Four digits that matter, without an exponent where people read lengths.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -111,7 +111,7 @@ fn number(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-fn robot_words(robot: &Robot) -> String {
+pub(super) fn robot_words(robot: &Robot) -> String {
     let sliding = robot.joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
     let turning = robot.joints.len() - sliding;
     let kinds = match (turning, sliding) {
@@ -125,17 +125,22 @@ fn robot_words(robot: &Robot) -> String {
 fn data_words(calibration: &Calibration, data: &Dataset) -> String {
     let poses = data.observations.iter().filter(|row| row.measurement.sees_orientation()).count();
     let points = data.len() - poses;
-    let kinds = match (poses, points) {
-        (poses, 0) => format!("{poses} poses"),
-        (0, points) => format!("{points} points"),
-        (poses, points) => format!("{poses} poses and {points} points"),
-    };
+    let kinds = kinds_words(poses, points);
     let targets = match data.targets.len() {
         1 => String::new(),
         count => format!(" of {count} targets"),
     };
     let held_out = calibration.held_out_rows.len();
     format!("{kinds}{targets}: {} fitted, {held_out} held out", calibration.fit_rows.len())
+}
+
+/// How many poses and points.
+pub(super) fn kinds_words(poses: usize, points: usize) -> String {
+    match (poses, points) {
+        (poses, 0) => format!("{poses} poses"),
+        (0, points) => format!("{points} points"),
+        (poses, points) => format!("{poses} poses and {points} points"),
+    }
 }
 
 fn noise_words(calibration: &Calibration, data: &Dataset) -> String {
@@ -169,7 +174,7 @@ fn solver_words(calibration: &Calibration) -> String {
 }
 
 /// A labelled line, broken at 80 columns with the text aligned.
-fn line(out: &mut String, label: &str, text: &str) {
+pub(super) fn line(out: &mut String, label: &str, text: &str) {
     const INDENT: usize = 14;
     let mut width = INDENT;
     let _ = write!(out, "{label:<INDENT$}");
