@@ -8,7 +8,7 @@ use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 use poecal::io::urdf::ChainSelection;
 
-use crate::quantity::{share, sigma_m, sigma_rad};
+use crate::quantity::{share, sigma_m, sigma_rad, whole};
 
 /// Finds the robot that is really there: kinematic calibration by the product of exponentials.
 #[derive(Debug, Parser)]
@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     #[arg(long, global = true)]
     pub(crate) quiet: bool,
     /// Number of threads (results do not depend on it)
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, global = true, value_name = "N", value_parser = whole::<usize>)]
     pub(crate) threads: Option<usize>,
 }
 
@@ -125,7 +125,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = share)]
     pub(crate) held_out: f64,
     /// Seed of that choice
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     pub(crate) seed: u64,
     /// Measurement file to judge by: all other rows are fitted
     #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]

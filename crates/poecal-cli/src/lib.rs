@@ -8,21 +8,26 @@ mod commands;
 mod console;
 mod quantity;
 
+use std::error::Error as _;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 use args::{Arguments, Command};
 use clap::Parser as _;
+use clap::error::ContextKind;
 use console::Console;
 
 /// Help and version go to standard output, mistakes to standard error: one sentence for a bad value, with clap's hints for the rest.
 fn usage(error: &clap::Error) -> ExitCode {
-    if error.kind() == clap::error::ErrorKind::ValueValidation {
-        let text = error.to_string();
-        let sentence = text.lines().next().unwrap_or_default();
-        Console::new(false).error(sentence.strip_prefix("error: ").unwrap_or(sentence));
-    } else {
-        let _ = error.print();
+    match (error.get(ContextKind::InvalidArg), error.source()) {
+        (Some(option), Some(sentence)) => {
+            let option = option.to_string();
+            let option = option.split(' ').next().unwrap_or_default();
+            Console::new(false).error(format!("{option}: {sentence}"));
+        }
+        _ => {
+            let _ = error.print();
+        }
     }
     ExitCode::from(if error.use_stderr() { 2 } else { 0 })
 }

@@ -1,5 +1,7 @@
 //! Numbers with a unit on the command line: `0.05mm`, `0.01deg`.
 
+use std::str::FromStr;
+
 use poecal::io::measurements::{Quantity, Unit};
 use poecal::{Error, ErrorKind, Result};
 
@@ -52,4 +54,9 @@ pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
         Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
         _ => Err(format!("found `{text}`, expected a number from 0 to below 1")),
     }
+}
+
+/// Parser of a count for clap.
+pub(crate) fn whole<T: FromStr>(text: &str) -> std::result::Result<T, String> {
+    text.parse().map_err(|_| format!("found `{text}`, expected a whole number"))
 }

@@ -33,14 +33,8 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<ExitCo
         file.check_targets(&read.data)?;
     }
     let judgement = judge(&subject, &read.data)?;
-    let names: Vec<String> = arguments.measurements.iter().map(|path| path.display().to_string()).collect();
     for warning in &read.warnings {
         console.warning(warning);
-    }
-    for name in names.iter().filter(|name| file.inputs.measurements.contains(name)) {
-        console.warning(format!(
-            "{name}: the calibration was made from a file of this name, so its rows are training"
-        ));
     }
     let own_mm = file.own_position_rms_mm().max(ROUNDING_MM);
     let rms_mm = judgement.calibrated.position_mm.rms;
@@ -48,7 +42,7 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<ExitCo
         console.data(&report::json(&judgement)?)?;
     } else {
         let calibration = arguments.calibration.display().to_string();
-        console.say(&report::judgement(&calibration, &names.join(", "), &judgement));
+        console.say(&report::judgement(&calibration, &named(arguments, &file), &judgement));
     }
     if !arguments.refit_frame && rms_mm > MOVED_DEVICE * own_mm {
         console.warning(format!(
@@ -58,4 +52,14 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<ExitCo
         ));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The measurement files; those that the calibration was made from are marked.
+fn named(arguments: &Validate, file: &CalibrationFile) -> String {
+    let names = arguments.measurements.iter().map(|path| {
+        let name = path.display().to_string();
+        let mark = if file.inputs.measurements.contains(&name) { " (has training rows)" } else { "" };
+        name + mark
+    });
+    names.collect::<Vec<_>>().join(", ")
 }

@@ -11,7 +11,7 @@ use crate::calibration::{Judgement, ModelAccuracy, Refitted, Statistic};
 pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -> String {
     let mut out = String::new();
     line(&mut out, "calibration", calibration);
-    line(&mut out, "measurements", &format!("{} of {measurements}", judgement.count));
+    line(&mut out, "measurements", &format!("{} in {measurements}", judgement.count));
     line(&mut out, "refitted", &refitted_words(judgement));
     out.push('\n');
     block(&mut out, "position, mm", judgement, |model| Some(model.position_mm));
@@ -31,7 +31,7 @@ fn refitted_words(judgement: &Judgement) -> String {
     if words.is_empty() {
         return "nothing: screws, tool and device frame are the calibration's".to_owned();
     }
-    format!("{}, to these measurements; the screws are the model's", words.join(" and "))
+    format!("{}: fitted to these measurements, so training for them", words.join(" and "))
 }
 
 fn block(

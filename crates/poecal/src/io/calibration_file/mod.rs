@@ -117,7 +117,7 @@ impl CalibrationFile {
             let found =
                 if error.is_data() { "something that does not fit the schema" } else { "broken JSON" };
             let message = format!(
-                "found {found} ({reason}), expected a calibration as written by `poecal calibrate`: calibrate again"
+                "found {found} ({reason}), expected a calibration as written by `poecal calibrate`: name a calibration.json"
             );
             Error::new(ErrorKind::Syntax, message).at(path, error.line().max(1), error.column().max(1))
         };

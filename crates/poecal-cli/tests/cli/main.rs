@@ -1,0 +1,5 @@
+//! The program as users run it.
+
+mod bad_input;
+mod commands;
+mod folder;
