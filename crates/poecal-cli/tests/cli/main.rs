@@ -1,5 +1,7 @@
 //! The program as users run it.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 mod bad_input;
 mod commands;
 mod folder;

@@ -117,7 +117,7 @@ impl Check {
                     .collect(),
             },
             files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
-            sets: measurements.map(|file| SetCounts::of(file)),
+            sets: measurements.map(SetCounts::of),
             warnings: measurements.map_or_else(Vec::new, |file| file.warnings.clone()),
             robot_words: robot_words(robot),
         }

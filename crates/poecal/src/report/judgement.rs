@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::table::{line, number};
+use super::table::{STATISTICS, line, number};
 use crate::calibration::{Judgement, ModelAccuracy, Refitted, Statistic};
 
 /// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
@@ -48,9 +48,7 @@ fn block(
         let _ = write!(out, "{head:>14}");
     }
     out.push('\n');
-    let rows: [(&str, fn(&Statistic) -> f64); 4] =
-        [("mean", |s| s.mean), ("RMS", |s| s.rms), ("95 %", |s| s.p95), ("max", |s| s.max)];
-    for (label, value) in rows {
+    for (label, value) in STATISTICS {
         let _ = write!(out, "  {label:<24}");
         for (_, model) in &columns {
             let cell = of(model).map_or_else(|| "-".to_owned(), |statistic| number(value(&statistic)));

@@ -10,6 +10,13 @@ use crate::solve::Termination;
 /// Columns of the table: their heads and how to take them from the accuracy of a set.
 type Column<'a> = (&'a str, fn(&SetAccuracy) -> &ModelAccuracy);
 
+/// A row of statistics: its label and how to take it.
+type StatisticRow = (&'static str, fn(&Statistic) -> f64);
+
+/// The rows of every table of errors.
+pub(super) const STATISTICS: [StatisticRow; 4] =
+    [("mean", |s| s.mean), ("RMS", |s| s.rms), ("95 %", |s| s.p95), ("max", |s| s.max)];
+
 /// What a calibration did and how good it is, as text of lines up to 80 characters.
 #[must_use]
 pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
@@ -86,9 +93,7 @@ fn set_rows(
     set: &SetAccuracy,
     of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
 ) {
-    let rows: [(&str, fn(&Statistic) -> f64); 4] =
-        [("mean", |s| s.mean), ("RMS", |s| s.rms), ("95 %", |s| s.p95), ("max", |s| s.max)];
-    for (k, (label, value)) in rows.iter().enumerate() {
+    for (k, (label, value)) in STATISTICS.iter().enumerate() {
         let head = if k == 0 { format!("{name} ({})", set.count) } else { String::new() };
         let _ = write!(out, "  {head:<17} {label:<6}");
         for (_, model) in columns {
