@@ -5,3 +5,5 @@
 mod bad_input;
 mod commands;
 mod folder;
+mod session;
+mod targets_and_validation;

@@ -54,7 +54,7 @@ pub fn predict(
     let with_ids = !joints.ids.is_empty();
     let mut out = String::with_capacity((joints.rows + 1) * 140);
     out.push_str(if with_ids { "id,x[m],y[m],z[m],qx,qy,qz,qw\n" } else { "x[m],y[m],z[m],qx,qy,qz,qw\n" });
-    for (row, readings) in joints.readings.chunks_exact(robot.reading_names().len()).enumerate() {
+    for (row, readings) in joints.readings.chunks_exact(robot.reading_names().len().max(1)).enumerate() {
         let pose = frame_from_base * robot.forward_kinematics(readings) * tip_from_target;
         if with_ids {
             out.push_str(&quoted(joints.ids.get(row).map_or("", String::as_str)));
