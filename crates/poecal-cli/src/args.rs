@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use poecal::io::measurements::{ColumnMap, ReadOptions};
+use poecal::io::model::ModelFormat;
+use poecal::io::predictions::PredictionFrame;
 use poecal::io::urdf::ChainSelection;
 
-use crate::quantity::{LengthAndAngle, angle_rad, length_m};
+use crate::quantity::{LengthAndAngle, share, sigma_m, sigma_rad, whole};
 
 /// Finds the robot that is really there: kinematic calibration by the product of exponentials.
 #[derive(Debug, Parser)]
@@ -15,11 +17,11 @@ pub(crate) struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Print nothing but errors and what was asked for with --json
+    /// Print errors and data only: what --json gives, predictions and converted models
     #[arg(long, global = true)]
     pub(crate) quiet: bool,
     /// Number of threads (results do not depend on it)
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, global = true, value_name = "N", value_parser = whole::<usize>)]
     pub(crate) threads: Option<usize>,
 }
 
@@ -30,6 +32,16 @@ pub(crate) enum Command {
     Calibrate(Calibrate),
     /// Simulate a robot with errors and its measurements, for tests and for learning
     Simulate(Simulate),
+    /// Judge a calibration by other measurements
+    Validate(Validate),
+    /// Predict poses from joint readings
+    Predict(Predict),
+    /// Show how a model and measurement files are understood
+    Check(Check),
+    /// Write a model in another form
+    Convert(Convert),
+    /// Print the JSON Schema of calibration.json
+    Schema,
 }
 
 /// Which chain of a URDF.
@@ -49,12 +61,26 @@ impl Chain {
     }
 }
 
-/// How to read measurement files.
+/// What columns of files mean.
 #[derive(Args, Debug)]
-pub(crate) struct Reading {
+pub(crate) struct Columns {
     /// Mapping file that says what the columns of other people's files mean
     #[arg(long, value_name = "MAP.toml")]
     pub(crate) columns: Option<PathBuf>,
+}
+
+impl Columns {
+    pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
+        let mapping = self.columns.as_ref().map(ColumnMap::read).transpose()?;
+        Ok(ReadOptions { mapping, fit_where: None })
+    }
+}
+
+/// How to read measurement files.
+#[derive(Args, Debug)]
+pub(crate) struct Reading {
+    #[command(flatten)]
+    pub(crate) columns: Columns,
     /// Fit only rows whose COLUMN has one of these values, and hold out all others
     #[arg(long, value_name = "COLUMN=VALUE[,VALUE]")]
     pub(crate) fit_where: Option<String>,
@@ -62,9 +88,8 @@ pub(crate) struct Reading {
 
 impl Reading {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
-        let mapping = self.columns.as_ref().map(ColumnMap::read).transpose()?;
         let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
-        Ok(ReadOptions { mapping, fit_where })
+        Ok(ReadOptions { fit_where, ..self.columns.options()? })
     }
 }
 
@@ -93,16 +118,16 @@ pub(crate) struct Calibrate {
     #[arg(long, value_enum, default_value = "unknown")]
     pub(crate) frame: Frame,
     /// Standard deviation of each measured position component, like 0.05mm [default: estimated from the data]
-    #[arg(long, value_name = "LENGTH", value_parser = length_m)]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m)]
     pub(crate) sigma_position: Option<f64>,
     /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
-    #[arg(long, value_name = "ANGLE", value_parser = angle_rad)]
+    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad)]
     pub(crate) sigma_rotation: Option<f64>,
     /// Share of the configurations held out, where the files do not say
-    #[arg(long, value_name = "SHARE", default_value_t = 0.3)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = share)]
     pub(crate) held_out: f64,
     /// Seed of that choice
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     pub(crate) seed: u64,
     /// Measurement file to judge by: all other rows are fitted
     #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]
@@ -163,4 +188,114 @@ pub(crate) struct Simulate {
     /// Overwrite files in an existing folder
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+/// Arguments of `poecal validate`.
+#[derive(Args, Debug)]
+pub(crate) struct Validate {
+    /// Calibration to judge (calibration.json)
+    pub(crate) calibration: PathBuf,
+    /// Measurement files (CSV), joined; every row counts
+    #[arg(required = true)]
+    pub(crate) measurements: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) columns: Columns,
+    /// Find the measuring device's frame anew from these measurements
+    #[arg(long)]
+    pub(crate) refit_frame: bool,
+    /// Find the targets anew from these measurements
+    #[arg(long)]
+    pub(crate) refit_tool: bool,
+    /// Print JSON instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The frame of predicted poses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PredictIn {
+    /// The robot's base
+    Base,
+    /// The measuring device of a calibration
+    Device,
+}
+
+impl From<PredictIn> for PredictionFrame {
+    fn from(frame: PredictIn) -> Self {
+        match frame {
+            PredictIn::Base => PredictionFrame::Base,
+            PredictIn::Device => PredictionFrame::Device,
+        }
+    }
+}
+
+/// Arguments of `poecal predict`.
+#[derive(Args, Debug)]
+pub(crate) struct Predict {
+    /// Robot model: URDF, TOML or calibration.json
+    pub(crate) model: PathBuf,
+    /// Joint readings (CSV); other columns than the joints' and `id` are left alone
+    pub(crate) joints: PathBuf,
+    #[command(flatten)]
+    pub(crate) chain: Chain,
+    #[command(flatten)]
+    pub(crate) columns: Columns,
+    /// The frame of the poses
+    #[arg(long, value_enum, default_value = "base")]
+    pub(crate) frame: PredictIn,
+    /// Predict this target of the model instead of the tip
+    #[arg(long, value_name = "NAME")]
+    pub(crate) target: Option<String>,
+    /// File to write, over an old one [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// Arguments of `poecal check`.
+#[derive(Args, Debug)]
+pub(crate) struct Check {
+    /// Robot model: URDF, TOML or calibration.json
+    pub(crate) model: PathBuf,
+    /// Measurement files (CSV)
+    pub(crate) measurements: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) chain: Chain,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// Print JSON instead of text
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The forms that a model can be written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Form {
+    /// A new URDF of links, joints and a tip
+    Urdf,
+    /// A table of screws
+    Toml,
+}
+
+impl From<Form> for ModelFormat {
+    fn from(form: Form) -> Self {
+        match form {
+            Form::Urdf => ModelFormat::Urdf,
+            Form::Toml => ModelFormat::Toml,
+        }
+    }
+}
+
+/// Arguments of `poecal convert`.
+#[derive(Args, Debug)]
+pub(crate) struct Convert {
+    /// Robot model: URDF, TOML or calibration.json
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) chain: Chain,
+    /// The form to write [default: as the extension of --out says]
+    #[arg(long, value_enum)]
+    pub(crate) to: Option<Form>,
+    /// File to write, over an old one [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }

@@ -1,10 +1,13 @@
 //! Standard output for results, standard error for everything else.
 
 use std::fmt::Display;
-use std::io::{IsTerminal as _, Write as _};
+use std::io::{ErrorKind, IsTerminal as _, Write as _};
+use std::path::Path;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use poecal::Result;
+use poecal::io::output;
 
 /// Where the program speaks.
 pub(crate) struct Console {
@@ -18,8 +21,30 @@ impl Console {
 
     /// A result. A reader that has gone away (a closed pipe) is no error.
     pub(crate) fn result(&self, text: &str) {
+        let _ = self.data(text);
+    }
+
+    /// A result that must arrive whole, for which a closed pipe is no error either.
+    pub(crate) fn data(&self, text: &str) -> Result<()> {
         let mut out = std::io::stdout().lock();
-        let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+        match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+            Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                let message = format!(
+                    "standard output cannot be written to ({error}), expected room for {} bytes",
+                    text.len()
+                );
+                Err(poecal::Error::new(poecal::ErrorKind::File, message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Data into a file, or to standard output.
+    pub(crate) fn deliver(&self, text: &str, out: Option<&Path>) -> Result<()> {
+        match out {
+            Some(path) => output::write_file(path, text),
+            None => self.data(text),
+        }
     }
 
     /// A result that `--quiet` suppresses.

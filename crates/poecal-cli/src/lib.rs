@@ -8,22 +8,35 @@ mod commands;
 mod console;
 mod quantity;
 
+use std::error::Error as _;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 use args::{Arguments, Command};
 use clap::Parser as _;
+use clap::error::ContextKind;
 use console::Console;
+
+/// Help and version go to standard output, mistakes to standard error: one sentence for a bad value, with clap's hints for the rest.
+fn usage(error: &clap::Error) -> ExitCode {
+    match (error.get(ContextKind::InvalidArg), error.source()) {
+        (Some(option), Some(sentence)) => {
+            let option = option.to_string();
+            let option = option.split(' ').next().unwrap_or_default();
+            Console::new(false).error(format!("{option}: {sentence}"));
+        }
+        _ => {
+            let _ = error.print();
+        }
+    }
+    ExitCode::from(if error.use_stderr() { 2 } else { 0 })
+}
 
 /// Runs the program.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
-        // clap prints help and version to standard output and mistakes to standard error.
-        Err(error) => {
-            let _ = error.print();
-            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
-        }
+        Err(error) => return usage(&error),
     };
     let console = Console::new(arguments.quiet);
     if let Some(threads) = arguments.threads {
@@ -33,6 +46,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = match &arguments.command {
         Command::Calibrate(options) => commands::calibrate(options, &console),
         Command::Simulate(options) => commands::simulate(options, &console),
+        Command::Validate(options) => commands::validate(options, &console),
+        Command::Predict(options) => commands::predict(options, &console),
+        Command::Check(options) => commands::check(options, &console),
+        Command::Convert(options) => commands::convert(options, &console),
+        Command::Schema => commands::schema(&console),
     };
     match result {
         Ok(code) => code,

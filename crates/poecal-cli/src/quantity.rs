@@ -61,14 +61,35 @@ impl FromStr for LengthAndAngle {
     }
 }
 
-/// Parser of a length for clap.
-pub(crate) fn length_m(text: &str) -> std::result::Result<f64, String> {
-    parse(text, Quantity::Length).map_err(|error| error.to_string())
+/// Parser of a standard deviation of positions for clap.
+pub(crate) fn sigma_m(text: &str) -> std::result::Result<f64, String> {
+    above_zero(text, Quantity::Length)
 }
 
-/// Parser of an angle for clap.
-pub(crate) fn angle_rad(text: &str) -> std::result::Result<f64, String> {
-    parse(text, Quantity::Angle).map_err(|error| error.to_string())
+/// Parser of a standard deviation of rotations for clap.
+pub(crate) fn sigma_rad(text: &str) -> std::result::Result<f64, String> {
+    above_zero(text, Quantity::Angle)
+}
+
+fn above_zero(text: &str, quantity: Quantity) -> std::result::Result<f64, String> {
+    match parse(text, quantity) {
+        Ok(value) if value > 0.0 => Ok(value),
+        Ok(_) => Err(format!("found `{text}`, expected a standard deviation above 0")),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// Parser of a share for clap.
+pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
+    match text.parse() {
+        Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
+        _ => Err(format!("found `{text}`, expected a number from 0 to below 1")),
+    }
+}
+
+/// Parser of a count for clap.
+pub(crate) fn whole<T: FromStr>(text: &str) -> std::result::Result<T, String> {
+    text.parse().map_err(|_| format!("found `{text}`, expected a whole number"))
 }
 
 #[cfg(test)]

@@ -1,7 +1,17 @@
 //! The commands, one a file.
 
 mod calibrate;
+mod check;
+mod convert;
+mod predict;
+mod schema;
 mod simulate;
+mod validate;
 
 pub(crate) use calibrate::calibrate;
+pub(crate) use check::check;
+pub(crate) use convert::convert;
+pub(crate) use predict::predict;
+pub(crate) use schema::schema;
 pub(crate) use simulate::simulate;
+pub(crate) use validate::validate;

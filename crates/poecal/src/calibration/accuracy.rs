@@ -118,7 +118,8 @@ pub fn set_accuracy(data: &Dataset, packed: &Packed, rows: &[u32], models: &Mode
     }
 }
 
-fn model_accuracy(errors: &[RowError]) -> ModelAccuracy {
+/// Errors of one model from those of its rows.
+pub(super) fn model_accuracy(errors: &[RowError]) -> ModelAccuracy {
     let nothing = Statistic { mean: 0.0, rms: 0.0, p95: 0.0, max: 0.0 };
     ModelAccuracy {
         position_mm: Statistic::of(errors.iter().map(|e| e.position_m.norm() * 1e3).collect())

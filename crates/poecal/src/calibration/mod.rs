@@ -2,11 +2,13 @@
 
 mod accuracy;
 mod fit;
+mod judge;
 mod noise;
 mod split;
 
 pub use accuracy::{Accuracy, ModelAccuracy, RowError, SetAccuracy, Statistic, row_errors, set_accuracy};
 pub use fit::fit_screws;
+pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
 pub use split::split_rows;
 

@@ -6,6 +6,7 @@ mod mimic;
 pub mod model;
 mod numbers;
 pub mod output;
+pub mod predictions;
 mod proof;
 pub mod residuals;
 pub mod robot_toml;

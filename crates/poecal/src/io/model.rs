@@ -16,8 +16,8 @@ pub enum ModelSource {
     Urdf(Box<UrdfDocument>),
     /// A TOML model.
     Toml,
-    /// The calibrated robot of a `calibration.json`.
-    Calibration,
+    /// A `calibration.json`, of which the model is the calibrated robot.
+    Calibration(Box<CalibrationFile>),
 }
 
 /// A robot and the file it came from.
@@ -84,8 +84,10 @@ impl Model {
         let text = source_text::read(path, "a robot model (URDF, TOML or calibration.json)")?;
         if looks_like_json(path, &text) {
             refuse_selection(path, selection)?;
-            let robot = CalibrationFile::parse(&text, path)?.robot().map_err(|error| error.in_file(path))?;
-            return Ok(Model { robot, source: ModelSource::Calibration, path: path.to_path_buf() });
+            let file = CalibrationFile::parse(&text, path)?;
+            let robot = file.robot().map_err(|error| error.in_file(path))?;
+            let source = ModelSource::Calibration(Box::new(file));
+            return Ok(Model { robot, source, path: path.to_path_buf() });
         }
         let (robot, source) = match ModelFormat::of_path(path).unwrap_or(ModelFormat::of_text(&text)) {
             ModelFormat::Urdf => {
@@ -175,7 +177,7 @@ fn toml_notes(model: &Model) -> Vec<String> {
         ModelSource::Urdf(_) => {
             vec!["link frames, fixed joints, meshes and inertias are not part of a TOML model and were left out".to_owned()]
         }
-        ModelSource::Toml | ModelSource::Calibration => Vec::new(),
+        ModelSource::Toml | ModelSource::Calibration(_) => Vec::new(),
     }
 }
 

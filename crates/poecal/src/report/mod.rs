@@ -1,5 +1,23 @@
 //! Results as text for people. No number here that is not in the result.
 
+mod check;
+mod judgement;
 mod table;
 
+pub use check::{Check, SetCounts};
+pub use judgement::judgement;
 pub use table::{accuracy_table, summary};
+
+use serde::Serialize;
+
+use crate::error::{Error, ErrorKind, Result};
+
+/// A result as JSON, with a line break at its end.
+///
+/// # Errors
+/// [`ErrorKind::Export`] if it cannot be written as JSON.
+pub fn json(result: &impl Serialize) -> Result<String> {
+    let text = serde_json::to_string_pretty(result)
+        .map_err(|error| Error::new(ErrorKind::Export, format!("the result cannot be written: {error}")))?;
+    Ok(text + "\n")
+}

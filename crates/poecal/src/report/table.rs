@@ -10,6 +10,13 @@ use crate::solve::Termination;
 /// Columns of the table: their heads and how to take them from the accuracy of a set.
 type Column<'a> = (&'a str, fn(&SetAccuracy) -> &ModelAccuracy);
 
+/// A row of statistics: its label and how to take it.
+type StatisticRow = (&'static str, fn(&Statistic) -> f64);
+
+/// The rows of every table of errors.
+pub(super) const STATISTICS: [StatisticRow; 4] =
+    [("mean", |s| s.mean), ("RMS", |s| s.rms), ("95 %", |s| s.p95), ("max", |s| s.max)];
+
 /// What a calibration did and how good it is, as text of lines up to 80 characters.
 #[must_use]
 pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
@@ -86,12 +93,12 @@ fn set_rows(
     set: &SetAccuracy,
     of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
 ) {
-    for (k, label) in ["mean", "RMS", "95 %", "max"].into_iter().enumerate() {
+    for (k, (label, value)) in STATISTICS.iter().enumerate() {
         let head = if k == 0 { format!("{name} ({})", set.count) } else { String::new() };
         let _ = write!(out, "  {head:<17} {label:<6}");
         for (_, model) in columns {
             let cell =
-                of(model(set)).map_or_else(|| "-".to_owned(), |s| number([s.mean, s.rms, s.p95, s.max][k]));
+                of(model(set)).map_or_else(|| "-".to_owned(), |s| number(value(&s)));
             let _ = write!(out, "{cell:>14}");
         }
         out.push('\n');
@@ -99,7 +106,7 @@ fn set_rows(
 }
 
 /// Four digits that matter, without an exponent where people read lengths.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -110,7 +117,7 @@ fn number(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-fn robot_words(robot: &Robot) -> String {
+pub(super) fn robot_words(robot: &Robot) -> String {
     let sliding = robot.joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
     let turning = robot.joints.len() - sliding;
     let kinds = match (turning, sliding) {
@@ -124,17 +131,22 @@ fn robot_words(robot: &Robot) -> String {
 fn data_words(calibration: &Calibration, data: &Dataset) -> String {
     let poses = data.observations.iter().filter(|row| row.measurement.sees_orientation()).count();
     let points = data.len() - poses;
-    let kinds = match (poses, points) {
-        (poses, 0) => format!("{poses} poses"),
-        (0, points) => format!("{points} points"),
-        (poses, points) => format!("{poses} poses and {points} points"),
-    };
+    let kinds = kinds_words(poses, points);
     let targets = match data.targets.len() {
         1 => String::new(),
         count => format!(" of {count} targets"),
     };
     let held_out = calibration.held_out_rows.len();
     format!("{kinds}{targets}: {} fitted, {held_out} held out", calibration.fit_rows.len())
+}
+
+/// How many poses and points.
+pub(super) fn kinds_words(poses: usize, points: usize) -> String {
+    match (poses, points) {
+        (poses, 0) => format!("{poses} poses"),
+        (0, points) => format!("{points} points"),
+        (poses, points) => format!("{poses} poses and {points} points"),
+    }
 }
 
 fn noise_words(calibration: &Calibration, data: &Dataset) -> String {
@@ -169,7 +181,7 @@ fn solver_words(calibration: &Calibration) -> String {
 }
 
 /// A labelled line, broken at 80 columns with the text aligned.
-fn line(out: &mut String, label: &str, text: &str) {
+pub(super) fn line(out: &mut String, label: &str, text: &str) {
     const INDENT: usize = 14;
     let mut width = INDENT;
     let _ = write!(out, "{label:<INDENT$}");

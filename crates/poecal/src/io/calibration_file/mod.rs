@@ -1,5 +1,6 @@
 //! `calibration.json`: a finished calibration as a file, versioned, with everything that a prediction needs.
 
+mod judging;
 mod schema;
 
 pub use schema::*;
@@ -93,9 +94,13 @@ impl CalibrationFile {
         let path = path.as_ref();
         let syntax = |error: &serde_json::Error| {
             let reason = error.to_string();
-            let reason = reason.split(" at line ").next().unwrap_or("").to_owned();
-            let message = format!("found {reason}, expected a calibration written by `poecal calibrate`");
-            Error::new(ErrorKind::Syntax, message).at(path, error.line(), error.column())
+            let reason = reason.split(" at line ").next().unwrap_or_default();
+            let found =
+                if error.is_data() { "something that does not fit the schema" } else { "broken JSON" };
+            let message = format!(
+                "found {found} ({reason}), expected a calibration as written by `poecal calibrate`: name a calibration.json"
+            );
+            Error::new(ErrorKind::Syntax, message).at(path, error.line().max(1), error.column().max(1))
         };
         let value: serde_json::Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
         match value.get("schema").and_then(serde_json::Value::as_str) {

@@ -97,7 +97,7 @@ fn robot_files<'a>(
             notes.extend(patched.notes);
             Ok(vec![NewFile { name: urdf, text: patched.text, model_of: Some((robot, patched.tip_link)) }])
         }
-        ModelSource::Toml | ModelSource::Calibration => {
+        ModelSource::Toml | ModelSource::Calibration(_) => {
             let toml = NewFile::of_robot(format!("{stem}.toml"), robot_toml::write(robot), robot);
             let new = urdf::write_new(robot)?;
             notes.extend(new.notes);

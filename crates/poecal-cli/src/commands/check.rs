@@ -1,0 +1,27 @@
+//! `poecal check`: how files are understood.
+
+use std::process::ExitCode;
+
+use poecal::io::measurements;
+use poecal::io::model::Model;
+use poecal::{Result, report};
+
+use crate::args::Check;
+use crate::console::Console;
+
+pub(crate) fn check(arguments: &Check, console: &Console) -> Result<ExitCode> {
+    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    let options = arguments.reading.options()?;
+    let measurements = if arguments.measurements.is_empty() {
+        None
+    } else {
+        Some(measurements::read(&arguments.measurements, &model.robot, &options)?)
+    };
+    let check = report::Check::new(&model, measurements.as_ref());
+    if arguments.json {
+        console.data(&report::json(&check)?)?;
+    } else {
+        console.say(&check.text());
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,21 @@
+//! `poecal predict`: poses from joint readings.
+
+use std::process::ExitCode;
+
+use poecal::Result;
+use poecal::io::model::Model;
+use poecal::io::{measurements, predictions};
+
+use crate::args::Predict;
+use crate::console::Console;
+
+pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<ExitCode> {
+    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    let joints = measurements::read_joints(&arguments.joints, &model.robot, &arguments.columns.options()?)?;
+    for warning in &joints.warnings {
+        console.warning(warning);
+    }
+    let text = predictions::predict(&model, &joints, arguments.frame.into(), arguments.target.as_deref())?;
+    console.deliver(&text, arguments.out.as_deref())?;
+    Ok(ExitCode::SUCCESS)
+}

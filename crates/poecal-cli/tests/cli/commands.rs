@@ -1,0 +1,246 @@
+//! Every command end to end, on simulated measurements.
+
+use poecal::io::calibration_file::CalibrationFile;
+use poecal::io::measurements::{self, ReadOptions};
+use poecal::simulate::{Kind, Simulation};
+
+use crate::folder::Folder;
+use crate::session::{ROBOT, calibration, numbers, session, write_measurements};
+
+#[test]
+fn calibrate_writes_its_folder_and_tells_three_models() {
+    let folder = session(Kind::Pose);
+    let out = folder.done("calibrate robot.urdf measurements.csv");
+    for words in [
+        "nominal    registered    calibrated",
+        "training (42)",
+        "held out (18)",
+        "60 poses: 42 fitted, 18 held out",
+    ] {
+        assert!(out.contains(words), "`{words}` is not in\n{out}");
+    }
+    let files = ["measurements.csv", "poecal-out", "robot.urdf"].map(|name| folder.path(name));
+    let results = ["calibrated.urdf", "calibration.json", "residuals.csv"].map(|name| files[1].join(name));
+    let mut expected: Vec<_> = files.into_iter().chain(results).collect();
+    expected.sort();
+    assert_eq!(folder.listing().into_keys().collect::<Vec<_>>(), expected);
+    let held_out = calibration(&folder, "poecal-out").accuracy.held_out.unwrap();
+    println!("held out, calibrated: {:?}", held_out.calibrated);
+    // Simulated noise: 0.05 mm and 0.01 degrees a component.
+    assert!(held_out.calibrated.position_mm.rms < 0.2 && held_out.nominal.position_mm.rms > 5.0);
+    assert!(held_out.calibrated.rotation_deg.unwrap().rms < 0.04);
+}
+
+/// A URDF without its attributes `xyz` and `rpy`.
+fn without_placements(urdf: &str) -> String {
+    let mut rest = urdf;
+    let mut kept = String::new();
+    while let Some(at) = [" xyz=\"", " rpy=\""].iter().filter_map(|name| rest.find(name)).min() {
+        let (before, attribute) = rest.split_at(at);
+        kept.push_str(before);
+        rest = attribute.splitn(3, '"').nth(2).unwrap();
+    }
+    kept + rest
+}
+
+#[test]
+fn calibrated_urdf_changes_attribute_values_only() {
+    let folder = session(Kind::Pose);
+    folder.done("calibrate robot.urdf measurements.csv");
+    let calibrated = folder.read("poecal-out/calibrated.urdf");
+    assert_ne!(calibrated, ROBOT);
+    // Comments, blanks and everything else are the input's, byte for byte; the tool's mount got an `rpy` that it did not have.
+    assert_eq!(without_placements(&calibrated), without_placements(ROBOT));
+    assert!(without_placements(ROBOT).contains("<!-- The elbow manipulator of Lou"));
+}
+
+#[test]
+fn training_figures_are_never_shown_without_the_word() {
+    let folder = session(Kind::Mixed);
+    for arguments in ["", "--held-out 0", "--fit-where stage=1", "--validate measurements.csv"] {
+        let out = folder.done(&format!("calibrate robot.urdf measurements.csv --force {arguments}"));
+        // Each block of figures begins with a row that names its set; the first block of a table is the training one.
+        let mut set = "";
+        for line in out.lines() {
+            if line.starts_with("position, mm") || line.starts_with("rotation, deg") {
+                set = "";
+            }
+            for name in ["training (", "held out ("] {
+                if line.trim_start().starts_with(name) {
+                    set = name;
+                }
+            }
+            let is_figure = ["mean ", "RMS ", "95 % ", "max "].iter().any(|row| line.contains(row));
+            assert!(!is_figure || !set.is_empty(), "figures without their set:\n{out}");
+        }
+    }
+    let out = folder.done("validate poecal-out/calibration.json measurements.csv");
+    assert!(out.contains("measurements.csv (has training rows)"), "{out}");
+    let out = folder.done("validate poecal-out/calibration.json measurements.csv --refit-frame --refit-tool");
+    assert!(out.contains("device frame and tool: fitted to these measurements, so training"), "{out}");
+}
+
+#[test]
+fn what_is_held_out_can_be_said() {
+    let folder = session(Kind::Pose);
+    let out = folder.done("calibrate robot.urdf measurements.csv --held-out 0 --out all");
+    assert!(out.contains("held out        none: every measurement was fitted"), "{out}");
+    let json: serde_json::Value = serde_json::from_str(&folder.read("all/calibration.json")).unwrap();
+    assert_eq!(json["accuracy"]["held_out"], serde_json::Value::Null);
+    assert_eq!(json["accuracy"]["training"]["count"], 60);
+
+    let out = folder.done("calibrate robot.urdf measurements.csv --fit-where stage=1 --out stage");
+    assert!(out.contains("training (40)") && out.contains("held out (20)"), "{out}");
+
+    let simulation = Simulation { count: 60, seed: 1, ..Simulation::default() };
+    write_measurements(&folder, "other.csv", Kind::Pose, "", &Simulation { count: 25, ..simulation });
+    let out = folder.done("calibrate robot.urdf measurements.csv --validate other.csv --out other");
+    assert!(out.contains("training (60)") && out.contains("held out (25)"), "{out}");
+}
+
+#[test]
+fn json_is_the_file_and_quiet_is_silent() {
+    let folder = session(Kind::Point);
+    let out = folder.done("calibrate robot.urdf measurements.csv --json");
+    assert_eq!(out, folder.read("poecal-out/calibration.json"));
+    let run = folder.run("calibrate robot.urdf measurements.csv --quiet --out quiet");
+    assert_eq!((run.code, run.out.as_str(), run.err.as_str()), (0, "", ""));
+    let run = folder.run("calibrate robot.urdf measurements.csv");
+    assert_eq!(run.code, 2, "an existing folder was overwritten");
+    folder.write("poecal-out/residuals.csv", "old");
+    folder.write("poecal-out/mine.txt", "mine");
+    folder.done("calibrate robot.urdf measurements.csv --force");
+    assert_ne!(folder.read("poecal-out/residuals.csv"), "old");
+    assert_eq!(folder.read("poecal-out/mine.txt"), "mine");
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    let folder = session(Kind::Mixed);
+    let one = folder.done("calibrate robot.urdf measurements.csv --threads 1 --out one --json");
+    let two = folder.done("calibrate robot.urdf measurements.csv --threads 2 --out two --json");
+    assert_eq!(one, two);
+    for name in ["calibration.json", "calibrated.urdf", "residuals.csv"] {
+        assert_eq!(folder.read(&format!("one/{name}")), folder.read(&format!("two/{name}")), "{name}");
+    }
+}
+
+#[test]
+fn predictions_are_those_of_the_model() {
+    let folder = session(Kind::Pose);
+    folder.done("calibrate robot.urdf measurements.csv");
+    let out = folder.done("predict poecal-out/calibration.json measurements.csv");
+    assert_eq!(out.lines().next(), Some("id,x[m],y[m],z[m],qx,qy,qz,qw"));
+    assert!(out.lines().nth(1).unwrap().starts_with("row0,"));
+    let file = calibration(&folder, "poecal-out");
+    let robot = file.robot().unwrap();
+    let data =
+        measurements::read(&[folder.path("measurements.csv")], &robot, &ReadOptions::default()).unwrap().data;
+    for (row, predicted) in numbers(&out, 1).iter().enumerate() {
+        let pose = robot.forward_kinematics(data.readings(row));
+        let position: [f64; 3] = pose.translation.into();
+        // Equal to the bit, since numbers are written so that they read back.
+        assert_eq!(predicted[..3], position);
+        assert_eq!(predicted[3..], pose.quaternion_xyzw());
+        assert!(predicted[6] >= 0.0);
+    }
+    // In the device's frame, predictions are what was measured, but for the noise.
+    let out =
+        folder.done("predict poecal-out/calibration.json measurements.csv --frame device --out seen.csv");
+    assert_eq!(out, "");
+    for (row, predicted) in numbers(&folder.read("seen.csv"), 1).iter().enumerate() {
+        let measured = data.observations[row].measurement.pose();
+        let distance = (0..3).map(|k| (predicted[k] - measured.translation[k]).powi(2)).sum::<f64>().sqrt();
+        assert!(distance < 5e-4, "row {row}: {distance} m");
+    }
+    // The calibrated URDF is the same robot.
+    let urdf = numbers(&folder.done("predict poecal-out/calibrated.urdf measurements.csv"), 1);
+    let json = numbers(&folder.done("predict poecal-out/calibration.json measurements.csv"), 1);
+    for (a, b) in urdf.iter().flatten().zip(json.iter().flatten()) {
+        assert!((a - b).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_device_is_the_base_where_that_was_given() {
+    let folder = session(Kind::Pose);
+    let at_base = Simulation { count: 60, device_anywhere: false, ..Simulation::default() };
+    write_measurements(&folder, "base.csv", Kind::Pose, "", &at_base);
+    folder.done("calibrate robot.urdf base.csv --frame base");
+    assert_eq!(
+        folder.done("predict poecal-out/calibration.json base.csv --frame device"),
+        folder.done("predict poecal-out/calibration.json base.csv --frame base")
+    );
+}
+
+#[test]
+fn check_says_what_it_understood() {
+    let folder = session(Kind::Mixed);
+    folder.write("ids.csv", "id;set;joint1[deg];joint2;joint3;joint4;joint5;joint6;x[mm];y[mm];z[mm];note\nr1;fit;-90;0,5;0;0;0;0;700;0;500;a\nr2;held_out;90;0,25;0;0;0;0;700;10;500;b\n");
+    let out = folder.done("check robot.urdf measurements.csv ids.csv");
+    for words in [
+        "robot         elbow: 6 revolute, from base_link to tool",
+        "joint3: revolute about (0, -1, 0) through (150, 0, 570) mm, from",
+        "rows          60: 30 poses and 30 points",
+        "orientation   quaternion x, y, z, w; device_from_target",
+        "separator: semicolon; decimal sign: comma",
+        "joint1    joint1[deg]    deg, header   -90 to 90 deg",
+        "joint2    joint2         rad, SI       14.324 to 28.648 deg",
+        "y         y[mm]          mm, header    0 to 10 mm",
+        "left alone    note",
+        "sets          1 to fit, 1 held out, 60 not stated (fitted)",
+        "warnings      measurements.csv: left alone the columns `stage`",
+        "ids.csv: left alone the columns `note`",
+    ] {
+        assert!(out.contains(words), "`{words}` is not in\n{out}");
+    }
+    assert!(out.lines().all(|line| line.chars().count() <= 80), "{out}");
+    let out = folder.done("check robot.urdf measurements.csv --fit-where stage=1");
+    assert!(out.contains("sets          40 to fit, 20 held out"), "{out}");
+
+    let json: serde_json::Value =
+        serde_json::from_str(&folder.done("check robot.urdf ids.csv --json")).unwrap();
+    assert_eq!(json["model"]["joints"][1]["point_m"], serde_json::json!([0.15, 0.0, 0.0]));
+    assert_eq!(json["files"][0]["separator"], "semicolon");
+    assert_eq!(json["sets"], serde_json::json!({"fit": 1, "held_out": 1, "unstated": 0}));
+    assert_eq!(json["warnings"].as_array().unwrap().len(), 1);
+    let json: serde_json::Value = serde_json::from_str(&folder.done("check robot.urdf --json")).unwrap();
+    assert_eq!((&json["sets"], &json["files"]), (&serde_json::Value::Null, &serde_json::json!([])));
+}
+
+#[test]
+fn convert_gives_the_same_robot_in_another_form() {
+    let folder = session(Kind::Pose);
+    folder.done("calibrate robot.urdf measurements.csv");
+    let run = folder.run("convert robot.urdf --to toml");
+    assert!(run.out.starts_with("poecal_robot = 1\n"));
+    assert_eq!(
+        run.err,
+        "warning: link frames, fixed joints, meshes and inertias are not part of a TOML model and were left out\n"
+    );
+    assert_eq!(folder.done("convert robot.urdf --out robot.toml"), "");
+    assert_eq!(folder.read("robot.toml"), run.out);
+    folder.done("convert poecal-out/calibration.json --out again.urdf");
+    folder.done("convert again.urdf --tip-link tool --to toml --out again.toml");
+    for (a, b) in [
+        ("robot.urdf", "robot.toml"),
+        ("poecal-out/calibration.json", "again.urdf"),
+        ("again.urdf", "again.toml"),
+    ] {
+        let of = |name: &str| numbers(&folder.done(&format!("predict {name} measurements.csv")), 1);
+        for (a, b) in of(a).iter().flatten().zip(of(b).iter().flatten()) {
+            assert!((a - b).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn the_schema_in_the_docs_is_the_programs() {
+    let printed = Folder::new().done("schema");
+    assert_eq!(printed, CalibrationFile::json_schema());
+    let kept = include_str!("../../../../docs/calibration.schema.json");
+    assert!(
+        printed == kept,
+        "write it anew: cargo run -p poecal-cli -- schema > docs/calibration.schema.json"
+    );
+}

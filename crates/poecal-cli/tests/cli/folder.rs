@@ -1,0 +1,87 @@
+//! A folder for a test's files, and the program run in it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A new folder that goes with its owner.
+pub(crate) struct Folder(PathBuf);
+
+/// What a run of the program gave.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) code: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+static COUNT: AtomicUsize = AtomicUsize::new(0);
+
+impl Folder {
+    pub(crate) fn new() -> Self {
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("poecal_cli_{}_{number}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        fs::write(self.path(name), content).unwrap();
+    }
+
+    pub(crate) fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// Runs the program here; arguments are separated by blanks.
+    pub(crate) fn run(&self, arguments: &str) -> Run {
+        let output = Command::new(env!("CARGO_BIN_EXE_poecal"))
+            .args(arguments.split_whitespace())
+            .current_dir(&self.0)
+            .output()
+            .unwrap();
+        Run {
+            code: output.status.code().unwrap(),
+            out: String::from_utf8(output.stdout).unwrap(),
+            err: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    /// As [`Folder::run`], for a run that must end well; gives its standard output.
+    pub(crate) fn done(&self, arguments: &str) -> String {
+        let run = self.run(arguments);
+        assert_eq!(run.code, 0, "poecal {arguments}\n{}{}", run.out, run.err);
+        run.out
+    }
+
+    /// Every file with its content, and every folder (without).
+    pub(crate) fn listing(&self) -> BTreeMap<PathBuf, Option<Vec<u8>>> {
+        fn add(folder: &Path, into: &mut BTreeMap<PathBuf, Option<Vec<u8>>>) {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    add(&path, into);
+                    into.insert(path, None);
+                } else {
+                    let content = fs::read(&path).unwrap();
+                    into.insert(path, Some(content));
+                }
+            }
+        }
+        let mut listing = BTreeMap::new();
+        add(&self.0, &mut listing);
+        listing
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

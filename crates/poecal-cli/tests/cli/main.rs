@@ -1,0 +1,9 @@
+//! The program as users run it.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod bad_input;
+mod commands;
+mod folder;
+mod session;
+mod targets_and_validation;

@@ -1,0 +1,145 @@
+//! A finished calibration judged on measurements that it did not see.
+
+use serde::Serialize;
+
+use super::accuracy::{ModelAccuracy, model_accuracy, row_errors};
+use super::{DeviceFrameKnowledge, delivered};
+use crate::error::{Error, ErrorKind, Result};
+use crate::estimate::Packed;
+use crate::lie::Pose;
+use crate::measurement::{Dataset, Noise};
+use crate::robot::Robot;
+use crate::start::{Registration, register};
+
+/// What is judged, and what of it is found anew from the measurements that judge it.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, Subject, calibrate, judge};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
+/// let made = exact.run(&elbow(), Kind::Point)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let subject = Subject {
+///     calibrated: &calibration.robot,
+///     nominal: &calibration.nominal,
+///     base_from_device: calibration.base_from_device,
+///     frame: DeviceFrameKnowledge::Unknown,
+///     noise: calibration.noise,
+///     refit_frame: false,
+///     refit_tool: false,
+/// };
+/// let judgement = judge(&subject, &made.data)?;
+/// assert!(judgement.calibrated.position_mm.max < 1e-6);
+/// assert!(judgement.nominal.is_none());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The calibrated robot with its named targets.
+    pub calibrated: &'a Robot,
+    /// The robot as delivered.
+    pub nominal: &'a Robot,
+    /// Where the calibration found the measuring device.
+    pub base_from_device: Pose,
+    /// What was known of the device's frame.
+    pub frame: DeviceFrameKnowledge,
+    /// Noise by which positions and rotations are weighted where something is found anew.
+    pub noise: Noise,
+    /// Find the device's frame anew.
+    pub refit_frame: bool,
+    /// Find every target that was measured anew.
+    pub refit_tool: bool,
+}
+
+/// What was found anew from the judging measurements themselves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Refitted {
+    /// Where the measuring device stands.
+    DeviceFrame,
+    /// The targets' places, and their orientations where measured.
+    Tool,
+}
+
+/// How good a calibration is on measurements that it did not see.
+///
+/// ```
+/// use poecal::calibration::{Judgement, ModelAccuracy, Statistic};
+/// let position_mm = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
+/// let calibrated = ModelAccuracy { position_mm, rotation_deg: None };
+/// let judgement = Judgement { count: 20, refitted: vec![], calibrated, nominal: None };
+/// assert_eq!(judgement.calibrated.position_mm.max, 0.25);
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Judgement {
+    /// Number of measurements.
+    pub count: usize,
+    /// What was found anew from them.
+    pub refitted: Vec<Refitted>,
+    /// Errors of the calibrated model.
+    pub calibrated: ModelAccuracy,
+    /// Errors of the nominal screws with the same found anew; none unless that takes in all that the nominal model cannot know, the
+    /// tool and a device frame that was unknown.
+    pub nominal: Option<ModelAccuracy>,
+}
+
+/// Judges a calibration by measurements. The readings must be those of the robot, and every target must be one of its targets unless
+/// the tool is found anew.
+///
+/// # Errors
+/// [`ErrorKind::Problem`] if there are fewer measured numbers than unknowns to be found anew, or none at all.
+pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
+    check_count(subject, data)?;
+    let mut refitted = Vec::new();
+    if subject.refit_frame {
+        refitted.push(Refitted::DeviceFrame);
+    }
+    if subject.refit_tool {
+        refitted.push(Refitted::Tool);
+    }
+    let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
+    let nominal = (frame_is_common && subject.refit_tool).then(|| accuracy(subject, subject.nominal, data));
+    let calibrated = accuracy(subject, subject.calibrated, data);
+    Ok(Judgement { count: data.len(), refitted, calibrated, nominal })
+}
+
+/// Errors of a robot's screws, with device frame and targets found anew as asked.
+fn accuracy(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> ModelAccuracy {
+    let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
+    let rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+    let mut estimate = delivered(robot, data);
+    estimate.device_from_base = subject.base_from_device.inverse();
+    if subject.refit_frame || subject.refit_tool {
+        let registration = Registration {
+            data,
+            packed: &packed,
+            rows: &rows,
+            noise: subject.noise,
+            length_m: robot.reach_m() / 3.0,
+            device_free: subject.refit_frame,
+            targets_free: subject.refit_tool,
+        };
+        estimate = register(&registration, &estimate).0;
+    }
+    model_accuracy(&row_errors(data, &packed, &rows, &estimate))
+}
+
+/// Refuses measurements that cannot determine what is found anew, and none at all.
+fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
+    let frame = if subject.refit_frame { 6 } else { 0 };
+    let target = |target| if data.target_is_frame(target) { 6 } else { 3 };
+    let tool: usize = if subject.refit_tool { (0..data.targets.len()).map(target).sum() } else { 0 };
+    let given: usize = data.observations.iter().map(|row| row.measurement.residual_model().dim()).sum();
+    if given > frame + tool {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorKind::Problem,
+        format!(
+            "found {} measurements with {given} measured numbers, expected more than the {} unknowns to be found anew \
+             ({frame} of the device frame, {tool} of the targets): measure more configurations, or refit less",
+            data.len(),
+            frame + tool
+        ),
+    ))
+}

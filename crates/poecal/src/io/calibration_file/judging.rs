@@ -1,0 +1,84 @@
+//! What judging a calibration by other measurements needs of its file.
+
+use super::{CalibrationFile, FrameWord};
+use crate::calibration::DeviceFrameKnowledge;
+use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::measurement::{Dataset, Noise};
+
+/// Rotation noise that counts where the calibration saw positions alone, degrees.
+const UNSEEN_ROTATION_DEG: f64 = 0.05;
+
+impl CalibrationFile {
+    /// What was known of the device's frame.
+    #[must_use]
+    pub fn frame(&self) -> DeviceFrameKnowledge {
+        match self.measurement_frame.known {
+            FrameWord::Unknown => DeviceFrameKnowledge::Unknown,
+            FrameWord::Base => DeviceFrameKnowledge::Base,
+        }
+    }
+
+    /// The noise that the calibration was weighted by, in metres and radians.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the file has been changed into no noise.
+    pub fn noise(&self) -> Result<Noise> {
+        let rotation_deg = self.noise.sigma_rotation_deg.unwrap_or(UNSEEN_ROTATION_DEG);
+        for (key, sigma) in [("position_mm", self.noise.sigma_position_mm), ("rotation_deg", rotation_deg)] {
+            if sigma.is_nan() || sigma <= 0.0 {
+                let message = format!(
+                    "found `noise.sigma_{key}` of {sigma}, expected a standard deviation above 0: calibrate again"
+                );
+                return Err(Error::new(ErrorKind::Model, message));
+            }
+        }
+        Ok(Noise { position_m: self.noise.sigma_position_mm / 1e3, rotation_rad: rotation_deg.to_radians() })
+    }
+
+    /// Root mean square position error on the rows held out, or if there were none on those fitted, millimetres.
+    #[must_use]
+    pub fn own_position_rms_mm(&self) -> f64 {
+        let accuracy = &self.accuracy;
+        accuracy.held_out.as_ref().unwrap_or(&accuracy.training).calibrated.position_mm.rms
+    }
+
+    /// Refuses measurements of targets that the calibration does not know, or of orientations of those it knows as points only.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Problem`].
+    pub fn check_targets(&self, data: &Dataset) -> Result<()> {
+        let refit = "or find the targets anew with --refit-tool";
+        let names = || self.targets.keys().map(String::as_str);
+        for (index, name) in data.targets.iter().enumerate() {
+            let known = names().collect::<Vec<_>>().join(", ");
+            let message = match name.as_deref() {
+                None if self.targets.is_empty() => continue,
+                None => format!(
+                    "found measurements without a target's name, expected one of {known} as in the calibration: add a \
+                     column `target`, {refit}"
+                ),
+                Some(name) => match self.targets.get(name) {
+                    Some(target) if target.quaternion_xyzw.is_none() && data.target_is_frame(index) => {
+                        format!(
+                            "found orientations of target `{name}`, expected positions alone, since the calibration knows \
+                         it as a point: leave the orientation columns out, {refit}"
+                        )
+                    }
+                    Some(_) => continue,
+                    None => match nearest(name, names()) {
+                        Some(near) => format!(
+                            "found measurements of target `{name}`, expected one of {known} as in the calibration \
+                             (nearest: `{near}`): rename it, {refit}"
+                        ),
+                        None => format!(
+                            "found measurements of target `{name}`, expected no name, since the calibration knows the \
+                             tip alone: leave the names out, {refit}"
+                        ),
+                    },
+                },
+            };
+            return Err(Error::new(ErrorKind::Problem, message));
+        }
+        Ok(())
+    }
+}

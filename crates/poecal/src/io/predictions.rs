@@ -1,0 +1,103 @@
+//! Predicted poses as CSV.
+
+use std::fmt::Write as _;
+
+use super::measurements::JointsTable;
+use super::model::{Model, ModelSource};
+use super::numbers::shortest;
+use super::residuals::quoted;
+use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::lie::Pose;
+
+/// The frame in which poses are predicted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PredictionFrame {
+    /// The robot's base.
+    Base,
+    /// The measuring device of a calibration.
+    Device,
+}
+
+/// Predicts the pose of the tip, or of a named target, in each configuration: a header and `x[m],y[m],z[m],qx,qy,qz,qw` a row, after
+/// the rows' `id` if they have one. Numbers read back exactly; `qw ≥ 0`.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if the model has no such target, or no measuring device.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::io::measurements::JointsTable;
+/// use poecal::io::model::{Model, ModelSource};
+/// use poecal::io::predictions::{PredictionFrame, predict};
+/// use poecal::lie::{Pose, Screw};
+/// use poecal::robot::{Joint, Robot};
+/// let joint = Joint::prismatic("slide", Screw::prismatic(&Vector3::x()));
+/// let robot = Robot::new("slide", vec![joint], Pose::identity())?;
+/// let model = Model { robot, source: ModelSource::Toml, path: "slide.toml".into() };
+/// let joints = JointsTable { readings: vec![0.25], rows: 1, ..JointsTable::default() };
+/// let text = predict(&model, &joints, PredictionFrame::Base, None)?;
+/// assert_eq!(text, "x[m],y[m],z[m],qx,qy,qz,qw\n0.25,0,0,0,0,0,1\n");
+/// # Ok::<(), poecal::Error>(())
+/// ```
+pub fn predict(
+    model: &Model,
+    joints: &JointsTable,
+    frame: PredictionFrame,
+    target: Option<&str>,
+) -> Result<String> {
+    let robot = &model.robot;
+    let tip_from_target = target.map_or(Ok(Pose::identity()), |name| tip_from_target(model, name))?;
+    let frame_from_base = match frame {
+        PredictionFrame::Base => Pose::identity(),
+        PredictionFrame::Device => device_from_base(model)?,
+    };
+    let with_ids = !joints.ids.is_empty();
+    let mut out = String::with_capacity((joints.rows + 1) * 140);
+    out.push_str(if with_ids { "id,x[m],y[m],z[m],qx,qy,qz,qw\n" } else { "x[m],y[m],z[m],qx,qy,qz,qw\n" });
+    for (row, readings) in joints.readings.chunks_exact(robot.reading_names().len().max(1)).enumerate() {
+        let pose = frame_from_base * robot.forward_kinematics(readings) * tip_from_target;
+        if with_ids {
+            out.push_str(&quoted(joints.ids.get(row).map_or("", String::as_str)));
+            out.push(',');
+        }
+        let [x, y, z]: [f64; 3] = pose.translation.into();
+        let [qx, qy, qz, qw] = pose.quaternion_xyzw();
+        for (column, number) in [x, y, z, qx, qy, qz, qw].into_iter().enumerate() {
+            let separator = if column == 0 { "" } else { "," };
+            // Adding zero makes negative zero positive; writing to a String cannot fail.
+            let _ = write!(out, "{separator}{}", shortest(number + 0.0));
+        }
+        out.push('\n');
+    }
+    Ok(out)
+}
+
+fn tip_from_target(model: &Model, name: &str) -> Result<Pose> {
+    let targets = &model.robot.targets;
+    if let Some((_, pose)) = targets.iter().find(|(known, _)| known == name) {
+        return Ok(*pose);
+    }
+    let names = || targets.iter().map(|(known, _)| known.as_str());
+    let expected = match nearest(name, names()) {
+        Some(near) => {
+            format!("expected one of {}; did you mean `{near}`?", names().collect::<Vec<_>>().join(", "))
+        }
+        None => "expected none: the model has no targets, leave out --target to predict the tip".to_owned(),
+    };
+    let message = format!("found no target `{name}`, {expected}");
+    Err(Error::new(ErrorKind::Option, message).in_file(&model.path))
+}
+
+fn device_from_base(model: &Model) -> Result<Pose> {
+    match &model.source {
+        ModelSource::Calibration(file) => {
+            let base_from_device = file.base_from_device().map_err(|error| error.in_file(&model.path))?;
+            Ok(base_from_device.inverse())
+        }
+        ModelSource::Urdf(_) | ModelSource::Toml => {
+            let message = "found a robot model without a measuring device, expected a calibration.json for \
+                           --frame device: use --frame base";
+            Err(Error::new(ErrorKind::Option, message).in_file(&model.path))
+        }
+    }
+}

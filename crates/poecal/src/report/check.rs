@@ -1,0 +1,318 @@
+//! What was understood of a model and of measurement files.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::table::{kinds_words, line, robot_words};
+use crate::io::measurements::{
+    ColumnUnderstanding, DecimalSign, FileUnderstanding, MeasurementFile, Quantity, Separator, Unit,
+    UnitSource,
+};
+use crate::io::model::{Model, ModelSource};
+use crate::measurement::Set;
+use crate::robot::{Joint, JointKind};
+use nalgebra::Vector3;
+
+/// Widest name of ours, and of a column, that the table of columns keeps on one line.
+const WIDEST: usize = 22;
+
+/// What was understood, for a person to look over or a machine to read.
+///
+/// ```
+/// use poecal::io::model::{Model, ModelSource};
+/// use poecal::report::Check;
+/// let model = Model { robot: poecal::simulate::elbow(), source: ModelSource::Toml, path: "elbow.toml".into() };
+/// let check = Check::new(&model, None);
+/// assert!(check.text().contains("joint2: revolute about (0, 1, 0) through (150, 0, 0) mm"));
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Check {
+    model: ModelCheck,
+    files: Vec<FileUnderstanding>,
+    sets: Option<SetCounts>,
+    warnings: Vec<String>,
+    #[serde(skip)]
+    robot_words: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct ModelCheck {
+    path: String,
+    form: &'static str,
+    name: String,
+    base: String,
+    tip: String,
+    joints: Vec<JointCheck>,
+    base_from_tip_at_zero: PoseCheck,
+    targets: Vec<TargetCheck>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct JointCheck {
+    name: String,
+    kind: &'static str,
+    direction: [f64; 3],
+    /// A point of the axis, metres; none for a slide.
+    point_m: Option<[f64; 3]>,
+    limits: Option<[f64; 2]>,
+    reading: String,
+    multiplier: f64,
+    offset: f64,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct PoseCheck {
+    position_m: [f64; 3],
+    quaternion_xyzw: [f64; 4],
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct TargetCheck {
+    name: String,
+    tip_from_target: PoseCheck,
+}
+
+/// How many rows state their set.
+///
+/// ```
+/// let counts = poecal::report::SetCounts { fit: 40, held_out: 20, unstated: 0 };
+/// assert_eq!(counts.fit + counts.held_out, 60);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct SetCounts {
+    /// Measurements to be fitted.
+    pub fit: usize,
+    /// Measurements to be held out.
+    pub held_out: usize,
+    /// Measurements that do not say.
+    pub unstated: usize,
+}
+
+impl Check {
+    /// What was understood of a model, and of measurements if there are some.
+    #[must_use]
+    pub fn new(model: &Model, measurements: Option<&MeasurementFile>) -> Self {
+        let robot = &model.robot;
+        Check {
+            model: ModelCheck {
+                path: model.path.display().to_string(),
+                form: match &model.source {
+                    ModelSource::Urdf(_) => "URDF",
+                    ModelSource::Toml => "TOML",
+                    ModelSource::Calibration(_) => "calibration",
+                },
+                name: robot.name.clone(),
+                base: robot.base_name.clone(),
+                tip: robot.tip_name.clone(),
+                joints: robot.joints.iter().map(JointCheck::of).collect(),
+                base_from_tip_at_zero: PoseCheck::of(&robot.home),
+                targets: robot
+                    .targets
+                    .iter()
+                    .map(|(name, pose)| TargetCheck {
+                        name: name.clone(),
+                        tip_from_target: PoseCheck::of(pose),
+                    })
+                    .collect(),
+            },
+            files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
+            sets: measurements.map(SetCounts::of),
+            warnings: measurements.map_or_else(Vec::new, |file| file.warnings.clone()),
+            robot_words: robot_words(robot),
+        }
+    }
+
+    /// As text of lines up to 80 characters (but for names that are longer).
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        let model = &self.model;
+        line(&mut out, "model", &format!("{} ({})", model.path, model.form));
+        line(&mut out, "robot", &self.robot_words);
+        for (index, joint) in model.joints.iter().enumerate() {
+            line(&mut out, if index == 0 { "joints" } else { "" }, &joint.words());
+        }
+        line(&mut out, "tip at zero", &model.base_from_tip_at_zero.words());
+        for (index, target) in model.targets.iter().enumerate() {
+            let words = format!("{}: {} in the tip frame", target.name, target.tip_from_target.words());
+            line(&mut out, if index == 0 { "targets" } else { "" }, &words);
+        }
+        for file in &self.files {
+            out.push('\n');
+            file_text(&mut out, file);
+        }
+        if let Some(sets) = self.sets {
+            out.push('\n');
+            line(&mut out, "sets", &sets.words());
+        }
+        for (index, warning) in self.warnings.iter().enumerate() {
+            line(&mut out, if index == 0 { "warnings" } else { "" }, warning);
+        }
+        out
+    }
+}
+
+impl JointCheck {
+    fn of(joint: &Joint) -> Self {
+        let point = match joint.kind {
+            JointKind::Revolute => Some(joint.screw.nearest_point(&joint.frame.translation).into()),
+            JointKind::Prismatic => None,
+        };
+        JointCheck {
+            name: joint.name.clone(),
+            kind: joint.kind.word(),
+            direction: joint.screw.direction().into(),
+            point_m: point,
+            limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
+            reading: joint.reading.name.clone(),
+            multiplier: joint.reading.multiplier,
+            offset: joint.reading.offset,
+        }
+    }
+
+    fn words(&self) -> String {
+        let direction = rounded(self.direction, 1.0, 6);
+        let (place, factor, unit) = match self.point_m {
+            Some(point) => {
+                (format!("about {direction} through {} mm", rounded(point, 1e3, 3)), 1f64.to_degrees(), "deg")
+            }
+            None => (format!("along {direction}"), 1e3, "mm"),
+        };
+        let limits = match self.limits {
+            Some([lower, upper]) => {
+                format!("from {} to {} {unit}", short(lower * factor, 3), short(upper * factor, 3))
+            }
+            None => "no limits".to_owned(),
+        };
+        let mut words = format!("{}: {} {place}, {limits}", self.name, self.kind);
+        if self.reading != self.name || self.multiplier != 1.0 || self.offset != 0.0 {
+            let offset = short(self.offset * factor, 6);
+            let _ = write!(
+                words,
+                "; value = {} * reading of {} + {offset} {unit}",
+                self.multiplier, self.reading
+            );
+        }
+        words
+    }
+}
+
+impl PoseCheck {
+    fn of(pose: &crate::lie::Pose) -> Self {
+        PoseCheck { position_m: pose.translation.into(), quaternion_xyzw: pose.quaternion_xyzw() }
+    }
+
+    fn words(&self) -> String {
+        let position = rounded(self.position_m, 1e3, 3);
+        let [x, y, z, w] = self.quaternion_xyzw;
+        if Vector3::new(x, y, z) == Vector3::zeros() {
+            return format!("{position} mm");
+        }
+        let parts = [x, y, z, w].map(|part| short(part, 6)).join(", ");
+        format!("{position} mm, quaternion x, y, z, w ({parts})")
+    }
+}
+
+impl SetCounts {
+    fn of(file: &MeasurementFile) -> Self {
+        let count = |set| file.data.observations.iter().filter(|row| row.set == set).count();
+        SetCounts { fit: count(Some(Set::Fit)), held_out: count(Some(Set::HeldOut)), unstated: count(None) }
+    }
+
+    fn words(self) -> String {
+        let SetCounts { fit, held_out, unstated } = self;
+        if fit + held_out == 0 {
+            return "not stated: `poecal calibrate` chooses what it holds out (--held-out, --seed)"
+                .to_owned();
+        }
+        let rest = if unstated > 0 { format!(", {unstated} not stated (fitted)") } else { String::new() };
+        format!("{fit} to fit, {held_out} held out{rest}")
+    }
+}
+
+fn file_text(out: &mut String, file: &FileUnderstanding) {
+    let separator = match file.separator {
+        Separator::Comma => "comma",
+        Separator::Semicolon => "semicolon",
+        Separator::Tab => "tab",
+        Separator::Whitespace => "blanks",
+    };
+    let decimal = match file.decimal_sign {
+        DecimalSign::Point => "point",
+        DecimalSign::Comma => "comma",
+    };
+    line(out, "file", &file.path.display().to_string());
+    line(out, "rows", &format!("{}: {}", file.rows, kinds_words(file.poses, file.points)));
+    line(out, "form", &format!("separator: {separator}; decimal sign: {decimal}"));
+    if let Some(orientation) = &file.orientation {
+        line(out, "orientation", &format!("{orientation}; {}", file.pose));
+    }
+    let widest = |lengths: &mut dyn Iterator<Item = usize>| lengths.max().unwrap_or(0).min(WIDEST);
+    let ours = widest(&mut file.columns.iter().map(|column| width(&column.name))).max(8);
+    let theirs = widest(&mut file.columns.iter().map(|column| width(column_words(column)))).max(13);
+    let mut row = |name: &str, column: &str, unit: &str, range: &str| {
+        // A long name pushes the rest of its row to a line of its own.
+        let broken = if width(name) > ours || width(column) > theirs {
+            format!("\n  {:ours$}  {:theirs$}", "", "")
+        } else {
+            String::new()
+        };
+        let text = format!("  {name:<ours$}  {column:<theirs$}{broken}  {unit:<12}  {range}");
+        out.push_str(text.trim_end());
+        out.push('\n');
+    };
+    row("column", "read from", "unit", "values");
+    for column in &file.columns {
+        row(&column.name, column_words(column), &unit_words(column), &range_words(column));
+    }
+    if !file.ignored.is_empty() {
+        line(out, "left alone", &file.ignored.join(", "));
+    }
+}
+
+fn width(text: &str) -> usize {
+    text.chars().count()
+}
+
+fn column_words(column: &ColumnUnderstanding) -> &str {
+    column.column.as_deref().unwrap_or("(constant)")
+}
+
+fn unit_words(column: &ColumnUnderstanding) -> String {
+    let Some(unit) = column.unit else { return String::new() };
+    match column.unit_from {
+        Some(UnitSource::Header) => format!("{unit}, header"),
+        Some(UnitSource::Mapping) => format!("{unit}, mapping"),
+        Some(UnitSource::Si) | None => format!("{unit}, SI"),
+    }
+}
+
+/// Smallest and largest value, in millimetres or degrees.
+fn range_words(column: &ColumnUnderstanding) -> String {
+    let (Some(min), Some(max)) = (column.min, column.max) else { return String::new() };
+    let quantity = column.unit.and_then(|unit| Unit::parse_any(unit).ok()).map(Unit::quantity);
+    let (factor, unit) = match quantity {
+        Some(Quantity::Length) => (1e3, " mm"),
+        Some(Quantity::Angle) => (1f64.to_degrees(), " deg"),
+        Some(Quantity::Number) | None => (1.0, ""),
+    };
+    let (min, max) = (short(min * factor, 3), short(max * factor, 3));
+    if min == max { format!("{min}{unit}") } else { format!("{min} to {max}{unit}") }
+}
+
+/// `(x, y, z)` in another unit.
+fn rounded(values: [f64; 3], factor: f64, digits: usize) -> String {
+    format!("({})", values.map(|value| short(value * factor, digits)).join(", "))
+}
+
+/// Up to `digits` decimals, without zeros at the end; digits of their own for what would else become nothing.
+fn short(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    match text {
+        "0" | "-0" if value.abs() > 1e-12 => format!("{value:.1e}"),
+        "-0" => "0".to_owned(),
+        text => text.to_owned(),
+    }
+}
