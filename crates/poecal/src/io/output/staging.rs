@@ -23,11 +23,16 @@ pub fn check_folder(folder: &Path, force: bool) -> Result<()> {
         }
         return Ok(());
     }
-    let parent = parent(folder);
-    if !parent.is_dir() {
-        return error("the folder above does not exist, expected one to write into: create it first");
+    check_parent(folder)
+}
+
+/// Refuses a place whose folder does not exist.
+fn check_parent(path: &Path) -> Result<()> {
+    if parent(path).is_dir() {
+        return Ok(());
     }
-    Ok(())
+    let message = "the folder above does not exist, expected one to write into: create it first";
+    Err(Error::new(ErrorKind::File, message).in_file(path))
 }
 
 fn parent(folder: &Path) -> PathBuf {
@@ -99,7 +104,7 @@ pub fn write_file(path: &Path, text: &str) -> Result<()> {
     let error = |error: std::io::Error| {
         Error::new(
             ErrorKind::File,
-            format!("the file cannot be written ({error}), expected a place that can be"),
+            format!("the file cannot be written ({error}), expected a folder that can be written to: choose another"),
         )
         .in_file(path)
     };
@@ -107,6 +112,7 @@ pub fn write_file(path: &Path, text: &str) -> Result<()> {
         let message = "found a directory, expected a file to write: name the file";
         return Err(Error::new(ErrorKind::File, message).in_file(path));
     }
+    check_parent(path)?;
     let name = path.file_name().map_or_else(|| "out".into(), |name| name.to_string_lossy().into_owned());
     let beside = parent(path).join(format!(".{name}.unfinished-{}", std::process::id()));
     fs::write(&beside, text).map_err(error)?;
