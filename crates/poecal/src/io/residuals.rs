@@ -61,7 +61,7 @@ fn write_rotations(out: &mut String, models: [&RowError; 3], calibrated: &RowErr
 }
 
 /// A CSV cell, quoted where it must be.
-pub(in crate::io) fn quoted(text: &str) -> std::borrow::Cow<'_, str> {
+pub(super) fn quoted(text: &str) -> std::borrow::Cow<'_, str> {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\"")).into()
     } else {
