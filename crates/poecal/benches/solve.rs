@@ -3,6 +3,8 @@
 //! The workload: each axis of the elbow moved by 1° and 2 mm, random configurations within its limits, noise 0.05 mm and
 //! 0.0005 rad, measurements in the base frame.
 
+#![allow(clippy::expect_used, reason = "a benchmark may end in a panic")]
+
 use divan::{Bencher, black_box};
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered, fit_screws};
 use poecal::estimate::Packed;
