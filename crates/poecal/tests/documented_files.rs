@@ -135,3 +135,14 @@ fn results_have_the_documented_columns_and_keys() {
         "{keys:?} has a key that is not documented"
     );
 }
+
+#[test]
+fn the_documented_prediction_is_the_elbows() {
+    let text = include_str!("../../../examples/elbow/robot.toml");
+    let tip = robot_toml::parse(text, "robot.toml").unwrap().forward_kinematics(&[0.0; 6]);
+    let (header, row) = blocks("Results", "text")[1].trim().split_once('\n').unwrap();
+    assert_eq!(header, "x[m],y[m],z[m],qx,qy,qz,qw");
+    let predicted: Vec<f64> = row.split(',').map(|number| number.parse().unwrap()).collect();
+    assert_eq!(predicted[..3], tip.translation.as_slice()[..]);
+    assert_eq!(predicted[3..], tip.quaternion_xyzw()[..]);
+}
