@@ -9,7 +9,7 @@ use super::{
     row_errors,
 };
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Estimate, Packed};
+use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::{Parameter, ScrewAxis};
@@ -33,6 +33,7 @@ pub(super) struct Fitted {
     pub(super) normal: Normal,
     pub(super) layout: Layout,
     pub(super) noise: Noise,
+    pub(super) noise_source: NoiseSource,
     pub(super) report: SolverReport,
 }
 
@@ -63,8 +64,7 @@ pub fn fit_screws(
     let mut start = start;
     let mut before = None;
     if rows.len() > 4 * SAMPLE {
-        let stride = rows.len() / SAMPLE;
-        let sample: Vec<u32> = rows.iter().step_by(stride).copied().collect();
+        let sample = sample_rows(rows, SAMPLE);
         let (estimate, _, summary) = minimize(&problem(sample, &start), start, options);
         start = estimate;
         before = Some(summary);
@@ -77,19 +77,14 @@ pub fn fit_screws(
     (estimate, normal, summary)
 }
 
-#[allow(clippy::too_many_arguments)]
+/// Fits from a registration with noise that is then estimated anew, unless its source says that it is known.
 pub(super) fn fit(
-    robot: &Robot,
-    data: &Dataset,
-    packed: &Packed,
-    rows: &[u32],
+    task: &Task<'_>,
     registered: &Estimate,
     noise: Noise,
     source: NoiseSource,
-    length_m: f64,
-    options: &CalibrationOptions,
 ) -> Result<Fitted> {
-    let task = Task { robot, data, packed, rows, length_m, options };
+    let Task { data, packed, rows, options, .. } = *task;
     let mut start = registered.clone();
     start.recentre(data, packed, rows);
     let (mut estimate, mut normal, mut summary) = task.fit(start, noise);
@@ -107,11 +102,14 @@ pub(super) fn fit(
             report.trace.extend(summary.trace.iter());
         }
     }
-    let mut noise = noise;
+    let (mut noise, mut source) = (noise, source);
     if source == NoiseSource::Estimated {
         for _ in 0..6 {
             let unknowns = normal.dim();
-            let found = estimate_noise(data, packed, rows, &estimate, unknowns, noise);
+            let Some(found) = estimate_noise(data, packed, rows, &estimate, unknowns, noise) else {
+                source = NoiseSource::Exact;
+                break;
+            };
             let change =
                 (found.position_m * noise.rotation_rad / (found.rotation_rad * noise.position_m)).ln();
             let unchanged = found == noise;
@@ -133,16 +131,18 @@ pub(super) fn fit(
         ));
     }
     let layout = task.problem(&estimate, noise).layout().clone();
-    Ok(Fitted { estimate, normal, layout, noise, report })
+    Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
 }
 
-struct Task<'a> {
-    robot: &'a Robot,
-    data: &'a Dataset,
-    packed: &'a Packed,
-    rows: &'a [u32],
-    length_m: f64,
-    options: &'a CalibrationOptions,
+/// What is fitted to what.
+#[derive(Clone, Copy)]
+pub(super) struct Task<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) data: &'a Dataset,
+    pub(super) packed: &'a Packed,
+    pub(super) rows: &'a [u32],
+    pub(super) length_m: f64,
+    pub(super) options: &'a CalibrationOptions,
 }
 
 impl Task<'_> {
@@ -163,8 +163,7 @@ impl Task<'_> {
         fitted: &Estimate,
         noise: Noise,
     ) -> Option<(Option<Estimate>, usize)> {
-        let stride = self.rows.len().div_ceil(RESTART_SAMPLE).max(1);
-        let sample: Vec<u32> = self.rows.iter().step_by(stride).copied().collect();
+        let sample = sample_rows(self.rows, RESTART_SAMPLE);
         let problem = |estimate: &Estimate| {
             let free = free_parameters(estimate, self.data);
             Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m)

@@ -210,15 +210,17 @@ pub fn calibrate_with_progress(
     };
     progress(Stage::Registration);
     let (mut registered, _) = register(&registration(noise, true), &delivered);
-    if source == NoiseSource::Estimated {
-        noise = noise::stated(options, estimate_noise(data, &packed, &fit_rows, &registered, 6, noise));
+    if source == NoiseSource::Estimated
+        && let Some(found) = estimate_noise(data, &packed, &fit_rows, &registered, 6, noise)
+    {
+        noise = noise::stated(options, found);
         registered = register_again(&registration(noise, true), &registered);
     }
     progress(Stage::Fit);
-    let fitted = fit::fit(robot, data, &packed, &fit_rows, &registered, noise, source, length_m, options)?;
-    noise = fitted.noise;
+    let task = fit::Task { robot, data, packed: &packed, rows: &fit_rows, length_m, options };
+    let fitted = fit::fit(&task, &registered, noise, source)?;
     progress(Stage::Analysis);
-    let nominal = register(&registration(noise, false), &delivered).0;
+    let nominal = register(&registration(fitted.noise, false), &delivered).0;
     let calibrated = match options.frame {
         DeviceFrameKnowledge::Unknown => {
             let motion = gauge::base_motion(&fitted.estimate, robot, &delivered.base_from_target, length_m);
@@ -243,8 +245,8 @@ pub fn calibrate_with_progress(
         accuracy,
         solver: fitted.report,
         identifiability,
-        noise,
-        noise_source: source,
+        noise: fitted.noise,
+        noise_source: fitted.noise_source,
         fit_rows,
         held_out_rows,
     })

@@ -16,6 +16,8 @@ pub enum NoiseSource {
     Rows,
     /// It was estimated from the residuals of the fit.
     Estimated,
+    /// Nothing is left but rounding: the measurements are exact, and the noise is only what weighted them.
+    Exact,
 }
 
 /// Below this (1 nm, 1 nrad) residuals are rounding, and their ratio says nothing.
@@ -49,7 +51,8 @@ pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
 }
 
 /// Position and rotation noise as the residuals of an estimate show them, each component's variance separately, with the unknowns
-/// taken off in proportion. What a row states is left out; a part that was not measured or is only rounding keeps `before`.
+/// taken off in proportion. What a row states is left out; a part that was not measured keeps `before`. `None` if the residuals are
+/// only rounding.
 #[must_use]
 pub fn estimate_noise(
     data: &Dataset,
@@ -58,7 +61,7 @@ pub fn estimate_noise(
     estimate: &Estimate,
     unknowns: usize,
     before: Noise,
-) -> Noise {
+) -> Option<Noise> {
     let linkage = Linkage::new(estimate);
     let unit = Noise { position_m: 1.0, rotation_rad: 1.0 };
     let mut chain = Chain::default();
@@ -91,8 +94,7 @@ pub fn estimate_noise(
         position_m: deviation(position, before.position_m),
         rotation_rad: deviation(rotation, before.rotation_rad),
     };
-    if found.position_m < ROUNDING || (rotation.1 > 0 && found.rotation_rad < ROUNDING) {
-        return before;
-    }
-    found
+    let rounding =
+        (position.1 > 0 && found.position_m < ROUNDING) || (rotation.1 > 0 && found.rotation_rad < ROUNDING);
+    (!rounding).then_some(found)
 }

@@ -7,7 +7,7 @@ mod chain;
 mod packing;
 
 pub use chain::{Chain, JointView, Linkage};
-pub use packing::Packed;
+pub use packing::{Packed, sample_rows};
 
 use nalgebra::Vector3;
 
@@ -96,12 +96,12 @@ impl Estimate {
     /// Moves each axis frame's origin along its axis to where the data can be described with least leverage: nearest to the
     /// targets' mean place as seen from that joint. Screws do not change.
     pub(crate) fn recentre(&mut self, data: &Dataset, packed: &Packed, rows: &[u32]) {
-        let stride = (rows.len() / 200).max(1);
-        let count = rows.len().div_ceil(stride) as f64;
+        let sample = sample_rows(rows, 200);
+        let count = sample.len() as f64;
         let linkage = Linkage::new(self);
         let mut chain = Chain::default();
         let mut along = vec![0.0; self.kinds.len()];
-        for &row in rows.iter().step_by(stride) {
+        for &row in &sample {
             chain.evaluate(&linkage, packed, row as usize, data.observations[row as usize].target);
             for (sum, joint) in along.iter_mut().zip(&chain.joints) {
                 *sum += joint.z.dot(&(chain.target.translation - joint.origin)) / count;

@@ -60,3 +60,25 @@ impl Packed {
         &self.values[row * self.joints..(row + 1) * self.joints]
     }
 }
+
+/// At most about `count` of some rows, spread evenly but not periodically: data often repeat targets or grid lines in a fixed
+/// rhythm, which a fixed stride could fall in with. All of them if they are no more than `count`.
+///
+/// ```
+/// let rows: Vec<u32> = (0..900).collect();
+/// let sample = poecal::estimate::sample_rows(&rows, 60);
+/// assert_eq!(sample.len(), 60);
+/// assert!((0..3).all(|target| sample.iter().any(|row| row % 3 == target)));
+/// ```
+#[must_use]
+pub fn sample_rows(rows: &[u32], count: usize) -> Vec<u32> {
+    if rows.len() <= count {
+        return rows.to_vec();
+    }
+    // One of each of `count` equal parts, at a place in it that the golden ratio spreads.
+    let golden = 0.618_033_988_749_894_9;
+    let part = rows.len() as f64 / count as f64;
+    (0..count)
+        .filter_map(|k| rows.get(((k as f64 + (k as f64 * golden).fract()) * part) as usize).copied())
+        .collect()
+}

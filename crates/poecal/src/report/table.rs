@@ -97,8 +97,7 @@ fn set_rows(
         let head = if k == 0 { format!("{name} ({})", set.count) } else { String::new() };
         let _ = write!(out, "  {head:<17} {label:<6}");
         for (_, model) in columns {
-            let cell =
-                of(model(set)).map_or_else(|| "-".to_owned(), |s| number(value(&s)));
+            let cell = of(model(set)).map_or_else(|| "-".to_owned(), |s| number(value(&s)));
             let _ = write!(out, "{cell:>14}");
         }
         out.push('\n');
@@ -152,6 +151,7 @@ pub(super) fn kinds_words(poses: usize, points: usize) -> String {
 fn noise_words(calibration: &Calibration, data: &Dataset) -> String {
     let source = match calibration.noise_source {
         NoiseSource::Rows => return "as each row states it".to_owned(),
+        NoiseSource::Exact => return "none: the fit leaves nothing but rounding".to_owned(),
         NoiseSource::Given => "as given",
         NoiseSource::Estimated => "estimated from the fit",
     };

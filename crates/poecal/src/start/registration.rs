@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::averaging::{mean_rotation, rigid_motion};
 use super::hand_eye;
-use crate::estimate::{Chain, Estimate, Linkage, Packed};
+use crate::estimate::{Chain, Estimate, Linkage, Packed, sample_rows};
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
@@ -43,8 +43,7 @@ pub struct Registration<'a> {
 /// of whitened residuals) is returned with it.
 #[must_use]
 pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64) {
-    let stride = problem.rows.len().div_ceil(SAMPLE).max(1);
-    let sample: Vec<u32> = problem.rows.iter().step_by(stride).copied().collect();
+    let sample = sample_rows(problem.rows, SAMPLE);
     let seen = Seen::new(problem, start, &sample);
     let mut best = seen.best_of(problem, start, &sample, seen.closed_forms(problem, start), ROUNDS);
     if problem.device_free && problem.targets_free && seen.misfit(&best.0) > GOOD_MISFIT {
