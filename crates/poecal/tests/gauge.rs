@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use poecal::calibration::{Calibration, CalibrationOptions, calibrate, delivered};
+use poecal::calibration::{Calibration, CalibrationOptions, calibrate, delivered, radian_m};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::gauge::base_motion;
 use poecal::lie::{Pose, rotation};
@@ -85,7 +85,8 @@ fn gauge_brings_the_screws_nearest_to_nominal_once_and_for_all() {
     for robot in robots() {
         let made = simulated(&robot, Kind::Pose);
         let chosen = calibrated(&made).models.calibrated;
-        let length_m = robot.reach_m() / 3.0;
+        let packed = Packed::new(&robot, made.data.all_readings(), made.data.reading_names().len());
+        let length_m = radian_m(&robot, &packed);
         let targets = delivered(&robot, &made.data).base_from_target;
         let again = base_motion(&chosen, &robot, &targets, length_m).log().to_vector().norm();
         let other = chosen.rebased(&Pose::exp(&random_twist(0.3, 0.2, &mut generator)));

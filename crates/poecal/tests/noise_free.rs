@@ -112,7 +112,7 @@ fn elbow_has_rank_25_where_a_fit_of_points_starts() {
     let mut normal = problem.normal(&delivered(robot, &made.data));
     // The residual at the start is not noise: the rank wanted is that of the Jacobian itself.
     normal.cost = 0.0;
-    let found = identifiability(robot, &made.data, problem.layout(), &normal);
+    let found = identifiability(robot, &made.data, problem.layout(), &normal, robot.reach_m() / 3.0);
     println!("rank {} of {}", found.rank, found.parameters);
     found.unidentifiable.iter().for_each(|direction| println!("    {}", direction.description));
     assert_eq!((found.rank, found.parameters), (25, 27));

@@ -26,6 +26,9 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
     });
     bar.finish_and_clear();
     let calibration = calibration?;
+    for warning in &calibration.warnings {
+        console.warning(warning);
+    }
     let inputs = inputs(arguments);
     let written =
         output::write(&arguments.out, arguments.force, &model, &data, &calibration, inputs.clone())?;

@@ -43,13 +43,18 @@ pub struct Identifiability {
     pub unidentifiable: Vec<Direction>,
 }
 
-/// Judges the normal information at an estimate.
+/// Judges the normal information at an estimate; `length_m` is how many metres a radian counts in it.
 #[must_use]
-pub fn identifiability(robot: &Robot, data: &Dataset, layout: &Layout, normal: &Normal) -> Identifiability {
+pub fn identifiability(
+    robot: &Robot,
+    data: &Dataset,
+    layout: &Layout,
+    normal: &Normal,
+    length_m: f64,
+) -> Identifiability {
     let n = layout.dim();
     let (values, vectors) = linalg::symmetric_eigen(&normal.gram, n);
     let largest = values.last().copied().unwrap_or(0.0).max(0.0);
-    let length_m = robot.reach_m() / 3.0;
     let redundancy = normal.residuals as f64 / (normal.residuals as f64 - n as f64).max(1.0);
     let variance = normal.mean_square() * redundancy;
     let least = (largest * ROUNDING * ROUNDING).max(variance / (PLAUSIBLE * length_m).powi(2));

@@ -38,13 +38,13 @@ pub(super) struct Fitted {
 }
 
 /// All screws and targets: what a fit with a settled device frame frees.
-fn free_parameters(estimate: &Estimate, data: &Dataset) -> Vec<Parameter> {
+fn free_parameters(estimate: &Estimate, data: &Dataset, rows: &[u32]) -> Vec<Parameter> {
     let screws = estimate
         .kinds
         .iter()
         .enumerate()
         .map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
-    screws.chain(target_parameters(data)).collect()
+    screws.chain(target_parameters(data, rows)).collect()
 }
 
 /// One fit of all screws and targets from a start, the device's frame staying where it is: Levenberg-Marquardt, begun on a sample
@@ -58,18 +58,17 @@ pub fn fit_screws(
     length_m: f64,
     options: &Options,
 ) -> (Estimate, Normal, Summary) {
-    let problem = |rows: Vec<u32>, estimate: &Estimate| {
-        Problem::new(data, packed, rows, free_parameters(estimate, data), noise, length_m)
-    };
+    let free = free_parameters(&start, data, rows);
+    let problem = |rows: Vec<u32>| Problem::new(data, packed, rows, free.clone(), noise, length_m);
     let mut start = start;
     let mut before = None;
     if rows.len() > 4 * SAMPLE {
         let sample = sample_rows(rows, SAMPLE);
-        let (estimate, _, summary) = minimize(&problem(sample, &start), start, options);
+        let (estimate, _, summary) = minimize(&problem(sample), start, options);
         start = estimate;
         before = Some(summary);
     }
-    let (estimate, normal, mut summary) = minimize(&problem(rows.to_vec(), &start), start, options);
+    let (estimate, normal, mut summary) = minimize(&problem(rows.to_vec()), start, options);
     if let Some(before) = before {
         summary.iterations += before.iterations;
         summary.trace.splice(0..0, before.trace);
@@ -122,14 +121,14 @@ pub(super) fn fit(
             report.trace.extend(summary.trace.iter());
         }
     }
-    (estimate, normal) = task.settle_null_directions(estimate, normal, noise);
-    report.termination = summary.termination;
     if !normal.cost.is_finite() {
         return Err(Error::new(
             ErrorKind::Solver,
             "found residuals that are not finite numbers, expected a fit: check the measurements' units and joint columns",
         ));
     }
+    report.termination = summary.termination;
+    (estimate, normal) = task.settle_null_directions(estimate, normal, noise, &mut report);
     let layout = task.problem(&estimate, noise).layout().clone();
     Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
 }
@@ -151,7 +150,7 @@ impl Task<'_> {
     }
 
     fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
-        let free = free_parameters(estimate, self.data);
+        let free = free_parameters(estimate, self.data, self.rows);
         Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m)
     }
 
@@ -165,10 +164,10 @@ impl Task<'_> {
     ) -> Option<(Option<Estimate>, usize)> {
         let sample = sample_rows(self.rows, RESTART_SAMPLE);
         let problem = |estimate: &Estimate| {
-            let free = free_parameters(estimate, self.data);
+            let free = free_parameters(estimate, self.data, self.rows);
             Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m)
         };
-        if self.options.restarts == 0 || self.position_rms(fitted) < SUSPICIOUS * self.robot.reach_m() {
+        if self.options.restarts == 0 || self.position_rms(fitted) < SUSPICIOUS * 3.0 * self.length_m {
             return None;
         }
         let after = problem(fitted).normal(fitted).cost;
@@ -183,7 +182,7 @@ impl Task<'_> {
             let (found, normal, _) = minimize(&problem(&start), start, &options);
             if normal.cost < best.0 {
                 best.0 = 0.999 * normal.cost;
-                if self.position_rms(&found) < SUSPICIOUS * self.robot.reach_m() {
+                if self.position_rms(&found) < SUSPICIOUS * 3.0 * self.length_m {
                     best.1 = Some(found);
                     break;
                 }
@@ -210,7 +209,13 @@ impl Task<'_> {
 
     /// Moves along exactly null directions to the screws nearest to nominal; the fit is renewed after each move. An unknown device
     /// frame lets the base follow, which changes no prediction.
-    fn settle_null_directions(&self, estimate: Estimate, normal: Normal, noise: Noise) -> (Estimate, Normal) {
+    fn settle_null_directions(
+        &self,
+        estimate: Estimate,
+        normal: Normal,
+        noise: Noise,
+        report: &mut SolverReport,
+    ) -> (Estimate, Normal) {
         let (mut estimate, mut normal) = (estimate, normal);
         let base_free = self.options.frame == DeviceFrameKnowledge::Unknown;
         let targets = delivered(self.robot, self.data).base_from_target;
@@ -227,12 +232,14 @@ impl Task<'_> {
                 break;
             };
             let length = step.iter().map(|s| s * s).sum::<f64>().sqrt();
-            let (moved, moved_normal, _) =
+            let (moved, moved_normal, summary) =
                 minimize(&problem, problem.retract(&estimate, &step), &self.options.solver);
             if length < 1e-10 || moved_normal.cost > normal.cost * (1.0 + 1e-6) + 1e-12 {
                 break;
             }
             (estimate, normal) = (moved, moved_normal);
+            report.iterations += summary.iterations;
+            report.termination = summary.termination;
         }
         (estimate, normal)
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy, row_errors};
-use super::{DeviceFrameKnowledge, delivered};
+use super::{DeviceFrameKnowledge, delivered, radian_m};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Packed;
 use crate::lie::Pose;
@@ -115,7 +115,7 @@ fn accuracy(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> ModelAccura
             packed: &packed,
             rows: &rows,
             noise: subject.noise,
-            length_m: robot.reach_m() / 3.0,
+            length_m: radian_m(robot, &packed),
             device_free: subject.refit_frame,
             targets_free: subject.refit_tool,
         };

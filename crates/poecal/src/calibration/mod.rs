@@ -1,6 +1,7 @@
 //! From a robot and measurements to a calibrated robot: the steps by name, and nothing computed here.
 
 mod accuracy;
+mod doubts;
 mod fit;
 mod judge;
 mod noise;
@@ -18,7 +19,7 @@ use crate::estimate::{Estimate, Packed};
 use crate::gauge;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
-use crate::robot::Robot;
+use crate::robot::{JointKind, Robot};
 use crate::solve;
 use crate::start::{Registration, register, register_again};
 
@@ -91,7 +92,7 @@ pub struct SolverReport {
     pub termination: solve::Termination,
     /// Further starts that were tried.
     pub restarts: usize,
-    /// Root mean square whitened residual by iteration.
+    /// Mean square whitened residual by iteration.
     pub trace: Vec<f64>,
 }
 
@@ -142,6 +143,8 @@ pub struct Calibration {
     pub noise: Noise,
     /// Where that noise came from.
     pub noise_source: NoiseSource,
+    /// What makes the result doubtful, a sentence each.
+    pub warnings: Vec<String>,
     /// Rows fitted.
     pub fit_rows: Vec<u32>,
     /// Rows held out.
@@ -197,7 +200,7 @@ pub fn calibrate_with_progress(
     check_count(robot, data, &fit_rows)?;
     let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
     let delivered = delivered(robot, data);
-    let length_m = robot.reach_m() / 3.0;
+    let length_m = radian_m(robot, &packed);
     let (mut noise, source) = noise::first_guess(data, options);
     let registration = |noise: Noise, targets_free: bool| Registration {
         data,
@@ -228,13 +231,14 @@ pub fn calibrate_with_progress(
         }
         DeviceFrameKnowledge::Base => fitted.estimate,
     };
-    let identifiability = identifiability(robot, data, &fitted.layout, &fitted.normal);
+    let identifiability = identifiability(robot, data, &fitted.layout, &fitted.normal, length_m);
     let models = Models { nominal, registered, calibrated };
     let accuracy = Accuracy {
         training: set_accuracy(data, &packed, &fit_rows, &models),
         held_out: (!held_out_rows.is_empty()).then(|| set_accuracy(data, &packed, &held_out_rows, &models)),
     };
-    let (calibrated_robot, targets) = place_tip(robot, data, &models.calibrated);
+    let warnings = doubts::doubts(data, &fit_rows, &accuracy.training.registered, options.frame);
+    let (calibrated_robot, targets) = place_tip(robot, data, &data.frames(&fit_rows), &models.calibrated);
     Ok(Calibration {
         nominal: robot.clone(),
         robot: calibrated_robot,
@@ -247,9 +251,25 @@ pub fn calibrate_with_progress(
         identifiability,
         noise: fitted.noise,
         noise_source: fitted.noise_source,
+        warnings,
         fit_rows,
         held_out_rows,
     })
+}
+
+/// How many metres a radian counts: a third of how far the arm and the strokes found in the data reach.
+#[must_use]
+pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
+    let strokes: f64 = (0..robot.joints.len())
+        .filter(|&joint| robot.joints[joint].kind == JointKind::Prismatic)
+        .map(|joint| {
+            let values = (0..packed.rows()).map(|row| packed.joint(row, joint).0);
+            let (least, most) =
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)));
+            (most - least).max(0.0)
+        })
+        .sum();
+    (robot.arm_m() + strokes) / 3.0
 }
 
 /// The model as delivered: nominal screws, each target where the model has it or else at the tip, device at the base.
@@ -268,15 +288,19 @@ pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
 
 /// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (with points alone its
 /// orientation keeps the nominal relation to the last joint); otherwise the tip keeps its whole nominal relation to the last joint.
-fn place_tip(robot: &Robot, data: &Dataset, estimate: &Estimate) -> (Robot, Vec<CalibratedTarget>) {
+fn place_tip(
+    robot: &Robot,
+    data: &Dataset,
+    frames: &[bool],
+    estimate: &Estimate,
+) -> (Robot, Vec<CalibratedTarget>) {
     let mut calibrated = robot.with_screws(&estimate.screws());
     let last_joint = calibrated.joints.last().map_or_else(Pose::identity, |joint| joint.frame);
     calibrated.home = last_joint * robot.last_joint_from_tip();
     for (target, name) in data.targets.iter().enumerate() {
         if name.is_none() {
             let seen = estimate.base_from_target[target];
-            let rotation =
-                if data.target_is_frame(target) { seen.rotation } else { calibrated.home.rotation };
+            let rotation = if frames[target] { seen.rotation } else { calibrated.home.rotation };
             calibrated.home = Pose::new(rotation, seen.translation);
         }
     }
@@ -286,7 +310,7 @@ fn place_tip(robot: &Robot, data: &Dataset, estimate: &Estimate) -> (Robot, Vec<
         .iter()
         .enumerate()
         .map(|(target, name)| {
-            let is_frame = data.target_is_frame(target);
+            let is_frame = frames[target];
             let tip_from_target = tip_from_base * estimate.base_from_target[target];
             let rotation = if is_frame { tip_from_target.rotation } else { nalgebra::Matrix3::identity() };
             CalibratedTarget {
@@ -301,11 +325,20 @@ fn place_tip(robot: &Robot, data: &Dataset, estimate: &Estimate) -> (Robot, Vec<
 
 /// Refuses problems with fewer measured numbers than unknowns that data of this kind could determine.
 fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
-    use crate::robot::JointKind;
     let screws: usize =
         robot.joints.iter().map(|joint| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum();
-    let targets: usize =
-        (0..data.targets.len()).map(|target| if data.target_is_frame(target) { 6 } else { 3 }).sum();
+    for (target, name) in data.targets.iter().enumerate() {
+        if !fit_rows.iter().any(|&row| data.observations[row as usize].target == target) {
+            let name = name.as_deref().unwrap_or("the tip");
+            return Err(Error::new(
+                ErrorKind::Problem,
+                format!(
+                    "found no measurement of target `{name}` to fit, expected at least one of every target: fit some of its rows, or leave its rows out"
+                ),
+            ));
+        }
+    }
+    let targets: usize = data.frames(fit_rows).iter().map(|&is_frame| if is_frame { 6 } else { 3 }).sum();
     let needed = screws + targets;
     let given: usize =
         fit_rows.iter().map(|&row| data.observations[row as usize].measurement.residual_model().dim()).sum();

@@ -23,6 +23,9 @@ pub enum NoiseSource {
 /// Below this (1 nm, 1 nrad) residuals are rounding, and their ratio says nothing.
 const ROUNDING: f64 = 1e-9;
 
+/// Residuals, beyond a part's own unknowns, that it takes to estimate a noise.
+const REDUNDANT: f64 = 6.0;
+
 /// The stated noise, or 1 mm and 1 mrad to start with.
 pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Noise, NoiseSource) {
     let source = if options.sigma_position_m.is_some() && options.sigma_rotation_rad.is_some() {
@@ -51,7 +54,7 @@ pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
 }
 
 /// Position and rotation noise as the residuals of an estimate show them, each component's variance separately, with the unknowns
-/// taken off in proportion. What a row states is left out; a part that was not measured keeps `before`. `None` if the residuals are
+/// taken off in proportion. What a row states is left out; a part that was hardly measured keeps `before`. `None` if the residuals are
 /// only rounding.
 #[must_use]
 pub fn estimate_noise(
@@ -66,35 +69,59 @@ pub fn estimate_noise(
     let unit = Noise { position_m: 1.0, rotation_rad: 1.0 };
     let mut chain = Chain::default();
     let mut e = [0.0; 6];
-    let (mut position, mut rotation) = ((0.0, 0usize), (0.0, 0usize));
+    let (mut position, mut rotation) = (Share::default(), Share::default());
+    let mut stated = 0;
     for &row in rows {
         let observation = &data.observations[row as usize];
         let model = observation.measurement.residual_model();
         chain.evaluate(&linkage, packed, row as usize, observation.target);
         model.residual(&chain.target, &unit, &mut e);
         let (split, dim) = (model.rotation_row(), model.dim());
-        if observation.sigma_position_m.is_none() {
-            position.0 += e[..split].iter().map(|e| e * e).sum::<f64>();
-            position.1 += split;
-        }
-        if observation.sigma_rotation_rad.is_none() {
-            rotation.0 += e[split..dim].iter().map(|e| e * e).sum::<f64>();
-            rotation.1 += dim - split;
+        for (part, share, is_stated) in [
+            (&e[..split], &mut position, observation.sigma_position_m.is_some()),
+            (&e[split..dim], &mut rotation, observation.sigma_rotation_rad.is_some()),
+        ] {
+            if is_stated {
+                stated += part.len();
+            } else {
+                share.add(part);
+            }
         }
     }
-    let total = (position.1 + rotation.1) as f64;
-    let free = ((total - unknowns as f64) / total).max(1.0 / total.max(1.0));
-    let deviation = |(sum, count): (f64, usize), before: f64| {
-        if count == 0 {
-            return before;
-        }
-        (sum / (count as f64 * free)).sqrt()
-    };
-    let found = Noise {
-        position_m: deviation(position, before.position_m),
-        rotation_rad: deviation(rotation, before.rotation_rad),
-    };
-    let rounding =
-        (position.1 > 0 && found.position_m < ROUNDING) || (rotation.1 > 0 && found.rotation_rad < ROUNDING);
-    (!rounding).then_some(found)
+    // Each target's orientation (3 unknowns) is told by rotations alone; all other unknowns are shared in proportion.
+    let turned = 3 * data.frames(rows).iter().filter(|&&is_frame| is_frame).count();
+    let total = (position.count + rotation.count + stated) as f64;
+    let others = (unknowns.saturating_sub(turned) as f64 / (total - turned as f64).max(1.0)).min(1.0);
+    let position_m = position.deviation(0, others);
+    let rotation_rad = rotation.deviation(turned, others);
+    let mut told = [position_m, rotation_rad].into_iter().flatten().peekable();
+    if told.peek().is_some() && told.all(|deviation| deviation < ROUNDING) {
+        return None;
+    }
+    Some(Noise {
+        position_m: position_m.map_or(before.position_m, |deviation| deviation.max(ROUNDING)),
+        rotation_rad: rotation_rad.map_or(before.rotation_rad, |deviation| deviation.max(ROUNDING)),
+    })
+}
+
+/// The residuals that one noise explains.
+#[derive(Default)]
+struct Share {
+    squares: f64,
+    count: usize,
+}
+
+impl Share {
+    fn add(&mut self, residuals: &[f64]) {
+        self.squares += residuals.iter().map(|e| e * e).sum::<f64>();
+        self.count += residuals.len();
+    }
+
+    /// Their standard deviation with `own` unknowns and a share `others` of the rest taken off; `None` where too little is left to
+    /// tell.
+    fn deviation(&self, own: usize, others: f64) -> Option<f64> {
+        let left = self.count.saturating_sub(own) as f64;
+        let redundancy = (left * (1.0 - others)).max(1.0);
+        (left >= REDUNDANT).then(|| (self.squares / redundancy).sqrt())
+    }
 }

@@ -165,6 +165,19 @@ impl Dataset {
         self.observations.iter().any(|row| row.target == target && row.measurement.sees_orientation())
     }
 
+    /// For each target, whether some of these rows measured its orientation.
+    #[must_use]
+    pub fn frames(&self, rows: &[u32]) -> Vec<bool> {
+        (0..self.targets.len())
+            .map(|target| {
+                rows.iter().any(|&row| {
+                    let observation = &self.observations[row as usize];
+                    observation.target == target && observation.measurement.sees_orientation()
+                })
+            })
+            .collect()
+    }
+
     /// The rows of another data set after these; readings are matched by name.
     ///
     /// # Errors

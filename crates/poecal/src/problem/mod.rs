@@ -14,6 +14,8 @@ use rayon::prelude::*;
 
 /// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
 const CHUNK: usize = 1024;
+/// Partial sums that exist at a time: memory beside the data stays bounded.
+const GROUP: usize = 64;
 /// Rows whose Jacobian is held at a time.
 const BLOCK: usize = 16;
 
@@ -94,10 +96,10 @@ impl<'a> Problem<'a> {
         if self.rows.len() <= CHUNK {
             return add(&self.rows);
         }
-        let parts: Vec<Normal> = self.rows.par_chunks(CHUNK).map(add).collect();
         let mut total = Normal::new(self.layout.dim());
-        for part in &parts {
-            total.add(part);
+        for group in self.rows.chunks(CHUNK * GROUP) {
+            let parts: Vec<Normal> = group.par_chunks(CHUNK).map(&add).collect();
+            parts.iter().for_each(|part| total.add(part));
         }
         total
     }

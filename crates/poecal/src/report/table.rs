@@ -58,7 +58,8 @@ pub fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccuracy>) ->
     ];
     let mut out = String::new();
     block(&mut out, "position, mm", &columns, training, held_out, |model| Some(model.position_mm));
-    if training.calibrated.rotation_deg.is_some() {
+    let turned = |set: &SetAccuracy| set.calibrated.rotation_deg.is_some();
+    if turned(training) || held_out.is_some_and(turned) {
         out.push('\n');
         block(&mut out, "rotation, deg", &columns, training, held_out, |model| model.rotation_deg);
     }

@@ -32,6 +32,11 @@ pub struct Limits {
     pub upper: f64,
 }
 
+impl Limits {
+    /// A sliding joint's stroke beyond which its limits are placeholders: files demand limits where none are known.
+    pub const PLACEHOLDER_M: f64 = 100.0;
+}
+
 /// Where a joint's value comes from: `θ = multiplier · reading + offset`. Multiplier 1 and offset 0 but for mimic joints.
 ///
 /// ```

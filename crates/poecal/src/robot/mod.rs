@@ -118,9 +118,9 @@ impl Robot {
         }
     }
 
-    /// A length that says how large the robot is (metres): the longest way from axis to axis to the tip, at least 1 cm.
+    /// A length that says how large the arm is (metres): the longest way from axis to axis to the tip at zero, at least 1 cm.
     #[must_use]
-    pub fn reach_m(&self) -> f64 {
+    pub fn arm_m(&self) -> f64 {
         let mut at: Option<Vector3<f64>> = None;
         let mut reach = 0.0;
         for joint in self.joints.iter().filter(|joint| joint.kind == JointKind::Revolute) {
@@ -130,14 +130,21 @@ impl Robot {
             at = Some(next);
         }
         let last = at.unwrap_or_else(Vector3::zeros);
+        (reach + (self.home.translation - last).norm()).max(0.01)
+    }
+
+    /// A length that says how far the robot reaches (metres): the arm and the strokes of its sliding joints. Limits wider than 100 m
+    /// are placeholders and do not count.
+    #[must_use]
+    pub fn reach_m(&self) -> f64 {
         let slides: f64 = self
             .joints
             .iter()
             .filter(|joint| joint.kind == JointKind::Prismatic)
             .filter_map(|joint| joint.limits)
             .map(|limits| limits.upper - limits.lower)
-            .filter(|span| span.is_finite())
+            .filter(|span| *span < Limits::PLACEHOLDER_M)
             .sum();
-        (reach + slides + (self.home.translation - last).norm()).max(0.01)
+        self.arm_m() + slides
     }
 }

@@ -12,7 +12,7 @@ use rand_core::SeedableRng;
 use crate::error::Result;
 use crate::lie::{Pose, Twist, rotation};
 use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
-use crate::robot::{JointKind, Robot};
+use crate::robot::{JointKind, Limits, Robot};
 
 /// What the simulated device sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -199,6 +199,7 @@ pub fn random_configuration(robot: &Robot, generator: &mut ChaCha8Rng) -> Vec<f6
                 kind = joint.kind;
                 if let Some(limits) = joint.limits
                     && joint.reading.multiplier != 0.0
+                    && (kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M)
                 {
                     let at = |value: f64| (value - joint.reading.offset) / joint.reading.multiplier;
                     let (a, b) = (at(limits.lower), at(limits.upper));

@@ -84,15 +84,15 @@ fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<Parameter> {
         free.push(Parameter::DeviceFrame(DeviceFrame { about: sum / rows.len().max(1) as f64 }));
     }
     if problem.targets_free {
-        free.extend(target_parameters(problem.data));
+        free.extend(target_parameters(problem.data, problem.rows));
     }
     free
 }
 
-/// The free parameters of all targets: frames where orientation was measured, places elsewhere.
-pub(crate) fn target_parameters(data: &Dataset) -> impl Iterator<Item = Parameter> {
-    (0..data.targets.len()).map(|target| {
-        if data.target_is_frame(target) {
+/// The free parameters of all targets: frames where these rows measured orientation, places elsewhere.
+pub(crate) fn target_parameters(data: &Dataset, rows: &[u32]) -> impl Iterator<Item = Parameter> {
+    data.frames(rows).into_iter().enumerate().map(|(target, is_frame)| {
+        if is_frame {
             Parameter::TargetFrame(TargetFrame { target })
         } else {
             Parameter::TargetPlace(TargetPlace { target })
@@ -166,7 +166,8 @@ impl Seen {
     /// Whether two device frames lead to one optimum for sure: a few degrees, and a tenth of the data's spread apart at most.
     fn is_near(&self, a: &Pose, b: &Pose) -> bool {
         let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
-        let middle = self.base_motion.first().map_or_else(Vector3::zeros, |motion| motion.translation);
+        let count = self.base_motion.len().max(1) as f64;
+        let middle = self.base_motion.iter().map(|motion| motion.translation).sum::<Vector3<f64>>() / count;
         turn < 0.1 && (a.act(&middle) - b.act(&middle)).norm() < 0.1 * self.spread()
     }
 

@@ -56,10 +56,12 @@ impl CalibrationFile {
                     })
                     .collect(),
             },
+            warnings: calibration.warnings.clone(),
             noise: NoiseEntry {
                 sigma_position_mm: calibration.noise.position_m * 1e3,
-                sigma_rotation_deg: (0..data.targets.len())
-                    .any(|target| data.target_is_frame(target))
+                sigma_rotation_deg: data
+                    .frames(&calibration.fit_rows)
+                    .contains(&true)
                     .then(|| calibration.noise.rotation_rad.to_degrees()),
                 source: calibration.noise_source,
             },

@@ -32,6 +32,9 @@ pub struct CalibrationFile {
     pub identifiability: IdentifiabilityEntry,
     /// Noise by which residuals were weighted.
     pub noise: NoiseEntry,
+    /// What makes the result doubtful, a sentence each.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// The calibrated robot's frames.
     pub robot: RobotEntry,
     /// The calibrated joints from base to tip.

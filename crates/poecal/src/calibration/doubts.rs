@@ -1,0 +1,49 @@
+//! Signs that the input is not what it seems: a fit can absorb mistakes, a registration cannot.
+
+use super::{DeviceFrameKnowledge, ModelAccuracy};
+use crate::measurement::Dataset;
+use nalgebra::Vector3;
+
+/// Registered error, as a share of the measurements' spread, beyond which the nominal model does not describe this data. Real robots
+/// stay below a hundredth, simulated errors of several degrees on every axis below a tenth.
+const MISFIT: f64 = 0.15;
+/// Registered rotation error beyond which orientations mean something else than they are read as, degrees.
+const TURNED_DEG: f64 = 20.0;
+
+/// What the registered model's training errors say against the input.
+pub(super) fn doubts(
+    data: &Dataset,
+    rows: &[u32],
+    registered: &ModelAccuracy,
+    frame: DeviceFrameKnowledge,
+) -> Vec<String> {
+    let mut doubts = Vec::new();
+    let places: Vec<Vector3<f64>> = rows
+        .iter()
+        .map(|&row| data.observations[row as usize].measurement.residual_model().position())
+        .collect();
+    let count = places.len().max(1) as f64;
+    let mean = places.iter().sum::<Vector3<f64>>() / count;
+    let spread_mm =
+        (places.iter().map(|place| (place - mean).norm_squared()).sum::<f64>() / count).sqrt() * 1e3;
+    let error_mm = registered.position_mm.rms;
+    if error_mm > MISFIT * spread_mm {
+        let base = match frame {
+            DeviceFrameKnowledge::Base => ", a device that does not stand at the base (--frame base)",
+            DeviceFrameKnowledge::Unknown => "",
+        };
+        doubts.push(format!(
+            "with nominal screws the measurements are missed by {error_mm:.1} mm (RMS), {:.0} % of their spread: \
+             look for a wrong unit, exchanged or misnamed joint columns, mirrored coordinates{base}, or another robot",
+            100.0 * error_mm / spread_mm
+        ));
+    }
+    if let Some(rotation) = registered.rotation_deg.filter(|rotation| rotation.rms > TURNED_DEG) {
+        doubts.push(format!(
+            "with nominal screws the orientations are missed by {:.0} deg (RMS): look for the quaternion's order (x, y, z, w), \
+             inverted poses, or another Euler convention",
+            rotation.rms
+        ));
+    }
+    doubts
+}
