@@ -212,6 +212,8 @@ fn bad_use_gets_one_sentence_each() {
              "nowhere/results: the folder above does not exist, expected one to write into: create it first"),
         case("calibrate robot.urdf good.csv --held-out 1.0", "",
              "--held-out: found `1.0`, expected a number from 0 to below 1"),
+        case("calibrate robot.urdf good.csv --held-out 0.99", "",
+             "found 3 measurements to fit with 9 measured numbers, expected at least 13 numbers (10 of the screws, 3 of the targets): measure more configurations, or hold out fewer"),
         case("calibrate robot.urdf good.csv --held-out some", "",
              "--held-out: found `some`, expected a number from 0 to below 1"),
         case("calibrate robot.urdf good.csv --sigma-position 0.05", "",
