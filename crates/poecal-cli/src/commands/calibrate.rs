@@ -33,16 +33,16 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
         console.warning(note);
     }
     if arguments.json {
-        console.result(&CalibrationFile::new(&calibration, &data, inputs).to_text()?);
+        console.data(&CalibrationFile::new(&calibration, &data, inputs).to_text()?)?;
     } else {
-        console.say(&report::summary(&calibration, &data));
+        console.say(&report::summary(&calibration, &data))?;
         console.say(&format!(
             "written       {}: {}\n              read back, on 1,000 configurations within {:.1e} m and {:.1e} rad of the fit\n",
             written.folder.display(),
             written.files.join(", "),
             written.largest.position_m,
             written.largest.rotation_rad
-        ));
+        ))?;
     }
     Ok(if calibration.solver.termination.is_success() { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }

@@ -42,7 +42,7 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<ExitCo
         console.data(&report::json(&judgement)?)?;
     } else {
         let calibration = arguments.calibration.display().to_string();
-        console.say(&report::judgement(&calibration, &named(arguments, &file), &judgement));
+        console.say(&report::judgement(&calibration, &named(arguments, &file), &judgement))?;
     }
     if !arguments.refit_frame && rms_mm > MOVED_DEVICE * own_mm {
         console.warning(format!(

@@ -244,3 +244,24 @@ fn the_schema_in_the_docs_is_the_programs() {
         "write it anew: cargo run -p poecal-cli -- schema > docs/calibration.schema.json"
     );
 }
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_result_that_does_not_arrive_is_an_error_unless_its_reader_has_gone() {
+    let folder = session(Kind::Point);
+    folder.done("calibrate robot.urdf measurements.csv");
+    for arguments in [
+        "calibrate robot.urdf measurements.csv --force",
+        "calibrate robot.urdf measurements.csv --force --json",
+        "validate poecal-out/calibration.json measurements.csv",
+        "check robot.urdf measurements.csv",
+        "simulate robot.urdf --out made --force",
+    ] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let run = folder.run_into(arguments, full);
+        assert_eq!(run.code, 2, "poecal {arguments}");
+        assert!(run.err.contains("error: standard output cannot be written to ("), "{}", run.err);
+        let run = folder.run_unread(arguments);
+        assert!(run.code == 0 && !run.err.contains("error"), "poecal {arguments}\n{}", run.err);
+    }
+}
