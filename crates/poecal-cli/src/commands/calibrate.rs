@@ -11,6 +11,7 @@ use poecal::io::output;
 use poecal::measurement::{Dataset, Set};
 use poecal::{Result, report};
 
+use super::files::{refuse_fitted, refuse_repeats};
 use crate::args::{Calibrate, Frame};
 use crate::console::Console;
 
@@ -49,6 +50,9 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
 
 /// Reads and joins the files; with `--validate`, those rows are held out and all others fitted.
 fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) -> Result<Dataset> {
+    refuse_repeats(&arguments.measurements)?;
+    refuse_repeats(&arguments.validate)?;
+    refuse_fitted(&arguments.validate, &arguments.measurements)?;
     let options = arguments.reading.options()?;
     let read = |paths: &[PathBuf]| -> Result<Dataset> {
         let file = measurements::read(paths, &model.robot, &options)?;

@@ -57,7 +57,14 @@ fn calibrated_urdf_changes_attribute_values_only() {
 #[test]
 fn training_figures_are_never_shown_without_the_word() {
     let folder = session(Kind::Mixed);
-    for arguments in ["", "--held-out 0", "--fit-where stage=1", "--validate measurements.csv"] {
+    write_measurements(
+        &folder,
+        "other.csv",
+        Kind::Mixed,
+        "",
+        &Simulation { count: 25, ..Simulation::default() },
+    );
+    for arguments in ["--validate other.csv", "--held-out 0", "--fit-where stage=1", ""] {
         let out = folder.done(&format!("calibrate robot.urdf measurements.csv --force {arguments}"));
         // Each block of figures begins with a row that names its set; the first block of a table is the training one.
         let mut set = "";
@@ -74,8 +81,9 @@ fn training_figures_are_never_shown_without_the_word() {
             assert!(!is_figure || !set.is_empty(), "figures without their set:\n{out}");
         }
     }
-    let out = folder.done("validate poecal-out/calibration.json measurements.csv");
-    assert!(out.contains("measurements.csv (has training rows)"), "{out}");
+    let out = folder.done("validate poecal-out/calibration.json poecal-out/../measurements.csv other.csv");
+    assert!(out.contains("measurements.csv (has training rows),"), "{out}");
+    assert!(!out.contains("other.csv (has training rows)"), "{out}");
     let out = folder.done("validate poecal-out/calibration.json measurements.csv --refit-frame --refit-tool");
     assert!(out.contains("device frame and tool: fitted to these measurements, so training"), "{out}");
 }
