@@ -123,12 +123,12 @@ pub(crate) struct Calibrate {
     /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
     pub(crate) sigma_rotation: Option<f64>,
-    /// Share of the configurations held out, where the files do not say
-    #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = share, allow_hyphen_values = true)]
-    pub(crate) held_out: f64,
-    /// Seed of that choice
-    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
-    pub(crate) seed: u64,
+    /// Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    pub(crate) held_out: Option<f64>,
+    /// Seed of that choice [default: 1]
+    #[arg(long, value_parser = whole::<u64>)]
+    pub(crate) seed: Option<u64>,
     /// Measurement file to judge by: all other rows are fitted
     #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]
     pub(crate) validate: Vec<PathBuf>,

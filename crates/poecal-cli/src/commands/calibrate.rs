@@ -9,7 +9,7 @@ use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::io::output;
 use poecal::measurement::{Dataset, Set};
-use poecal::{Result, report};
+use poecal::{Error, ErrorKind, Result, report};
 
 use super::files::{refuse_fitted, refuse_repeats};
 use crate::args::{Calibrate, Frame};
@@ -68,10 +68,46 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
         other.observations.iter_mut().for_each(|row| row.set = Some(Set::HeldOut));
         data.extend(&other)?;
     }
+    settle_sets(arguments, &mut data, console)?;
     Ok(data)
 }
 
+/// Where files or options state which rows are held out, a share of them has no meaning, unless it is none.
+fn settle_sets(arguments: &Calibrate, data: &mut Dataset, console: &Console) -> Result<()> {
+    if data.observations.iter().all(|row| row.set.is_none()) {
+        return Ok(());
+    }
+    let stated_by = if !arguments.validate.is_empty() {
+        "--validate"
+    } else if arguments.reading.fit_where.is_some() {
+        "--fit-where"
+    } else {
+        "a column of the files"
+    };
+    match arguments.held_out {
+        Some(share) if share > 0.0 => {
+            let message = format!(
+                "found --held-out {share}, but {stated_by} already says which rows are held out, expected one of the \
+                 two: leave --held-out out, or fit every row with --held-out 0"
+            );
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+        Some(_) => {
+            data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
+            if !arguments.validate.is_empty() {
+                console.warning("--held-out 0 fits every row, also those of --validate");
+            }
+        }
+        None => {}
+    }
+    if arguments.seed.is_some() {
+        console.warning("--seed has no effect on which rows are held out: that is stated");
+    }
+    Ok(())
+}
+
 fn options(arguments: &Calibrate) -> CalibrationOptions {
+    let usual = CalibrationOptions::default();
     CalibrationOptions {
         frame: match arguments.frame {
             Frame::Unknown => DeviceFrameKnowledge::Unknown,
@@ -79,9 +115,9 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
         },
         sigma_position_m: arguments.sigma_position,
         sigma_rotation_rad: arguments.sigma_rotation,
-        held_out: arguments.held_out,
-        seed: arguments.seed,
-        ..CalibrationOptions::default()
+        held_out: arguments.held_out.unwrap_or(usual.held_out),
+        seed: arguments.seed.unwrap_or(usual.seed),
+        ..usual
     }
 }
 

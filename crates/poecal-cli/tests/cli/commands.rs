@@ -104,6 +104,16 @@ fn what_is_held_out_can_be_said() {
     write_measurements(&folder, "other.csv", Kind::Pose, "", &Simulation { count: 25, ..simulation });
     let out = folder.done("calibrate robot.urdf measurements.csv --validate other.csv --out other");
     assert!(out.contains("training (60)") && out.contains("held out (25)"), "{out}");
+
+    for stated in ["--fit-where stage=1", "--validate other.csv"] {
+        let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --held-out 0"));
+        assert!(run.code == 0 && run.out.contains("every measurement was fitted"), "{}{}", run.out, run.err);
+        let both = "warning: --held-out 0 fits every row, also those of --validate\n";
+        assert_eq!(run.err.contains(both), stated.starts_with("--validate"), "{}", run.err);
+        let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --seed 2"));
+        let seed = "warning: --seed has no effect on which rows are held out: that is stated\n";
+        assert!(run.code == 0 && run.err.contains(seed), "{}", run.err);
+    }
 }
 
 #[test]
