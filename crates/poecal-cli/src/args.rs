@@ -118,17 +118,17 @@ pub(crate) struct Calibrate {
     #[arg(long, value_enum, default_value = "unknown")]
     pub(crate) frame: Frame,
     /// Standard deviation of each measured position component, like 0.05mm [default: estimated from the data]
-    #[arg(long, value_name = "LENGTH", value_parser = sigma_m)]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]
     pub(crate) sigma_position: Option<f64>,
     /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
-    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad)]
+    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
     pub(crate) sigma_rotation: Option<f64>,
-    /// Share of the configurations held out, where the files do not say
-    #[arg(long, value_name = "SHARE", default_value_t = 0.3, value_parser = share)]
-    pub(crate) held_out: f64,
-    /// Seed of that choice
-    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
-    pub(crate) seed: u64,
+    /// Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    pub(crate) held_out: Option<f64>,
+    /// Seed of that choice [default: 1]
+    #[arg(long, value_parser = whole::<u64>)]
+    pub(crate) seed: Option<u64>,
     /// Measurement file to judge by: all other rows are fitted
     #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]
     pub(crate) validate: Vec<PathBuf>,
@@ -162,10 +162,10 @@ pub(crate) struct Simulate {
     #[command(flatten)]
     pub(crate) chain: Chain,
     /// Angle and distance by which every axis, and the tip, is off
-    #[arg(long, value_name = "ANGLE,LENGTH", default_value = "1deg,2mm")]
+    #[arg(long, value_name = "ANGLE,LENGTH", default_value = "1deg,2mm", allow_hyphen_values = true)]
     pub(crate) errors: LengthAndAngle,
     /// Standard deviations of each measured component
-    #[arg(long, value_name = "LENGTH,ANGLE", default_value = "0.05mm,0.01deg")]
+    #[arg(long, value_name = "LENGTH,ANGLE", default_value = "0.05mm,0.01deg", allow_hyphen_values = true)]
     pub(crate) noise: LengthAndAngle,
     /// Number of measurements
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]

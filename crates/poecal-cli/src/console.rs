@@ -19,12 +19,7 @@ impl Console {
         Console { quiet }
     }
 
-    /// A result. A reader that has gone away (a closed pipe) is no error.
-    pub(crate) fn result(&self, text: &str) {
-        let _ = self.data(text);
-    }
-
-    /// A result that must arrive whole, for which a closed pipe is no error either.
+    /// A result that must arrive whole; only a reader that has gone away (a closed pipe) is no error.
     pub(crate) fn data(&self, text: &str) -> Result<()> {
         let mut out = std::io::stdout().lock();
         match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -48,10 +43,8 @@ impl Console {
     }
 
     /// A result that `--quiet` suppresses.
-    pub(crate) fn say(&self, text: &str) {
-        if !self.quiet {
-            self.result(text);
-        }
+    pub(crate) fn say(&self, text: &str) -> Result<()> {
+        if self.quiet { Ok(()) } else { self.data(text) }
     }
 
     pub(crate) fn warning(&self, message: impl Display) {

@@ -10,24 +10,31 @@ use poecal::{Error, ErrorKind, Result};
 /// # Errors
 /// One sentence that says what was found and expected.
 pub(crate) fn parse(text: &str, quantity: Quantity) -> Result<f64> {
-    let split = text.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).unwrap_or(text.len());
-    let (number, symbol) = text.split_at(split);
     let example = match quantity {
         Quantity::Length => "0.05mm",
         Quantity::Angle => "0.01deg",
         Quantity::Number => "3",
     };
-    let bad = |what: String| {
-        Error::new(ErrorKind::Option, format!("found {what}, expected a number with a unit, like {example}"))
+    let (value, symbol) = value_and_symbol(text, example)?;
+    Ok(Unit::parse(symbol, quantity)?.to_si(value))
+}
+
+/// The number, which is not negative, and the symbol of its unit.
+fn value_and_symbol<'a>(text: &'a str, example: &str) -> Result<(f64, &'a str)> {
+    let split = text.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).unwrap_or(text.len());
+    let (number, symbol) = text.split_at(split);
+    let bad = |what: &str, expected: &str| {
+        let message =
+            format!("found `{text}`{what}, expected a number{expected} with a unit, like {example}");
+        Error::new(ErrorKind::Option, message)
     };
-    let value: f64 = number.trim().parse().map_err(|_| bad(format!("`{text}`")))?;
-    if !value.is_finite() || value < 0.0 {
-        return Err(bad(format!("`{text}`")));
+    match number.trim().parse::<f64>() {
+        Ok(value) if value < 0.0 => Err(bad("", " not below 0,")),
+        Ok(value) if !value.is_finite() => Err(bad("", "")),
+        Ok(_) if symbol.is_empty() => Err(bad(" without a unit", "")),
+        Ok(value) => Ok((value, symbol.trim())),
+        Err(_) => Err(bad("", "")),
     }
-    if symbol.is_empty() {
-        return Err(bad(format!("`{text}` without a unit")));
-    }
-    Ok(Unit::parse(symbol.trim(), quantity)?.to_si(value))
 }
 
 /// A length and an angle as the user wrote them: `1deg,2mm` in either order; what is left out is zero.
@@ -44,11 +51,10 @@ impl FromStr for LengthAndAngle {
     fn from_str(text: &str) -> Result<Self> {
         let (mut length_m, mut angle_rad) = (None, None);
         for part in text.split(',').map(str::trim) {
-            let (place, value) = match parse(part, Quantity::Angle) {
-                Ok(angle) => (&mut angle_rad, angle),
-                Err(_) => (&mut length_m, parse(part, Quantity::Length)?),
-            };
-            if place.replace(value).is_some() {
+            let (value, symbol) = value_and_symbol(part, "2mm or 1deg")?;
+            let unit = Unit::parse_any(symbol)?;
+            let place = if unit.quantity() == Quantity::Angle { &mut angle_rad } else { &mut length_m };
+            if place.replace(unit.to_si(value)).is_some() {
                 let message = format!("found `{text}`, expected one length and one angle, like 2mm,1deg");
                 return Err(Error::new(ErrorKind::Option, message));
             }
@@ -104,7 +110,10 @@ mod tests {
         assert_eq!(both("0.05mm"), Ok((5e-5, 0.0)));
         let message = |text: &str| both(text).unwrap_err().to_string();
         assert_eq!(message("1mm,2mm"), "found `1mm,2mm`, expected one length and one angle, like 2mm,1deg");
-        assert_eq!(message("1"), "found `1` without a unit, expected a number with a unit, like 0.05mm");
-        assert_eq!(message("2mm,1grad"), "found the unit `grad`, expected a length (m, cm, mm, um, nm)");
+        assert_eq!(message("1"), "found `1` without a unit, expected a number with a unit, like 2mm or 1deg");
+        assert_eq!(
+            message("2mm,1grad"),
+            "found the unit `grad`, expected one of m, cm, mm, um, nm, rad, mrad, deg, arcmin, arcsec"
+        );
     }
 }

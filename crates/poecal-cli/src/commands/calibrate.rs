@@ -9,8 +9,9 @@ use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::io::output;
 use poecal::measurement::{Dataset, Set};
-use poecal::{Result, report};
+use poecal::{Error, ErrorKind, Result, report};
 
+use super::files::{refuse_fitted, refuse_repeats};
 use crate::args::{Calibrate, Frame};
 use crate::console::Console;
 
@@ -36,22 +37,25 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
         console.warning(note);
     }
     if arguments.json {
-        console.result(&CalibrationFile::new(&calibration, &data, inputs).to_text()?);
+        console.data(&CalibrationFile::new(&calibration, &data, inputs).to_text()?)?;
     } else {
-        console.say(&report::summary(&calibration, &data));
+        console.say(&report::summary(&calibration, &data))?;
         console.say(&format!(
             "written       {}: {}\n              read back, on 1,000 configurations within {:.1e} m and {:.1e} rad of the fit\n",
             written.folder.display(),
             written.files.join(", "),
             written.largest.position_m,
             written.largest.rotation_rad
-        ));
+        ))?;
     }
     Ok(if calibration.solver.termination.is_success() { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }
 
 /// Reads and joins the files; with `--validate`, those rows are held out and all others fitted.
 fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) -> Result<Dataset> {
+    refuse_repeats(&arguments.measurements)?;
+    refuse_repeats(&arguments.validate)?;
+    refuse_fitted(&arguments.validate, &arguments.measurements)?;
     let options = arguments.reading.options()?;
     let read = |paths: &[PathBuf]| -> Result<Dataset> {
         let file = measurements::read(paths, &model.robot, &options)?;
@@ -67,10 +71,44 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
         other.observations.iter_mut().for_each(|row| row.set = Some(Set::HeldOut));
         data.extend(&other)?;
     }
+    settle_sets(arguments, &mut data, console)?;
     Ok(data)
 }
 
+/// Where files or options state which rows are held out, a share of them has no meaning, unless it is none.
+fn settle_sets(arguments: &Calibrate, data: &mut Dataset, console: &Console) -> Result<()> {
+    if data.observations.iter().all(|row| row.set.is_none()) {
+        return Ok(());
+    }
+    let stated_by = if !arguments.validate.is_empty() {
+        "--validate"
+    } else if arguments.reading.fit_where.is_some() {
+        "--fit-where"
+    } else {
+        "a column of the files"
+    };
+    match arguments.held_out {
+        Some(share) if share > 0.0 => {
+            let message = format!(
+                "found --held-out {share}, but {stated_by} already says which rows are held out, expected one of the \
+                 two: leave --held-out out, or fit every row with --held-out 0"
+            );
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+        // Beside --validate nothing else is held out anyway.
+        Some(_) if arguments.validate.is_empty() => {
+            data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
+        }
+        _ => {}
+    }
+    if arguments.seed.is_some() {
+        console.warning("--seed has no effect on which rows are held out: that is stated");
+    }
+    Ok(())
+}
+
 fn options(arguments: &Calibrate) -> CalibrationOptions {
+    let usual = CalibrationOptions::default();
     CalibrationOptions {
         frame: match arguments.frame {
             Frame::Unknown => DeviceFrameKnowledge::Unknown,
@@ -78,9 +116,9 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
         },
         sigma_position_m: arguments.sigma_position,
         sigma_rotation_rad: arguments.sigma_rotation,
-        held_out: arguments.held_out,
-        seed: arguments.seed,
-        ..CalibrationOptions::default()
+        held_out: arguments.held_out.unwrap_or(usual.held_out),
+        seed: arguments.seed.unwrap_or(usual.seed),
+        ..usual
     }
 }
 

@@ -21,7 +21,7 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<ExitCode> {
     if arguments.json {
         console.data(&report::json(&check)?)?;
     } else {
-        console.say(&check.text());
+        console.say(&check.text())?;
     }
     Ok(ExitCode::SUCCESS)
 }

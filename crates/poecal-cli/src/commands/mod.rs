@@ -1,8 +1,9 @@
-//! The commands, one a file.
+//! The commands, one a file (and `files`, what they ask of paths).
 
 mod calibrate;
 mod check;
 mod convert;
+mod files;
 mod predict;
 mod schema;
 mod simulate;

@@ -44,7 +44,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<ExitCo
     for note in &written.notes {
         console.warning(note);
     }
-    console.say(&format!("written  {}: {}\n", written.folder.display(), written.files.join(", ")));
+    console.say(&format!("written  {}: {}\n", written.folder.display(), written.files.join(", ")))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,5 +1,7 @@
 //! `poecal validate`: a calibration judged by measurements that it did not see.
 
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use poecal::calibration::{Subject, judge};
@@ -7,6 +9,7 @@ use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::measurements;
 use poecal::{Result, report};
 
+use super::files::{actual, refuse_repeats};
 use crate::args::Validate;
 use crate::console::Console;
 
@@ -16,6 +19,7 @@ const MOVED_DEVICE: f64 = 20.0;
 const ROUNDING_MM: f64 = 1e-6;
 
 pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<ExitCode> {
+    refuse_repeats(&arguments.measurements)?;
     let file = CalibrationFile::read(&arguments.calibration)?;
     let in_file = |error: poecal::Error| error.in_file(&arguments.calibration);
     let (calibrated, nominal) = (file.robot().map_err(in_file)?, file.nominal_robot().map_err(in_file)?);
@@ -42,7 +46,7 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<ExitCo
         console.data(&report::json(&judgement)?)?;
     } else {
         let calibration = arguments.calibration.display().to_string();
-        console.say(&report::judgement(&calibration, &named(arguments, &file), &judgement));
+        console.say(&report::judgement(&calibration, &named(arguments, &file), &judgement))?;
     }
     if !arguments.refit_frame && rms_mm > MOVED_DEVICE * own_mm {
         console.warning(format!(
@@ -56,9 +60,11 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<ExitCo
 
 /// The measurement files; those that the calibration was made from are marked.
 fn named(arguments: &Validate, file: &CalibrationFile) -> String {
+    let training: HashSet<PathBuf> =
+        file.inputs.measurements.iter().map(|name| actual(Path::new(name))).collect();
     let names = arguments.measurements.iter().map(|path| {
         let name = path.display().to_string();
-        let mark = if file.inputs.measurements.contains(&name) { " (has training rows)" } else { "" };
+        let mark = if training.contains(&actual(path)) { " (has training rows)" } else { "" };
         name + mark
     });
     names.collect::<Vec<_>>().join(", ")

@@ -57,7 +57,14 @@ fn calibrated_urdf_changes_attribute_values_only() {
 #[test]
 fn training_figures_are_never_shown_without_the_word() {
     let folder = session(Kind::Mixed);
-    for arguments in ["", "--held-out 0", "--fit-where stage=1", "--validate measurements.csv"] {
+    write_measurements(
+        &folder,
+        "other.csv",
+        Kind::Mixed,
+        "",
+        &Simulation { count: 25, ..Simulation::default() },
+    );
+    for arguments in ["--validate other.csv", "--held-out 0", "--fit-where stage=1", ""] {
         let out = folder.done(&format!("calibrate robot.urdf measurements.csv --force {arguments}"));
         // Each block of figures begins with a row that names its set; the first block of a table is the training one.
         let mut set = "";
@@ -74,8 +81,9 @@ fn training_figures_are_never_shown_without_the_word() {
             assert!(!is_figure || !set.is_empty(), "figures without their set:\n{out}");
         }
     }
-    let out = folder.done("validate poecal-out/calibration.json measurements.csv");
-    assert!(out.contains("measurements.csv (has training rows)"), "{out}");
+    let out = folder.done("validate poecal-out/calibration.json poecal-out/../measurements.csv other.csv");
+    assert!(out.contains("measurements.csv (has training rows),"), "{out}");
+    assert!(!out.contains("other.csv (has training rows)"), "{out}");
     let out = folder.done("validate poecal-out/calibration.json measurements.csv --refit-frame --refit-tool");
     assert!(out.contains("device frame and tool: fitted to these measurements, so training"), "{out}");
 }
@@ -96,6 +104,18 @@ fn what_is_held_out_can_be_said() {
     write_measurements(&folder, "other.csv", Kind::Pose, "", &Simulation { count: 25, ..simulation });
     let out = folder.done("calibrate robot.urdf measurements.csv --validate other.csv --out other");
     assert!(out.contains("training (60)") && out.contains("held out (25)"), "{out}");
+
+    for stated in ["--fit-where stage=1", "--validate other.csv"] {
+        let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --held-out 0"));
+        assert_eq!(run.code, 0, "{}", run.err);
+        // Beside --validate no more is held out than that file.
+        let rows =
+            if stated.starts_with("--validate") { "held out (25)" } else { "every measurement was fitted" };
+        assert!(run.out.contains(rows), "{}", run.out);
+        let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --seed 2"));
+        let seed = "warning: --seed has no effect on which rows are held out: that is stated\n";
+        assert!(run.code == 0 && run.err.contains(seed), "{}", run.err);
+    }
 }
 
 #[test]
@@ -243,4 +263,25 @@ fn the_schema_in_the_docs_is_the_programs() {
         printed == kept,
         "write it anew: cargo run -p poecal-cli -- schema > docs/calibration.schema.json"
     );
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_result_that_does_not_arrive_is_an_error_unless_its_reader_has_gone() {
+    let folder = session(Kind::Point);
+    folder.done("calibrate robot.urdf measurements.csv");
+    for arguments in [
+        "calibrate robot.urdf measurements.csv --force",
+        "calibrate robot.urdf measurements.csv --force --json",
+        "validate poecal-out/calibration.json measurements.csv",
+        "check robot.urdf measurements.csv",
+        "simulate robot.urdf --out made --force",
+    ] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let run = folder.run_into(arguments, full);
+        assert_eq!(run.code, 2, "poecal {arguments}");
+        assert!(run.err.contains("error: standard output cannot be written to ("), "{}", run.err);
+        let run = folder.run_unread(arguments);
+        assert!(run.code == 0 && !run.err.contains("error"), "poecal {arguments}\n{}", run.err);
+    }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A new folder that goes with its owner.
@@ -15,6 +15,16 @@ pub(crate) struct Run {
     pub(crate) code: i32,
     pub(crate) out: String,
     pub(crate) err: String,
+}
+
+impl Run {
+    fn new(output: Output) -> Self {
+        Run {
+            code: output.status.code().unwrap(),
+            out: String::from_utf8(output.stdout).unwrap(),
+            err: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
 }
 
 static COUNT: AtomicUsize = AtomicUsize::new(0);
@@ -41,16 +51,26 @@ impl Folder {
 
     /// Runs the program here; arguments are separated by blanks.
     pub(crate) fn run(&self, arguments: &str) -> Run {
-        let output = Command::new(env!("CARGO_BIN_EXE_poecal"))
-            .args(arguments.split_whitespace())
-            .current_dir(&self.0)
-            .output()
-            .unwrap();
-        Run {
-            code: output.status.code().unwrap(),
-            out: String::from_utf8(output.stdout).unwrap(),
-            err: String::from_utf8(output.stderr).unwrap(),
-        }
+        Run::new(self.command(arguments).output().unwrap())
+    }
+
+    /// As [`Folder::run`], with standard output going into a file or device.
+    pub(crate) fn run_into(&self, arguments: &str, out: fs::File) -> Run {
+        Run::new(self.command(arguments).stdout(out).output().unwrap())
+    }
+
+    /// As [`Folder::run`], for a reader of standard output that has gone away.
+    pub(crate) fn run_unread(&self, arguments: &str) -> Run {
+        let mut command = self.command(arguments);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        Run::new(child.wait_with_output().unwrap())
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_poecal"));
+        command.args(arguments.split_whitespace()).current_dir(&self.0);
+        command
     }
 
     /// As [`Folder::run`], for a run that must end well; gives its standard output.

@@ -104,7 +104,7 @@ fn validation_judges_other_sessions() {
     assert_eq!(run.code, 2);
     assert_eq!(
         run.err,
-        "error: found 1 measurements with 6 measured numbers, expected more than the 6 unknowns to be found anew (6 of the device frame, 0 of the targets): measure more configurations, or refit less\n"
+        "error: found 1 measurement with 6 measured numbers, expected more than the 6 unknowns to be found anew (6 of the device frame, 0 of the targets): measure more configurations, or refit less\n"
     );
 }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy, row_errors};
-use super::{DeviceFrameKnowledge, delivered, radian_m};
+use super::{DeviceFrameKnowledge, delivered, measurements_words, radian_m};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Packed;
 use crate::lie::Pose;
@@ -136,9 +136,9 @@ fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     Err(Error::new(
         ErrorKind::Problem,
         format!(
-            "found {} measurements with {given} measured numbers, expected more than the {} unknowns to be found anew \
+            "found {} with {given} measured numbers, expected more than the {} unknowns to be found anew \
              ({frame} of the device frame, {tool} of the targets): measure more configurations, or refit less",
-            data.len(),
+            measurements_words(data.len()),
             frame + tool
         ),
     ))

@@ -346,11 +346,16 @@ fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
         return Err(Error::new(
             ErrorKind::Problem,
             format!(
-                "found {} measurements to fit with {given} measured numbers, expected at least {needed} numbers \
+                "found {} to fit with {given} measured numbers, expected at least {needed} numbers \
                  ({screws} of the screws, {targets} of the targets): measure more configurations, or hold out fewer",
-                fit_rows.len()
+                measurements_words(fit_rows.len())
             ),
         ));
     }
     Ok(())
+}
+
+/// A number of measurements in words.
+fn measurements_words(count: usize) -> String {
+    if count == 1 { "1 measurement".to_owned() } else { format!("{count} measurements") }
 }

@@ -57,7 +57,9 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     configurations.sort_unstable();
     let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
     random::shuffle(&mut generator, &mut configurations);
-    let count = (options.held_out * configurations.len() as f64).round() as usize;
+    // At least one stays fitted, so that a share too large is refused for what is missing then.
+    let most = configurations.len().saturating_sub(1);
+    let count = ((options.held_out * configurations.len() as f64).round() as usize).min(most);
     let mut chosen = vec![false; data.len()];
     for &first in &configurations[..count] {
         chosen[first] = true;
