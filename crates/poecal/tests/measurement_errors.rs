@@ -183,6 +183,18 @@ const FILES: &[(&[u8], &str)] = &[
         b"a,lift,b,x[mm],y[mm],z[mm]\n0,0,0,9e5,0,0\n1,0,0,0,-9e5,0\n2,0,0,-8e5,0,0\n",
         "points.csv:3: found positions up to 900000 mm from their middle, where the robot reaches 1583 mm, expected another unit, most likely um; write `x[um],y[um],z[um]` in the header, or the unit in the mapping",
     ),
+    (
+        b"a,lift,b,x[mm],y[mm],z[mm]\n0,0,0,1,0,0.3\n1,0,0,0.54,0.84,0.3\n2,0,0,-0.42,0.91,0.3\n3,0,0,-0.99,0.14,0.3\n",
+        "points.csv:1:10: found positions that spread over 0.9625 mm where the model moves its tip by 958.9 mm, expected about the same: most likely they are in m, not mm (or the model's lengths are 1000 times too large); write `x[m],y[m],z[m]` in the header, or the unit in the mapping",
+    ),
+    (
+        b"a,lift,b,x,y,z\n0,0,0,1e-3,0,0\n1,0,0,0.54e-3,0.84e-3,0\n2,0,0,-0.42e-3,0.91e-3,0\n3,0,0,-0.99e-3,0.14e-3,0\n",
+        "points.csv:1:10: found positions that spread over 0.0009625 m where the model moves its tip by 0.9589 m, expected about the same: most likely the model's lengths are 1000 times too large; correct its unit, or the unit of the positions",
+    ),
+    (
+        b"a[deg],lift,b[deg],x,y,z\n0,0,0,1,0,0.3\n1,0,0,0.54,0.84,0.3\n2,0,0,-0.42,0.91,0.3\n3,0,0,-0.99,0.14,0.3\n",
+        "points.csv:1:1: found joint angles of at most 6.4 deg that move the model's tip by 17.48 mm where the positions spread over 962.5 mm, expected about the same: most likely they are in rad, not deg; write `a[rad]` in the header (and so for each joint), or the unit in the mapping",
+    ),
 ];
 
 fn message(text: &[u8], options: &ReadOptions) -> String {
@@ -205,6 +217,20 @@ fn bad_files_are_refused_with_one_sentence() {
         }
     }
     assert_eq!(wrong, 0);
+}
+
+/// Few moving joints, small motions and targets far from the tip are no sign of another unit.
+#[test]
+fn a_spread_that_units_do_not_explain_is_left_alone() {
+    let cases: &[&str] = &[
+        "a,lift,b,x[mm],y[mm],z[mm]\n0,0,0,1,0,0.3\n1,0,0,0.54,0.84,0.3\n2,0,0,-0.42,0.91,0.3\n",
+        "a,lift,b,x,y,z\n0.2,0,0,1,0,0.3\n0.2,0.001,0,1,0,0.3\n0.2,0.002,0,1,0,0.302\n0.2,0.003,0,1,0,0.303\n",
+        "a[deg],lift,b[deg],x,y,z\n0,0,0,5,0,0\n1,0,0,5,0.087,0\n2,0,0,5,0.17,0\n3,0,0,5,0.26,0\n",
+        "a,lift,b,x,y,z\n0,0,0,9,0,0\n1,0,0,4.8,7.5,0\n2,0,0,-3.7,8.1,0\n3,0,0,-8.9,1.2,0\n",
+    ];
+    for text in cases {
+        assert_eq!(message(text.as_bytes(), &ReadOptions::default()), "no error", "{text}");
+    }
 }
 
 #[test]

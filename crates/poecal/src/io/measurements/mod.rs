@@ -2,7 +2,7 @@
 //!
 //! Text becomes lines and cells (`text`), a table with places for messages (`table`), columns with a meaning and a unit
 //! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`) and at last measurements ([`read()`]), which are
-//! judged for their scale (`scale`).
+//! judged for their scale (`scale`, `spread`).
 
 mod builder;
 mod fit_where;
@@ -14,6 +14,7 @@ mod number;
 mod orientation;
 mod read;
 mod scale;
+mod spread;
 mod table;
 mod text;
 mod understanding;
