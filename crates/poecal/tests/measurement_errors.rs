@@ -107,6 +107,18 @@ const FILES: &[(&[u8], &str)] = &[
         "points.csv:2:7: found `1e999` in column `x`, expected a finite number",
     ),
     (
+        b"a,lift,b,x,y,z\n0,0,0,1,2,3\n0,0,0,1,-1e200,3\n",
+        "points.csv:3:9: found `-1e200` in column `y`, expected at most 1e6 m: correct the number or the column's unit, or leave out the row",
+    ),
+    (
+        b"a,lift,b,x,y,z,sigma_position[mm]\n0,0,0,1,2,3,1e10\n",
+        "points.csv:2:13: found `1e10` in column `sigma_position`, expected at most 1e6 m: correct the number or the column's unit, or leave out the row",
+    ),
+    (
+        b"a,lift,b,x,y,z,qx,qy,qz,qw\n0,0,0,1,2,3,0,0,0,1e300\n",
+        "points.csv:2:19: found `1e300` in column `qw`, expected at most 1e6: correct the number or the column's unit, or leave out the row",
+    ),
+    (
         "a,lift,b,x,y,z,note\n0,0,0,1,2,n/a,ä\n".as_bytes(),
         "points.csv:2:11: found `n/a` in column `z`, expected a finite number",
     ),

@@ -7,6 +7,7 @@ use super::table::Header;
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result, edit_distance};
+use crate::io::numbers::LARGEST_NUMBER;
 use crate::robot::Robot;
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
@@ -81,6 +82,12 @@ impl<'a> Builder<'a> {
         let stated = spec.unit.or(self.map.units.of(quantity));
         let unit = stated.unwrap_or(quantity.si_unit());
         let unit_from = if stated.is_some() { UnitSource::Mapping } else { UnitSource::Si };
+        if unit.to_si(value).abs() > LARGEST_NUMBER {
+            let si = quantity.si_unit().symbol();
+            let message =
+                format!("found the value {value:?} {purpose}, expected at most {LARGEST_NUMBER:e} {si}");
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+        }
         let source = Source::Constant(unit.to_si(value));
         let (name, label) = (name.to_owned(), name.to_owned());
         self.inputs.push(Input { name, label, source, unit, unit_from });
