@@ -5,7 +5,7 @@
 mod files;
 
 use files::{Folder, robot};
-use poecal::io::measurements::{FitWhere, ReadOptions, read, read_joints};
+use poecal::io::measurements::{ColumnMap, FitWhere, ReadOptions, read, read_joints};
 
 /// Bytes of `points.csv`, and the whole message.
 const FILES: &[(&[u8], &str)] = &[
@@ -301,6 +301,28 @@ fn the_rows_to_fit_must_exist() {
         "stage".parse::<FitWhere>().unwrap_err().to_string(),
         "found `stage` as the rows to fit, expected COLUMN=VALUE[,VALUE]"
     );
+}
+
+#[test]
+fn sets_that_are_ignored_are_not_required() {
+    let folder = Folder::new();
+    let mapping = ColumnMap::parse("set = { column = \"stage\", fit = [\"one\"] }", "map.toml").unwrap();
+    let fit_where: FitWhere = "run=1".parse().unwrap();
+    let texts = [
+        "a,lift,b,x,y,z\n0,0,0,0.1,0.2,0.3\n",
+        "a,lift,b,x,y,z,stage\n0,0,0,0.1,0.2,0.3,two\n",
+        "a,lift,b,x,y,z,set\n0,0,0,0.1,0.2,0.3,other\n",
+    ];
+    for text in texts {
+        let path = folder.write("points.csv", text);
+        for (mapping, fit_where) in
+            [(None, None), (Some(mapping.clone()), None), (Some(mapping.clone()), Some(fit_where.clone()))]
+        {
+            let options = ReadOptions { mapping, fit_where, ignore_sets: true };
+            let file = read(&[&path], &robot(), &options).unwrap();
+            assert_eq!(file.data.observations[0].set, None, "{text}");
+        }
+    }
 }
 
 #[test]

@@ -47,6 +47,9 @@ pub struct ReadOptions {
     pub mapping: Option<ColumnMap>,
     /// Which rows are fitted; goes before the `set` column and the mapping's `set`.
     pub fit_where: Option<FitWhere>,
+    /// Whether no row belongs to a set: [`ReadOptions::fit_where`], the mapping's `set` and the `set` column are then neither
+    /// applied nor required, as for files of which every row judges a calibration.
+    pub ignore_sets: bool,
 }
 
 /// What measurement files hold, and how they were understood.

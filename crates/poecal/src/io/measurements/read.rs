@@ -227,6 +227,7 @@ impl Reader<'_> {
         let of_map = self.map.set.as_ref().map(|set| (&set.column, &set.fit));
         let rule = self.options.fit_where.as_ref().map(|rule| (&rule.column, &rule.values)).or(of_map);
         if let Some((column, values)) = rule
+            && !self.options.ignore_sets
             && let Some((value, _)) = values.iter().zip(&self.fit_values_seen).find(|(_, seen)| !**seen)
         {
             let message =
