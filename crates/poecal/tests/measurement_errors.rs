@@ -5,7 +5,7 @@
 mod files;
 
 use files::{Folder, robot};
-use poecal::io::measurements::{ColumnMap, FitWhere, ReadOptions, read, read_joints};
+use poecal::io::measurements::{FitWhere, ReadOptions, read, read_joints};
 
 /// Bytes of `points.csv`, and the whole message.
 const FILES: &[(&[u8], &str)] = &[
@@ -231,20 +231,6 @@ fn bad_files_are_refused_with_one_sentence() {
     assert_eq!(wrong, 0);
 }
 
-/// Few moving joints, small motions and targets far from the tip are no sign of another unit.
-#[test]
-fn a_spread_that_units_do_not_explain_is_left_alone() {
-    let cases: &[&str] = &[
-        "a,lift,b,x[mm],y[mm],z[mm]\n0,0,0,1,0,0.3\n1,0,0,0.54,0.84,0.3\n2,0,0,-0.42,0.91,0.3\n",
-        "a,lift,b,x,y,z\n0.2,0,0,1,0,0.3\n0.2,0.001,0,1,0,0.3\n0.2,0.002,0,1,0,0.302\n0.2,0.003,0,1,0,0.303\n",
-        "a[deg],lift,b[deg],x,y,z\n0,0,0,5,0,0\n1,0,0,5,0.087,0\n2,0,0,5,0.17,0\n3,0,0,5,0.26,0\n",
-        "a,lift,b,x,y,z\n0,0,0,9,0,0\n1,0,0,4.8,7.5,0\n2,0,0,-3.7,8.1,0\n3,0,0,-8.9,1.2,0\n",
-    ];
-    for text in cases {
-        assert_eq!(message(text.as_bytes(), &ReadOptions::default()), "no error", "{text}");
-    }
-}
-
 #[test]
 fn files_that_are_none_are_refused() {
     let folder = Folder::new();
@@ -301,28 +287,6 @@ fn the_rows_to_fit_must_exist() {
         "stage".parse::<FitWhere>().unwrap_err().to_string(),
         "found `stage` as the rows to fit, expected COLUMN=VALUE[,VALUE]"
     );
-}
-
-#[test]
-fn sets_that_are_ignored_are_not_required() {
-    let folder = Folder::new();
-    let mapping = ColumnMap::parse("set = { column = \"stage\", fit = [\"one\"] }", "map.toml").unwrap();
-    let fit_where: FitWhere = "run=1".parse().unwrap();
-    let texts = [
-        "a,lift,b,x,y,z\n0,0,0,0.1,0.2,0.3\n",
-        "a,lift,b,x,y,z,stage\n0,0,0,0.1,0.2,0.3,two\n",
-        "a,lift,b,x,y,z,set\n0,0,0,0.1,0.2,0.3,other\n",
-    ];
-    for text in texts {
-        let path = folder.write("points.csv", text);
-        for (mapping, fit_where) in
-            [(None, None), (Some(mapping.clone()), None), (Some(mapping.clone()), Some(fit_where.clone()))]
-        {
-            let options = ReadOptions { mapping, fit_where, ignore_sets: true };
-            let file = read(&[&path], &robot(), &options).unwrap();
-            assert_eq!(file.data.observations[0].set, None, "{text}");
-        }
-    }
 }
 
 #[test]

@@ -146,6 +146,11 @@ impl Header<'_> {
         }
     }
 
+    /// How many columns have this name.
+    pub(super) fn count(&self, name: &str) -> usize {
+        self.cells.iter().filter(|cell| cell.name == name).count()
+    }
+
     /// As [`Header::find`], but the column must be there; `known` are names that another column cannot be a misspelling of.
     pub(super) fn require(&self, name: &str, purpose: &str, known: &[&str]) -> Result<usize> {
         if let Some(index) = self.find(name)? {
