@@ -44,7 +44,7 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,x,y,z,temperature\n0,0,1,2,3,20\n",
-        "points.csv:1: found no column `b`, expected one for joint `b`; the nearest name found is `temperature`",
+        "points.csv:1: found no column `b`, expected one for joint `b`; the columns are a, lift, x, y, z, temperature",
     ),
     (
         b"a,lift,b,x,y\n0,0,0,1,2\n",

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::mapping::ColumnMap;
 use super::text::{Cell, Lines, Separator, character_column, split};
-use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 
 /// A column of the header: `name[unit]`.
 #[derive(Clone, Debug)]
@@ -159,7 +159,7 @@ impl Header<'_> {
         let names = || self.cells.iter().map(|cell| cell.name.as_str()).filter(|found| !found.is_empty());
         let hint = match nearest(name, names().filter(|found| !known.contains(found))) {
             Some(near) => format!("the nearest name found is `{near}`"),
-            None => format!("the columns are {}", names().collect::<Vec<_>>().join(", ")),
+            None => format!("the columns are {}", first_few(&names().collect::<Vec<_>>())),
         };
         let message = format!("found no column `{name}`, expected one {purpose}; {hint}");
         Err(Error::new(ErrorKind::Measurement, message).at_line(self.path, self.line))
