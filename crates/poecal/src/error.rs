@@ -99,6 +99,14 @@ impl Error {
         self
     }
 
+    /// The same error, if it has a place, at the same line and column of another file.
+    pub(crate) fn with_path(mut self, path: &Path) -> Self {
+        if let Some(place) = &mut self.0.place {
+            place.path = path.to_path_buf();
+        }
+        self
+    }
+
     /// The kind of error.
     #[must_use]
     pub fn kind(&self) -> ErrorKind {
