@@ -99,6 +99,14 @@ impl Error {
         self
     }
 
+    /// The same error, if it has a place, at the same line and column of another file.
+    pub(crate) fn with_path(mut self, path: &Path) -> Self {
+        if let Some(place) = &mut self.0.place {
+            place.path = path.to_path_buf();
+        }
+        self
+    }
+
     /// The kind of error.
     #[must_use]
     pub fn kind(&self) -> ErrorKind {
@@ -129,16 +137,41 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+/// Names that a message lists at most.
+const NAMES_LISTED: usize = 12;
+
 /// Result of the library's fallible functions.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// The candidate nearest to `word` by edit distance, for "did you mean".
+/// The candidate nearest to `word` by edit distance, for "did you mean"; none if each differs by more than half of the word.
 ///
 /// ```
 /// assert_eq!(poecal::nearest("jiont1", ["joint1", "joint2", "x"]), Some("joint1"));
+/// assert_eq!(poecal::nearest("jiont1", ["x", "temperature"]), None);
 /// ```
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    candidates.into_iter().min_by_key(|candidate| edit_distance(word, candidate))
+    let furthest = (word.chars().count() / 2).max(1);
+    let distances = candidates.into_iter().map(|candidate| (edit_distance(word, candidate), candidate));
+    let (_, near) =
+        distances.filter(|(distance, _)| *distance <= furthest).min_by_key(|(distance, _)| *distance)?;
+    Some(near)
+}
+
+/// What a message says of the names that `word` could have been: the nearest, or else the first few.
+pub(crate) fn nearest_or_all(word: &str, candidates: &[&str]) -> String {
+    match nearest(word, candidates.iter().copied()) {
+        Some(near) => format!("the nearest is `{near}`"),
+        None if candidates.is_empty() => "but there is none".to_owned(),
+        None => format!("there are {}", first_few(candidates)),
+    }
+}
+
+/// The names, or the first of many.
+pub(crate) fn first_few(names: &[&str]) -> String {
+    match names.get(..NAMES_LISTED) {
+        Some(first) if names.len() > NAMES_LISTED => format!("{}, …", first.join(", ")),
+        _ => names.join(", "),
+    }
 }
 
 /// Damerau's edit distance: insertions, deletions, substitutions and swaps of neighbours, case ignored.

@@ -105,6 +105,10 @@ const MAPPINGS: &[(&str, &str)] = &[
         "id = \"name\"",
         "points.csv:1: found no column `name`, expected one for the row's id; the columns are id, a, lift, b, x, y, z",
     ),
+    (
+        "joints = { b = { value = 1e30 } }",
+        "map.toml: found the value 1e30 for joint `b`, expected at most 1e6 rad",
+    ),
     ("skip_lines = -1", "map.toml:1:14: invalid value: integer `-1`, expected usize"),
     ("a = ", "map.toml:1:5: string values must be quoted, expected literal string"),
 ];

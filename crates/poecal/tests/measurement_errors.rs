@@ -44,7 +44,7 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,x,y,z,temperature\n0,0,1,2,3,20\n",
-        "points.csv:1: found no column `b`, expected one for joint `b`; the nearest name found is `temperature`",
+        "points.csv:1: found no column `b`, expected one for joint `b`; the columns are a, lift, x, y, z, temperature",
     ),
     (
         b"a,lift,b,x,y\n0,0,0,1,2\n",
@@ -105,6 +105,18 @@ const FILES: &[(&[u8], &str)] = &[
     (
         b"a,lift,b,x,y,z\n0,0,0,1e999,2,3\n",
         "points.csv:2:7: found `1e999` in column `x`, expected a finite number",
+    ),
+    (
+        b"a,lift,b,x,y,z\n0,0,0,1,2,3\n0,0,0,1,-1e200,3\n",
+        "points.csv:3:9: found `-1e200` in column `y`, expected at most 1e6 m: correct the number or the column's unit, or leave out the row",
+    ),
+    (
+        b"a,lift,b,x,y,z,sigma_position[mm]\n0,0,0,1,2,3,1e10\n",
+        "points.csv:2:13: found `1e10` in column `sigma_position`, expected at most 1e6 m: correct the number or the column's unit, or leave out the row",
+    ),
+    (
+        b"a,lift,b,x,y,z,qx,qy,qz,qw\n0,0,0,1,2,3,0,0,0,1e300\n",
+        "points.csv:2:19: found `1e300` in column `qw`, expected at most 1e6: correct the number or the column's unit, or leave out the row",
     ),
     (
         "a,lift,b,x,y,z,note\n0,0,0,1,2,n/a,ä\n".as_bytes(),
@@ -182,6 +194,18 @@ const FILES: &[(&[u8], &str)] = &[
     (
         b"a,lift,b,x[mm],y[mm],z[mm]\n0,0,0,9e5,0,0\n1,0,0,0,-9e5,0\n2,0,0,-8e5,0,0\n",
         "points.csv:3: found positions up to 900000 mm from their middle, where the robot reaches 1583 mm, expected another unit, most likely um; write `x[um],y[um],z[um]` in the header, or the unit in the mapping",
+    ),
+    (
+        b"a,lift,b,x[mm],y[mm],z[mm]\n0,0,0,1,0,0.3\n1,0,0,0.54,0.84,0.3\n2,0,0,-0.42,0.91,0.3\n3,0,0,-0.99,0.14,0.3\n",
+        "points.csv:1:10: found positions that spread over 0.9625 mm where the model moves its tip by 958.9 mm, expected about the same: most likely they are in m, not mm (or the model's lengths are 1000 times too large); write `x[m],y[m],z[m]` in the header, or the unit in the mapping",
+    ),
+    (
+        b"a,lift,b,x,y,z\n0,0,0,1e-3,0,0\n1,0,0,0.54e-3,0.84e-3,0\n2,0,0,-0.42e-3,0.91e-3,0\n3,0,0,-0.99e-3,0.14e-3,0\n",
+        "points.csv:1:10: found positions that spread over 0.0009625 m where the model moves its tip by 0.9589 m, expected about the same: most likely the model's lengths are 1000 times too large; correct its unit, or the unit of the positions",
+    ),
+    (
+        b"a[deg],lift,b[deg],x,y,z\n0,0,0,1,0,0.3\n1,0,0,0.54,0.84,0.3\n2,0,0,-0.42,0.91,0.3\n3,0,0,-0.99,0.14,0.3\n",
+        "points.csv:1:1: found joint angles of at most 6.4 deg that move the model's tip by 17.48 mm where the positions spread over 962.5 mm, expected about the same: most likely they are in rad, not deg; write `a[rad]` in the header (and so for each joint), or the unit in the mapping",
     ),
 ];
 

@@ -110,6 +110,8 @@ fn a_selection_that_does_not_fit_gets_one_sentence() {
          "r.urdf: --base-link names link `A1`, expected a link of this file, the nearest is `a`"),
         (None, Some("cc"),
          "r.urdf: --tip-link names link `cc`, expected a link of this file, the nearest is `c`"),
+        (None, Some("flange"),
+         "r.urdf: --tip-link names link `flange`, expected a link of this file, there are a, b, c"),
         (Some("c"), Some("a"),
          "r.urdf: tip link `a` is not below base link `c`, expected a base link above the tip (there is none)"),
         (Some("c"), Some("b"),

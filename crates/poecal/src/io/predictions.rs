@@ -77,11 +77,10 @@ fn tip_from_target(model: &Model, name: &str) -> Result<Pose> {
     if let Some((_, pose)) = targets.iter().find(|(known, _)| known == name) {
         return Ok(*pose);
     }
-    let names = || targets.iter().map(|(known, _)| known.as_str());
-    let expected = match nearest(name, names()) {
-        Some(near) => {
-            format!("expected one of {}; did you mean `{near}`?", names().collect::<Vec<_>>().join(", "))
-        }
+    let names: Vec<&str> = targets.iter().map(|(known, _)| known.as_str()).collect();
+    let expected = match nearest(name, names.iter().copied()) {
+        Some(near) => format!("expected one of {}; did you mean `{near}`?", names.join(", ")),
+        None if !names.is_empty() => format!("expected one of {}", names.join(", ")),
         None => "expected none: the model has no targets, leave out --target to predict the tip".to_owned(),
     };
     let message = format!("found no target `{name}`, {expected}");

@@ -70,6 +70,10 @@ impl CalibrationFile {
                             "found measurements of target `{name}`, expected one of {known} as in the calibration \
                              (nearest: `{near}`): rename it, {refit}"
                         ),
+                        None if !self.targets.is_empty() => format!(
+                            "found measurements of target `{name}`, expected one of {known} as in the calibration: rename \
+                             it, {refit}"
+                        ),
                         None => format!(
                             "found measurements of target `{name}`, expected no name, since the calibration knows the \
                              tip alone: leave the names out, {refit}"

@@ -7,6 +7,7 @@ use super::table::Header;
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result, edit_distance};
+use crate::io::numbers::LARGEST_NUMBER;
 use crate::robot::Robot;
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
@@ -81,6 +82,12 @@ impl<'a> Builder<'a> {
         let stated = spec.unit.or(self.map.units.of(quantity));
         let unit = stated.unwrap_or(quantity.si_unit());
         let unit_from = if stated.is_some() { UnitSource::Mapping } else { UnitSource::Si };
+        if unit.to_si(value).abs() > LARGEST_NUMBER {
+            let si = quantity.si_unit().symbol();
+            let message =
+                format!("found the value {value:?} {purpose}, expected at most {LARGEST_NUMBER:e} {si}");
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+        }
         let source = Source::Constant(unit.to_si(value));
         let (name, label) = (name.to_owned(), name.to_owned());
         self.inputs.push(Input { name, label, source, unit, unit_from });
@@ -122,9 +129,25 @@ impl<'a> Builder<'a> {
             .chain(OUR_NAMES)
             .filter(|known| *known != name)
             .collect();
-        let index = self.header.require(name, purpose, &known)?;
+        let index =
+            self.header.require(name, purpose, &known).map_err(|error| self.explained(name, error))?;
         self.mark(index);
         Ok(index)
+    }
+
+    /// Says of a name's second column that the model's own joint takes the name of a column with a meaning, if that is why.
+    fn explained(&self, name: &str, error: Error) -> Error {
+        let is_clash = self.header.count(name) > 1
+            && self.readings.iter().any(|reading| reading == name)
+            && OUR_NAMES.contains(&name);
+        let place = error.place().and_then(|place| Some((place.line?, place.column?)));
+        match place {
+            Some((line, column)) if is_clash => {
+                let message = format!("found a second column `{name}`, {}", clash(name));
+                Error::new(ErrorKind::Measurement, message).at(self.header.path, line, column)
+            }
+            _ => error,
+        }
     }
 
     /// Index of a column that may be there and is not used for something else.
@@ -270,11 +293,15 @@ impl<'a> Builder<'a> {
             let earlier =
                 self.inputs.iter().take(i).filter(distinct).find(|other| other.source == input.source);
             if let (Some(other), true) = (earlier, distinct(&input)) {
-                let message = format!(
-                    "found one column for both `{}` and `{}`, expected a column for each; \
-                     name them in a mapping file (--columns)",
-                    other.name, input.name
-                );
+                let message = if other.name == input.name {
+                    format!("found one column `{0}`, {1}", input.name, clash(&input.name))
+                } else {
+                    format!(
+                        "found one column for both `{}` and `{}`, expected a column for each; \
+                         name them in a mapping file (--columns)",
+                        other.name, input.name
+                    )
+                };
                 return Err(self.header.error(ErrorKind::Measurement, index, message));
             }
         }
@@ -295,4 +322,12 @@ impl<'a> Builder<'a> {
         let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
         OUR_NAMES.into_iter().filter(missing).find(|ours| edit_distance(name, ours) <= slips(ours))
     }
+}
+
+/// What is wrong, and what to do, when a joint has the name of a column with a meaning.
+fn clash(name: &str) -> String {
+    format!(
+        "expected different names for the model's joint `{name}` and the measured `{name}`: call the joint's column \
+         `joint_{name}`, and say so with `joints = {{ {name} = \"joint_{name}\" }}` in a mapping file (--columns)"
+    )
 }

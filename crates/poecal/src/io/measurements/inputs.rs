@@ -4,7 +4,9 @@ use super::layout::{Input, Source};
 use super::number::Numbers;
 use super::table::Row;
 use super::understanding::Range;
+use super::units::Quantity;
 use crate::error::{Error, Result};
+use crate::io::numbers::LARGEST_NUMBER;
 
 /// Reads the inputs of row after row into the same buffers.
 pub(super) struct InputReader<'a> {
@@ -45,6 +47,7 @@ impl<'a> InputReader<'a> {
                 .map(|value| input.unit.to_si(value)),
             };
             if let Some(value) = value {
+                check_size(value, row, input)?;
                 range.include(value);
             }
             self.values.push(value);
@@ -87,4 +90,23 @@ impl<'a> InputReader<'a> {
             Some(Source::Constant(_)) | None => 0,
         }
     }
+}
+
+/// Refuses a number that nothing measured can be, which sums of squares would not bear.
+fn check_size(value: f64, row: &Row<'_>, input: &Input) -> Result<()> {
+    let Source::Column(column) = input.source else { return Ok(()) };
+    if value.abs() <= LARGEST_NUMBER {
+        return Ok(());
+    }
+    let text = row.cells.get(column).map_or("", |cell| cell.raw);
+    let si = match input.unit.quantity() {
+        Quantity::Number => String::new(),
+        quantity => format!(" {}", quantity.si_unit().symbol()),
+    };
+    let message = format!(
+        "found `{text}` in column `{}`, expected at most {LARGEST_NUMBER:e}{si}: correct the number or the column's unit, \
+         or leave out the row",
+        input.label
+    );
+    Err(row.error(column, message))
 }

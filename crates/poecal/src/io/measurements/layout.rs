@@ -92,6 +92,12 @@ impl Layout {
         });
         let words = builder.optional_text_column("set")?;
         let set = match (rule, words) {
+            (Some(rule), _) if options.ignore_sets => {
+                // A column that is there and known is not listed as left alone.
+                builder.optional_text_column(&rule.column)?;
+                SetRule::Unstated
+            }
+            (None, Some(_)) if options.ignore_sets => SetRule::Unstated,
             (Some(rule), _) => {
                 SetRule::Where(builder.text_column(&rule.column, "that says which rows are fitted")?, rule)
             }

@@ -2,7 +2,7 @@
 //!
 //! Text becomes lines and cells (`text`), a table with places for messages (`table`), columns with a meaning and a unit
 //! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`) and at last measurements ([`read()`]), which are
-//! judged for their scale (`scale`).
+//! judged for their scale (`scale`, `spread`).
 
 mod builder;
 mod fit_where;
@@ -14,6 +14,7 @@ mod number;
 mod orientation;
 mod read;
 mod scale;
+mod spread;
 mod table;
 mod text;
 mod understanding;
@@ -46,6 +47,9 @@ pub struct ReadOptions {
     pub mapping: Option<ColumnMap>,
     /// Which rows are fitted; goes before the `set` column and the mapping's `set`.
     pub fit_where: Option<FitWhere>,
+    /// Whether no row belongs to a set: [`ReadOptions::fit_where`], the mapping's `set` and the `set` column are then neither
+    /// applied nor required, as for files of which every row judges a calibration.
+    pub ignore_sets: bool,
 }
 
 /// What measurement files hold, and how they were understood.

@@ -10,6 +10,7 @@ use super::layout::{Layout, SetRule, TargetLayout};
 use super::mapping::{ColumnMap, PoseDirection};
 use super::number::Numbers;
 use super::scale::{self, JointWatch};
+use super::spread;
 use super::table::{Row, Table};
 use super::text::read_text;
 use super::understanding::{self, FileUnderstanding};
@@ -98,6 +99,7 @@ impl Reader<'_> {
             scale::unlimited_slides(self.robot, &watch),
             new_rows,
         )?;
+        spread::check(path, &table.header, self.robot, &layout, &self.data, first)?;
         let poses = new_rows.iter().filter(|row| row.measurement.sees_orientation()).count();
         let points = new_rows.len() - poses;
         if !self.data.ids.is_empty() {
@@ -225,6 +227,7 @@ impl Reader<'_> {
         let of_map = self.map.set.as_ref().map(|set| (&set.column, &set.fit));
         let rule = self.options.fit_where.as_ref().map(|rule| (&rule.column, &rule.values)).or(of_map);
         if let Some((column, values)) = rule
+            && !self.options.ignore_sets
             && let Some((value, _)) = values.iter().zip(&self.fit_values_seen).find(|(_, seen)| !**seen)
         {
             let message =

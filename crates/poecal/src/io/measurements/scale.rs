@@ -240,7 +240,7 @@ pub(super) fn check_positions(
 }
 
 /// The median of each coordinate, which a few corrupt rows do not move.
-fn middle(positions: &[Vector3<f64>]) -> Vector3<f64> {
+pub(super) fn middle(positions: &[Vector3<f64>]) -> Vector3<f64> {
     let mut middle = Vector3::zeros();
     for (axis, coordinate) in middle.iter_mut().enumerate() {
         let mut values: Vec<f64> = positions.iter().map(|position| position[axis]).collect();
@@ -253,7 +253,7 @@ fn middle(positions: &[Vector3<f64>]) -> Vector3<f64> {
 }
 
 /// A number to four significant digits.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     format!("{value:.3e}").parse::<f64>().unwrap_or(value).to_string()
 }
 

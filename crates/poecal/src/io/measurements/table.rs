@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::mapping::ColumnMap;
 use super::text::{Cell, Lines, Separator, character_column, split};
-use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 
 /// A column of the header: `name[unit]`.
 #[derive(Clone, Debug)]
@@ -146,6 +146,11 @@ impl Header<'_> {
         }
     }
 
+    /// How many columns have this name.
+    pub(super) fn count(&self, name: &str) -> usize {
+        self.cells.iter().filter(|cell| cell.name == name).count()
+    }
+
     /// As [`Header::find`], but the column must be there; `known` are names that another column cannot be a misspelling of.
     pub(super) fn require(&self, name: &str, purpose: &str, known: &[&str]) -> Result<usize> {
         if let Some(index) = self.find(name)? {
@@ -154,7 +159,7 @@ impl Header<'_> {
         let names = || self.cells.iter().map(|cell| cell.name.as_str()).filter(|found| !found.is_empty());
         let hint = match nearest(name, names().filter(|found| !known.contains(found))) {
             Some(near) => format!("the nearest name found is `{near}`"),
-            None => format!("the columns are {}", names().collect::<Vec<_>>().join(", ")),
+            None => format!("the columns are {}", first_few(&names().collect::<Vec<_>>())),
         };
         let message = format!("found no column `{name}`, expected one {purpose}; {hint}");
         Err(Error::new(ErrorKind::Measurement, message).at_line(self.path, self.line))

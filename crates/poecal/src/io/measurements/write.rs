@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::units::{Quantity, Unit};
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::io::residuals::quoted;
 use crate::measurement::{Dataset, Noise};
 use crate::robot::{JointKind, Robot};
@@ -23,6 +23,15 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
         })
         .collect();
     let orientations = data.observations.iter().any(|row| row.measurement.sees_orientation());
+    let measured_names: &[&str] =
+        if orientations { &["x", "y", "z", "qx", "qy", "qz", "qw"] } else { &["x", "y", "z"] };
+    if let Some(name) = data.reading_names().iter().find(|name| measured_names.contains(&name.as_str())) {
+        let message = format!(
+            "found the joint `{name}` in the model, expected none with the name of a measured column, which could not be \
+             read back: rename the joint in the model"
+        );
+        return Err(Error::new(ErrorKind::Model, message));
+    }
     let mut out = format!("# {comment}\n");
     for (name, unit) in data.reading_names().iter().zip(&units) {
         // Writing to a String cannot fail.
@@ -80,6 +89,20 @@ mod tests {
         for si in [0.1 + 0.2, -1e-3, 3.0, 0.123_456_789_012_345_6] {
             assert_eq!(mm.to_si(decimal(si, mm, None).parse().unwrap()), si);
         }
+    }
+
+    #[test]
+    fn a_joint_with_the_name_of_a_measured_column_is_refused() {
+        let joint =
+            crate::robot::Joint::prismatic("y", crate::lie::Screw::prismatic(&nalgebra::Vector3::y()));
+        let robot = Robot::new("slide", vec![joint], crate::lie::Pose::identity()).unwrap();
+        let noise = Noise { position_m: 0.0, rotation_rad: 0.0 };
+        let error = text(&Dataset::new(robot.reading_names()), &robot, &noise, "").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "found the joint `y` in the model, expected none with the name of a measured column, which could not be \
+             read back: rename the joint in the model"
+        );
     }
 
     #[test]

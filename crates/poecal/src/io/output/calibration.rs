@@ -10,6 +10,9 @@ use crate::io::model::Model;
 use crate::io::residuals;
 use crate::measurement::Dataset;
 
+/// Every name that a calibration may write.
+const OWN_NAMES: [&str; 4] = ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv"];
+
 /// Writes a calibration's files. They are written beside the folder first, read back and compared with the fitted robot on 1,000
 /// configurations, and only then put in place.
 ///
@@ -36,5 +39,5 @@ pub fn write(
     let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, &calibration.robot)];
     files.extend(robot_files("calibrated", model, &robot, &mut notes)?);
     files.push(NewFile::new("residuals.csv", residuals::text(data, calibration)));
-    write_files(folder, &files, notes)
+    write_files(folder, &files, &OWN_NAMES, notes)
 }

@@ -60,7 +60,7 @@ impl<'a> NewFile<'a> {
     }
 
     /// Compares the model, read back, with its robot.
-    fn prove(&self, folder: &Path) -> Result<Option<Difference>> {
+    fn prove(&self, folder: &Path, final_folder: &Path) -> Result<Option<Difference>> {
         let Some((robot, tip_link)) = &self.model_of else { return Ok(None) };
         let path = folder.join(&self.name);
         let selection = if self.name.ends_with(".urdf") {
@@ -68,7 +68,9 @@ impl<'a> NewFile<'a> {
         } else {
             ChainSelection::default()
         };
-        let difference = Difference::of(robot, &Model::read(&path, &selection)?.robot, CONFIGURATIONS);
+        let read = Model::read(&path, &selection);
+        let model = read.map_err(|error| error.with_path(&final_folder.join(&self.name)))?;
+        let difference = Difference::of(robot, &model.robot, CONFIGURATIONS);
         if difference.is_within(TOLERANCE, TOLERANCE) {
             return Ok(Some(difference));
         }
@@ -106,20 +108,21 @@ fn robot_files<'a>(
     }
 }
 
-/// Writes the files beside the folder first, proves the models among them, and only then puts all in place.
-fn write_files(folder: &Path, files: &[NewFile], notes: Vec<String>) -> Result<Written> {
+/// Writes the files beside the folder first, proves the models among them, and only then puts all in place. Of `own_names`, those
+/// that an earlier run left and this one does not write go, so that a folder never mixes two runs.
+fn write_files(folder: &Path, files: &[NewFile], own_names: &[&str], notes: Vec<String>) -> Result<Written> {
     let staging = Staging::new(folder)?;
     for file in files {
         staging.write(&file.name, &file.text)?;
     }
     let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
-    for difference in files.iter().map(|file| file.prove(staging.folder())) {
+    for difference in files.iter().map(|file| file.prove(staging.folder(), folder)) {
         if let Some(difference) = difference? {
             largest.position_m = largest.position_m.max(difference.position_m);
             largest.rotation_rad = largest.rotation_rad.max(difference.rotation_rad);
         }
     }
     let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
-    staging.put_in_place(folder, &names)?;
+    staging.put_in_place(&names, own_names)?;
     Ok(Written { folder: folder.to_path_buf(), files: names, largest, notes })
 }

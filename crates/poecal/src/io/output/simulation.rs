@@ -15,6 +15,17 @@ use crate::simulate::{Kind, Simulated, Simulation};
 /// Version word of `truth.json`.
 const SCHEMA: &str = "poecal-truth-1";
 
+/// Every name that a simulated session may write.
+const OWN_NAMES: [&str; 7] = [
+    "nominal.urdf",
+    "nominal.toml",
+    "actual.urdf",
+    "actual.toml",
+    "measurements.csv",
+    "held_out.csv",
+    "truth.json",
+];
+
 /// A simulated session and how it was made.
 #[derive(Clone, Copy, Debug)]
 pub struct Session<'a> {
@@ -118,5 +129,5 @@ pub fn write_simulation(folder: &Path, force: bool, model: &Model, session: &Ses
         files.push(NewFile::new("held_out.csv", text));
     }
     files.push(NewFile::new("truth.json", TruthFile::new(session).to_text()?));
-    write_files(folder, &files, notes)
+    write_files(folder, &files, &OWN_NAMES, notes)
 }

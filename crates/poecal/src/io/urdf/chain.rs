@@ -3,7 +3,7 @@
 use super::ChainSelection;
 use super::tree::Tree;
 use super::xml::Source;
-use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::error::{Error, ErrorKind, Result, nearest_or_all};
 
 /// A chain through the tree: links and joints as indices into the tree, joints from base to tip.
 pub(super) struct Chain {
@@ -31,8 +31,7 @@ fn error(source: &Source, message: String) -> Error {
 
 fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {
     tree.link(name).ok_or_else(|| {
-        let known = nearest(name, tree.links.iter().copied())
-            .map_or("but there is none".into(), |near| format!("the nearest is `{near}`"));
+        let known = nearest_or_all(name, &tree.links);
         error(&tree.source, format!("{option} names link `{name}`, expected a link of this file, {known}"))
     })
 }

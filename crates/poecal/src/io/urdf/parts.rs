@@ -8,7 +8,7 @@ use roxmltree::Node;
 use super::chain::Chain;
 use super::tree::{JointType, Tree, TreeJoint};
 use super::xml::{Source, value_range};
-use crate::error::{Result, nearest};
+use crate::error::{Result, nearest_or_all};
 use crate::io::mimic::{self, Mimic};
 use crate::lie::{Pose, Screw};
 use crate::robot::{Joint, JointKind, Limits, Reading};
@@ -158,10 +158,9 @@ fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Mi
     let (name, attribute) = source.required(node, "joint", &of)?;
     let error = |message| Err(source.error_at(attribute.range_value().start, message));
     let Some(leader) = tree.joint(name) else {
-        let near = nearest(name, tree.joints.iter().map(|joint| joint.name)).unwrap_or("");
-        return error(format!(
-            "{of} names joint `{name}`, expected a joint of this file, the nearest is `{near}`"
-        ));
+        let names: Vec<&str> = tree.joints.iter().map(|joint| joint.name).collect();
+        let known = nearest_or_all(name, &names);
+        return error(format!("{of} names joint `{name}`, expected a joint of this file, {known}"));
     };
     if !leader.kind.moves() {
         return error(format!(

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::xml::Source;
-use crate::error::{Result, nearest};
+use crate::error::{Result, nearest_or_all};
 
 /// The types of joints in URDF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,8 +188,8 @@ fn read_joint<'a>(
         };
         let (link, attribute) = source.required(element, "link", &format!("<{role}> of {of}"))?;
         links.get(link).copied().ok_or_else(|| {
-            let known = nearest(link, links.keys().copied())
-                .map_or("but there is no link".into(), |near| format!("the nearest is `{near}`"));
+            let names: Vec<&str> = links.keys().copied().collect();
+            let known = nearest_or_all(link, &names);
             source.error_at(
                 attribute.range_value().start,
                 format!("{of} names link `{link}`, expected a link of this file, {known}"),

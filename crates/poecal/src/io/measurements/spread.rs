@@ -1,0 +1,149 @@
+//! Units told by how far the measured positions spread, compared with the nominal model at the same configurations.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use super::layout::{Input, Layout, Source};
+use super::scale::{middle, short};
+use super::table::Header;
+use super::units::{Quantity, Unit};
+use crate::error::{Error, ErrorKind, Result};
+use crate::measurement::Dataset;
+use crate::robot::Robot;
+
+/// Rows compared at most.
+const ROWS: usize = 500;
+/// With fewer rows the spread says nothing.
+const FEWEST_ROWS: usize = 4;
+/// The model must move its tip by this share of its reach.
+const SHARE_OF_REACH: f64 = 0.05;
+/// Tools longer than the model's tip change the spread, but by less than this factor.
+const FACTOR: f64 = 4.0;
+/// Largest angle (in degrees) that a full turn in radians looks like.
+const FULL_TURN_AS_DEGREES: f64 = 6.4;
+/// Angles taken as degrees move the model less than the measurements by more than this.
+const SMALLER: f64 = 10.0;
+
+/// Refuses positions, or joint angles, whose spread only another unit explains; `first` is the file's first row.
+///
+/// # Errors
+/// [`ErrorKind::Unit`].
+pub(super) fn check(
+    path: &Path,
+    header: &Header<'_>,
+    robot: &Robot,
+    layout: &Layout,
+    data: &Dataset,
+    first: usize,
+) -> Result<()> {
+    let step = data.len().saturating_sub(first).div_ceil(ROWS).max(1);
+    let rows: Vec<usize> = (first..data.len()).step_by(step).collect();
+    let position = layout.targets.first().and_then(|target| layout.inputs.get(target.position[0]));
+    let (Some(input), true) = (position, rows.len() >= FEWEST_ROWS) else { return Ok(()) };
+    let measured = rows.iter().filter_map(|&row| data.observations.get(row));
+    let measured = spread(measured.map(|row| row.measurement.residual_model().position()).collect());
+    let modelled = |angle_factor: f64| {
+        let tip = |&row: &usize| {
+            let readings = data.readings(row).iter().zip(&layout.inputs);
+            let readings: Vec<f64> = readings
+                .map(|(value, input)| if is_angle(input) { value * angle_factor } else { *value })
+                .collect();
+            robot.forward_kinematics(&readings).translation
+        };
+        spread(rows.iter().map(tip).collect())
+    };
+    let smallest = SHARE_OF_REACH * robot.reach_m();
+    let as_read = modelled(1.0);
+    let message = if let Some(first_angle) = degrees_within_a_turn(layout, data, &rows)
+        && measured > SMALLER * as_read
+    {
+        let as_radians = modelled(1f64.to_degrees());
+        let explains = as_radians > smallest && is_about(measured / as_radians, 1.0);
+        explains.then(|| (first_angle, angle_message(first_angle, measured, as_read)))
+    } else {
+        None
+    };
+    let message = message.or_else(|| {
+        let power = [3, -3, 6, -6].into_iter().find(|power| is_about(measured / as_read, 10f64.powi(*power)));
+        power
+            .filter(|_| as_read > smallest)
+            .map(|power| (input, position_message(input, measured, as_read, power)))
+    });
+    match message {
+        None => Ok(()),
+        Some((input, message)) => Err(match input.source {
+            Source::Column(column) => header.error(ErrorKind::Unit, column, message),
+            Source::Constant(_) => Error::new(ErrorKind::Unit, message).in_file(path),
+        }),
+    }
+}
+
+/// Median distance from the middle, which a few corrupt rows do not move.
+fn spread(positions: Vec<Vector3<f64>>) -> f64 {
+    let middle = middle(&positions);
+    let mut distances: Vec<f64> = positions.iter().map(|position| (position - middle).norm()).collect();
+    let half = distances.len() / 2;
+    if half < distances.len() { *distances.select_nth_unstable_by(half, f64::total_cmp).1 } else { 0.0 }
+}
+
+fn is_about(ratio: f64, expected: f64) -> bool {
+    ratio > expected / FACTOR && ratio < expected * FACTOR
+}
+
+fn is_angle(input: &Input) -> bool {
+    input.unit.quantity() == Quantity::Angle
+}
+
+/// The first joint angle, if all are stated in degrees and are as small as radians would be.
+fn degrees_within_a_turn<'a>(layout: &'a Layout, data: &Dataset, rows: &[usize]) -> Option<&'a Input> {
+    let count = data.reading_names().len();
+    let mut angles = layout.inputs.iter().take(count).filter(|input| is_angle(input));
+    let first = angles.next().filter(|input| input.unit.symbol() == "deg")?;
+    let largest = FULL_TURN_AS_DEGREES.to_radians();
+    let small = |&row: &usize| {
+        let readings = data.readings(row).iter().zip(&layout.inputs);
+        readings.filter(|(_, input)| is_angle(input)).all(|(value, _)| value.abs() <= largest)
+    };
+    (angles.all(|input| input.unit.symbol() == "deg") && rows.iter().all(small)).then_some(first)
+}
+
+fn angle_message(input: &Input, measured: f64, modelled: f64) -> String {
+    format!(
+        "found joint angles of at most {FULL_TURN_AS_DEGREES} deg that move the model's tip by {} mm where the positions \
+         spread over {} mm, expected about the same: most likely they are in rad, not deg; write `{}[rad]` in the header \
+         (and so for each joint), or the unit in the mapping",
+        short(1e3 * modelled),
+        short(1e3 * measured),
+        input.name
+    )
+}
+
+/// `power`: of ten, by how much the positions spread further than the model says.
+fn position_message(input: &Input, measured: f64, modelled: f64, power: i32) -> String {
+    let stated = input.unit;
+    let model = format!(
+        "the model's lengths are {} times too {}",
+        10f64.powi(power.abs()),
+        if power > 0 { "small" } else { "large" }
+    );
+    let likely = ["m", "mm", "um", "nm"].into_iter().find(|symbol| {
+        Unit::parse(symbol, Quantity::Length)
+            .is_ok_and(|unit| (unit.to_si(1.0) * 10f64.powi(power) / stated.to_si(1.0) - 1.0).abs() < 1e-9)
+    });
+    let advice = match likely {
+        Some(likely) => format!(
+            "most likely they are in {likely}, not {} (or {model}); write `x[{likely}],y[{likely}],z[{likely}]` in the \
+             header, or the unit in the mapping",
+            stated.symbol()
+        ),
+        None => format!("most likely {model}; correct its unit, or the unit of the positions"),
+    };
+    format!(
+        "found positions that spread over {} {stated} where the model moves its tip by {} {stated}, expected about the \
+         same: {advice}",
+        short(stated.from_si(measured)),
+        short(stated.from_si(modelled)),
+        stated = stated.symbol(),
+    )
+}
