@@ -72,7 +72,7 @@ pub(crate) struct Columns {
 impl Columns {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let mapping = self.columns.as_ref().map(ColumnMap::read).transpose()?;
-        Ok(ReadOptions { mapping, fit_where: None })
+        Ok(ReadOptions { mapping, ..ReadOptions::default() })
     }
 }
 

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, Stage, calibrate_with_progress};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::measurements;
+use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::output;
 use poecal::measurement::{Dataset, Set};
@@ -56,7 +56,9 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
     refuse_repeats(&arguments.measurements)?;
     refuse_repeats(&arguments.validate)?;
     refuse_fitted(&arguments.validate, &arguments.measurements)?;
-    let options = arguments.reading.options()?;
+    // With --validate the files themselves say what is held out.
+    let ignore_sets = !arguments.validate.is_empty();
+    let options = ReadOptions { ignore_sets, ..arguments.reading.options()? };
     let read = |paths: &[PathBuf]| -> Result<Dataset> {
         let file = measurements::read(paths, &model.robot, &options)?;
         for warning in &file.warnings {

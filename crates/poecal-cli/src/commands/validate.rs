@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use poecal::calibration::{Subject, judge};
 use poecal::io::calibration_file::CalibrationFile;
-use poecal::io::measurements;
+use poecal::io::measurements::{self, ReadOptions};
 use poecal::{Result, report};
 
 use super::files::{actual, refuse_repeats};
@@ -32,7 +32,9 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<ExitCo
         refit_frame: arguments.refit_frame,
         refit_tool: arguments.refit_tool,
     };
-    let read = measurements::read(&arguments.measurements, &calibrated, &arguments.columns.options()?)?;
+    // Every row counts, whatever set the files say.
+    let options = ReadOptions { ignore_sets: true, ..arguments.columns.options()? };
+    let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
     if !arguments.refit_tool {
         file.check_targets(&read.data)?;
     }
