@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::source_text::position;
 
 /// The whole text of a file; `expected` says what it should be.
 pub(super) fn read_text(path: &Path, expected: &str) -> Result<String> {
@@ -33,8 +34,7 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
     }
     let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
     let found = bytes.get(valid).copied().unwrap_or_default();
-    let line = before.matches('\n').count() + 1;
-    let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+    let (line, column) = position(&before, before.len());
     let message = format!("found the byte 0x{found:02X}, expected UTF-8 text; save the file as `CSV UTF-8`");
     Error::new(ErrorKind::Syntax, message).at(path, line, column)
 }
