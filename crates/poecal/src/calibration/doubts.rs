@@ -2,7 +2,6 @@
 
 use super::{DeviceFrameKnowledge, ModelAccuracy};
 use crate::measurement::Dataset;
-use nalgebra::Vector3;
 
 /// Registered error, as a share of the measurements' spread, beyond which the nominal model does not describe this data. Real robots
 /// stay below a hundredth, simulated errors of several degrees on every axis below a tenth.
@@ -18,14 +17,7 @@ pub(super) fn doubts(
     frame: DeviceFrameKnowledge,
 ) -> Vec<String> {
     let mut doubts = Vec::new();
-    let places: Vec<Vector3<f64>> = rows
-        .iter()
-        .map(|&row| data.observations[row as usize].measurement.residual_model().position())
-        .collect();
-    let count = places.len().max(1) as f64;
-    let mean = places.iter().sum::<Vector3<f64>>() / count;
-    let spread_mm =
-        (places.iter().map(|place| (place - mean).norm_squared()).sum::<f64>() / count).sqrt() * 1e3;
+    let spread_mm = data.spread_m(rows) * 1e3;
     let error_mm = registered.position_mm.rms;
     if error_mm > MISFIT * spread_mm {
         let base = match frame {

@@ -1,5 +1,7 @@
 //! All measurements of a calibration: configurations, targets and what was seen.
 
+use nalgebra::Vector3;
+
 use super::Measurement;
 use crate::error::{Error, ErrorKind, Result};
 use std::path::PathBuf;
@@ -168,14 +170,37 @@ impl Dataset {
     /// For each target, whether some of these rows measured its orientation.
     #[must_use]
     pub fn frames(&self, rows: &[u32]) -> Vec<bool> {
-        (0..self.targets.len())
-            .map(|target| {
-                rows.iter().any(|&row| {
-                    let observation = &self.observations[row as usize];
-                    observation.target == target && observation.measurement.sees_orientation()
-                })
-            })
-            .collect()
+        let mut frames = vec![false; self.targets.len()];
+        let mut points = frames.len();
+        for &row in rows {
+            let observation = &self.observations[row as usize];
+            if !frames[observation.target] && observation.measurement.sees_orientation() {
+                frames[observation.target] = true;
+                points -= 1;
+                if points == 0 {
+                    break;
+                }
+            }
+        }
+        frames
+    }
+
+    /// Mean of the positions that some rows measured, metres, device frame.
+    #[must_use]
+    pub fn mean_position(&self, rows: &[u32]) -> Vector3<f64> {
+        self.positions(rows).sum::<Vector3<f64>>() / rows.len().max(1) as f64
+    }
+
+    /// Root mean square distance of the positions that some rows measured from their mean, metres.
+    #[must_use]
+    pub fn spread_m(&self, rows: &[u32]) -> f64 {
+        let mean = self.mean_position(rows);
+        let squares: f64 = self.positions(rows).map(|position| (position - mean).norm_squared()).sum();
+        (squares / rows.len().max(1) as f64).sqrt()
+    }
+
+    fn positions(&self, rows: &[u32]) -> impl Iterator<Item = Vector3<f64>> {
+        rows.iter().map(|&row| self.observations[row as usize].measurement.residual_model().position())
     }
 
     /// The rows of another data set after these; readings are matched by name.

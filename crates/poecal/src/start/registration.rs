@@ -77,11 +77,7 @@ fn polish(problem: &Registration<'_>, start: Estimate, rows: Vec<u32>, iteration
 fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<Parameter> {
     let mut free = Vec::new();
     if problem.device_free {
-        let sum: Vector3<f64> = rows
-            .iter()
-            .map(|&row| problem.data.observations[row as usize].measurement.residual_model().position())
-            .sum();
-        free.push(Parameter::DeviceFrame(DeviceFrame { about: sum / rows.len().max(1) as f64 }));
+        free.push(Parameter::DeviceFrame(DeviceFrame { about: problem.data.mean_position(rows) }));
     }
     if problem.targets_free {
         free.extend(target_parameters(problem.data, problem.rows));
@@ -106,6 +102,8 @@ struct Seen {
     measured: Vec<Vector3<f64>>,
     turned: Vec<Option<Matrix3<f64>>>,
     target: Vec<usize>,
+    /// How far the measurements are spread.
+    spread_m: f64,
 }
 
 impl Seen {
@@ -114,8 +112,13 @@ impl Seen {
         in_base.device_from_base = Pose::identity();
         let linkage = Linkage::new(&in_base);
         let mut chain = Chain::default();
-        let mut seen =
-            Seen { base_motion: Vec::new(), measured: Vec::new(), turned: Vec::new(), target: Vec::new() };
+        let mut seen = Seen {
+            base_motion: Vec::new(),
+            measured: Vec::new(),
+            turned: Vec::new(),
+            target: Vec::new(),
+            spread_m: problem.data.spread_m(sample),
+        };
         for &row in sample {
             let observation = &problem.data.observations[row as usize];
             chain.evaluate(&linkage, problem.packed, row as usize, observation.target);
@@ -168,14 +171,7 @@ impl Seen {
         let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
         let count = self.base_motion.len().max(1) as f64;
         let middle = self.base_motion.iter().map(|motion| motion.translation).sum::<Vector3<f64>>() / count;
-        turn < 0.1 && (a.act(&middle) - b.act(&middle)).norm() < 0.1 * self.spread()
-    }
-
-    /// Root mean square distance of the measurements from their mean.
-    fn spread(&self) -> f64 {
-        let count = self.measured.len().max(1) as f64;
-        let mean = self.measured.iter().sum::<Vector3<f64>>() / count;
-        (self.measured.iter().map(|place| (place - mean).norm_squared()).sum::<f64>() / count).sqrt()
+        turn < 0.1 && (a.act(&middle) - b.act(&middle)).norm() < 0.1 * self.spread_m
     }
 
     /// Root mean square distance from prediction to measurement over that of the measurements to their mean.
@@ -188,7 +184,7 @@ impl Seen {
                 (self.measured[k] - predicted).norm_squared()
             })
             .sum();
-        (missed / count).sqrt() / self.spread().max(f64::MIN_POSITIVE)
+        (missed / count).sqrt() / self.spread_m.max(f64::MIN_POSITIVE)
     }
 
     /// Device frames worth trying: the given one; rigid motions of nominal targets and of targets on the last axis; the hand-eye
