@@ -71,6 +71,7 @@ pub mod measurement;
 pub mod parameters;
 pub mod problem;
 pub mod report;
+pub mod reproduce;
 pub mod robot;
 pub mod simulate;
 pub mod solve;

@@ -2,12 +2,14 @@
 
 mod columns;
 mod device_frame;
+mod formulation;
 mod screw_axis;
 mod target_frame;
 mod target_place;
 
 pub use columns::{Column, Columns, Unit, Wrench};
 pub use device_frame::DeviceFrame;
+pub use formulation::Formulation;
 pub use screw_axis::ScrewAxis;
 pub use target_frame::TargetFrame;
 pub use target_place::TargetPlace;
