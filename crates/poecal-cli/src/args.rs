@@ -7,6 +7,9 @@ use poecal::io::measurements::{ColumnMap, ReadOptions};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 use poecal::io::urdf::ChainSelection;
+use poecal::measurement::PoseResidual;
+use poecal::parameters::Formulation;
+use poecal::solve::Method;
 
 use crate::quantity::{LengthAndAngle, share, sigma_m, sigma_rad, whole};
 
@@ -102,6 +105,66 @@ pub(crate) enum Frame {
     Base,
 }
 
+/// How errors of the joints are written as unknowns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FormulationWord {
+    /// Axes move as rigid bodies, without offsets: minimal, unconstrained
+    Adjoint,
+    /// Screws are free numbers, normalised after every step
+    Screw,
+    /// Free screws and joint offsets, 7n + 6 unknowns
+    ScrewOffsets,
+    /// Axes as rigid bodies, and joint offsets
+    AdjointOffsets,
+}
+
+impl From<FormulationWord> for Formulation {
+    fn from(word: FormulationWord) -> Self {
+        match word {
+            FormulationWord::Adjoint => Formulation::Adjoint,
+            FormulationWord::Screw => Formulation::Screw,
+            FormulationWord::ScrewOffsets => Formulation::ScrewOffsets,
+            FormulationWord::AdjointOffsets => Formulation::AdjointOffsets,
+        }
+    }
+}
+
+/// How errors of measured frames are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ResidualWord {
+    /// Position and rotation at the target
+    Tool,
+    /// The twist about the device's origin
+    Spatial,
+}
+
+impl From<ResidualWord> for PoseResidual {
+    fn from(word: ResidualWord) -> Self {
+        match word {
+            ResidualWord::Tool => PoseResidual::Tool,
+            ResidualWord::Spatial => PoseResidual::Spatial,
+        }
+    }
+}
+
+/// By which steps to minimise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodWord {
+    /// Damped steps, taken only if they help
+    LevenbergMarquardt,
+    /// Full steps, taken as they are
+    GaussNewton,
+}
+
+impl From<MethodWord> for Method {
+    fn from(word: MethodWord) -> Self {
+        match word {
+            MethodWord::LevenbergMarquardt => Method::LevenbergMarquardt,
+            MethodWord::GaussNewton => Method::GaussNewton,
+        }
+    }
+}
+
 /// Arguments of `poecal calibrate`.
 #[derive(Args, Debug)]
 pub(crate) struct Calibrate {
@@ -129,6 +192,15 @@ pub(crate) struct Calibrate {
     /// Seed of that choice [default: 1]
     #[arg(long, value_parser = whole::<u64>)]
     pub(crate) seed: Option<u64>,
+    /// How errors of the joints are written; all but the default are for comparison
+    #[arg(long, value_enum, default_value = "adjoint", help_heading = "Comparison")]
+    pub(crate) formulation: FormulationWord,
+    /// How errors of measured frames are written; the paper's is for comparison
+    #[arg(long, value_enum, default_value = "tool", help_heading = "Comparison")]
+    pub(crate) residual: ResidualWord,
+    /// By which steps to minimise; plain Gauss-Newton is for comparison, and may diverge
+    #[arg(long, value_enum, default_value = "levenberg-marquardt", help_heading = "Comparison")]
+    pub(crate) method: MethodWord,
     /// Measurement file to judge by: all other rows are fitted
     #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]
     pub(crate) validate: Vec<PathBuf>,

@@ -10,7 +10,6 @@ use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, d
 use poecal::estimate::Packed;
 use poecal::measurement::Noise;
 use poecal::simulate::{Kind, Simulated, Simulation, elbow};
-use poecal::solve::Options;
 
 fn main() {
     divan::main();
@@ -36,10 +35,11 @@ fn solve(bencher: Bencher<'_, '_>, rows: usize, kind: Kind) {
     let made = session(rows, kind);
     let start = delivered(&made.nominal, &made.data);
     let all: Vec<u32> = (0..rows as u32).collect();
+    let options = CalibrationOptions::default();
     bencher.bench_local(|| {
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
         let length_m = made.nominal.reach_m() / 3.0;
-        black_box(fit_screws(&made.data, &packed, &all, start.clone(), NOISE, length_m, &Options::default()))
+        black_box(fit_screws(&made.data, &packed, &all, start.clone(), NOISE, length_m, &options))
     });
 }
 

@@ -6,8 +6,12 @@
 use nalgebra::{Matrix6, Vector3};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::lie::{Pose, Screw, Twist, hat, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
-use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace};
+use poecal::measurement::{
+    Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, SpatialPoseMeasurement,
+};
+use poecal::parameters::{
+    DeviceFrame, FreeScrew, JointOffset, Parameter, ScrewAxis, TargetFrame, TargetPlace,
+};
 use poecal::problem::{Layout, Problem};
 use poecal::robot::{Joint, Robot};
 use poecal::solve::LeastSquares;
@@ -25,9 +29,10 @@ const NOISE: Noise = Noise { position_m: 0.5, rotation_rad: 0.8 };
 /// Makes a measurement of a target that was seen at a pose.
 type Measure = fn(Pose) -> Measurement;
 
-const MEASUREMENTS: [(&str, Measure); 2] = [
+const MEASUREMENTS: [(&str, Measure); 3] = [
     ("point", |seen| Measurement::Point(PointMeasurement { position: seen.translation })),
     ("pose", |seen| Measurement::Pose(PoseMeasurement { pose: seen })),
+    ("spatial pose", |seen| Measurement::SpatialPose(SpatialPoseMeasurement { pose: seen })),
 ];
 
 /// In the order of the chain, as a problem takes them.
@@ -36,6 +41,10 @@ fn parameters(robot: &Robot) -> Vec<(&'static str, Parameter)> {
     let mut all = vec![("device frame", Parameter::DeviceFrame(DeviceFrame { about }))];
     for (joint, it) in robot.joints.iter().enumerate() {
         all.push((it.kind.word(), Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
+        all.push(("offset", Parameter::JointOffset(JointOffset { joint, kind: it.kind })));
+    }
+    for (joint, it) in robot.joints.iter().enumerate() {
+        all.push(("free screw", Parameter::FreeScrew(FreeScrew { joint, kind: it.kind })));
     }
     all.push(("target place", Parameter::TargetPlace(TargetPlace { target: 0 })));
     all.push(("target frame", Parameter::TargetFrame(TargetFrame { target: 0 })));
@@ -135,6 +144,15 @@ impl Row {
     }
 }
 
+/// Whether the retraction keeps an unknown; those that it drops are checked against the paper's own columns.
+fn is_kept(parameter: &Parameter, place: usize, layout: &Layout) -> bool {
+    let mut unit = vec![1.0; layout.dim()];
+    parameter.model().keep(&mut unit);
+    layout
+        .parameters()
+        .all(|(_, places)| places.iter().zip(&unit).all(|(&(other, _), &kept)| other != place || kept != 0.0))
+}
+
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
@@ -157,15 +175,20 @@ fn jacobians_agree_with_differences() {
                     let layout = Layout::new(vec![parameter], LENGTH_M);
                     // All five steps together must not carry the residual over half a turn, where its logarithm jumps
                     // (near it, columns that are themselves only 1e-8 drown in the rounding of such small steps).
-                    let step = f64::min(0.1, (PI - angle) / 20.0);
+                    // Free screws are normalised, which is no polynomial: their steps are shorter.
+                    let longest = if matches!(parameter, Parameter::FreeScrew(_)) { 0.03 } else { 0.1 };
+                    let step = f64::min(longest, (PI - angle) / 20.0);
                     for (unknown, column) in row.columns(&estimate, &layout).iter().enumerate() {
+                        if !is_kept(&parameter, unknown, &layout) {
+                            continue;
+                        }
                         let numeric = row.differences(&estimate, &layout, unknown, step);
                         let floor = ROUNDING / step / RELATIVE;
                         worst = worst.max(distance(column, &numeric) / norm(column).max(floor));
                     }
                 }
             }
-            println!("{measurement:6} by {name:13} {worst:.1e}");
+            println!("{measurement:12} by {name:13} {worst:.1e}");
             largest = largest.max(worst);
         }
     }
@@ -222,8 +245,10 @@ fn hessian_error(make: Measure, turn: f64) -> f64 {
     let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], make, turn);
     // A place and a frame of the same target are not both free in any problem: their shifts are one and the same.
     let free = parameters(&robot).into_iter().map(|(_, parameter)| parameter);
-    let problem = row.problem(free.filter(|it| !matches!(it, Parameter::TargetPlace(_))).collect());
-    let (gram, curvature) = (problem.normal(&estimate).gram, problem.curvature(&estimate));
+    let free =
+        free.filter(|it| !matches!(it, Parameter::TargetPlace(_)) && it.model().has_curvature()).collect();
+    let problem = row.problem(free);
+    let (gram, curvature) = (problem.normal(&estimate).gram, problem.curvature(&estimate).unwrap());
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
     for a in 0..problem.dim() {
         for b in a..problem.dim() {
@@ -260,7 +285,8 @@ fn second_order_along_a_step_agrees_with_differences() {
     let estimate = Estimate::new(&robot, vec![robot.home], device());
     for (name, make) in MEASUREMENTS {
         let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], make, 0.3);
-        let problem = row.problem(parameters(&robot).into_iter().map(|(_, parameter)| parameter).collect());
+        let free = parameters(&robot).into_iter().map(|(_, parameter)| parameter);
+        let problem = row.problem(free.filter(|it| it.model().has_curvature()).collect());
         let step: Vec<f64> = (0..problem.dim()).map(|k| 0.02 * (k as f64 * 1.7).sin()).collect();
         // Sixth order; a whole step is some 0.03 rad.
         let weights = [1.5, -3.0 / 20.0, 1.0 / 90.0];

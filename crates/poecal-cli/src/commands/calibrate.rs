@@ -9,7 +9,7 @@ use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::output;
 use poecal::measurement::{Dataset, Set};
-use poecal::{Error, ErrorKind, Result, report};
+use poecal::{Error, ErrorKind, Result, report, solve};
 
 use super::files::{refuse_fitted, refuse_repeats};
 use crate::args::{Calibrate, Frame};
@@ -120,6 +120,9 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
         sigma_rotation_rad: arguments.sigma_rotation,
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
+        formulation: arguments.formulation.into(),
+        pose_residual: arguments.residual.into(),
+        solver: solve::Options { method: arguments.method.into(), ..usual.solver },
         ..usual
     }
 }

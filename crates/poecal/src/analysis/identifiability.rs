@@ -122,6 +122,18 @@ fn describe(robot: &Robot, data: &Dataset, layout: &Layout, direction: &[f64]) -
                     JointKind::Revolute => format!("the place and tilt of {name}'s axis"),
                 });
             }
+            Parameter::FreeScrew(screw) => {
+                let name = &robot.joints[screw.joint].name;
+                joints.push(name.clone());
+                parts.push(format!("the screw of {name}"));
+            }
+            Parameter::JointOffset(offset) => {
+                let name = &robot.joints[offset.joint].name;
+                if !joints.contains(name) {
+                    joints.push(name.clone());
+                }
+                parts.push(format!("the zero of {name}"));
+            }
             Parameter::TargetPlace(place) => parts.push(target_words(data, place.target, "the place of")),
             Parameter::TargetFrame(frame) => parts.push(target_words(data, frame.target, "the frame of")),
             Parameter::DeviceFrame(_) => parts.push("the device's frame".to_owned()),

@@ -12,7 +12,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
-use crate::parameters::{Parameter, ScrewAxis};
+use crate::parameters::{Formulation, Parameter};
 use crate::problem::{Layout, Problem};
 use crate::robot::Robot;
 use crate::simulate::random;
@@ -38,17 +38,19 @@ pub(super) struct Fitted {
 }
 
 /// All screws and targets: what a fit with a settled device frame frees.
-fn free_parameters(estimate: &Estimate, data: &Dataset, rows: &[u32]) -> Vec<Parameter> {
-    let screws = estimate
-        .kinds
-        .iter()
-        .enumerate()
-        .map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
-    screws.chain(target_parameters(data, rows)).collect()
+fn free_parameters(
+    estimate: &Estimate,
+    data: &Dataset,
+    rows: &[u32],
+    formulation: Formulation,
+) -> Vec<Parameter> {
+    let mut free = formulation.joint_parameters(&estimate.kinds);
+    free.extend(target_parameters(data, rows));
+    free
 }
 
-/// One fit of all screws and targets from a start, the device's frame staying where it is: Levenberg-Marquardt, begun on a sample
-/// if the rows are many.
+/// One fit of all screws and targets from a start, the device's frame staying where it is: by the formulation and the solver that
+/// the options state, begun on a sample if the rows are many.
 pub fn fit_screws(
     data: &Dataset,
     packed: &Packed,
@@ -56,19 +58,19 @@ pub fn fit_screws(
     start: Estimate,
     noise: Noise,
     length_m: f64,
-    options: &Options,
+    options: &CalibrationOptions,
 ) -> (Estimate, Normal, Summary) {
-    let free = free_parameters(&start, data, rows);
+    let free = free_parameters(&start, data, rows, options.formulation);
     let problem = |rows: Vec<u32>| Problem::new(data, packed, rows, free.clone(), noise, length_m);
     let mut start = start;
     let mut before = None;
     if rows.len() > 4 * SAMPLE {
         let sample = sample_rows(rows, SAMPLE);
-        let (estimate, _, summary) = minimize(&problem(sample), start, options);
+        let (estimate, _, summary) = minimize(&problem(sample), start, &options.solver);
         start = estimate;
         before = Some(summary);
     }
-    let (estimate, normal, mut summary) = minimize(&problem(rows.to_vec()), start, options);
+    let (estimate, normal, mut summary) = minimize(&problem(rows.to_vec()), start, &options.solver);
     if let Some(before) = before {
         summary.iterations += before.iterations;
         summary.trace.splice(0..0, before.trace);
@@ -92,6 +94,7 @@ pub(super) fn fit(
         termination: summary.termination,
         restarts: 0,
         trace: summary.trace.clone(),
+        joint_offsets: None,
     };
     if let Some((better, tried)) = task.restart(registered, &estimate, noise) {
         report.restarts = tried;
@@ -128,7 +131,10 @@ pub(super) fn fit(
         ));
     }
     report.termination = summary.termination;
-    (estimate, normal) = task.settle_null_directions(estimate, normal, noise, &mut report);
+    if options.formulation == Formulation::Adjoint {
+        (estimate, normal) = task.settle_null_directions(estimate, normal, noise, &mut report);
+    }
+    report.joint_offsets = options.formulation.has_offsets().then(|| estimate.joint_offset.clone());
     let layout = task.problem(&estimate, noise).layout().clone();
     Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
 }
@@ -146,11 +152,11 @@ pub(super) struct Task<'a> {
 
 impl Task<'_> {
     fn fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
-        fit_screws(self.data, self.packed, self.rows, start, noise, self.length_m, &self.options.solver)
+        fit_screws(self.data, self.packed, self.rows, start, noise, self.length_m, self.options)
     }
 
     fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
-        let free = free_parameters(estimate, self.data, self.rows);
+        let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
         Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m)
     }
 
@@ -164,7 +170,7 @@ impl Task<'_> {
     ) -> Option<(Option<Estimate>, usize)> {
         let sample = sample_rows(self.rows, RESTART_SAMPLE);
         let problem = |estimate: &Estimate| {
-            let free = free_parameters(estimate, self.data, self.rows);
+            let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
             Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m)
         };
         if self.options.restarts == 0 || self.position_rms(fitted) < SUSPICIOUS * 3.0 * self.length_m {

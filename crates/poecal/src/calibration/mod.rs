@@ -18,7 +18,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed};
 use crate::gauge;
 use crate::lie::Pose;
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{Dataset, Noise, PoseResidual};
+use crate::parameters::Formulation;
 use crate::robot::{JointKind, Robot};
 use crate::solve;
 use crate::start::{Registration, register, register_again};
@@ -52,6 +53,10 @@ pub struct CalibrationOptions {
     pub held_out: f64,
     /// Seed of that choice and of restarts.
     pub seed: u64,
+    /// How the errors of the joints are written as unknowns. All but the default are for comparison (lou2009).
+    pub formulation: Formulation,
+    /// How the errors of measured frames are written. The paper's is for comparison.
+    pub pose_residual: PoseResidual,
     /// Options of the solver.
     pub solver: solve::Options,
     /// Further starts tried when the fit looks as if it ended beside the optimum.
@@ -66,6 +71,8 @@ impl Default for CalibrationOptions {
             sigma_rotation_rad: None,
             held_out: 0.3,
             seed: 1,
+            formulation: Formulation::default(),
+            pose_residual: PoseResidual::default(),
             solver: solve::Options::default(),
             restarts: 24,
         }
@@ -94,6 +101,9 @@ pub struct SolverReport {
     pub restarts: usize,
     /// Mean square whitened residual by iteration.
     pub trace: Vec<f64>,
+    /// What each joint's value is more than its reading says (radians or metres), where the formulation has offsets. They are not
+    /// identifiable beside the screws (lou2009 Proposition 1); the calibrated robot has them in its screws.
+    pub joint_offsets: Option<Vec<f64>>,
 }
 
 /// The three models that every result is stated for, as estimates.
@@ -129,6 +139,12 @@ pub struct Calibration {
     pub targets: Vec<CalibratedTarget>,
     /// What was known of the device's frame.
     pub frame: DeviceFrameKnowledge,
+    /// How the errors of the joints were written.
+    pub formulation: Formulation,
+    /// How the errors of measured frames were written.
+    pub pose_residual: PoseResidual,
+    /// By which steps the fit went.
+    pub method: solve::Method,
     /// `base_from_device`.
     pub base_from_device: Pose,
     /// The three models.
@@ -197,6 +213,9 @@ pub fn calibrate_with_progress(
     progress: &mut dyn FnMut(Stage),
 ) -> Result<Calibration> {
     let (fit_rows, held_out_rows) = split_rows(data, options)?;
+    let converted =
+        (options.pose_residual != PoseResidual::Tool).then(|| data.with_residual(options.pose_residual));
+    let data = converted.as_ref().unwrap_or(data);
     check_count(robot, data, &fit_rows)?;
     let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
     let delivered = delivered(robot, data);
@@ -224,12 +243,13 @@ pub fn calibrate_with_progress(
     let fitted = fit::fit(&task, &registered, noise, source)?;
     progress(Stage::Analysis);
     let nominal = register(&registration(fitted.noise, false), &delivered).0;
+    let found = fitted.estimate.without_offsets();
     let calibrated = match options.frame {
         DeviceFrameKnowledge::Unknown => {
-            let motion = gauge::base_motion(&fitted.estimate, robot, &delivered.base_from_target, length_m);
-            fitted.estimate.rebased(&motion)
+            let motion = gauge::base_motion(&found, robot, &delivered.base_from_target, length_m);
+            found.rebased(&motion)
         }
-        DeviceFrameKnowledge::Base => fitted.estimate,
+        DeviceFrameKnowledge::Base => found,
     };
     let identifiability = identifiability(robot, data, &fitted.layout, &fitted.normal, length_m);
     let models = Models { nominal, registered, calibrated };
@@ -244,6 +264,9 @@ pub fn calibrate_with_progress(
         robot: calibrated_robot,
         targets,
         frame: options.frame,
+        formulation: options.formulation,
+        pose_residual: options.pose_residual,
+        method: options.solver.method,
         base_from_device: models.calibrated.device_from_base.inverse(),
         models,
         accuracy,

@@ -27,6 +27,8 @@ pub struct Linkage {
     steps: Vec<Pose>,
     /// `axis_n_from_target`.
     ends: Vec<Pose>,
+    /// Joint offsets, if there are any: `(δ, cos δ, sin δ)`.
+    offsets: Vec<(f64, f64, f64)>,
 }
 
 impl Linkage {
@@ -40,7 +42,26 @@ impl Linkage {
             axis_from_base = base_from_axis.inverse();
         }
         let ends = estimate.base_from_target.iter().map(|&target| axis_from_base * target).collect();
-        Linkage { kinds: estimate.kinds.clone(), steps, ends }
+        let offsets = if estimate.joint_offset.iter().all(|&offset| offset == 0.0) {
+            Vec::new()
+        } else {
+            estimate.joint_offset.iter().map(|&offset| (offset, offset.cos(), offset.sin())).collect()
+        };
+        Linkage { kinds: estimate.kinds.clone(), steps, ends, offsets }
+    }
+
+    /// `(θ, cos θ or θ, sin θ or 0)` of a joint with its offset put in.
+    fn joint_value(&self, joint: usize, value: f64, packed: (f64, f64)) -> (f64, f64, f64) {
+        let Some(&(offset, cosine, sine)) = self.offsets.get(joint) else {
+            return (value, packed.0, packed.1);
+        };
+        match self.kinds[joint] {
+            JointKind::Revolute => {
+                let (c, s) = packed;
+                (value + offset, c * cosine - s * sine, s * cosine + c * sine)
+            }
+            JointKind::Prismatic => (value + offset, packed.0 + offset, 0.0),
+        }
     }
 }
 
@@ -57,6 +78,8 @@ pub struct JointView {
     pub z: Vector3<f64>,
     /// Origin of the axis frame, metres.
     pub origin: Vector3<f64>,
+    /// Joint value θ, offset included: radians, whole turns counted, or metres.
+    pub value: f64,
     /// cos θ (revolute) or θ in metres (prismatic).
     pub cosine_or_value: f64,
     /// sin θ (revolute) or 0 (prismatic).
@@ -85,9 +108,11 @@ impl Chain {
     pub fn evaluate(&mut self, linkage: &Linkage, packed: &Packed, row: usize, target: usize) {
         self.joints.clear();
         let mut moved = Pose::identity();
-        for ((step, &kind), &(cosine_or_value, sine)) in
-            linkage.steps.iter().zip(&linkage.kinds).zip(packed.row(row))
+        let values = packed.joint_values(row);
+        for (joint, ((step, &kind), &packed)) in
+            linkage.steps.iter().zip(&linkage.kinds).zip(packed.row(row)).enumerate()
         {
+            let (value, cosine_or_value, sine) = linkage.joint_value(joint, values[joint], packed);
             let frame = moved * *step;
             let x = frame.rotation.column(0).into_owned();
             let y = frame.rotation.column(1).into_owned();
@@ -103,7 +128,8 @@ impl Chain {
                 ),
                 JointKind::Prismatic => Pose::new(frame.rotation, frame.translation + z * cosine_or_value),
             };
-            self.joints.push(JointView { kind, x, y, z, origin: frame.translation, cosine_or_value, sine });
+            let origin = frame.translation;
+            self.joints.push(JointView { kind, x, y, z, origin, value, cosine_or_value, sine });
         }
         self.last = moved;
         self.target = moved * linkage.ends[target];

@@ -33,6 +33,9 @@ pub struct Estimate {
     pub kinds: Vec<JointKind>,
     /// `base_from_axis` of each joint at zero configuration: z along the screw, origin on the axis.
     pub base_from_axis: Vec<Pose>,
+    /// What each joint's value is more than its reading says, radians or metres: zero but in formulations with joint offsets
+    /// (lou2009: Δθ).
+    pub joint_offset: Vec<f64>,
     /// `base_from_target` of each target with all joint values zero (lou2009: M, or the point P_c0).
     pub base_from_target: Vec<Pose>,
     /// The base in the measuring device's frame.
@@ -50,6 +53,7 @@ impl Estimate {
                 .iter()
                 .map(|joint| axis_frame(&joint.screw, &joint.frame.translation))
                 .collect(),
+            joint_offset: vec![0.0; robot.joints.len()],
             base_from_target,
             device_from_base,
         }
@@ -88,9 +92,33 @@ impl Estimate {
         Estimate {
             kinds: self.kinds.clone(),
             base_from_axis: self.base_from_axis.iter().map(|&frame| *motion * frame).collect(),
+            joint_offset: self.joint_offset.clone(),
             base_from_target: self.base_from_target.iter().map(|&pose| *motion * pose).collect(),
             device_from_base: self.device_from_base * motion.inverse(),
         }
+    }
+
+    /// The same robot without joint offsets: what follows a joint is moved by its offset, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for all j > i, and
+    /// the targets likewise. Exact, and no prediction changes (lou2009 equations 11 to 15, docs/theory.md §3 (9)).
+    #[must_use]
+    pub fn without_offsets(&self) -> Self {
+        if self.joint_offset.iter().all(|&offset| offset == 0.0) {
+            return self.clone();
+        }
+        let screws = self.screws();
+        let mut moved = self.clone();
+        let mut motion = Pose::identity();
+        for ((frame, offset), screw) in
+            moved.base_from_axis.iter_mut().zip(&mut moved.joint_offset).zip(&screws)
+        {
+            *frame = (motion * *frame).orthonormalized();
+            motion = motion * screw.exp(*offset);
+            *offset = 0.0;
+        }
+        for target in &mut moved.base_from_target {
+            *target = (motion * *target).orthonormalized();
+        }
+        moved
     }
 
     /// Moves each axis frame's origin along its axis to where the data can be described with least leverage: nearest to the

@@ -2,7 +2,8 @@
 
 use crate::robot::{JointKind, Robot};
 
-/// Joint values of all rows, flat: `n` joints a row. For a revolute joint `(cos θ, sin θ)`, for a prismatic one `(θ, 0)`.
+/// Joint values of all rows, flat: `n` joints a row. For a revolute joint `(cos θ, sin θ)`, for a prismatic one `(θ, 0)`; and θ
+/// itself, which knows of whole turns.
 ///
 /// ```
 /// # use nalgebra::Vector3;
@@ -19,6 +20,7 @@ use crate::robot::{JointKind, Robot};
 pub struct Packed {
     joints: usize,
     values: Vec<(f64, f64)>,
+    angles: Vec<f64>,
 }
 
 impl Packed {
@@ -27,9 +29,11 @@ impl Packed {
     pub fn new(robot: &Robot, readings: &[f64], width: usize) -> Self {
         let indices = robot.reading_indices();
         let mut values = Vec::with_capacity(readings.len() / width.max(1) * robot.joints.len());
+        let mut angles = Vec::with_capacity(values.capacity());
         for row in readings.chunks_exact(width.max(1)) {
             for (joint, &index) in robot.joints.iter().zip(&indices) {
                 let value = joint.reading.value(row[index]);
+                angles.push(value);
                 values.push(match joint.kind {
                     JointKind::Revolute => {
                         let (sine, cosine) = value.sin_cos();
@@ -39,7 +43,7 @@ impl Packed {
                 });
             }
         }
-        Packed { joints: robot.joints.len(), values }
+        Packed { joints: robot.joints.len(), values, angles }
     }
 
     /// Number of rows.
@@ -52,6 +56,12 @@ impl Packed {
     #[must_use]
     pub fn joint(&self, row: usize, joint: usize) -> (f64, f64) {
         self.values[row * self.joints + joint]
+    }
+
+    /// Joint values of a row, radians or metres.
+    #[must_use]
+    pub fn joint_values(&self, row: usize) -> &[f64] {
+        &self.angles[row * self.joints..(row + 1) * self.joints]
     }
 
     /// All joints of a row.

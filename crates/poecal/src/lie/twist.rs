@@ -100,11 +100,49 @@ impl Twist {
         let b = sincc + angle_squared * d;
         Matrix6::identity() + ad * a + ad2 * b + ad2 * ad * c + ad2 * ad2 * d
     }
+
+    /// `J_l(ξ)⁻¹ = I - ad/2 + b ad² + d ad⁴` for `|ω| < 2π`, with coefficients of the angle alone (selig2004 and docs/theory.md §4).
+    #[must_use]
+    pub fn inverse_left_jacobian(&self) -> Matrix6<f64> {
+        let x = self.w.norm_squared();
+        let ad = self.ad();
+        let ad2 = ad * ad;
+        // An even polynomial that has the value and the slope of γ = (θ/2) cot(θ/2) at the double eigenvalues ±iθ of ad.
+        let (b, d) = if x < series::SWITCH {
+            (
+                1.0 / 12.0 - x * x / 30_240.0 - x * x * x / 604_800.0 - x * x * x * x / 15_966_720.0,
+                -1.0 / 720.0 - x / 15_120.0 - x * x / 403_200.0 - x * x * x / 11_975_040.0,
+            )
+        } else {
+            let half = 0.5 * x.sqrt();
+            let (sine, cosine) = half.sin_cos();
+            let gamma = half * cosine / sine;
+            // dγ/dθ² = (γ - (θ/2)²/sin²(θ/2)) / (2θ²)
+            let slope = (gamma - (half / sine).powi(2)) / (2.0 * x);
+            let b = slope - 2.0 * (gamma - 1.0) / x;
+            (b, (gamma - 1.0) / (x * x) + b / x)
+        };
+        Matrix6::identity() - ad * 0.5 + ad2 * b + ad2 * ad2 * d
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn inverse_left_jacobian_is_the_inverse() {
+        for scale in [0.0, 1e-8, 0.05, 0.099, 0.101, 0.2, 1.0, 3.1] {
+            let twist = Twist::new(
+                Vector3::new(0.3, -0.2, 0.5) * (scale + 0.1),
+                Vector3::new(0.6, -0.48, 0.64) * scale,
+            );
+            let product = twist.left_jacobian() * twist.inverse_left_jacobian();
+            let error = (product - Matrix6::identity()).norm();
+            println!("scale {scale}: {error:.1e}");
+            assert!(error < 1e-13, "{error}");
+        }
+    }
 
     #[test]
     fn left_jacobian_is_the_integral_of_the_adjoint() {

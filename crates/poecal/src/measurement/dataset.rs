@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::Measurement;
+use super::{Measurement, PoseResidual};
 use crate::error::{Error, ErrorKind, Result};
 use std::path::PathBuf;
 
@@ -134,6 +134,16 @@ impl Dataset {
         }
         self.targets.push(name.map(str::to_owned));
         self.targets.len() - 1
+    }
+
+    /// The same data with the errors of measured frames written in this way.
+    #[must_use]
+    pub fn with_residual(&self, residual: PoseResidual) -> Self {
+        let mut data = self.clone();
+        for row in &mut data.observations {
+            row.measurement = row.measurement.with_residual(residual);
+        }
+        data
     }
 
     /// Number of rows.

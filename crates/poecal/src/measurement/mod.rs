@@ -4,13 +4,39 @@ mod dataset;
 mod point;
 mod pose;
 mod residual;
+mod spatial_pose;
 
 pub use dataset::{Dataset, Observation, Set, Source};
 pub use point::PointMeasurement;
 pub use pose::PoseMeasurement;
 pub use residual::{Noise, Residual};
+pub use spatial_pose::SpatialPoseMeasurement;
 
 use crate::lie::Pose;
+
+/// How the error of a measured frame is written.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum PoseResidual {
+    /// Position and rotation at the target, as a device's data sheet states its noise.
+    #[default]
+    Tool,
+    /// The twist about the device's origin, as in lou2009.
+    Spatial,
+}
+
+impl PoseResidual {
+    /// The stable word used in files and on the command line.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            PoseResidual::Tool => "tool",
+            PoseResidual::Spatial => "spatial",
+        }
+    }
+}
 
 /// One measurement of a target in the measuring device's frame.
 ///
@@ -28,6 +54,8 @@ pub enum Measurement {
     Point(PointMeasurement),
     /// Position and orientation of a frame.
     Pose(PoseMeasurement),
+    /// The same with the residual of lou2009.
+    SpatialPose(SpatialPoseMeasurement),
 }
 
 impl Measurement {
@@ -37,6 +65,19 @@ impl Measurement {
         match self {
             Measurement::Point(point) => point,
             Measurement::Pose(pose) => pose,
+            Measurement::SpatialPose(pose) => pose,
+        }
+    }
+
+    /// The same measurement with the error of a frame written in this way.
+    #[must_use]
+    pub fn with_residual(&self, residual: PoseResidual) -> Self {
+        match (self, residual) {
+            (Measurement::Point(_), _) => *self,
+            (_, PoseResidual::Tool) => Measurement::Pose(PoseMeasurement { pose: self.pose() }),
+            (_, PoseResidual::Spatial) => {
+                Measurement::SpatialPose(SpatialPoseMeasurement { pose: self.pose() })
+            }
         }
     }
 

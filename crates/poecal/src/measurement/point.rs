@@ -41,8 +41,9 @@ impl Residual for PointMeasurement {
         }
     }
 
-    fn wrench(&self, predicted: &Pose, noise: &Noise) -> (Vector3<f64>, Vector3<f64>) {
-        ((self.position - predicted.translation) / (noise.position_m * noise.position_m), Vector3::zeros())
+    fn wrench(&self, predicted: &Pose, noise: &Noise) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let force = (self.position - predicted.translation) / (noise.position_m * noise.position_m);
+        Some((force, Vector3::zeros()))
     }
 
     fn rotation_row(&self) -> usize {

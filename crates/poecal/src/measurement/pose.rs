@@ -60,12 +60,12 @@ impl Residual for PoseMeasurement {
         }
     }
 
-    fn wrench(&self, predicted: &Pose, noise: &Noise) -> (Vector3<f64>, Vector3<f64>) {
+    fn wrench(&self, predicted: &Pose, noise: &Noise) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let r = rotation::log(&(self.pose.rotation * predicted.rotation.transpose()));
-        (
+        Some((
             (self.pose.translation - predicted.translation) / (noise.position_m * noise.position_m),
             r / (noise.rotation_rad * noise.rotation_rad),
-        )
+        ))
     }
 
     fn rotation_row(&self) -> usize {

@@ -37,8 +37,9 @@ pub trait Residual {
     );
 
     /// The whitened residual as force and torque on the target: `f` and `τ` such that `f·v + τ·ω` is the descent of `½ |e|²` along a
-    /// target twist `(v; ω)`, to first order in the residual.
-    fn wrench(&self, predicted: &Pose, noise: &Noise) -> (Vector3<f64>, Vector3<f64>);
+    /// target twist `(v; ω)`, to first order in the residual, and its second derivative is that of the target's place and turn.
+    /// `None` where that does not hold: the solver then goes without the full Hessian.
+    fn wrench(&self, predicted: &Pose, noise: &Noise) -> Option<(Vector3<f64>, Vector3<f64>)>;
 
     /// First residual row that does not see the linear part of a target twist: those rows are zero in columns that only shift
     /// the target, which the solver's accumulation then skips. `dim` if there is none.

@@ -58,6 +58,15 @@ pub trait Columns {
     /// the twists alone. `out` is all zero before.
     fn curvature(&self, _chain: &Chain, _wrench: &Wrench, _out: &mut [f64]) {}
 
+    /// Whether [`Columns::curvature`] is written. Where it is not, the solver goes without the full Hessian.
+    fn has_curvature(&self) -> bool {
+        true
+    }
+
+    /// Sets to zero what the retraction drops of a step, to first order: where unknowns are constrained, and the constraint is put
+    /// right after the step.
+    fn keep(&self, _step: &mut [f64]) {}
+
     /// Applies a step (metres, radians) to an estimate.
     fn retract(&self, estimate: &mut Estimate, step: &[f64]);
 }

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{FreeScrew, JointOffset, Parameter, ScrewAxis};
+use crate::robot::JointKind;
+
 /// How the errors of the joints are written as unknowns (lou2009, sections II and III). All describe the same robots; they differ
 /// in the number of unknowns, in what becomes of constraints, and in what can be identified.
 ///
@@ -10,9 +13,7 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(Formulation::ScrewOffsets.word(), "screw-offsets");
 /// assert!(Formulation::ScrewOffsets.has_offsets() && !Formulation::Adjoint.has_offsets());
 /// ```
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Formulation {
     /// Each screw moves as a rigid body, `ξ ← Ad_exp(η) ξ`, in the minimal basis: no constraints, no offsets (lou2009 16 to 18).
@@ -28,12 +29,8 @@ pub enum Formulation {
 
 impl Formulation {
     /// All formulations.
-    pub const ALL: [Formulation; 4] = [
-        Formulation::Adjoint,
-        Formulation::Screw,
-        Formulation::ScrewOffsets,
-        Formulation::AdjointOffsets,
-    ];
+    pub const ALL: [Formulation; 4] =
+        [Formulation::Adjoint, Formulation::Screw, Formulation::ScrewOffsets, Formulation::AdjointOffsets];
 
     /// The stable word used in files and on the command line.
     #[must_use]
@@ -44,6 +41,23 @@ impl Formulation {
             Formulation::ScrewOffsets => "screw-offsets",
             Formulation::AdjointOffsets => "adjoint-offsets",
         }
+    }
+
+    /// The unknowns of joints of some kinds, in the order of the chain.
+    #[must_use]
+    pub fn joint_parameters(self, kinds: &[JointKind]) -> Vec<Parameter> {
+        let mut parameters = Vec::with_capacity(2 * kinds.len());
+        for (joint, &kind) in kinds.iter().enumerate() {
+            parameters.push(if self.has_free_screws() {
+                Parameter::FreeScrew(FreeScrew { joint, kind })
+            } else {
+                Parameter::ScrewAxis(ScrewAxis { joint, kind })
+            });
+            if self.has_offsets() {
+                parameters.push(Parameter::JointOffset(JointOffset { joint, kind }));
+            }
+        }
+        parameters
     }
 
     /// Whether joint offsets are unknowns.

@@ -3,6 +3,8 @@
 mod columns;
 mod device_frame;
 mod formulation;
+mod free_screw;
+mod joint_offset;
 mod screw_axis;
 mod target_frame;
 mod target_place;
@@ -10,6 +12,8 @@ mod target_place;
 pub use columns::{Column, Columns, Unit, Wrench};
 pub use device_frame::DeviceFrame;
 pub use formulation::Formulation;
+pub use free_screw::FreeScrew;
+pub use joint_offset::JointOffset;
 pub use screw_axis::ScrewAxis;
 pub use target_frame::TargetFrame;
 pub use target_place::TargetPlace;
@@ -24,6 +28,10 @@ pub use target_place::TargetPlace;
 pub enum Parameter {
     /// A joint's screw: where its axis lies (4 unknowns), or where it slides to (2).
     ScrewAxis(ScrewAxis),
+    /// A joint's screw as six free numbers, or three if it slides.
+    FreeScrew(FreeScrew),
+    /// What a joint's value is more than its reading says (1).
+    JointOffset(JointOffset),
     /// Place of a target point on the last link (3).
     TargetPlace(TargetPlace),
     /// Place and orientation of a target frame on the last link (6).
@@ -38,6 +46,8 @@ impl Parameter {
     pub fn model(&self) -> &dyn Columns {
         match self {
             Parameter::ScrewAxis(axis) => axis,
+            Parameter::FreeScrew(screw) => screw,
+            Parameter::JointOffset(offset) => offset,
             Parameter::TargetPlace(place) => place,
             Parameter::TargetFrame(frame) => frame,
             Parameter::DeviceFrame(frame) => frame,

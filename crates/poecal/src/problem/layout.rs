@@ -65,6 +65,26 @@ impl Layout {
         })
     }
 
+    /// Whether every parameter writes its curvature.
+    #[must_use]
+    pub(crate) fn has_curvature(&self) -> bool {
+        self.parameters.iter().all(|parameter| parameter.model().has_curvature())
+    }
+
+    /// Sets to zero what the retraction drops of a scaled step, to first order.
+    pub(crate) fn keep(&self, step: &mut [f64]) {
+        let mut own = [0.0; 6];
+        for (parameter, places) in self.parameters() {
+            for (value, &(place, _)) in own.iter_mut().zip(places) {
+                *value = step[place];
+            }
+            parameter.model().keep(&mut own[..places.len()]);
+            for (value, &(place, _)) in own.iter().zip(places) {
+                step[place] = *value;
+            }
+        }
+    }
+
     /// The target's motion per unit of each scaled unknown, in the order of a step.
     pub(crate) fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
         let mut own = [(Vector3::zeros(), Vector3::zeros()); 6];

@@ -221,7 +221,10 @@ impl LeastSquares for Problem<'_> {
         total.gradient
     }
 
-    fn curvature(&self, state: &Estimate) -> Vec<f64> {
+    fn curvature(&self, state: &Estimate) -> Option<Vec<f64>> {
+        if !self.layout.has_curvature() {
+            return None;
+        }
         let linkage = Linkage::new(state);
         let total = self.sum_chunks(|rows| {
             let mut normal = Normal::new(self.layout.dim());
@@ -231,13 +234,20 @@ impl LeastSquares for Problem<'_> {
                 let observation = &self.data.observations[row];
                 chain.evaluate(&linkage, self.packed, row, observation.target);
                 let measurement = observation.measurement.residual_model();
-                let (force, torque) = measurement.wrench(&chain.target, &self.noise(row));
+                let Some((force, torque)) = measurement.wrench(&chain.target, &self.noise(row)) else {
+                    return normal;
+                };
+                normal.residuals += 1;
                 let wrench = Wrench { force, torque };
                 self.layout.add_curvature(&chain, observation.target, &wrench, &mut normal.gram);
             }
             normal
         });
-        total.gram
+        (total.residuals == self.rows.len()).then_some(total.gram)
+    }
+
+    fn keep(&self, step: &mut [f64]) {
+        self.layout.keep(step);
     }
 
     fn rounding(&self) -> f64 {

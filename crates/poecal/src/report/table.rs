@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 
 use crate::calibration::{Calibration, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, PoseResidual};
+use crate::parameters::Formulation;
 use crate::robot::{JointKind, Robot};
-use crate::solve::Termination;
+use crate::solve::{Method, Termination};
 
 /// Columns of the table: their heads and how to take them from the accuracy of a set.
 type Column<'a> = (&'a str, fn(&SetAccuracy) -> &ModelAccuracy);
@@ -45,6 +46,9 @@ pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
         }
     }
     line(&mut out, "solver", &solver_words(calibration));
+    if let Some(words) = formulation_words(calibration) {
+        line(&mut out, "formulation", &words);
+    }
     out
 }
 
@@ -179,6 +183,28 @@ fn solver_words(calibration: &Calibration) -> String {
         count => format!(", {count} further starts tried"),
     };
     format!("{} iterations, {end}{restarts}", solver.iterations)
+}
+
+/// How the problem was written, where not as usual, and what follows from that.
+fn formulation_words(calibration: &Calibration) -> Option<String> {
+    let usual = (Formulation::default(), PoseResidual::default(), Method::default());
+    if (calibration.formulation, calibration.pose_residual, calibration.method) == usual {
+        return None;
+    }
+    let mut words = format!(
+        "{}, {} residual of poses, {}",
+        calibration.formulation.word(),
+        calibration.pose_residual.word(),
+        calibration.method.word()
+    );
+    if calibration.formulation.has_free_screws() && calibration.method == Method::GaussNewton {
+        words
+            .push_str("; screws are normalised after each step, so with noise this is not the least squares");
+    }
+    if calibration.formulation.has_offsets() {
+        words.push_str("; joint offsets cannot be told from screws, and stand moved into them");
+    }
+    Some(words)
 }
 
 /// A labelled line, broken at 80 columns with the text aligned.

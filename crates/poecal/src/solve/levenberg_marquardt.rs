@@ -1,52 +1,10 @@
 //! Levenberg-Marquardt on a manifold with geodesic acceleration and, near the optimum of a curved problem, the full Hessian
 //! (docs/theory.md §6; more1978, transtrum2012, dennis1981).
 
-use super::{LeastSquares, Normal, Termination};
+use super::gauss_newton::{gauss_newton, kept};
+use super::normal::quadratic;
+use super::{LeastSquares, Method, Normal, Options, Summary, Termination};
 use crate::linalg;
-
-/// How to minimise.
-///
-/// ```
-/// let options = poecal::solve::Options { iterations: 20, ..Default::default() };
-/// assert!(options.acceleration);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
-    /// Most iterations (evaluations of the Jacobian after the first).
-    pub iterations: usize,
-    /// Ends when the undamped step promises a decrease below this times the mean squared residual.
-    pub decrement: f64,
-    /// Ends when the undamped step is shorter than this (scaled units: metres).
-    pub step: f64,
-    /// Standard deviation of a first, weak belief that the start is right (scaled units: metres): the first damping is
-    /// `mean squared residual / trust²`. It shrinks with the residual, so that convergence stays quadratic.
-    pub trust: f64,
-    /// Whether to follow curvature: geodesic acceleration and the full Hessian.
-    pub acceleration: bool,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Options { iterations: 200, decrement: 1e-7, step: 1e-14, trust: 0.3, acceleration: true }
-    }
-}
-
-/// What a minimisation did.
-///
-/// ```
-/// # use poecal::solve::{Summary, Termination};
-/// let summary = Summary { iterations: 4, termination: Termination::Optimum, trace: vec![] };
-/// assert!(summary.termination.is_success());
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct Summary {
-    /// Iterations: accepted and rejected steps.
-    pub iterations: usize,
-    /// Why it ended.
-    pub termination: Termination,
-    /// Mean squared whitened residual at the start and after each iteration.
-    pub trace: Vec<f64>,
-}
 
 /// Most a geodesic correction may be of the step that it corrects (transtrum2012).
 const LARGEST_ACCELERATION: f64 = 0.75;
@@ -55,7 +13,7 @@ const LARGEST_ACCELERATION: f64 = 0.75;
 const ROUNDING_STEP: f64 = 1e-9;
 
 /// Share of the largest diagonal element that rounding makes of the normal equations' small eigenvalues.
-const ROUNDING: f64 = 1e-13;
+pub(super) const ROUNDING: f64 = 1e-13;
 
 /// Minimises from `start`; gives the state reached, its normal information and a summary.
 pub fn minimize<P: LeastSquares>(
@@ -63,6 +21,9 @@ pub fn minimize<P: LeastSquares>(
     start: P::State,
     options: &Options,
 ) -> (P::State, Normal, Summary) {
+    if options.method == Method::GaussNewton {
+        return gauss_newton(problem, start, options);
+    }
     let mut search = Search::new(problem, start, *options);
     let termination = search.run();
     let summary = Summary { iterations: search.iterations, termination, trace: search.trace };
@@ -133,7 +94,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             return;
         }
         let n = self.problem.dim();
-        let curvature = self.problem.curvature(&self.state);
+        let Some(curvature) = self.problem.curvature(&self.state) else { return };
         let full: Vec<f64> = self.normal.gram.iter().zip(&curvature).map(|(gram, s)| gram + s).collect();
         if linalg::cholesky(&full, n, ROUNDING * self.scale()).is_some() {
             self.hessian = full;
@@ -149,7 +110,12 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
         let factor = linalg::cholesky(&self.hessian, n, floor)?;
         let step = linalg::cholesky_solve(&factor, &self.normal.gradient);
-        let decrement = 0.5 * dot(&step, &self.normal.gradient);
+        let kept = kept(self.problem, &step);
+        let (decrement, step) = if kept == step {
+            (0.5 * dot(&step, &self.normal.gradient), step)
+        } else {
+            (quadratic(&self.hessian, &self.normal.gradient, &kept).abs(), kept)
+        };
         if norm(&step) < self.options.step || self.normal.mean_square() < self.problem.rounding() {
             return Some(Termination::StepVanished);
         }
@@ -165,6 +131,11 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             self.damping *= 10.0;
             return self.damping.is_finite();
         };
+        if trial.predicted <= 0.0 {
+            // What the retraction keeps of the step leads upwards; a shorter one is nearer to the gradient.
+            self.reject();
+            return norm(&trial.step) > ROUNDING_STEP && self.damping.is_finite();
+        }
         let state = self.problem.retract(&self.state, &trial.step);
         let normal = self.problem.normal(&state);
         let gain = (self.normal.cost - normal.cost) / trial.predicted;
@@ -189,6 +160,11 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         let n = self.problem.dim();
         let factor = linalg::cholesky(&self.hessian, n, damping)?;
         let velocity = linalg::cholesky_solve(&factor, &self.normal.gradient);
+        let kept = kept(self.problem, &velocity);
+        if kept != velocity {
+            let predicted = quadratic(&self.hessian, &self.normal.gradient, &kept);
+            return Some(Trial { step: velocity, predicted, shortened: false });
+        }
         let descent = dot(&velocity, &self.normal.gradient);
         let damped = damping * dot(&velocity, &velocity);
         // Along the parabola the model promises t gᵀv - t² vᵀHv / 2, and vᵀHv is gᵀv less what the damping takes.
@@ -234,10 +210,10 @@ struct Trial {
     shortened: bool,
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn norm(a: &[f64]) -> f64 {
+pub(super) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }

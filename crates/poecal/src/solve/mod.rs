@@ -1,11 +1,14 @@
 //! Nonlinear least squares on a manifold. It knows no robots: a problem gives normal information and applies steps.
 
+mod gauss_newton;
 mod levenberg_marquardt;
 mod normal;
+mod options;
 mod termination;
 
-pub use levenberg_marquardt::{Options, Summary, minimize};
+pub use levenberg_marquardt::minimize;
 pub use normal::Normal;
+pub use options::{Method, Options, Summary};
 pub use termination::Termination;
 
 /// A problem `min ½ Σ e(x)²` whose unknowns are scaled so that one unit of each is comparable (metres, and radians times a length).
@@ -22,8 +25,11 @@ pub trait LeastSquares {
     /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected.
     fn second_order(&self, state: &Self::State, step: &[f64]) -> Vec<f64>;
 
-    /// `-Σ e ∇²f` (upper triangle): what the Hessian has beside `JᵀJ`.
-    fn curvature(&self, state: &Self::State) -> Vec<f64>;
+    /// `-Σ e ∇²f` (upper triangle): what the Hessian has beside `JᵀJ`; `None` where it is not known.
+    fn curvature(&self, state: &Self::State) -> Option<Vec<f64>>;
+
+    /// Sets to zero what the retraction drops of a step, to first order: nothing, unless unknowns are constrained.
+    fn keep(&self, _step: &mut [f64]) {}
 
     /// Mean squared whitened residual that is nothing but rounding: below it there is nothing left to fit.
     fn rounding(&self) -> f64;

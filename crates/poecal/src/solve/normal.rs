@@ -55,9 +55,27 @@ impl Normal {
         self.residuals += other.residuals;
     }
 
+    /// How much less a step makes the cost, by the quadratic model: `gᵀδ - ½ δᵀ JᵀJ δ`.
+    #[must_use]
+    pub fn promise(&self, step: &[f64]) -> f64 {
+        quadratic(&self.gram, &self.gradient, step)
+    }
+
     /// `2 cost / residuals`: the mean squared whitened residual.
     #[must_use]
     pub fn mean_square(&self) -> f64 {
         2.0 * self.cost / self.residuals.max(1) as f64
     }
+}
+
+/// `gᵀδ - ½ δᵀHδ` with H given by its upper triangle.
+pub(super) fn quadratic(upper: &[f64], gradient: &[f64], step: &[f64]) -> f64 {
+    let n = gradient.len();
+    let mut sum = 0.0;
+    for (i, (&a, &g)) in step.iter().zip(gradient).enumerate() {
+        let row = &upper[i * n..(i + 1) * n];
+        let beyond: f64 = row.iter().zip(step).skip(i + 1).map(|(h, b)| h * b).sum();
+        sum += a * (g - 0.5 * row[i] * a - beyond);
+    }
+    sum
 }

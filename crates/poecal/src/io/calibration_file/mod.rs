@@ -37,10 +37,14 @@ impl CalibrationFile {
             inputs,
             accuracy: calibration.accuracy,
             solver: SolverEntry {
+                formulation: calibration.formulation,
+                pose_residual: calibration.pose_residual,
+                method: calibration.method,
                 iterations: calibration.solver.iterations,
                 converged: calibration.solver.termination.is_success(),
                 termination: calibration.solver.termination,
                 restarts: calibration.solver.restarts,
+                joint_offsets: OffsetEntry::of(calibration),
             },
             identifiability: IdentifiabilityEntry {
                 parameters: calibration.identifiability.parameters,
@@ -199,6 +203,19 @@ impl RobotEntry {
             base_from_tip_at_zero: (&robot.home).into(),
             nominal_base_from_tip_at_zero: (&nominal.home).into(),
         }
+    }
+}
+
+impl OffsetEntry {
+    /// The offsets that a formulation with offsets found.
+    fn of(calibration: &Calibration) -> Option<Vec<Self>> {
+        let offsets = calibration.solver.joint_offsets.as_ref()?;
+        let entry = |(joint, &offset): (&Joint, &f64)| OffsetEntry {
+            joint: joint.name.clone(),
+            offset_deg: (joint.kind == JointKind::Revolute).then(|| offset.to_degrees()),
+            offset_mm: (joint.kind == JointKind::Prismatic).then_some(offset * 1e3),
+        };
+        Some(calibration.nominal.joints.iter().zip(offsets).map(entry).collect())
     }
 }
 

@@ -6,7 +6,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::{Accuracy, NoiseSource};
-use crate::solve::Termination;
+use crate::measurement::PoseResidual;
+use crate::parameters::Formulation;
+use crate::solve::{Method, Termination};
 
 /// A finished calibration.
 ///
@@ -62,8 +64,17 @@ pub struct Inputs {
 }
 
 /// How the minimisation went.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolverEntry {
+    /// How the errors of the joints were written as unknowns.
+    #[serde(default)]
+    pub formulation: Formulation,
+    /// How the errors of measured frames were written.
+    #[serde(default)]
+    pub pose_residual: PoseResidual,
+    /// By which steps the fit went.
+    #[serde(default)]
+    pub method: Method,
     /// Iterations of the full fit.
     pub iterations: usize,
     /// Whether an optimum was reached.
@@ -72,6 +83,23 @@ pub struct SolverEntry {
     pub termination: Termination,
     /// Further starts that were tried because the first fit looked as if it had ended beside the optimum.
     pub restarts: usize,
+    /// What each joint's value was found to be more than its reading says, where the formulation has offsets. Data cannot tell them
+    /// from screws; in `joints` they stand moved into the screws, and the readings need no correction.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub joint_offsets: Option<Vec<OffsetEntry>>,
+}
+
+/// An offset of a joint, by its unit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OffsetEntry {
+    /// The joint.
+    pub joint: String,
+    /// Of a revolute joint, degrees.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub offset_deg: Option<f64>,
+    /// Of a prismatic joint, millimetres.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub offset_mm: Option<f64>,
 }
 
 /// What the measurements can tell.
