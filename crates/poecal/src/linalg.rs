@@ -1,5 +1,5 @@
 //! Dense linear algebra of the normal equations: accumulation, Cholesky, symmetric eigenvalues. The only file that names nalgebra's
-//! decompositions: of these only `symmetric_eigen` is used, since its SVD with vectors errs on repeated columns.
+//! decompositions: `symmetric_eigen` and singular values alone, since its SVD with vectors errs on repeated columns.
 
 use nalgebra::{DMatrix, Matrix4, Vector3, Vector4};
 
@@ -101,6 +101,16 @@ pub(crate) fn symmetric_eigen(upper: &[f64], n: usize) -> (Vec<f64>, DMatrix<f64
         vectors.set_column(column, &eigen.eigenvectors.column(k));
     }
     (values, vectors)
+}
+
+/// Singular values of a matrix of finite numbers, the largest first.
+pub(crate) fn singular_values(matrix: &DMatrix<f64>) -> Vec<f64> {
+    if matrix.is_empty() {
+        return Vec::new();
+    }
+    let mut values: Vec<f64> = matrix.singular_values().iter().copied().collect();
+    values.sort_by(|a, b| b.total_cmp(a));
+    values
 }
 
 /// The unit eigenvector of the largest eigenvalue of a symmetric 4×4 matrix.

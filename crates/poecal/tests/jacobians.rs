@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix6, Vector3};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
-use poecal::lie::{Pose, Screw, Twist, hat, rotation};
+use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{
     Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, SpatialPoseMeasurement,
 };
@@ -322,27 +322,6 @@ fn prefixes(robot: &Robot, values: &[f64]) -> Vec<Pose> {
     prefixes
 }
 
-/// lou2009 (8) with (18) at η = 0, its integrals in closed form, against theory.md §3 (12).
-#[test]
-fn telescoping_jacobian_is_that_of_the_paper() {
-    let robot = robot();
-    let mut worst: f64 = 0.0;
-    for values in CONFIGURATIONS {
-        let prefixes = prefixes(&robot, &values);
-        for (i, joint) in robot.joints.iter().enumerate() {
-            let xi = joint.screw.twist();
-            let turned = Twist::new(xi.v * values[i], xi.w * values[i]);
-            let q = prefixes[i].adjoint() * turned.left_jacobian() * values[i];
-            let literal = q * -xi.ad();
-            let telescoping = prefixes[i].adjoint() - prefixes[i + 1].adjoint();
-            worst = worst.max((literal - telescoping).norm() / prefixes[i].adjoint().norm());
-        }
-    }
-    println!("largest relative difference {worst:.1e}");
-    // Rounding of products of a few 6×6 matrices with elements of order one.
-    assert!(worst < 1e-12);
-}
-
 #[test]
 fn blocks_of_all_axes_and_of_the_home_pose_sum_to_a_motion_of_the_base() {
     let robot = robot();
@@ -372,34 +351,4 @@ fn joint_offsets_are_motions_of_the_later_axes() {
             assert!(error < 1e-14, "{error:e}");
         }
     }
-}
-
-/// theory.md §5 (21) and (22) are (12) in the axis' own frame, carried to the target by lou2009 (23).
-#[test]
-fn minimal_columns_are_the_telescoping_blocks_seen_at_the_target() {
-    let robot = robot();
-    let estimate = Estimate::new(&robot, vec![robot.home], device());
-    let mut worst: f64 = 0.0;
-    for values in CONFIGURATIONS {
-        let packed = Packed::new(&robot, &values, 4);
-        let mut chain = Chain::default();
-        chain.evaluate(&Linkage::new(&estimate), &packed, 0, 0);
-        let prefixes = prefixes(&robot, &values);
-        let mut to_target = Matrix6::identity();
-        to_target.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(&chain.target.translation));
-        for (i, joint) in robot.joints.iter().enumerate() {
-            let block = device().adjoint() * (prefixes[i].adjoint() - prefixes[i + 1].adjoint());
-            let in_axis = to_target * block * estimate.base_from_axis[i].adjoint();
-            let parameter = Parameter::ScrewAxis(ScrewAxis { joint: i, kind: joint.kind });
-            let unknowns = if joint.screw.is_prismatic() { vec![3, 4] } else { vec![0, 1, 3, 4] };
-            let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); unknowns.len()];
-            parameter.model().target_twists(&chain, 0, &mut twists);
-            for ((v, w), unknown) in twists.into_iter().zip(unknowns) {
-                let error = (Twist::new(v, w).to_vector() - in_axis.column(unknown)).norm();
-                worst = worst.max(error);
-            }
-        }
-    }
-    println!("largest difference {worst:.1e}");
-    assert!(worst < 1e-14);
 }

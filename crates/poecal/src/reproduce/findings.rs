@@ -53,6 +53,8 @@ pub struct Run {
     /// Largest difference of a screw's coordinate from the prescribed one (metres for v, 1 for ω); not a number of the
     /// prediction, and large where the formulation cannot tell screws from offsets.
     pub screw_error_max: f64,
+    /// The same with all offsets moved into the screws (lou2009 14 and 15), in the truth and in what was identified: what data can tell.
+    pub equivalent_screw_error_max: f64,
     /// Largest difference of an identified joint offset from the prescribed one, degrees; null without offsets in the formulation.
     pub offset_error_max_deg: Option<f64>,
     /// By iteration, the start first.
@@ -154,6 +156,8 @@ pub struct Basin {
     pub formulation: Formulation,
     /// What was seen.
     pub measurement: Seen,
+    /// `tool` or `spatial`, as in [`Efficiency`].
+    pub residual: String,
     /// `gauss-newton` or `levenberg-marquardt`.
     pub method: String,
     /// Angle by which each axis is off, degrees.

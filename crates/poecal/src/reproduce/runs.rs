@@ -1,0 +1,190 @@
+//! The paper's calibrations from the nominal screws, with every formulation, traced by iteration.
+
+use super::literal;
+use super::session::Session;
+use super::tables;
+use super::{Iteration, LENGTH_M, NOISE, Run, Seen};
+use crate::error::Result;
+use crate::estimate::{Estimate, Packed};
+use crate::lie::Screw;
+use crate::measurement::{Dataset, Noise, PoseResidual};
+use crate::parameters::Formulation;
+use crate::problem::Problem;
+use crate::robot::Robot;
+use crate::solve::{Method, Options, Termination, minimize};
+
+/// Measurements of each kind that a run fits.
+pub(super) const POSES: usize = 30;
+pub(super) const POINTS: usize = 100;
+
+/// Iterations after which a run has failed.
+const LIMIT: usize = 50;
+
+/// RMS held-out error below which a noise-free run has reached the truth, metres.
+const REACHED_M: f64 = 1e-9;
+
+/// Multiple of the position noise within which a noisy run must predict.
+const NOISY_FACTOR: f64 = 10.0;
+
+/// What a run is to do.
+#[derive(Clone, Copy)]
+pub(super) struct Plan {
+    pub(super) formulation: Formulation,
+    pub(super) seen: Seen,
+    pub(super) offsets_in_truth: bool,
+    pub(super) noise: bool,
+}
+
+/// A run, and where it ended.
+pub(super) struct Ended {
+    pub(super) plan: Plan,
+    pub(super) run: Run,
+    pub(super) estimate: Estimate,
+    /// Largest violation of the screw constraints by any iterate: `||ω| - 1|`, and `|v·ω|` in metres.
+    pub(super) violation: f64,
+}
+
+/// The truth of the experiment: the prescribed screws and point, with joint offsets or without.
+pub(super) fn truth(offsets: bool) -> Estimate {
+    let robot = tables::prescribed();
+    let mut truth = Estimate::new(&robot, vec![robot.home], crate::lie::Pose::identity());
+    if offsets {
+        truth.joint_offset = tables::PRESCRIBED_OFFSETS_DEG.map(f64::to_radians).to_vec();
+    }
+    truth
+}
+
+/// All runs: every formulation, poses and points, with and without offsets and noise.
+pub(super) fn runs(seed: u64) -> Result<Vec<Ended>> {
+    let mut runs = Vec::new();
+    for seen in [Seen::Poses, Seen::Points] {
+        for offsets_in_truth in [false, true] {
+            for noise in [false, true] {
+                for formulation in Formulation::ALL {
+                    runs.push(run(Plan { formulation, seen, offsets_in_truth, noise }, seed)?);
+                }
+            }
+        }
+    }
+    Ok(runs)
+}
+
+/// One run by plain Gauss-Newton, with the paper's residual of poses.
+fn run(plan: Plan, seed: u64) -> Result<Ended> {
+    let count = if plan.seen == Seen::Poses { POSES } else { POINTS };
+    let session = Session::new(&tables::nominal(), truth(plan.offsets_in_truth), plan.seen, count, seed);
+    let noise = plan.noise.then_some((NOISE, seed ^ 0x6e6f_6973));
+    let data = session.data(PoseResidual::Spatial, noise)?;
+    let sigma = if plan.noise { NOISE } else { Noise { position_m: 1.0, rotation_rad: 1.0 } };
+    let free = session.free(plan.formulation);
+    let problem = Problem::new(&data, &session.packed, session.rows(), free, sigma, LENGTH_M);
+    let once = Options { method: Method::GaussNewton, iterations: 1, ..Options::default() };
+
+    let mut estimate = session.start();
+    let mut trace = vec![iteration(&session, &data, &estimate)];
+    let mut violation = 0.0_f64;
+    let termination = loop {
+        let (next, _, summary) = minimize(&problem, estimate.clone(), &once);
+        if summary.iterations == 0 || trace.len() > LIMIT {
+            break summary.termination;
+        }
+        estimate = next;
+        trace.push(iteration(&session, &data, &estimate));
+        violation = violation.max(constraint_violation(&estimate.screws()));
+        if !matches!(summary.termination, Termination::IterationLimit) {
+            break summary.termination;
+        }
+    };
+    let held_out_rms_m = session.held_out_rms_m(&estimate);
+    let most = if plan.noise { NOISY_FACTOR * NOISE.position_m } else { REACHED_M };
+    let (parameters, rank) = rank(&session, &estimate, plan.formulation);
+    let run = Run {
+        formulation: plan.formulation,
+        measurement: plan.seen,
+        offsets_in_truth: plan.offsets_in_truth,
+        noise: plan.noise,
+        measurements: count,
+        iterations: trace.len() - 1,
+        converged: termination.is_success() && held_out_rms_m < most,
+        parameters,
+        rank,
+        unknowns: problem.layout().dim(),
+        held_out_rms_m,
+        screw_error_max: screw_error(&estimate.screws(), &session.truth.screws()),
+        equivalent_screw_error_max: screw_error(
+            &estimate.without_offsets().screws(),
+            &session.truth.without_offsets().screws(),
+        ),
+        offset_error_max_deg: plan
+            .formulation
+            .has_offsets()
+            .then(|| offset_error_deg(&estimate, &session.truth)),
+        trace,
+    };
+    Ok(Ended { plan, run, estimate, violation })
+}
+
+/// Residual and parameter error of an estimate.
+fn iteration(session: &Session, data: &Dataset, estimate: &Estimate) -> Iteration {
+    let errors = crate::calibration::row_errors(data, &session.packed, &session.rows(), estimate);
+    let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
+    Iteration {
+        residual_rms_m: (squares / errors.len() as f64).sqrt(),
+        screw_error_max: screw_error(&estimate.screws(), &session.truth.screws()),
+    }
+}
+
+/// Largest difference of a coordinate of some screws, metres for v and 1 for ω.
+pub(super) fn screw_error(found: &[Screw], truth: &[Screw]) -> f64 {
+    let pairs = found.iter().zip(truth);
+    pairs.map(|(a, b)| (a.twist().to_vector() - b.twist().to_vector()).amax()).fold(0.0, f64::max)
+}
+
+/// Largest difference of a joint offset, degrees, whole turns left out.
+fn offset_error_deg(found: &Estimate, truth: &Estimate) -> f64 {
+    let pairs = found.joint_offset.iter().zip(&truth.joint_offset);
+    pairs.map(|(a, b)| (a - b).sin().atan2((a - b).cos()).abs().to_degrees()).fold(0.0, f64::max)
+}
+
+fn constraint_violation(screws: &[Screw]) -> f64 {
+    let each = screws.iter().map(|screw| (screw.w().norm() - 1.0).abs().max(screw.v().dot(&screw.w()).abs()));
+    each.fold(0.0, f64::max)
+}
+
+/// Columns and rank of the paper's own matrix at an estimate, on the configurations of a session.
+fn rank(session: &Session, estimate: &Estimate, formulation: Formulation) -> (usize, usize) {
+    let matrix = matrix(session, estimate, formulation);
+    (matrix.ncols(), literal::singular_values(&matrix).1)
+}
+
+/// The paper's own matrix at an estimate.
+pub(super) fn matrix(
+    session: &Session,
+    estimate: &Estimate,
+    formulation: Formulation,
+) -> nalgebra::DMatrix<f64> {
+    let robot = as_robot(&session.nominal, estimate);
+    let values = configurations(&session.packed, estimate);
+    literal::stacked(&robot, &values, formulation, session.seen, LENGTH_M)
+}
+
+/// An estimate's screws and target as a robot; offsets belong to the joint values.
+pub(super) fn as_robot(nominal: &Robot, estimate: &Estimate) -> Robot {
+    let mut robot = nominal.with_screws(&estimate.screws());
+    robot.home = estimate.base_from_target[0];
+    robot
+}
+
+/// Joint values with the estimate's offsets.
+fn configurations(packed: &Packed, estimate: &Estimate) -> Vec<Vec<f64>> {
+    (0..packed.rows())
+        .map(|row| {
+            packed
+                .joint_values(row)
+                .iter()
+                .zip(&estimate.joint_offset)
+                .map(|(value, offset)| value + offset)
+                .collect()
+        })
+        .collect()
+}
