@@ -198,9 +198,10 @@ pub(crate) struct Calibrate {
     /// How errors of measured frames are written; the paper's is for comparison
     #[arg(long, value_enum, default_value = "tool", help_heading = "Comparison")]
     pub(crate) residual: ResidualWord,
-    /// By which steps to minimise; plain Gauss-Newton is for comparison, and may diverge
-    #[arg(long, value_enum, default_value = "levenberg-marquardt", help_heading = "Comparison")]
-    pub(crate) method: MethodWord,
+    /// By which steps to minimise; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else
+    /// levenberg-marquardt]
+    #[arg(long, value_enum, help_heading = "Comparison")]
+    pub(crate) method: Option<MethodWord>,
     /// Measurement file to judge by: all other rows are fitted
     #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]
     pub(crate) validate: Vec<PathBuf>,

@@ -110,7 +110,7 @@ fn settle_sets(arguments: &Calibrate, data: &mut Dataset, console: &Console) -> 
 }
 
 fn options(arguments: &Calibrate) -> CalibrationOptions {
-    let usual = CalibrationOptions::default();
+    let usual = CalibrationOptions::default().with_formulation(arguments.formulation.into());
     CalibrationOptions {
         frame: match arguments.frame {
             Frame::Unknown => DeviceFrameKnowledge::Unknown,
@@ -120,9 +120,11 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
         sigma_rotation_rad: arguments.sigma_rotation,
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
-        formulation: arguments.formulation.into(),
         pose_residual: arguments.residual.into(),
-        solver: solve::Options { method: arguments.method.into(), ..usual.solver },
+        solver: solve::Options {
+            method: arguments.method.map_or(usual.solver.method, Into::into),
+            ..usual.solver
+        },
         ..usual
     }
 }

@@ -79,6 +79,27 @@ impl Default for CalibrationOptions {
     }
 }
 
+impl CalibrationOptions {
+    /// The same options for a formulation, with the method that belongs to it: plain Gauss-Newton where screws are free numbers, since
+    /// steps that are judged by the cost after normalisation are cut short again and again (docs/theory.md §3).
+    ///
+    /// ```
+    /// use poecal::{calibration::CalibrationOptions, parameters::Formulation, solve::Method};
+    /// let options = CalibrationOptions::default().with_formulation(Formulation::Screw);
+    /// assert_eq!(options.solver.method, Method::GaussNewton);
+    /// ```
+    #[must_use]
+    pub fn with_formulation(mut self, formulation: Formulation) -> Self {
+        self.formulation = formulation;
+        self.solver.method = if formulation.has_free_screws() {
+            solve::Method::GaussNewton
+        } else {
+            solve::Method::LevenbergMarquardt
+        };
+        self
+    }
+}
+
 /// A target as calibrated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibratedTarget {
