@@ -86,7 +86,8 @@ fn offsets_become_screws_and_offsets_again() {
                 remainder(&found),
                 predicted.max(found.with_offsets.max_m),
             ];
-            println!("{} ±{angle_deg}°: {figures:.1?}, not told {:?}", robot.name, found.undetermined);
+            let words = figures.map(|figure| format!("{figure:.0e}")).join(" ");
+            println!("{} ±{angle_deg}°: {words}, not told {:?}", robot.name, found.undetermined);
             assert!(found.undetermined.is_empty(), "{}: {:?}", robot.name, found.undetermined);
             worst.iter_mut().zip(figures).for_each(|(worst, figure)| *worst = worst.max(figure));
         }
@@ -117,7 +118,8 @@ fn free_base_and_tip_are_found_too() {
             let ends = [&found.base_motion, &found.tip_motion];
             let predicted = difference(robot, &found.offsets, ends, &actual, &mut generator);
             let figures = [offset_error(&found, &offsets), remainder(&found), predicted];
-            println!("{} ±{angle_deg}°: {figures:.1?}, not told {:?}", robot.name, found.undetermined);
+            let words = figures.map(|figure| format!("{figure:.0e}")).join(" ");
+            println!("{} ±{angle_deg}°: {words}, not told {:?}", robot.name, found.undetermined);
             let last = robot.joints.len() - 1;
             assert!(found.undetermined.contains(&0) && found.undetermined.contains(&last));
             assert!(found.offsets[0].abs() < EXACT && found.offsets[last].abs() < EXACT);
@@ -163,7 +165,7 @@ fn what_cannot_be_told_is_named_and_as_small_as_possible() {
 }
 
 /// Screw errors leave offsets as uncertain as they are large; this many times their size is an outlier on well-built arms.
-const SCATTER: f64 = 4.0;
+const SCATTER: f64 = 3.0;
 
 #[test]
 fn screw_errors_remain_and_hardly_move_the_offsets() {
