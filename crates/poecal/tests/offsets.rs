@@ -148,6 +148,11 @@ fn what_cannot_be_told_is_named_and_as_small_as_possible() {
     let found = explain(&elbow(), &into_screws(&elbow(), &[0.1; 6]).unwrap(), &options).unwrap();
     assert_eq!(found.undetermined, [5]);
     assert!(found.home.is_none() && found.offsets[5].abs() < EXACT && found.with_offsets.max_m < EXACT);
+    // One joint and a free tip: nothing can be told.
+    let single = Robot::new("single", vec![Joint::revolute("a", arm)], Pose::identity()).unwrap();
+    let found = explain(&single, &into_screws(&single, &[0.5]).unwrap(), &options).unwrap();
+    assert_eq!((found.undetermined.as_slice(), found.offsets.as_slice()), (&[0][..], &[0.0][..]));
+    assert!(found.with_offsets.max_m < EXACT);
     // Nothing but parallel axes follows the third joint of a SCARA, which slides along them.
     let found = explain(&scara(), &into_screws(&scara(), &[0.1, 0.2, 0.03, 0.4]).unwrap(), &options).unwrap();
     assert_eq!(found.undetermined, [2, 3]);

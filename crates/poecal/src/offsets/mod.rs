@@ -14,7 +14,7 @@ use fit::{Comparison, State};
 use prediction::Predictions;
 
 /// The robot without offsets that is exactly `robot` with `offsets` added to its joint values (radians, metres; one a joint):
-/// `ξ'ᵢ = Ad(Gᵢ₋₁) ξᵢ`, `M' = Gₙ M` with `Gᵢ = exp(ξ₁δ₁) … exp(ξᵢδᵢ)`, so that `f'(θ) = f(θ + δ)` for every θ (theory.md §8 (39)).
+/// `ξ'ᵢ = Ad(Gᵢ₋₁) ξᵢ`, `M' = Gₙ M` with `Gᵢ = exp(ξ₁δ₁) … exp(ξᵢδᵢ)`, so that `f'(θ) = f(θ + δ)` for every θ (theory.md §8 (38a)).
 ///
 /// A joint's frame is fixed to the link that the joint moves and goes with `Gᵢ`, its own turn included. Limits stay: they bound what
 /// is read. The offset of a mimic joint is that of its own value.
@@ -175,7 +175,7 @@ pub struct Explanation {
 
 /// The offsets, and the motions of base and tip where these are free, with which `nominal` comes nearest to `actual`: least squares
 /// over tilts (counted with a third of the arm's length) and shifts of all screws, and over the home pose unless the tip is free
-/// (theory.md §8 (40)). Offsets may be of any size.
+/// (theory.md §8 (38b)). Offsets may be of any size.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if the robots do not have the same joints: number, names in order, kinds and readings.

@@ -76,7 +76,8 @@ impl Predictions {
     }
 }
 
-/// The pose with the least sum of squares of distances and of chords between rotations to all of them.
+/// The pose with the least sum of squares of distances and of chords between rotations to all of them (theory.md §8
+/// (38c)).
 fn mean(poses: impl Iterator<Item = Pose>) -> Pose {
     let (mut sum, mut products, mut count) = (Vector3::zeros(), Matrix4::zeros(), 0.0);
     for pose in poses {
