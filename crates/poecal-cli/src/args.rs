@@ -8,6 +8,7 @@ use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 use poecal::io::urdf::ChainSelection;
 use poecal::measurement::PoseResidual;
+use poecal::offsets;
 use poecal::parameters::Formulation;
 use poecal::solve::Method;
 
@@ -43,6 +44,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Write a model in another form
     Convert(Convert),
+    /// Explain how a robot differs from its model by joint offsets
+    Offsets(Offsets),
     /// Print the JSON Schema of calibration.json
     Schema,
 }
@@ -368,6 +371,50 @@ pub(crate) struct Convert {
     /// The form to write [default: as the extension of --out says]
     #[arg(long, value_enum)]
     pub(crate) to: Option<Form>,
+    /// Write the screws and home pose of the robot whose joint is off by so much, like joint2=0.5deg or slide=1.2mm (repeatable)
+    #[arg(long, value_name = "JOINT=ANGLE|LENGTH")]
+    pub(crate) offset: Vec<String>,
+    /// File to write, over an old one [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// Whether a frame is the same in both models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum End {
+    /// It is found with the offsets
+    Free,
+    /// It is the same in both
+    Kept,
+}
+
+impl From<End> for offsets::End {
+    fn from(end: End) -> Self {
+        match end {
+            End::Free => offsets::End::Free,
+            End::Kept => offsets::End::Kept,
+        }
+    }
+}
+
+/// Arguments of `poecal offsets`.
+#[derive(Args, Debug)]
+pub(crate) struct Offsets {
+    /// Robot model as delivered: URDF, TOML or calibration.json
+    pub(crate) nominal: PathBuf,
+    /// The robot that is there, with the same joints: URDF, TOML or calibration.json
+    pub(crate) actual: PathBuf,
+    #[command(flatten)]
+    pub(crate) chain: Chain,
+    /// The base frame [default: free for a calibration whose device stood anywhere, else kept]
+    #[arg(long, value_enum)]
+    pub(crate) base: Option<End>,
+    /// The tip frame [default: free for a calibration, else kept]
+    #[arg(long, value_enum)]
+    pub(crate) tip: Option<End>,
+    /// Print JSON instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
     /// File to write, over an old one [default: standard output]
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,

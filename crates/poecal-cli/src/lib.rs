@@ -50,6 +50,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Predict(options) => commands::predict(options, &console),
         Command::Check(options) => commands::check(options, &console),
         Command::Convert(options) => commands::convert(options, &console),
+        Command::Offsets(options) => commands::offsets(options, &console),
         Command::Schema => commands::schema(&console),
     };
     match result {

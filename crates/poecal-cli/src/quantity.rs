@@ -10,31 +10,50 @@ use poecal::{Error, ErrorKind, Result};
 /// # Errors
 /// One sentence that says what was found and expected.
 pub(crate) fn parse(text: &str, quantity: Quantity) -> Result<f64> {
-    let example = match quantity {
+    let (value, symbol) = value_and_symbol(text, example(quantity))?;
+    Ok(Unit::parse(symbol, quantity)?.to_si(value))
+}
+
+/// As [`parse`], for a number of either sign.
+///
+/// # Errors
+/// As [`parse`].
+pub(crate) fn signed(text: &str, quantity: Quantity) -> Result<f64> {
+    let (value, symbol) = signed_and_symbol(text, example(quantity))?;
+    Ok(Unit::parse(symbol, quantity)?.to_si(value))
+}
+
+fn example(quantity: Quantity) -> &'static str {
+    match quantity {
         Quantity::Length => "0.05mm",
         Quantity::Angle => "0.01deg",
         Quantity::Number => "3",
-    };
-    let (value, symbol) = value_and_symbol(text, example)?;
-    Ok(Unit::parse(symbol, quantity)?.to_si(value))
+    }
 }
 
 /// The number, which is not negative, and the symbol of its unit.
 fn value_and_symbol<'a>(text: &'a str, example: &str) -> Result<(f64, &'a str)> {
+    match signed_and_symbol(text, example)? {
+        (value, _) if value < 0.0 => Err(bad(text, "", " not below 0,", example)),
+        found => Ok(found),
+    }
+}
+
+/// The number and the symbol of its unit.
+fn signed_and_symbol<'a>(text: &'a str, example: &str) -> Result<(f64, &'a str)> {
     let split = text.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).unwrap_or(text.len());
     let (number, symbol) = text.split_at(split);
-    let bad = |what: &str, expected: &str| {
-        let message =
-            format!("found `{text}`{what}, expected a number{expected} with a unit, like {example}");
-        Error::new(ErrorKind::Option, message)
-    };
     match number.trim().parse::<f64>() {
-        Ok(value) if value < 0.0 => Err(bad("", " not below 0,")),
-        Ok(value) if !value.is_finite() => Err(bad("", "")),
-        Ok(_) if symbol.is_empty() => Err(bad(" without a unit", "")),
+        Ok(value) if !value.is_finite() => Err(bad(text, "", "", example)),
+        Ok(_) if symbol.is_empty() => Err(bad(text, " without a unit", "", example)),
         Ok(value) => Ok((value, symbol.trim())),
-        Err(_) => Err(bad("", "")),
+        Err(_) => Err(bad(text, "", "", example)),
     }
+}
+
+fn bad(text: &str, what: &str, expected: &str, example: &str) -> Error {
+    let message = format!("found `{text}`{what}, expected a number{expected} with a unit, like {example}");
+    Error::new(ErrorKind::Option, message)
 }
 
 /// A length and an angle as the user wrote them: `1deg,2mm` in either order; what is left out is zero.

@@ -46,6 +46,7 @@
 //! | [`robot`] | joints, home pose, forward kinematics |
 //! | [`measurement`] | what a device sees: points, poses; residuals |
 //! | [`simulate`] | robots and measurements with known errors |
+//! | [`offsets`] | joint offsets as screws, and back |
 //! | [`estimate`] | the state that a fit moves, and what a row sees of it |
 //! | [`parameters`] | what may be wrong: screws, targets, device frame |
 //! | [`solve`] | Levenberg-Marquardt; knows no robots |
@@ -68,6 +69,7 @@ pub mod io;
 pub mod lie;
 mod linalg;
 pub mod measurement;
+pub mod offsets;
 pub mod parameters;
 pub mod problem;
 pub mod report;

@@ -1,22 +1,60 @@
-//! `poecal convert`: a model in another form.
+//! `poecal convert`: a model in another form, or without the offsets of its joints.
 
 use std::process::ExitCode;
 
+use poecal::io::measurements::Quantity;
 use poecal::io::model::{self, Model, ModelFormat};
-use poecal::{Error, ErrorKind, Result};
+use poecal::offsets::into_screws;
+use poecal::robot::{JointKind, Robot};
+use poecal::{Error, ErrorKind, Result, nearest};
 
 use crate::args::Convert;
 use crate::console::Console;
+use crate::quantity::signed;
 
 pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<ExitCode> {
     let form = form(arguments)?;
-    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    let mut model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    if !arguments.offset.is_empty() {
+        model.robot = into_screws(&model.robot, &offsets(&arguments.offset, &model.robot)?)?;
+    }
     let converted = model::convert(&model, form)?;
     for note in &converted.notes {
         console.warning(note);
     }
     console.deliver(&converted.text, arguments.out.as_deref())?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The offsets that `--offset JOINT=VALUE` state, in the order of the joints.
+fn offsets(stated: &[String], robot: &Robot) -> Result<Vec<f64>> {
+    let mut offsets = vec![None; robot.joints.len()];
+    for text in stated {
+        let bad = |message: String| Error::new(ErrorKind::Option, format!("--offset: {message}"));
+        let (name, value) = text.rsplit_once('=').ok_or_else(|| {
+            bad(format!("found `{text}`, expected a joint and its offset, like joint2=0.5deg or slide=1.2mm"))
+        })?;
+        let mut joints = robot.joints.iter().zip(&mut offsets);
+        let Some((joint, offset)) = joints.find(|(joint, _)| joint.name == name) else {
+            return Err(bad(unknown_joint(name, robot)));
+        };
+        let quantity = match joint.kind {
+            JointKind::Revolute => Quantity::Angle,
+            JointKind::Prismatic => Quantity::Length,
+        };
+        let value = signed(value, quantity).map_err(|error| bad(format!("joint `{name}`: {error}")))?;
+        if offset.replace(value).is_some() {
+            return Err(bad(format!("found joint `{name}` twice, expected one offset a joint")));
+        }
+    }
+    Ok(offsets.into_iter().map(|offset| offset.unwrap_or(0.0)).collect())
+}
+
+fn unknown_joint(name: &str, robot: &Robot) -> String {
+    let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+    let hint = nearest(name, names.iter().copied())
+        .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    format!("found no moving joint `{name}`, expected one of {}{hint}", names.join(", "))
 }
 
 fn form(arguments: &Convert) -> Result<ModelFormat> {

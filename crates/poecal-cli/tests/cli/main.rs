@@ -5,5 +5,6 @@
 mod bad_input;
 mod commands;
 mod folder;
+mod offsets;
 mod session;
 mod targets_and_validation;

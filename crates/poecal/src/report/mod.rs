@@ -2,10 +2,12 @@
 
 mod check;
 mod judgement;
+mod offsets;
 mod table;
 
 pub use check::{Check, SetCounts};
 pub use judgement::judgement;
+pub use offsets::Offsets;
 pub use table::{accuracy_table, summary};
 
 use serde::Serialize;

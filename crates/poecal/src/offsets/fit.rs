@@ -1,0 +1,335 @@
+//! Offsets and base motion by least squares over the screws and the home pose.
+
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+use nalgebra::{DMatrix, Matrix3, Matrix3x6, Vector3, Vector6};
+
+use super::{End, Options};
+use crate::lie::{Pose, Screw, Twist, hat};
+use crate::linalg;
+use crate::robot::{Joint, JointKind, Robot};
+
+/// Share of the largest eigenvalue of the normal equations below which a direction is open: models are written with rounded angles
+/// (1.5708), which must not decide an offset.
+const OPEN: f64 = 1e-8;
+/// Least part of an open direction that a joint must have to be named, and that is more than rounding.
+const NAMED: f64 = 1e-3;
+
+/// Offsets (radians, metres) and the motion of the nominal robot in the base frame.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub(super) offsets: Vec<f64>,
+    pub(super) base: Pose,
+}
+
+/// Two robots with the same joints.
+pub(super) struct Comparison<'a> {
+    pub(super) nominal: &'a Robot,
+    pub(super) actual: &'a Robot,
+    pub(super) options: &'a Options,
+    /// What a radian counts, metres.
+    pub(super) length_m: f64,
+    offsets_free: bool,
+}
+
+/// Normal equations at a state, by their eigenvalues; unknowns are counted in metres.
+struct Normal {
+    cost: f64,
+    gradient: Vec<f64>,
+    values: Vec<f64>,
+    vectors: DMatrix<f64>,
+}
+
+/// A residual and its derivative by a spatial motion of everything from a joint on.
+type Block = (Vector3<f64>, Matrix3x6<f64>);
+
+impl Normal {
+    fn largest(&self) -> f64 {
+        self.values.last().copied().unwrap_or(0.0)
+    }
+
+    /// How many directions are open; the first eigenvectors.
+    fn open(&self) -> usize {
+        self.values.iter().take_while(|&&value| value <= OPEN * self.largest()).count()
+    }
+
+    /// The damped step, none in open directions.
+    fn step(&self, damping: f64) -> Vec<f64> {
+        let n = self.gradient.len();
+        let mut step = vec![0.0; n];
+        for (&value, vector) in self.values.iter().zip(self.vectors.column_iter()).skip(self.open()) {
+            let along: f64 = vector.iter().zip(&self.gradient).map(|(a, b)| a * b).sum();
+            step.iter_mut().zip(vector.iter()).for_each(|(s, a)| *s -= a * along / (value + damping));
+        }
+        step
+    }
+}
+
+impl<'a> Comparison<'a> {
+    pub(super) fn new(nominal: &'a Robot, actual: &'a Robot, options: &'a Options) -> Self {
+        Comparison { nominal, actual, options, length_m: nominal.arm_m() / 3.0, offsets_free: true }
+    }
+
+    /// The best state that is reached from no offsets and from those in closed form; angles are in (-π, π].
+    pub(super) fn best(&self) -> State {
+        let mut starts = vec![self.sequential(End::Kept), self.unmoved()];
+        if self.options.base == End::Free {
+            starts.push(self.sequential(End::Free));
+        }
+        self.best_of(starts)
+    }
+
+    /// The best state in which all offsets are zero.
+    pub(super) fn best_without_offsets(&self) -> State {
+        let base_only = Comparison { offsets_free: false, ..*self };
+        let by_first_screws = State { base: base_only.sequential(self.options.base).base, ..self.unmoved() };
+        base_only.best_of(vec![self.unmoved(), by_first_screws])
+    }
+
+    fn unmoved(&self) -> State {
+        State { offsets: vec![0.0; self.nominal.joints.len()], base: Pose::identity() }
+    }
+
+    fn best_of(&self, starts: Vec<State>) -> State {
+        let ends = starts.into_iter().map(|start| self.refine(start));
+        let best = ends.min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
+        best.unwrap_or_else(|| self.unmoved())
+    }
+
+    /// The joints that have a part in open directions.
+    pub(super) fn undetermined(&self, state: &State) -> Vec<usize> {
+        let normal = self.normal(state);
+        let open = normal.open();
+        let part =
+            |joint: usize| normal.vectors.row(joint).iter().take(open).map(|part| part * part).sum::<f64>();
+        (0..state.offsets.len()).filter(|&joint| part(joint).sqrt() > NAMED).collect()
+    }
+
+    /// Screws and home pose of the nominal robot with offsets and base motion.
+    pub(super) fn moved(&self, state: &State) -> (Vec<Screw>, Pose) {
+        let mut motion = state.base;
+        let mut screws = Vec::with_capacity(self.nominal.joints.len());
+        for (joint, &offset) in self.nominal.joints.iter().zip(&state.offsets) {
+            let screw = joint.screw.transformed(&motion);
+            motion = (screw.exp(offset) * motion).orthonormalized();
+            screws.push(screw);
+        }
+        (screws, motion * self.nominal.home)
+    }
+
+    /// Descends, makes open offsets as small as they can be, and descends again until nothing moves.
+    fn refine(&self, start: State) -> State {
+        let mut state = start;
+        if self.dim() == 0 {
+            return state;
+        }
+        for _ in 0..10 {
+            state = self.descend(state);
+            let step = self.open_step(&state);
+            if norm(&step) < 1e-14 {
+                break;
+            }
+            state = self.retract(&state, &step);
+        }
+        state
+    }
+
+    /// Levenberg-Marquardt, and undamped steps at its end, where the cost no longer tells one state from another.
+    fn descend(&self, start: State) -> State {
+        let mut state = start;
+        let mut normal = self.normal(&state);
+        let mut damping = 1e-3 * normal.largest();
+        for _ in 0..200 {
+            let candidate = self.retract(&state, &normal.step(damping));
+            if self.cost(&candidate) < normal.cost {
+                state = candidate;
+                normal = self.normal(&state);
+                damping *= 0.1;
+            } else {
+                damping = (10.0 * damping).max(1e-6 * normal.largest());
+            }
+            if damping > 1e3 * normal.largest() {
+                break;
+            }
+        }
+        let mut last = f64::INFINITY;
+        for _ in 0..20 {
+            let step = normal.step(0.0);
+            let candidate = self.retract(&state, &step);
+            let next = self.normal(&candidate);
+            let rounding = 1e-30 * self.length_m * self.length_m;
+            if norm(&step) > 0.5 * last || next.cost > normal.cost * (1.0 + 1e-9) + rounding {
+                break;
+            }
+            last = norm(&step);
+            (state, normal) = (candidate, next);
+        }
+        state
+    }
+
+    /// The step in open directions that makes the offsets smallest; the base is free to follow.
+    fn open_step(&self, state: &State) -> Vec<f64> {
+        let n = self.dim();
+        let mut step = vec![0.0; n];
+        let normal = self.normal(state);
+        let open = normal.open();
+        if !self.offsets_free || open == 0 {
+            return step;
+        }
+        let count = state.offsets.len();
+        let scaled: Vec<f64> =
+            self.scales().iter().zip(&state.offsets).map(|(scale, offset)| scale * offset).collect();
+        let parts: Vec<Vec<f64>> =
+            (0..open).map(|k| normal.vectors.column(k).iter().take(count).copied().collect()).collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let gram: Vec<f64> = (0..open * open).map(|k| dot(&parts[k / open], &parts[k % open])).collect();
+        let wanted: Vec<f64> = parts.iter().map(|part| -dot(part, &scaled)).collect();
+        // The damping settles motions of the base alone.
+        if let Some(factor) = linalg::cholesky(&gram, open, 1e-9) {
+            let coefficients = linalg::cholesky_solve(&factor, &wanted);
+            for (&coefficient, vector) in coefficients.iter().zip(normal.vectors.column_iter()) {
+                step.iter_mut().zip(vector.iter()).for_each(|(s, a)| *s += coefficient * a);
+            }
+        }
+        step
+    }
+
+    /// Number of unknowns: offsets, then the base motion, if they are free.
+    fn dim(&self) -> usize {
+        self.scales().len()
+    }
+
+    /// Metres that a unit of each unknown counts.
+    fn scales(&self) -> Vec<f64> {
+        let mut scales = Vec::new();
+        if self.offsets_free {
+            scales.extend(self.nominal.joints.iter().map(|joint| match joint.kind {
+                JointKind::Revolute => self.length_m,
+                JointKind::Prismatic => 1.0,
+            }));
+        }
+        if self.options.base == End::Free {
+            scales.extend([1.0, 1.0, 1.0, self.length_m, self.length_m, self.length_m]);
+        }
+        scales
+    }
+
+    fn retract(&self, state: &State, step: &[f64]) -> State {
+        let mut next = state.clone();
+        let units: Vec<f64> = step.iter().zip(self.scales()).map(|(step, scale)| step / scale).collect();
+        let mut base = units.as_slice();
+        if self.offsets_free {
+            let (offsets, rest) = units.split_at(state.offsets.len());
+            base = rest;
+            for ((offset, step), joint) in next.offsets.iter_mut().zip(offsets).zip(&self.nominal.joints) {
+                *offset += step;
+                if joint.kind == JointKind::Revolute {
+                    *offset = wrapped(*offset);
+                }
+            }
+        }
+        if base.len() == 6 {
+            let twist = Twist::from_vector(&Vector6::from_column_slice(base));
+            next.base = (Pose::exp(&twist) * state.base).orthonormalized();
+        }
+        next
+    }
+
+    /// The residuals of the joints in order, then of the home pose, each with the number of joints that move it.
+    fn blocks(&self, state: &State) -> (Vec<Screw>, Vec<(usize, Block)>) {
+        let (screws, home) = self.moved(state);
+        let mut blocks = Vec::new();
+        for (index, (screw, joint)) in screws.iter().zip(&self.actual.joints).enumerate() {
+            blocks.extend(screw_blocks(screw, joint, self.length_m).map(|block| (index, block)));
+        }
+        if self.options.tip == End::Kept {
+            let goal = &self.actual.home;
+            blocks.push((screws.len(), (home.translation - goal.translation, of_point(&home.translation))));
+            // Chords between the axes of the two frames: for small angles the square of the turn, and smooth for large ones.
+            let weight = self.length_m / SQRT_2;
+            for (axis, goal) in home.rotation.column_iter().zip(goal.rotation.column_iter()) {
+                blocks.push((
+                    screws.len(),
+                    ((axis - goal) * weight, of_turn(&-hat(&axis.into_owned()), weight)),
+                ));
+            }
+        }
+        (screws, blocks)
+    }
+
+    fn cost(&self, state: &State) -> f64 {
+        self.blocks(state).1.iter().map(|(_, (residual, _))| residual.norm_squared()).sum()
+    }
+
+    fn normal(&self, state: &State) -> Normal {
+        let (screws, blocks) = self.blocks(state);
+        let scales = self.scales();
+        let n = scales.len();
+        let (mut rows, mut residuals) = (Vec::new(), Vec::new());
+        for (movers, (residual, derivative)) in &blocks {
+            // An offset moves what comes after by the joint's own screw where it now stands.
+            let mut columns: Vec<Vector3<f64>> = Vec::with_capacity(n);
+            if self.offsets_free {
+                columns.extend(screws.iter().enumerate().map(|(index, screw)| {
+                    if index < *movers { derivative * screw.twist().to_vector() } else { Vector3::zeros() }
+                }));
+            }
+            if self.options.base == End::Free {
+                columns.extend(derivative.column_iter().map(|column| column.into_owned()));
+            }
+            for (coordinate, value) in residual.iter().enumerate() {
+                rows.extend(columns.iter().zip(&scales).map(|(column, scale)| column[coordinate] / scale));
+                residuals.push(*value);
+            }
+        }
+        let (mut gram, mut gradient) = (vec![0.0; n * n], vec![0.0; n]);
+        linalg::add_gram(&mut gram, n, &rows, 0);
+        linalg::add_gradient(&mut gradient, &rows, &residuals);
+        let (values, vectors) = linalg::symmetric_eigen(&gram, n);
+        let cost = residuals.iter().map(|residual| residual * residual).sum();
+        Normal { cost, gradient, values, vectors }
+    }
+}
+
+/// Tilt (as a chord at `length_m`) and shift of a screw against the actual joint's, as seen from that one's origin.
+fn screw_blocks(screw: &Screw, actual: &Joint, length_m: f64) -> impl Iterator<Item = Block> + use<> {
+    let direction = screw.direction();
+    let tilt = ((direction - actual.screw.direction()) * length_m, of_turn(&-hat(&direction), length_m));
+    let shift = (!screw.is_prismatic()).then(|| {
+        let origin = actual.screw.nearest_point(&actual.frame.translation);
+        let at = screw.nearest_point(&origin);
+        let off = at - origin;
+        let across = Matrix3::identity() - direction * direction.transpose();
+        // The nearest point slides along an axis that tilts.
+        let sliding = of_turn(&(direction * off.cross(&direction).transpose()), 1.0);
+        (off, across * of_point(&at) + sliding)
+    });
+    [Some(tilt), shift].into_iter().flatten()
+}
+
+/// `[I, -p̂]`: a point's motion under a spatial twist.
+fn of_point(point: &Vector3<f64>) -> Matrix3x6<f64> {
+    let mut derivative = of_turn(&-hat(point), 1.0);
+    derivative.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
+    derivative
+}
+
+/// What depends on the turn of a spatial twist only.
+fn of_turn(by_turn: &Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
+    let mut derivative = Matrix3x6::zeros();
+    derivative.fixed_view_mut::<3, 3>(0, 3).copy_from(&(by_turn * scale));
+    derivative
+}
+
+fn norm(step: &[f64]) -> f64 {
+    step.iter().map(|part| part * part).sum::<f64>().sqrt()
+}
+
+/// The same angle in (-π, π]; one that is there stays as it is, to the last digit.
+fn wrapped(angle: f64) -> f64 {
+    if angle > -PI && angle <= PI {
+        return angle;
+    }
+    let turned = angle.rem_euclid(TAU);
+    if turned > PI { turned - TAU } else { turned }
+}

@@ -1,0 +1,265 @@
+//! Joint offsets and the screws that are equivalent to them: a robot with offsets written without, and the offsets that explain best
+//! how one robot differs from another (theory.md §8, lou2009 equations 11 to 15).
+
+mod fit;
+mod prediction;
+mod start;
+
+pub use prediction::TipError;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::{Pose, rotation};
+use crate::robot::{JointKind, Robot};
+use fit::{Comparison, State};
+use prediction::Predictions;
+
+/// The robot without offsets that is exactly `robot` with `offsets` added to its joint values (radians, metres; one a joint):
+/// `ξ'ᵢ = Ad(Gᵢ₋₁) ξᵢ`, `M' = Gₙ M` with `Gᵢ = exp(ξ₁δ₁) … exp(ξᵢδᵢ)`, so that `f'(θ) = f(θ + δ)` for every θ (theory.md §8 (38a)).
+///
+/// A joint's frame is fixed to the link that the joint moves and goes with `Gᵢ`, its own turn included. Limits stay: they bound what
+/// is read. The offset of a mimic joint is that of its own value.
+///
+/// ```
+/// use poecal::offsets::into_screws;
+/// use poecal::simulate::elbow;
+/// let robot = elbow();
+/// let equivalent = into_screws(&robot, &[0.0, 0.5, 0.0, 0.0, -0.2, 0.0])?;
+/// let difference = equivalent.forward_kinematics(&[0.1; 6]).translation
+///     - robot.forward_kinematics(&[0.1, 0.6, 0.1, 0.1, -0.1, 0.1]).translation;
+/// assert!(difference.norm() < 1e-15);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+///
+/// # Errors
+/// [`ErrorKind::Option`] if there is not one finite offset for each joint.
+pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
+    if offsets.len() != robot.joints.len() {
+        let message = format!(
+            "found {} offsets for robot `{}`, expected one for each of its {} joints",
+            offsets.len(),
+            robot.name,
+            robot.joints.len()
+        );
+        return Err(Error::new(ErrorKind::Option, message));
+    }
+    let mut equivalent = robot.clone();
+    let mut motion = Pose::identity();
+    for (joint, &offset) in equivalent.joints.iter_mut().zip(offsets) {
+        if !offset.is_finite() {
+            let message =
+                format!("found the offset {offset} of joint `{}`, expected a finite one", joint.name);
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+        let screw = joint.screw;
+        joint.screw = screw.transformed(&motion);
+        motion = (motion * screw.exp(offset)).orthonormalized();
+        joint.frame = (motion * joint.frame).orthonormalized();
+    }
+    equivalent.home = (motion * robot.home).orthonormalized();
+    Ok(equivalent)
+}
+
+/// Whether one end of the robot may move to explain a difference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Both robots have the same frame there.
+    Kept,
+    /// The frame is found with the offsets.
+    Free,
+}
+
+impl End {
+    /// The word used in files and options: `kept` or `free`.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            End::Kept => "kept",
+            End::Free => "free",
+        }
+    }
+}
+
+/// How [`explain`] compares two robots.
+///
+/// ```
+/// use poecal::offsets::{End, Options};
+/// let options = Options { tip: End::Free, ..Options::default() };
+/// assert_eq!((options.base, options.configurations), (End::Kept, 1000));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// The base frame: free where the actual robot's is a choice.
+    pub base: End,
+    /// The tip frame: free where the tool was changed or found anew.
+    pub tip: End,
+    /// Number of random configurations on which predictions are compared.
+    pub configurations: usize,
+    /// Seed of these.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { base: End::Kept, tip: End::Kept, configurations: 1000, seed: 1 }
+    }
+}
+
+/// What offsets leave of a joint's difference.
+///
+/// ```
+/// use poecal::offsets::{Options, explain};
+/// let robot = poecal::simulate::scara();
+/// let explanation = explain(&robot, &robot, &Options::default())?;
+/// // A sliding joint has a direction and no place.
+/// assert!(explanation.joints[2].shift_m.is_none() && explanation.joints[2].tilt_rad < 1e-15);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointRemainder {
+    /// Angle between the directions, radians.
+    pub tilt_rad: f64,
+    /// Distance of the axis from the actual joint's origin, metres; none for a sliding joint.
+    pub shift_m: Option<f64>,
+}
+
+/// What offsets leave of the home pose's difference.
+///
+/// ```
+/// use poecal::offsets::{Options, explain};
+/// let robot = poecal::simulate::scara();
+/// let home = explain(&robot, &robot, &Options::default())?.home.ok_or("the tip is kept")?;
+/// assert!(home.position_m < 1e-15 && home.rotation_rad < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HomeRemainder {
+    /// Distance of the tips at zero, metres.
+    pub position_m: f64,
+    /// Angle between the tip frames at zero, radians.
+    pub rotation_rad: f64,
+}
+
+/// The offsets with which one robot comes nearest to another, and what they leave.
+///
+/// ```
+/// use poecal::offsets::{Options, explain, into_screws};
+/// use poecal::simulate::elbow;
+/// let offsets = [0.1, -0.2, 3.0, 0.0, 0.4, -2.5];
+/// let explanation = explain(&elbow(), &into_screws(&elbow(), &offsets)?, &Options::default())?;
+/// assert!(explanation.offsets.iter().zip(&offsets).all(|(found, put_in)| (found - put_in).abs() < 1e-12));
+/// assert!(explanation.without_offsets.rms_m > 0.1 && explanation.with_offsets.rms_m < 1e-12);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Explanation {
+    /// How the robots were compared.
+    pub options: Options,
+    /// What is to be added to each joint's value, radians in (-π, π] or metres.
+    pub offsets: Vec<f64>,
+    /// Joints (by index) whose offsets the comparison cannot tell, alone or from each other; theirs are the smallest that explain as
+    /// much.
+    pub undetermined: Vec<usize>,
+    /// Motion of the nominal robot in the base frame; none where the base is kept.
+    pub base_motion: Pose,
+    /// `tip_from_tip` from the nominal tip to the actual one; none where the tip is kept.
+    pub tip_motion: Pose,
+    /// What is left at each joint.
+    pub joints: Vec<JointRemainder>,
+    /// What is left of the home pose; none where the tip is free.
+    pub home: Option<HomeRemainder>,
+    /// Error of the nominal robot's tip against the actual one's, with the best base and tip where these are free.
+    pub without_offsets: TipError,
+    /// The same with the offsets put in.
+    pub with_offsets: TipError,
+}
+
+/// The offsets, and the motions of base and tip where these are free, with which `nominal` comes nearest to `actual`: least squares
+/// over tilts (counted with a third of the arm's length) and shifts of all screws, and over the home pose unless the tip is free
+/// (theory.md §8 (38b)). Offsets may be of any size.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if the robots do not have the same joints: number, names in order, kinds and readings.
+pub fn explain(nominal: &Robot, actual: &Robot, options: &Options) -> Result<Explanation> {
+    check_same_joints(nominal, actual)?;
+    let comparison = Comparison::new(nominal, actual, options);
+    let found = comparison.best();
+    let unmoved = comparison.best_without_offsets();
+    let predictions = Predictions::new(nominal, actual, options);
+    let (_, without_offsets) = predictions.compare(nominal, &unmoved.base);
+    let (tip_motion, with_offsets) = predictions.compare(&into_screws(nominal, &found.offsets)?, &found.base);
+    let (joints, home) = remainder(&comparison, &found, options.tip);
+    Ok(Explanation {
+        options: *options,
+        undetermined: comparison.undetermined(&found),
+        offsets: found.offsets,
+        base_motion: found.base,
+        tip_motion,
+        joints,
+        home,
+        without_offsets,
+        with_offsets,
+    })
+}
+
+fn remainder(
+    comparison: &Comparison<'_>,
+    found: &State,
+    tip: End,
+) -> (Vec<JointRemainder>, Option<HomeRemainder>) {
+    let (screws, home) = comparison.moved(found);
+    let actual = comparison.actual;
+    let joints = screws.iter().zip(&actual.joints).map(|(screw, joint)| {
+        let (direction, goal) = (screw.direction(), joint.screw.direction());
+        let tilt_rad = direction.cross(&goal).norm().atan2(direction.dot(&goal));
+        let origin = joint.screw.nearest_point(&joint.frame.translation);
+        let shift_m = match joint.kind {
+            JointKind::Revolute => Some((screw.nearest_point(&origin) - origin).norm()),
+            JointKind::Prismatic => None,
+        };
+        JointRemainder { tilt_rad, shift_m }
+    });
+    let home = match tip {
+        End::Kept => Some(HomeRemainder {
+            position_m: (home.translation - actual.home.translation).norm(),
+            rotation_rad: rotation::log(&(home.rotation * actual.home.rotation.transpose())).norm(),
+        }),
+        End::Free => None,
+    };
+    (joints.collect(), home)
+}
+
+fn check_same_joints(nominal: &Robot, actual: &Robot) -> Result<()> {
+    let differ = |message: String| Err(Error::new(ErrorKind::Option, message));
+    if nominal.joints.len() != actual.joints.len() {
+        return differ(format!(
+            "found an actual robot of {} joints, expected the {} of the nominal one: compare two models of one robot",
+            actual.joints.len(),
+            nominal.joints.len()
+        ));
+    }
+    for (index, (expected, found)) in nominal.joints.iter().zip(&actual.joints).enumerate() {
+        if expected.name != found.name {
+            return differ(format!(
+                "found joint `{}` at place {} of the actual robot, expected `{}` as in the nominal one: compare two models of one robot",
+                found.name,
+                index + 1,
+                expected.name
+            ));
+        }
+        if expected.kind != found.kind {
+            return differ(format!(
+                "found the {} joint `{}` in the actual robot, expected a {} one as in the nominal robot",
+                found.kind.word(),
+                found.name,
+                expected.kind.word()
+            ));
+        }
+        if expected.reading != found.reading {
+            return differ(format!(
+                "found joint `{}` with another relation to its reading in the actual robot, expected the same mimic relation as in the nominal one",
+                found.name
+            ));
+        }
+    }
+    Ok(())
+}

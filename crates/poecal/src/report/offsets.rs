@@ -1,0 +1,234 @@
+//! The offsets that explain how one model differs from another.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::table::{line, number, robot_words};
+use crate::io::model::Model;
+use crate::lie::{Pose, rotation};
+use crate::offsets::{End, Explanation, TipError};
+use crate::robot::JointKind;
+
+/// An explanation by offsets, for a person to look over or a machine to read.
+///
+/// ```
+/// use poecal::io::model::{Model, ModelSource};
+/// use poecal::offsets::{Options, explain, into_screws};
+/// use poecal::report::Offsets;
+/// let robot = poecal::simulate::scara();
+/// let actual = into_screws(&robot, &[0.0, 0.5f64.to_radians(), 0.0012, 0.0])?;
+/// let explanation = explain(&robot, &actual, &Options::default())?;
+/// let model = |robot, path: &str| Model { robot, source: ModelSource::Toml, path: path.into() };
+/// let why = ["as asked", "as asked"];
+/// let offsets = Offsets::new(&model(robot, "scara.toml"), &model(actual, "actual.toml"), &explanation, why);
+/// assert!(offsets.text().contains("joint2                   0.5000 deg"), "{}", offsets.text());
+/// assert!(offsets.text().contains("joint3                   1.2000 mm"));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Offsets {
+    nominal: String,
+    actual: String,
+    base: EndEntry,
+    tip: EndEntry,
+    joints: Vec<JointEntry>,
+    /// Null where the tip is free.
+    home: Option<HomeEntry>,
+    /// Names of the joints whose offsets cannot be told.
+    undetermined: Vec<String>,
+    predictions: Predictions,
+    #[serde(skip)]
+    robot_words: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct EndEntry {
+    frame: &'static str,
+    reason: String,
+    motion: Motion,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Motion {
+    position_m: [f64; 3],
+    quaternion_xyzw: [f64; 4],
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct JointEntry {
+    name: String,
+    kind: &'static str,
+    /// Null for a sliding joint.
+    offset_deg: Option<f64>,
+    /// Null for a turning joint.
+    offset_mm: Option<f64>,
+    determined: bool,
+    tilt_deg: f64,
+    /// Null for a sliding joint.
+    shift_mm: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct HomeEntry {
+    position_mm: f64,
+    rotation_deg: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Predictions {
+    configurations: usize,
+    without_offsets: Errors,
+    with_offsets: Errors,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Errors {
+    position_rms_mm: f64,
+    position_max_mm: f64,
+    rotation_rms_deg: f64,
+    rotation_max_deg: f64,
+}
+
+impl Offsets {
+    /// An explanation of how `actual` differs from `nominal`. `reasons` say why the base and the tip are kept or free.
+    #[must_use]
+    pub fn new(nominal: &Model, actual: &Model, explanation: &Explanation, reasons: [&str; 2]) -> Self {
+        let joints = nominal.robot.joints.iter().enumerate();
+        let joints: Vec<JointEntry> = joints
+            .zip(explanation.offsets.iter().zip(&explanation.joints))
+            .map(|((index, joint), (&offset, left))| JointEntry {
+                name: joint.name.clone(),
+                kind: joint.kind.word(),
+                offset_deg: (joint.kind == JointKind::Revolute).then(|| offset.to_degrees()),
+                offset_mm: (joint.kind == JointKind::Prismatic).then_some(offset * 1e3),
+                determined: !explanation.undetermined.contains(&index),
+                tilt_deg: left.tilt_rad.to_degrees(),
+                shift_mm: left.shift_m.map(|shift| shift * 1e3),
+            })
+            .collect();
+        let [base, tip] = reasons;
+        Offsets {
+            nominal: nominal.path.display().to_string(),
+            actual: actual.path.display().to_string(),
+            base: EndEntry::new(explanation.options.base, base, &explanation.base_motion),
+            tip: EndEntry::new(explanation.options.tip, tip, &explanation.tip_motion),
+            home: explanation.home.map(|home| HomeEntry {
+                position_mm: home.position_m * 1e3,
+                rotation_deg: home.rotation_rad.to_degrees(),
+            }),
+            undetermined: joints
+                .iter()
+                .filter(|joint| !joint.determined)
+                .map(|joint| joint.name.clone())
+                .collect(),
+            joints,
+            predictions: Predictions {
+                configurations: explanation.options.configurations,
+                without_offsets: Errors::new(&explanation.without_offsets),
+                with_offsets: Errors::new(&explanation.with_offsets),
+            },
+            robot_words: robot_words(&nominal.robot),
+        }
+    }
+
+    /// As text of lines up to 80 characters (but for names that are longer).
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        line(&mut out, "robot", &self.robot_words);
+        line(&mut out, "nominal", &self.nominal);
+        line(&mut out, "actual", &self.actual);
+        line(&mut out, "base", &self.base.words());
+        line(&mut out, "tip", &self.tip.words());
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "\n{:<21}{:>14}{:>22}{:>15}", "add to joint", "offset", "left: tilt", "shift");
+        for joint in &self.joints {
+            let _ = writeln!(out, "{}", joint.row());
+        }
+        if let Some(home) = self.home {
+            let (turn, shift) = (fixed(home.rotation_deg), fixed(home.position_mm));
+            let _ = writeln!(out, "  {:<37}{turn:>14} deg{shift:>11} mm", "tip at zero");
+        }
+        out.push('\n');
+        line(&mut out, "predictions", &self.predictions.words());
+        if !self.undetermined.is_empty() {
+            let words = format!(
+                "* {}: this comparison cannot tell these offsets, alone or from each other; shown are the smallest that \
+                 explain as much",
+                self.undetermined.join(", ")
+            );
+            line(&mut out, "open", &words);
+        }
+        out
+    }
+}
+
+impl EndEntry {
+    fn new(end: End, reason: &str, motion: &Pose) -> Self {
+        let (position_m, quaternion_xyzw) = (motion.translation.into(), motion.quaternion_xyzw());
+        EndEntry {
+            frame: end.word(),
+            reason: reason.to_owned(),
+            motion: Motion { position_m, quaternion_xyzw },
+        }
+    }
+
+    fn words(&self) -> String {
+        if self.frame == End::Kept.word() {
+            return format!("{}: {}", self.frame, self.reason);
+        }
+        let motion = Pose::from_position_quaternion(self.motion.position_m, self.motion.quaternion_xyzw);
+        let (shift_mm, turn_rad) = (motion.translation.norm() * 1e3, rotation::log(&motion.rotation).norm());
+        let (shift, turn) = (fixed(shift_mm), fixed(turn_rad.to_degrees()));
+        format!("{}, shifted by {shift} mm and turned by {turn} deg: {}", self.frame, self.reason)
+    }
+}
+
+impl JointEntry {
+    fn row(&self) -> String {
+        let (offset, unit) = match (self.offset_deg, self.offset_mm) {
+            (Some(angle), _) => (fixed(angle), "deg"),
+            (None, length) => (fixed(length.unwrap_or(0.0)), "mm"),
+        };
+        let mark = if self.determined { "" } else { "*" };
+        let shift = self.shift_mm.map_or_else(String::new, |shift| format!("{:>11} mm", fixed(shift)));
+        let tilt = fixed(self.tilt_deg);
+        format!("  {:<18}{offset:>13} {unit:<3} {mark:<1}{tilt:>14} deg{shift}", self.name)
+    }
+}
+
+impl Errors {
+    fn new(error: &TipError) -> Self {
+        Errors {
+            position_rms_mm: error.rms_m * 1e3,
+            position_max_mm: error.max_m * 1e3,
+            rotation_rms_deg: error.rms_rad.to_degrees(),
+            rotation_max_deg: error.max_rad.to_degrees(),
+        }
+    }
+}
+
+impl Predictions {
+    fn words(&self) -> String {
+        let (before, after) = (&self.without_offsets, &self.with_offsets);
+        format!(
+            "on {} random configurations, offsets alone take the tip's error from {} mm to {} mm (RMS; largest {} to {} mm), \
+             and from {} deg to {} deg (largest {} to {} deg)",
+            self.configurations,
+            number(before.position_rms_mm),
+            number(after.position_rms_mm),
+            number(before.position_max_mm),
+            number(after.position_max_mm),
+            number(before.rotation_rms_deg),
+            number(after.rotation_rms_deg),
+            number(before.rotation_max_deg),
+            number(after.rotation_max_deg)
+        )
+    }
+}
+
+/// Four decimals, without a sign at zero.
+fn fixed(value: f64) -> String {
+    format!("{:.4}", (value * 1e4).round() / 1e4 + 0.0)
+}
