@@ -19,10 +19,10 @@ pub trait LeastSquares {
     /// Residuals and their derivatives, as normal information.
     fn normal(&self, state: &Self::State) -> Normal;
 
-    /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected.
+    /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected (theory.md §6 (31)).
     fn second_order(&self, state: &Self::State, step: &[f64]) -> Vec<f64>;
 
-    /// `-Σ e ∇²f` (upper triangle): what the Hessian has beside `JᵀJ`.
+    /// `-Σ e ∇²f` (upper triangle): what the Hessian has beside `JᵀJ` (theory.md §6 (31a)).
     fn curvature(&self, state: &Self::State) -> Vec<f64>;
 
     /// Mean squared whitened residual that is nothing but rounding: below it there is nothing left to fit.
