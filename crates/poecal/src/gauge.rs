@@ -1,5 +1,5 @@
 //! One way to write a robot that many numbers describe equally well: the base frame of the nominal model is kept and the screws
-//! deviate from nominal as little as the data allow. Predictions do not change (docs/theory.md §8).
+//! deviate from nominal as little as the data allow. Predictions do not change (theory.md §8 (37) and (38)).
 
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
@@ -16,7 +16,7 @@ const TARGET_WEIGHT: f64 = 1e-3;
 const NULL: f64 = 1e-13;
 
 /// The base motion that brings an estimate's screws nearest to the nominal robot's, rotations counted with `length_m`; apply it
-/// with [`Estimate::rebased`]. `nominal_targets` settle what the screws leave open.
+/// with [`Estimate::rebased`]. `nominal_targets` settle what the screws leave open: theory.md §8 (38).
 #[must_use]
 pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose], length_m: f64) -> Pose {
     let mut motion = Pose::identity();

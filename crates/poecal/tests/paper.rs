@@ -100,7 +100,7 @@ fn closed_form_is_the_printed_integral() {
     assert!(worst < RELATIVE);
 }
 
-/// The adjoint formulation's matrix by theory.md (12), carried to a nominal error by `J_l(η)`.
+/// The adjoint formulation's matrix by theory.md §3 (12) and (12a), at errors that are not zero by (10b).
 fn telescoping(nominal: &Robot, errors: &AdjointErrors, values: &[f64], seen: Seen) -> DMatrix<f64> {
     let robot = errors.apply(nominal);
     let prefixes = prefixes(&robot, values);
@@ -108,9 +108,9 @@ fn telescoping(nominal: &Robot, errors: &AdjointErrors, values: &[f64], seen: Se
     let mut blocks: Vec<Matrix6<f64>> = (errors.eta.iter().zip(prefixes.windows(2)))
         .map(|(eta, pair)| (pair[0].adjoint() - pair[1].adjoint()) * eta.left_jacobian())
         .collect();
+    // As many columns of the tool's own as rows.
     let rows = if seen == Seen::Poses { 6 } else { 3 };
-    let own = if seen == Seen::Poses { 6 } else { 3 };
-    let mut all = DMatrix::zeros(rows, 6 * blocks.len() + own);
+    let mut all = DMatrix::zeros(rows, 6 * blocks.len() + rows);
     if seen == Seen::Poses {
         blocks.push(last.adjoint() * errors.upsilon.left_jacobian());
     } else {
@@ -296,7 +296,7 @@ fn device() -> Pose {
     Pose::from_xyz_rpy([0.3, -0.2, 0.1], [-0.5, 0.9, 2.0])
 }
 
-/// theory.md (21), (22) and (23) are the paper's blocks in the axis' own frame, carried to the target by lou2009 (23).
+/// theory.md §5 (21), (22) and (23) are the paper's blocks in the axis' own frame, carried to the target by lou2009 (23).
 #[test]
 fn columns_of_the_solver_are_the_blocks_of_the_paper_seen_at_the_target() {
     let mut worst: f64 = 0.0;

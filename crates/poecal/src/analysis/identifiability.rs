@@ -1,4 +1,4 @@
-//! Rank judged against the noise, and the directions that the data leave open, by joint name (docs/theory.md §7).
+//! Rank judged against the noise, and the directions that the data leave open, by joint name (theory.md §7 (36)).
 
 use nalgebra::DMatrix;
 
@@ -43,7 +43,8 @@ pub struct Identifiability {
     pub unidentifiable: Vec<Direction>,
 }
 
-/// Judges the normal information at an estimate; `length_m` is how many metres a radian counts in it.
+/// Judges the normal information at an estimate; `length_m` is how many metres a radian counts in it
+/// (theory.md §7 (36)).
 #[must_use]
 pub fn identifiability(
     robot: &Robot,

@@ -55,7 +55,7 @@ pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
 
 /// Position and rotation noise as the residuals of an estimate show them, each component's variance separately, with the unknowns
 /// taken off in proportion. What a row states is left out; a part that was hardly measured keeps `before`. `None` if the residuals are
-/// only rounding.
+/// only rounding. theory.md §6 (34).
 #[must_use]
 pub fn estimate_noise(
     data: &Dataset,

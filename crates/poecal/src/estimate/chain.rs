@@ -6,7 +6,8 @@ use super::{Estimate, Packed};
 use crate::lie::Pose;
 use crate::robot::JointKind;
 
-/// An estimate as frames relative to the frame before, so that a row is a product of one fixed pose and one elementary motion a joint.
+/// An estimate as frames relative to the frame before, so that a row is a product of one fixed pose and one elementary motion a joint:
+/// the prediction `X T_n M Z` of theory.md §4 (13).
 ///
 /// ```
 /// # use nalgebra::Vector3;
@@ -65,7 +66,8 @@ impl Linkage {
     }
 }
 
-/// One joint in the device's axes, before its own motion: the axis frame's directions and origin, and the change that the motion makes.
+/// One joint in the device's axes, before its own motion: the axis frame's directions and origin, and the change that the motion makes
+/// (theory.md §5 (19)).
 #[derive(Clone, Copy, Debug)]
 pub struct JointView {
     /// Revolute or prismatic.

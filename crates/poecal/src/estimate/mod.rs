@@ -1,7 +1,7 @@
 //! What the estimation moves: axis frames, targets and the device's frame; and what a row of data sees of them.
 //!
 //! The state is the full set of screws, each carried by a frame on its axis: `A_i = base_from_axis` at zero configuration, z along
-//! the screw. A local step `A_i ← A_i exp(ε)` is the adjoint update `ξ_i ← Ad_exp(η) ξ_i` with `η = Ad_A_i ε` (docs/theory.md §5).
+//! the screw. A local step `A_i ← A_i exp(ε)` is the adjoint update `ξ_i ← Ad_exp(η) ξ_i` with `η = Ad_A_i ε` (theory.md §5 (18)).
 
 mod chain;
 mod packing;
@@ -86,7 +86,7 @@ impl Estimate {
     }
 
     /// The same physical robot seen from a base frame moved by `G`: screws and targets move by `Ad_G`, the device's frame by
-    /// `G⁻¹`, predictions in the device's frame do not change (docs/theory.md §8).
+    /// `G⁻¹`, predictions in the device's frame do not change (theory.md §8 (37)).
     #[must_use]
     pub fn rebased(&self, motion: &Pose) -> Self {
         Estimate {

@@ -5,7 +5,8 @@ use std::ops::Mul;
 
 use super::{Twist, hat, rotation, series};
 
-/// A rigid motion, named `a_from_b` where it stands: it takes coordinates in `b` to coordinates in `a`, `x_a = R x_b + p`.
+/// A rigid motion, named `a_from_b` where it stands: it takes coordinates in `b` to coordinates in `a`, `x_a = R x_b + p`
+/// (theory.md §1 (2) and (2a)).
 ///
 /// | operation | symbol | code |
 /// |---|---|---|
@@ -81,7 +82,7 @@ impl Pose {
         self.rotation * point + self.translation
     }
 
-    /// `Ad_T = [[R, p̂R], [0, R]]` acting on `[v; ω]`.
+    /// `Ad_T = [[R, p̂R], [0, R]]` acting on `[v; ω]`: theory.md §1 (2).
     #[must_use]
     pub fn adjoint(&self) -> Matrix6<f64> {
         let mut adjoint = Matrix6::zeros();
@@ -98,7 +99,7 @@ impl Pose {
         Twist::new(self.rotation * twist.v + self.translation.cross(&w), w)
     }
 
-    /// `exp(ξ̂) = (exp(ω̂), V v)` with `V = I + cosc ω̂ + sincc ω̂²`.
+    /// `exp(ξ̂) = (exp(ω̂), V v)` with `V = I + cosc ω̂ + sincc ω̂²`: theory.md §1 (2a).
     #[must_use]
     pub fn exp(twist: &Twist) -> Self {
         let angle_squared = twist.w.norm_squared();
@@ -110,7 +111,7 @@ impl Pose {
         Pose::new(Matrix3::identity() + hat_w * sinc + hat_w2 * cosc, v * twist.v)
     }
 
-    /// The twist ξ with `exp(ξ̂) = T` and `|ω| ≤ π`.
+    /// The twist ξ with `exp(ξ̂) = T` and `|ω| ≤ π`: theory.md §1 (2a).
     #[must_use]
     pub fn log(&self) -> Twist {
         let w = rotation::log(&self.rotation);

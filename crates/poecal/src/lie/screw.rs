@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Pose, Twist, rotation};
 
 /// A joint screw in a fixed frame at the zero configuration: revolute `(v; ω)` with `|ω| = 1`, `v·ω = 0`, `v = -ω × q` for any
-/// point `q` of the axis; or prismatic `(v; 0)` with `|v| = 1` (murray1994, lou2009 equation 1).
+/// point `q` of the axis; or prismatic `(v; 0)` with `|v| = 1` (murray1994; theory.md §2 (5)).
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -34,7 +34,7 @@ impl Screw {
         Screw { v: direction.normalize(), w: Vector3::zeros() }
     }
 
-    /// The nearest screw to a twist, as rounded tables give it: `ω/|ω|` and `(v - ω(ω·v))/|ω|` if `ω ≠ 0`, else `v/|v|`.
+    /// The screw that a twist is made by normalising, theory.md §5 (22c), as rounded tables need it: `ω/|ω|` and `(v - ω(ω·v))/|ω|` if `ω ≠ 0`, else `v/|v|`.
     /// `None` if the twist is zero or not finite.
     #[must_use]
     pub fn project(twist: &Twist) -> Option<Self> {
@@ -90,7 +90,7 @@ impl Screw {
         q + self.w * self.w.dot(&(point - q))
     }
 
-    /// `exp(ξ̂ θ)`, θ in radians (revolute) or metres (prismatic).
+    /// `exp(ξ̂ θ)`, lou2009 (1) and theory.md §1 (2a), θ in radians (revolute) or metres (prismatic).
     #[must_use]
     pub fn exp(&self, theta: f64) -> Pose {
         if self.is_prismatic() {
@@ -103,7 +103,7 @@ impl Screw {
         Pose::new(Matrix3::identity() + turn, -(turn * self.w.cross(&self.v)))
     }
 
-    /// The screw in another frame, `Ad_T ξ`.
+    /// The screw in another frame, or moved as a body: `Ad_T ξ`, theory.md §3 (10).
     #[must_use]
     pub fn transformed(&self, pose: &Pose) -> Self {
         if self.is_prismatic() {

@@ -6,10 +6,11 @@ use super::{hat, series};
 
 /// An infinitesimal motion of a target about its own origin, in the device's axes: `v` moves the origin (metres), `w` turns the
 /// target (radians). With `p` the target's place it is `(v_s + ω_s × p; ω_s)` of the spatial twist `(v_s; ω_s)`: the factor
-/// `[I -p̂]` of equation (23) of lou2009 is already applied.
+/// `[I -p̂]` of lou2009 (23) is already applied (theory.md §4 (14)).
 pub type TargetTwist = (Vector3<f64>, Vector3<f64>);
 
-/// A twist `ξ = (v; ω)`: linear part `v` (metres), angular part `ω` (radians), in the frame that the name or the text states.
+/// A twist `ξ = (v; ω)`: linear part `v` (metres), angular part `ω` (radians), in the frame that the name or the text states
+/// (theory.md §1 (1)).
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -55,7 +56,7 @@ impl Twist {
         )
     }
 
-    /// `ad_ξ = [[ω̂, v̂], [0, ω̂]]` acting on `[v; ω]`.
+    /// `ad_ξ = [[ω̂, v̂], [0, ω̂]]` acting on `[v; ω]`: theory.md §1 (2).
     #[must_use]
     pub fn ad(&self) -> Matrix6<f64> {
         let mut ad = Matrix6::zeros();
@@ -65,13 +66,13 @@ impl Twist {
         ad
     }
 
-    /// The Lie bracket `[self, other] = ad_self other`.
+    /// The Lie bracket `[self, other] = ad_self other`: theory.md §1 (2).
     #[must_use]
     pub fn bracket(&self, other: &Twist) -> Twist {
         Twist::new(self.w.cross(&other.v) + self.v.cross(&other.w), self.w.cross(&other.w))
     }
 
-    /// The left Jacobian `J_l(ξ) = ∫₀¹ Ad(exp(ξ s)) ds`, the integral of equations (5) and (18) of lou2009 in closed form:
+    /// The left Jacobian `J_l(ξ) = ∫₀¹ Ad(exp(ξ s)) ds`, the integral of lou2009 (5) and (18) in closed form, theory.md §1 (3) and (4):
     /// `I + a ad + b ad² + c ad³ + d ad⁴` with coefficients of the angle alone (park1994).
     #[must_use]
     pub fn left_jacobian(&self) -> Matrix6<f64> {

@@ -1,11 +1,11 @@
-//! Position of a point: equations (19) to (26) of lou2009.
+//! Position of a point: lou2009 (19) to (26).
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Noise, Residual};
 use crate::lie::{Pose, TargetTwist};
 
-/// Measured position of a target point, `e = y - p`, `S = [I 0]` in target-centred form (docs/theory.md, section 4).
+/// Measured position of a target point, `e = y - p`, `S = [I 0]` in target-centred form (theory.md §4 (15)).
 ///
 /// ```
 /// use nalgebra::Vector3;

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Noise, Residual};
 use crate::lie::{Pose, TargetTwist, hat, rotation, series};
 
-/// Measured frame, `e = [y - p; log(Y Rᵀ)]` at the target and in the device's axes (docs/theory.md, section 4).
+/// Measured frame, `e = [y - p; log(Y Rᵀ)]` at the target and in the device's axes (theory.md §4 (16)).
 ///
 /// The rotation rows of the sensitivity are `J_r(r)⁻¹`, exact also for large residuals `r = log(Y Rᵀ)`.
 ///

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::{Pose, TargetTwist};
 
-/// Standard deviations by which a residual is whitened.
+/// Standard deviations by which a residual is whitened: theory.md §4 (17).
 ///
 /// ```
 /// let noise = poecal::measurement::Noise { position_m: 5e-5, rotation_rad: 1e-4 };
@@ -18,7 +18,8 @@ pub struct Noise {
     pub rotation_rad: f64,
 }
 
-/// What a measurement type provides. `e = measured ⊖ predicted`, and the *prediction* moves by `S · twist` under a target twist.
+/// What a measurement type provides. `e = measured ⊖ predicted`, and the *prediction* moves by `S · twist` under a target twist
+/// (theory.md §4 (14) to (17)).
 pub trait Residual {
     /// Number of residual rows.
     fn dim(&self) -> usize;
@@ -37,7 +38,8 @@ pub trait Residual {
     );
 
     /// The whitened residual as force and torque on the target: `f` and `τ` such that `f·v + τ·ω` is the descent of `½ |e|²` along a
-    /// target twist `(v; ω)`, to first order in the residual, and its second derivative is that of the target's place and turn.
+    /// target twist `(v; ω)`, to first order in the residual, and its second derivative is that of the target's place and turn
+    /// (theory.md §6 (31a)).
     /// `None` where that does not hold: the solver then goes without the full Hessian.
     fn wrench(&self, predicted: &Pose, noise: &Noise) -> Option<(Vector3<f64>, Vector3<f64>)>;
 

@@ -29,7 +29,8 @@ pub struct Column {
     pub shifts_only: bool,
 }
 
-/// Force `f` at a target's origin and torque `τ`, device axes: the whitened residual pulled back through the measurement.
+/// Force `f` at a target's origin and torque `τ`, device axes: the whitened residual pulled back through the measurement
+/// (theory.md §6 (31a)).
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -50,11 +51,11 @@ pub trait Columns {
     fn columns(&self) -> &'static [Column];
 
     /// Writes, for one row, the target's motion per unit of each unknown: shift of the target's origin and turn, both in the
-    /// device's axes. `out` has one place an unknown and is not cleared.
+    /// device's axes (theory.md §4 (14)). `out` has one place an unknown and is not cleared.
     fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]);
 
     /// Writes the second derivative of the target's motion by each pair of these unknowns, contracted with a wrench on the target:
-    /// `out[a * dim + b] = f · ∂²p/∂a∂b + τ · ∂²r/∂a∂b` (docs/theory.md §6). Pairs with unknowns of other parameters follow from
+    /// `out[a * dim + b] = f · ∂²p/∂a∂b + τ · ∂²r/∂a∂b` (theory.md §6 (31b)). Pairs with unknowns of other parameters follow from
     /// the twists alone. `out` is all zero before.
     fn curvature(&self, _chain: &Chain, _wrench: &Wrench, _out: &mut [f64]) {}
 

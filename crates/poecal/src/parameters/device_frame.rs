@@ -7,7 +7,7 @@ use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
 
 /// The device's frame, stepped about the point `about` of the device's frame (the middle of the data, so that a turn and a shift
-/// hardly compete): columns `(e_k; 0)` and `(e_k × (p - about); e_k)`.
+/// hardly compete): columns `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)).
 ///
 /// ```
 /// use poecal::parameters::{Columns, DeviceFrame};

@@ -8,11 +8,12 @@ use crate::lie::{Pose, TargetTwist, Twist};
 use crate::robot::JointKind;
 
 /// The screw of joint `joint`, moved by the adjoint of a local step `ε` in its axis frame: `A ← A exp(ε)`, which is
-/// `ξ ← Ad_exp(η) ξ` with `η = Ad_A ε` (lou2009 equations 16 to 18 without the kernel of η).
+/// `ξ ← Ad_exp(η) ξ` with `η = Ad_A ε` (theory.md §5 (18); lou2009 (16) to (18) without the kernel of η).
 ///
 /// Revolute, `ε = (tx, ty, 0; rx, ry, 0)`, 4 unknowns: with `Δx = (1 - cos θ) x - sin θ y`, `Δy = sin θ x + (1 - cos θ) y` and
-/// `d` from the axis frame's origin to the target, the columns are `(Δx; 0), (Δy; 0), (Δx × d; Δx), (Δy × d; Δy)`.
-/// Prismatic, `ε = (0; rx, ry, 0)`, 2 unknowns: `(-θ y; 0), (θ x; 0)`.
+/// `d` from the axis frame's origin to the target, the columns are `(Δx; 0), (Δy; 0), (Δx × d; Δx), (Δy × d; Δy)`:
+/// theory.md §5 (20) and (21).
+/// Prismatic, `ε = (0; rx, ry, 0)`, 2 unknowns: `(-θ y; 0), (θ x; 0)`, theory.md §5 (22).
 ///
 /// ```
 /// use poecal::parameters::{Columns, ScrewAxis};

@@ -6,7 +6,8 @@ use super::columns::{Column, Columns, Unit};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
 
-/// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`.
+/// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`
+/// (theory.md §5 (24)).
 ///
 /// ```
 /// use poecal::parameters::{Columns, TargetFrame};

@@ -6,7 +6,7 @@ use super::columns::{Column, Columns, Unit};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
 
-/// The point `P_c0` of lou2009 equations (19) to (26), stepped in the target's own axes: columns `(R_target e_k; 0)`.
+/// The point `P_c0` of lou2009 (19) to (26), stepped in the target's own axes: columns `(R_target e_k; 0)` (theory.md §5 (23)).
 ///
 /// ```
 /// use poecal::parameters::{Columns, TargetPlace};

@@ -97,7 +97,7 @@ impl Layout {
     }
 
     /// Adds `-wrench · ∂²(target's motion)` of every pair of unknowns to the upper triangle of a row-major matrix. With `a` before `b`
-    /// in the chain the target's second derivative is `ω_a × v_b`, and half `ω_a × ω_b` for its turn (docs/theory.md §6).
+    /// in the chain the target's second derivative is `ω_a × v_b`, and half `ω_a × ω_b` for its turn (theory.md §6 (31a)).
     pub(crate) fn add_curvature(&self, chain: &Chain, target: usize, wrench: &Wrench, out: &mut [f64]) {
         let n = self.dim();
         let mut add = |a: usize, b: usize, value: f64| out[a.min(b) * n + a.max(b)] -= value;

@@ -19,7 +19,8 @@ const GROUP: usize = 64;
 /// Rows whose Jacobian is held at a time.
 const BLOCK: usize = 16;
 
-/// A calibration problem: which rows of which data, what is free, and the noise by which residuals are whitened.
+/// A calibration problem: which rows of which data, what is free, and the noise by which residuals are whitened
+/// (theory.md §6 (27) and (28)).
 ///
 /// ```
 /// # use nalgebra::Vector3;

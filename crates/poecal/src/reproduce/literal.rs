@@ -1,5 +1,5 @@
 //! The Jacobians of lou2009 as printed, with the errata of docs/theory.md §10 applied and no shortcut taken: every exponential, left
-//! Jacobian and bracket stands where the paper has it. The solver uses the telescoping form, theory.md (12), instead; this module
+//! Jacobian and bracket stands where the paper has it. The solver uses the telescoping form, theory.md §3 (12), instead; this module
 //! checks it, and tells the ranks of the paper's own matrices.
 
 use nalgebra::{DMatrix, Matrix3x6, Matrix6, Vector3, Vector6};
@@ -10,7 +10,7 @@ use crate::linalg;
 use crate::parameters::Formulation;
 use crate::robot::Robot;
 
-/// Adjoint errors of a robot: `ξ_i = Ad_exp(η_i) ξ_i^n` and `M = exp(Υ) M^n` (lou2009 16 to 18; theory.md (10)).
+/// Adjoint errors of a robot: `ξ_i = Ad_exp(η_i) ξ_i^n` and `M = exp(Υ) M^n` (lou2009 (16) to (18); theory.md §3 (10)).
 ///
 /// ```
 /// use poecal::reproduce::{literal::AdjointErrors, tables};
@@ -46,7 +46,7 @@ impl AdjointErrors {
     }
 }
 
-/// The parts of the paper's matrix `A` at one configuration, in the base frame.
+/// The parts of the paper's matrix `A` at one configuration, in the base frame (theory.md §3 (8)).
 ///
 /// ```
 /// use poecal::reproduce::{literal::Literal, tables};
@@ -84,7 +84,8 @@ impl Literal {
     }
 }
 
-/// `dξ/dη` of lou2009 (18) for a nominal screw at error `η`: `-ad(Ad_exp(η) ξ^n) ∫ Ad_exp(η s) ds`.
+/// `dξ/dη` of lou2009 (18) for a nominal screw at error `η`: `-ad(Ad_exp(η) ξ^n) ∫ Ad_exp(η s) ds`
+/// (theory.md §3 (10a)).
 ///
 /// ```
 /// use poecal::{lie::Twist, reproduce::{literal::screw_by_adjoint_error, tables}};
@@ -97,7 +98,7 @@ pub fn screw_by_adjoint_error(nominal: &Screw, eta: &Twist) -> Matrix6<f64> {
     -nominal.transformed(&Pose::exp(eta)).twist().ad() * eta.left_jacobian()
 }
 
-/// `[I  -P̂]` of lou2009 (23): how a twist of the base frame moves the point `P` (metres).
+/// `[I  -P̂]` of lou2009 (23): how a twist of the base frame moves the point `P` (metres; theory.md §3 (12a)).
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -112,7 +113,8 @@ pub fn point_rows(point: &Vector3<f64>) -> Matrix3x6<f64> {
     rows
 }
 
-/// The paper's matrix for one configuration of joint values (radians, metres), in the base frame and right-trivialised. Columns in
+/// The paper's matrix for one configuration of joint values (radians, metres), in the base frame and right-trivialised (theory.md §3 (8), (10b) and (12a)).
+/// Columns in
 /// the order of lou2009 (7): joint offsets (if any), joints from base to tip, then `Υ` or the point `P_c0`, which is the origin of
 /// the home pose.
 ///
@@ -254,6 +256,7 @@ fn column_scales(robot: &Robot, formulation: Formulation, seen: Seen, length_m: 
 pub const RANK_SHARE: f64 = 1e-9;
 
 /// Singular values of a matrix of finite numbers, the largest first, and how many are above [`RANK_SHARE`] of the largest.
+/// What ranks to expect: theory.md §7 (35) and (35a).
 ///
 /// ```
 /// use nalgebra::DMatrix;

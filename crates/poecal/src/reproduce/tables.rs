@@ -66,7 +66,7 @@ pub fn nominal() -> Robot {
     simulate::elbow()
 }
 
-/// The robot that is to be identified: the printed screws, each made the nearest screw ([`Screw::project`]), and the printed point
+/// The robot that is to be identified: the printed screws, each made a screw ([`Screw::project`], theory.md §5 (22c)), and the printed point
 /// as home pose without rotation.
 ///
 /// ```

@@ -37,7 +37,8 @@ impl Limits {
     pub const PLACEHOLDER_M: f64 = 100.0;
 }
 
-/// Where a joint's value comes from: `θ = multiplier · reading + offset`. Multiplier 1 and offset 0 but for mimic joints.
+/// Where a joint's value comes from: `θ = multiplier · reading + offset`. Multiplier 1 and offset 0 but for mimic joints
+/// (theory.md §2 (7)).
 ///
 /// ```
 /// let own = poecal::robot::Reading::own("joint1");

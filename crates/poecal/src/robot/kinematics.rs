@@ -4,7 +4,8 @@ use super::Robot;
 use crate::lie::Pose;
 
 impl Robot {
-    /// Joint values of a configuration given as readings (order of [`Robot::reading_names`]); mimic joints follow their leader.
+    /// Joint values of a configuration given as readings (order of [`Robot::reading_names`]); mimic joints follow their leader:
+    /// theory.md §2 (7).
     #[must_use]
     pub fn joint_values(&self, readings: &[f64]) -> Vec<f64> {
         let indices = self.reading_indices();
@@ -15,13 +16,14 @@ impl Robot {
             .collect()
     }
 
-    /// `base_from_tip` at a configuration given as readings (radians, metres; order of [`Robot::reading_names`]).
+    /// `base_from_tip`, theory.md §2 (6), at a configuration given as readings (radians, metres; order of [`Robot::reading_names`]).
     #[must_use]
     pub fn forward_kinematics(&self, readings: &[f64]) -> Pose {
         self.motion(&self.joint_values(readings)) * self.home
     }
 
-    /// The rigid motion `T_n = exp(ξ₁θ₁) … exp(ξₙθₙ)` of the last link from its place at zero, for *joint values* θ.
+    /// The rigid motion `T_n = exp(ξ₁θ₁) … exp(ξₙθₙ)` of the last link from its place at zero, for *joint values* θ:
+    /// theory.md §2 (6).
     #[must_use]
     pub fn motion(&self, joint_values: &[f64]) -> Pose {
         self.joints

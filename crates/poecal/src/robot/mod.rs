@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, Screw};
 
-/// A serial robot at its zero configuration, `base_from_tip(θ) = exp(ξ₁θ₁) … exp(ξₙθₙ) M` (lou2009 equation 2).
+/// A serial robot at its zero configuration, `base_from_tip(θ) = exp(ξ₁θ₁) … exp(ξₙθₙ) M` (lou2009 (2); theory.md §2 (6)).
 ///
 /// All screws and frames are in the base frame. A robot is a value: forward kinematics changes nothing in it.
 ///

@@ -1,5 +1,5 @@
 //! Levenberg-Marquardt on a manifold with geodesic acceleration and, near the optimum of a curved problem, the full Hessian
-//! (docs/theory.md §6; more1978, transtrum2012, dennis1981).
+//! (theory.md §6 (29) to (31); more1978, transtrum2012, dennis1981).
 
 use super::gauss_newton::{gauss_newton, kept};
 use super::normal::quadratic;

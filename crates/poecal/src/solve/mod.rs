@@ -22,10 +22,10 @@ pub trait LeastSquares {
     /// Residuals and their derivatives, as normal information.
     fn normal(&self, state: &Self::State) -> Normal;
 
-    /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected.
+    /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected (theory.md §6 (31)).
     fn second_order(&self, state: &Self::State, step: &[f64]) -> Vec<f64>;
 
-    /// `-Σ e ∇²f` (upper triangle): what the Hessian has beside `JᵀJ`; `None` where it is not known.
+    /// `-Σ e ∇²f` (upper triangle): what the Hessian has beside `JᵀJ` (theory.md §6 (31a)); `None` where it is not known.
     fn curvature(&self, state: &Self::State) -> Option<Vec<f64>>;
 
     /// Sets to zero what the retraction drops of a step, to first order: nothing, unless unknowns are constrained.

@@ -2,7 +2,8 @@
 
 use crate::linalg;
 
-/// `JᵀJ` (upper triangle, row-major), `Jᵀe` and `½ Σ e²` of whitened residuals, with their number.
+/// `JᵀJ` (upper triangle, row-major), `Jᵀe` and `½ Σ e²` of whitened residuals, with their number: theory.md §6 (27)
+/// and (28).
 ///
 /// ```
 /// let mut normal = poecal::solve::Normal::new(2);

@@ -1,4 +1,5 @@
-//! Device rotation from relative rotations alone, `A_ij = R_D B_ij R_Dᵀ` (park1994handeye): no target orientation is needed.
+//! Device rotation from relative rotations alone, `A_ij = R_D B_ij R_Dᵀ` (park1994handeye): no target orientation is needed:
+//! theory.md §6 (33).
 
 use nalgebra::{Matrix3, Vector3};
 

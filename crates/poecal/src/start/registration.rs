@@ -267,7 +267,7 @@ impl Seen {
         estimate
     }
 
-    /// Each target's best place and orientation on the last link, given the device's frame.
+    /// Each target's best place and orientation on the last link, given the device's frame: theory.md §6 (32).
     fn place_targets(&self, estimate: &mut Estimate) {
         let base_from_device = estimate.device_from_base.inverse();
         for target in 0..estimate.base_from_target.len() {
