@@ -46,6 +46,8 @@ pub(crate) enum Command {
     Convert(Convert),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
+    /// Repeat the experiment of a paper, and check its claims
+    Reproduce(Reproduce),
     /// Print the JSON Schema of calibration.json
     Schema,
 }
@@ -418,4 +420,34 @@ pub(crate) struct Offsets {
     /// File to write, over an old one [default: standard output]
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+}
+
+/// The papers whose experiments can be repeated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Paper {
+    /// Lou, Chen, Wu, Li, Jiang 2009: POE calibration of an elbow manipulator
+    Lou2009,
+}
+
+/// Arguments of `poecal reproduce`.
+#[derive(Args, Debug)]
+pub(crate) struct Reproduce {
+    /// The paper
+    #[arg(value_enum)]
+    pub(crate) paper: Paper,
+    /// Noisy sessions by which formulations are compared
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) trials: u32,
+    /// Random starts for each formulation and size of error
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) starts: u32,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
+    pub(crate) seed: u64,
+    /// Folder for the report
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Overwrite the report in an existing folder
+    #[arg(long)]
+    pub(crate) force: bool,
 }

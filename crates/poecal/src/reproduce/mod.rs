@@ -45,7 +45,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { trials: 1000, starts: 100, seed: 1 }
+        Options { trials: 1000, starts: 200, seed: 1 }
     }
 }
 
