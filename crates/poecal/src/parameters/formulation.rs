@@ -10,9 +10,7 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(Formulation::ScrewOffsets.word(), "screw-offsets");
 /// assert!(Formulation::ScrewOffsets.has_offsets() && !Formulation::Adjoint.has_offsets());
 /// ```
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Formulation {
     /// Each screw moves as a rigid body, `ξ ← Ad_exp(η) ξ`, in the minimal basis: no constraints, no offsets (lou2009 16 to 18).
@@ -28,12 +26,8 @@ pub enum Formulation {
 
 impl Formulation {
     /// All formulations.
-    pub const ALL: [Formulation; 4] = [
-        Formulation::Adjoint,
-        Formulation::Screw,
-        Formulation::ScrewOffsets,
-        Formulation::AdjointOffsets,
-    ];
+    pub const ALL: [Formulation; 4] =
+        [Formulation::Adjoint, Formulation::Screw, Formulation::ScrewOffsets, Formulation::AdjointOffsets];
 
     /// The stable word used in files and on the command line.
     #[must_use]

@@ -2,10 +2,13 @@
 
 mod check;
 mod judgement;
+mod plot;
+mod reproduction;
 mod table;
 
 pub use check::{Check, SetCounts};
 pub use judgement::judgement;
+pub use reproduction::reproduction_files;
 pub use table::{accuracy_table, summary};
 
 use serde::Serialize;
