@@ -138,9 +138,11 @@ fn claims_stand_in_both_forms() {
         html.contains("made &amp; up")
             && markdown.contains("    poecal reproduce lou2009 --out \"made & up\"")
     );
-    for words in ["4 of 5 statements hold", "adjoint 4; screw 5; screw-offsets 6; adjoint-offsets 7"] {
+    for words in ["4 of 5 statements hold", "from 20 poses"] {
         assert!(html.contains(words) && markdown.contains(words), "{words}");
     }
+    assert!(html.contains("<code>adjoint</code> 4; <code>screw</code> 5;"));
+    assert!(markdown.contains("`adjoint` 4; `screw` 5; `screw-offsets` 6; `adjoint-offsets` 7."));
 }
 
 #[test]

@@ -98,10 +98,11 @@ impl Ruler {
         }
         // What lies beyond gets an end of its own, where no value of the data is.
         let beyond = |v: &f64| *v <= 0.0 || (*v > 0.0 && v.log10() < f64::from(low));
+        let inside = low..=high;
         low -= i32::from(values.iter().any(beyond));
         high += i32::from(values.contains(&f64::INFINITY));
         let step = ((f64::from(high - low) / TICKS).ceil() as i32).max(1);
-        let labelled: Vec<i32> = (low..=high).filter(|power| power.rem_euclid(step) == 0).collect();
+        let labelled: Vec<i32> = inside.filter(|power| power.rem_euclid(step) == 0).collect();
         let plain = labelled.iter().all(|power| (-3..=4).contains(power));
         let mut ruler = Ruler { log: true, low: f64::from(low), high: f64::from(high), ticks: Vec::new() };
         ruler.ticks = labelled

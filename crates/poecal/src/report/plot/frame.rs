@@ -11,7 +11,9 @@ const LINE: f64 = 17.0;
 /// Size of a marker in the legend, px.
 const LEGEND_MARKER: f64 = 4.0;
 /// Room for a marker and its dash in the legend, px.
-const LEGEND_KEY: f64 = 34.0;
+const LEGEND_KEY: f64 = 28.0;
+/// Room between the entries of the legend, px.
+const LEGEND_GAP: f64 = 8.0;
 
 /// The area of the data, px.
 #[derive(Clone, Copy)]
@@ -48,7 +50,7 @@ pub(super) fn head(canvas: &mut Canvas, title: &str, legend: &[(usize, &str)], d
     }
     let mut x = MARGIN;
     for (style, name) in legend {
-        let width = LEGEND_KEY + text_width(name) + 10.0;
+        let width = LEGEND_KEY + text_width(name) + LEGEND_GAP;
         if x > MARGIN && x + width > WIDTH {
             x = MARGIN;
             y += LINE;

@@ -11,6 +11,7 @@ pub(super) struct Document {
 /// A part of a report.
 pub(super) enum Block {
     Heading(String),
+    /// A paragraph; words between backticks are code.
     Text(String),
     /// What is typed or printed as it stands.
     Code(String),
@@ -21,7 +22,7 @@ pub(super) enum Block {
 /// A table; its rows are as long as its head.
 pub(super) struct Table {
     pub(super) caption: String,
-    pub(super) head: Vec<&'static str>,
+    pub(super) head: Vec<String>,
     pub(super) rows: Vec<Vec<String>>,
     /// How many columns, from the left, hold words; the others hold numbers.
     pub(super) words: usize,

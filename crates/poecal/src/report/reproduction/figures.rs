@@ -2,6 +2,7 @@
 
 use super::document::Figure;
 use super::numbers::number;
+use super::tables::distinct;
 use crate::parameters::Formulation;
 use crate::report::plot::{Axis, DotPlot, Dots, Line, LinePlot, Mark, NamedPlot, Scale};
 use crate::reproduce::{Iteration, Reproduction, Run, ScrewRow, Seen, Spectrum};
@@ -210,17 +211,6 @@ pub(super) fn spectra(found: &Reproduction) -> Figure {
         ),
         plots: found.spectra.iter().enumerate().map(plot).collect(),
     }
-}
-
-/// The distinct values of a list, in the order in which they come.
-fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
-    let mut found = Vec::new();
-    for value in values {
-        if !found.contains(&value) {
-            found.push(value);
-        }
-    }
-    found
 }
 
 /// Figure 6: accuracy with noise against the bound.

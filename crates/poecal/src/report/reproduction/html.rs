@@ -16,7 +16,7 @@ pub(super) fn html(document: &Document) -> String {
         // Writing to a String cannot fail.
         let _ = match block {
             Block::Heading(text) => writeln!(out, "<h2>{}</h2>", escape(text)),
-            Block::Text(text) => writeln!(out, "<p>{}</p>", escape(text)),
+            Block::Text(text) => writeln!(out, "<p>{}</p>", with_code(text)),
             Block::Code(text) => writeln!(out, "<pre><code>{}</code></pre>", escape(text)),
             Block::Table(table) => {
                 write_table(&mut out, table);
@@ -32,12 +32,18 @@ pub(super) fn html(document: &Document) -> String {
     out
 }
 
+/// Text in which words between backticks are code.
+fn with_code(text: &str) -> String {
+    let pieces = text.split('`').map(escape).enumerate();
+    pieces.map(|(k, piece)| if k % 2 == 1 { format!("<code>{piece}</code>") } else { piece }).collect()
+}
+
 fn write_table(out: &mut String, table: &Table) {
     // The box scrolls on narrow screens, and is reached by the keyboard.
     let caption = escape(&table.caption);
     let _ = writeln!(
         out,
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{caption}\"><table>\n<caption>{caption}</caption>"
+        "<p class=\"caption\">{caption}</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{caption}\"><table>"
     );
     let row = |name: &str, cells: Vec<String>| {
         let cells = cells.iter().enumerate().map(|(k, cell)| {
@@ -50,7 +56,7 @@ fn write_table(out: &mut String, table: &Table) {
         });
         format!("<tr>{}</tr>\n", cells.collect::<String>())
     };
-    let head = row("th", table.head.iter().map(|cell| (*cell).to_owned()).collect());
+    let head = row("th", table.head.clone());
     let _ = write!(out, "<thead>{head}</thead>\n<tbody>\n");
     for cells in &table.rows {
         out.push_str(&row("td", cells.clone()));

@@ -11,7 +11,7 @@ pub(super) fn markdown(document: &Document) -> String {
         // Writing to a String cannot fail.
         let _ = match block {
             Block::Heading(text) => writeln!(out, "## {}", plain(text)),
-            Block::Text(text) => writeln!(out, "{}", plain(text)),
+            Block::Text(text) => writeln!(out, "{}", with_code(text)),
             Block::Code(text) => writeln!(
                 out,
                 "{}",
@@ -41,6 +41,12 @@ fn write_table(out: &mut String, table: &Table) {
     for cells in &table.rows {
         out.push_str(&row(cells.iter().map(|cell| plain(cell)).collect()));
     }
+}
+
+/// Text in which words between backticks are code, which needs no escapes.
+fn with_code(text: &str) -> String {
+    let pieces = text.split('`').enumerate();
+    pieces.map(|(k, piece)| if k % 2 == 1 { format!("`{piece}`") } else { plain(piece) }).collect()
 }
 
 /// Text on one line in which nothing is markup.

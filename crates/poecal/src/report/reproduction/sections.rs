@@ -8,8 +8,8 @@ use crate::parameters::Formulation;
 use crate::reproduce::{Reproduction, Run, ScrewRow, Seen};
 
 const REFERENCE: &str = "lou2009: Y. Lou, T. Chen, Y. Wu, Z. Li, S. Jiang. Improved and modified geometric formulation of POE based kinematic calibration of serial robots. IEEE/RSJ International Conference on Intelligent Robots and Systems (IROS), 2009.";
-const WHAT: &str = "This report repeats the experiment of lou2009 and sets what was measured beside what the paper says. The robot is the elbow manipulator of the paper's Tables I and II. Every number comes from the run that wrote this report, and stands in results.json too.";
-const FORMULATIONS: &str = "There are four formulations. adjoint moves each screw as a rigid body and has no joint offsets: it is the paper's improved formulation (poses) and its modified one (points). screw takes the six coordinates of a screw as free numbers and makes them a screw again after each iteration. screw-offsets adds joint offsets to that: it is the original formulation, of Okamura and Park. adjoint-offsets adds joint offsets to adjoint, to show what they add.";
+const WHAT: &str = "This report repeats the experiment of lou2009 and sets what was measured beside what the paper says. The robot is the elbow manipulator of the paper's Tables I and II. Every number comes from the run that wrote this report, and stands in `results.json` too.";
+const FORMULATIONS: &str = "There are four formulations. `adjoint` moves each screw as a rigid body and has no joint offsets: it is the paper's improved formulation (poses) and its modified one (points). `screw` takes the six coordinates of a screw as free numbers and makes them a screw again after each iteration. `screw-offsets` adds joint offsets to that: it is the original formulation, of Okamura and Park. `adjoint-offsets` adds joint offsets to `adjoint`, to show what they add.";
 
 pub(super) fn document(found: &Reproduction) -> Document {
     let mut blocks = vec![
@@ -90,7 +90,7 @@ fn convergence(found: &Reproduction) -> String {
     let start = "Plain Gauss-Newton, as in the paper, from the nominal screws; no noise, no joint offsets in the truth.";
     let words = |run: &Run| {
         let end = if run.converged { "" } else { ", not converged" };
-        format!("{} {}{end}", run.formulation.word(), run.iterations)
+        format!("`{}` {}{end}", run.formulation.word(), run.iterations)
     };
     let sentences = [Seen::Poses, Seen::Points].map(|seen| {
         let runs =
@@ -117,7 +117,7 @@ fn screws(found: &Reproduction) -> String {
         format!("{} mm in v and {} in ω", mm(furthest(found, of, 0..3)), number(furthest(found, of, 3..6)))
     };
     format!(
-        "Table II is printed with four digits, so its screws are not quite screws. The prescribed robot has the nearest true ones; these differ from the printed ones by at most {}. The screws identified by adjoint without noise differ from the prescribed ones by at most {} from poses, and by at most {} from points. The nominal ones differ by up to {}.",
+        "Table II is printed with four digits, so its screws are not quite screws. The prescribed robot has the nearest true ones; these differ from the printed ones by at most {}. The screws identified by `adjoint` without noise differ from the prescribed ones by at most {} from poses, and by at most {} from points. The nominal ones differ by up to {}.",
         both(|row| &row.printed),
         both(|row| &row.from_poses),
         both(|row| &row.from_points),
@@ -145,7 +145,7 @@ fn offsets(found: &Reproduction) -> String {
         })
     };
     format!(
-        "In this part the true robot has joint offsets too. From poses without noise, screw-offsets misses them by up to {screw} deg.{} adjoint-offsets misses them by up to {adjoint} deg.{}",
+        "In this part the true robot has joint offsets too. From poses without noise, `screw-offsets` misses them by up to {screw} deg.{} `adjoint-offsets` misses them by up to {adjoint} deg.{}",
         held_out(Formulation::ScrewOffsets),
         held_out(Formulation::AdjointOffsets)
     )

@@ -2,7 +2,8 @@
 
 use super::document::Table;
 use super::numbers::{four_decimals, mm, number, number_or_dash, with_without, yes_no};
-use crate::reproduce::{Reproduction, ScrewRow};
+use crate::parameters::Formulation;
+use crate::reproduce::{Reproduction, ScrewRow, Seen};
 
 pub(super) fn claims(found: &Reproduction) -> Table {
     let row = |claim: &crate::reproduce::Claim| {
@@ -10,7 +11,7 @@ pub(super) fn claims(found: &Reproduction) -> Table {
     };
     Table {
         caption: "Table 1. Claims.".to_owned(),
-        head: vec!["claim", "the paper", "measured", "holds"],
+        head: words(&["claim", "the paper", "measured", "holds"]),
         rows: found.claims.iter().map(row).collect(),
         words: 4,
     }
@@ -34,11 +35,11 @@ pub(super) fn runs(found: &Reproduction) -> Table {
         ]
     };
     Table {
-        caption: "Table 2. Runs of plain Gauss-Newton from the nominal screws. Rank is of the paper's own matrix, unknowns are those solved for. The held-out error is the RMS distance to the truth on configurations that were not measured; the screw error is the largest of any coordinate (m for v, no unit for ω).".to_owned(),
-        head: vec![
-            "formulation", "seen", "offsets in truth", "noise", "converged", "measure-ments", "itera-tions",
-            "un-knowns", "rank", "held-out, mm", "screw error", "offset error, deg",
-        ],
+        caption: "Table 2. Runs of plain Gauss-Newton from the nominal screws. Rank is of the paper's own matrix, unknowns are those solved for. The held-out error is the RMS distance to the truth on configurations that were not measured; the screw error is the largest of any coordinate (m for v, no unit for ω). Rows are the measurements fitted.".to_owned(),
+        head: words(&[
+            "formulation", "seen", "offsets in truth", "noise", "converged", "rows", "iterations",
+            "unknowns", "rank", "held-out, mm", "screw error", "offset error, deg",
+        ]),
         rows: found.runs.iter().map(row).collect(),
         words: 5,
     }
@@ -47,7 +48,7 @@ pub(super) fn runs(found: &Reproduction) -> Table {
 pub(super) fn screws(found: &Reproduction) -> Table {
     Table {
         caption: "Table 3. Screws beside Table II: v in mm, ω without unit. The last two columns are the largest differences from the prescribed screw.".to_owned(),
-        head: vec!["joint", "screw", "vx", "vy", "vz", "ωx", "ωy", "ωz", "v off, mm", "ω off"],
+        head: words(&["joint", "screw", "vx", "vy", "vz", "ωx", "ωy", "ωz", "v off, mm", "ω off"]),
         rows: found.screws.iter().flat_map(screw_rows).collect(),
         words: 2,
     }
@@ -95,7 +96,7 @@ pub(super) fn point(found: &Reproduction) -> Table {
         [("nominal", &point.nominal), ("prescribed", &point.prescribed), ("from points", &point.from_points)];
     Table {
         caption: "Table 4. The point P_c0 beside Table II, mm. The last column is the largest difference from the prescribed point.".to_owned(),
-        head: vec!["point", "x", "y", "z", "off"],
+        head: words(&["point", "x", "y", "z", "off"]),
         rows: rows.into_iter().map(row).collect(),
         words: 1,
     }
@@ -108,7 +109,7 @@ pub(super) fn offsets(found: &Reproduction) -> Table {
     };
     Table {
         caption: "Table 5. Joint offsets, deg.".to_owned(),
-        head: vec!["joint", "prescribed", "screw-offsets", "adjoint-offsets"],
+        head: words(&["joint", "prescribed", "screw-offsets", "adjoint-offsets"]),
         rows: found.offsets.iter().map(row).collect(),
         words: 1,
     }
@@ -128,7 +129,7 @@ pub(super) fn ranks(found: &Reproduction) -> Table {
     };
     Table {
         caption: "Table 6. Ranks: singular values above 1e-9 of the largest, and those on both sides of the gap as shares of the largest.".to_owned(),
-        head: vec!["matrix", "at", "columns", "rank", "last above the gap", "first below"],
+        head: words(&["matrix", "at", "columns", "rank", "last above the gap", "first below"]),
         rows: found.spectra.iter().map(row).collect(),
         words: 2,
     }
@@ -151,7 +152,7 @@ pub(super) fn efficiency(found: &Reproduction) -> Table {
     Table {
         caption: "Table 7. Accuracy with noise. Error and bound are RMS over the fits that converged."
             .to_owned(),
-        head: vec![
+        head: words(&[
             "formulation",
             "seen",
             "residual",
@@ -161,28 +162,59 @@ pub(super) fn efficiency(found: &Reproduction) -> Table {
             "held-out, mm",
             "bound, mm",
             "ratio",
-        ],
+        ]),
         rows: found.efficiency.iter().map(row).collect(),
         words: 4,
     }
 }
 
 pub(super) fn basin(found: &Reproduction) -> Table {
-    let row = |row: &crate::reproduce::Basin| {
-        vec![
-            row.formulation.word().to_owned(),
-            row.measurement.word().to_owned(),
-            row.method.clone(),
-            number(row.error_deg),
-            number(row.error_mm),
-            row.trials.to_string(),
-            number(row.share),
-        ]
+    let sizes = distinct(found.basin.iter().map(|row| (row.error_deg, row.error_mm)));
+    let fits =
+        distinct(found.basin.iter().map(|row| (row.formulation, row.measurement, row.method.as_str())));
+    let row = |(formulation, seen, method): &(Formulation, Seen, &str)| {
+        let here = || {
+            let fit = (*formulation, *seen, *method);
+            found
+                .basin
+                .iter()
+                .filter(move |row| (row.formulation, row.measurement, row.method.as_str()) == fit)
+        };
+        let trials = here().map(|row| row.trials).min().unwrap_or_default();
+        let mut cells = vec![
+            formulation.word().to_owned(),
+            seen.word().to_owned(),
+            (*method).to_owned(),
+            trials.to_string(),
+        ];
+        cells.extend(sizes.iter().map(|size| {
+            let share = here().find(|row| (row.error_deg, row.error_mm) == *size).map(|row| row.share);
+            number_or_dash(share)
+        }));
+        cells
     };
+    let mut head = words(&["formulation", "seen", "method", "starts"]);
+    head.extend(sizes.iter().map(|(deg, mm)| format!("{deg} deg, {mm} mm")));
     Table {
-        caption: "Table 8. Share of random starts that reach the truth.".to_owned(),
-        head: vec!["formulation", "seen", "method", "error, deg", "error, mm", "starts", "share"],
-        rows: found.basin.iter().map(row).collect(),
+        caption: "Table 8. Share of random starts that reach the truth, by the error of the start."
+            .to_owned(),
+        head,
+        rows: fits.iter().map(row).collect(),
         words: 3,
     }
+}
+
+fn words(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+/// The distinct values of a list, in the order in which they come.
+pub(super) fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
+    let mut found = Vec::new();
+    for value in values {
+        if !found.contains(&value) {
+            found.push(value);
+        }
+    }
+    found
 }
