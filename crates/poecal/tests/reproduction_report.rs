@@ -217,3 +217,27 @@ fn a_second_run_replaces_the_first_and_leaves_other_files() {
     assert_eq!(names, expected);
     assert_eq!(std::fs::read_to_string(out.join("mine.svg")).unwrap(), "mine");
 }
+
+/// Every key of an object and of what is in it.
+fn keys(value: &serde_json::Value, found: &mut Vec<String>) {
+    match value {
+        serde_json::Value::Object(object) => {
+            found.extend(object.keys().cloned());
+            object.values().for_each(|value| keys(value, found));
+        }
+        serde_json::Value::Array(values) => values.iter().for_each(|value| keys(value, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_of_the_results_is_documented() {
+    let document = include_str!("../../../docs/file-formats.md");
+    let (_, section) = document.split_once("### Reproduction of lou2009\n").unwrap();
+    let results = serde_json::from_str(&text(&findings(), "results.json")).unwrap();
+    let mut found = Vec::new();
+    keys(&results, &mut found);
+    for key in found {
+        assert!(section.contains(&format!("`{key}`")), "{key}");
+    }
+}

@@ -101,14 +101,9 @@ impl Ruler {
         let inside = low..=high;
         low -= i32::from(values.iter().any(beyond));
         high += i32::from(values.contains(&f64::INFINITY));
-        let step = ((f64::from(high - low) / TICKS).ceil() as i32).max(1);
-        let labelled: Vec<i32> = inside.filter(|power| power.rem_euclid(step) == 0).collect();
-        let plain = labelled.iter().all(|power| (-3..=4).contains(power));
         let mut ruler = Ruler { log: true, low: f64::from(low), high: f64::from(high), ticks: Vec::new() };
-        ruler.ticks = labelled
-            .into_iter()
-            .map(|power| (ruler.share(f64::from(power)), power_label(power, plain)))
-            .collect();
+        let ticks = log_ticks(inside, high - low);
+        ruler.ticks = ticks.into_iter().map(|(along, label)| (ruler.share(along), label)).collect();
         ruler
     }
 
@@ -175,10 +170,24 @@ fn value_label(value: f64, step: f64) -> String {
     format!("{value:.decimals$}").replace('-', "−")
 }
 
-fn power_label(power: i32, plain: bool) -> String {
+/// Ticks at powers of ten, with their labels; between few of them also at 2 and 5 times these. `decades` is the axis' length.
+fn log_ticks(powers: std::ops::RangeInclusive<i32>, decades: i32) -> Vec<(f64, String)> {
+    let step = ((f64::from(decades) / TICKS).ceil() as i32).max(1);
+    let last = *powers.end();
+    let labelled: Vec<i32> = powers.filter(|power| power.rem_euclid(step) == 0).collect();
+    let plain = labelled.iter().all(|power| (-3..=4).contains(power));
+    let factors: &[f64] = if plain && decades <= 2 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let ticks = labelled.into_iter().flat_map(|power| {
+        let here = if power == last { &[1.0] } else { factors };
+        here.iter().map(move |factor| (f64::from(power) + factor.log10(), power_label(*factor, power, plain)))
+    });
+    ticks.collect()
+}
+
+fn power_label(factor: f64, power: i32, plain: bool) -> String {
     if plain {
         let decimals = (-power).max(0) as usize;
-        return format!("{:.decimals$}", 10_f64.powi(power));
+        return format!("{:.decimals$}", factor * 10_f64.powi(power));
     }
     let digits = power.to_string();
     let raised = digits.chars().map(|c| match c {
@@ -215,6 +224,7 @@ mod tests {
         assert_eq!(labels(Scale::Linear, &[0.0, 1.0]), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(labels(Scale::Count, &[0.0, 7.0]), ["0", "2", "4", "6"]);
         assert_eq!(labels(Scale::Log, &[0.02, 30.0]), ["0.01", "0.1", "1", "10", "100"]);
+        assert_eq!(labels(Scale::Log, &[0.03, 0.04]), ["0.01", "0.02", "0.05", "0.1"]);
         assert_eq!(labels(Scale::Log, &[1e-12, 1.0]), ["10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"]);
     }
 

@@ -71,7 +71,7 @@ pub(super) fn head(canvas: &mut Canvas, title: &str, legend: &[(usize, &str)], d
 /// The title of the vertical axis, above it; gives the y below.
 pub(super) fn vertical_title(canvas: &mut Canvas, y: f64, title: &str) -> f64 {
     canvas.text([MARGIN, y], Anchor::Start, title);
-    y + 9.0
+    y + 13.0
 }
 
 /// Grid, ticks and title of the horizontal axis, and its mark.
