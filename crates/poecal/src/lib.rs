@@ -54,6 +54,7 @@
 //! | [`analysis`], [`gauge`] | what the data determine; the choice among equals |
 //! | [`start`] | device frame and tool without a guess |
 //! | [`calibration`] | all steps in order |
+//! | [`reproduce`] | the experiment of lou2009 with every formulation |
 //! | [`report`] | the result as text |
 //! | [`io`] | files: the only module that opens them |
 //!

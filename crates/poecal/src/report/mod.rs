@@ -1,13 +1,18 @@
 //! Results as text for people. No number here that is not in the result.
 
 mod check;
+mod claims;
 mod judgement;
 mod offsets;
+mod plot;
+mod reproduction;
 mod table;
 
 pub use check::{Check, SetCounts};
+pub use claims::claims;
 pub use judgement::judgement;
 pub use offsets::Offsets;
+pub use reproduction::reproduction_files;
 pub use table::{accuracy_table, summary};
 
 use serde::Serialize;

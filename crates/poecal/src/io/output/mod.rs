@@ -1,10 +1,12 @@
 //! Output folders: written whole or not at all, and every robot model in them proven equal to the one it is of.
 
 mod calibration;
+mod reproduction;
 mod simulation;
 mod staging;
 
 pub use calibration::write;
+pub use reproduction::write_reproduction;
 pub use simulation::{Session, write_simulation};
 pub use staging::{check_folder, write_file};
 

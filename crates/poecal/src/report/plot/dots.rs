@@ -1,0 +1,156 @@
+//! Dots by category: a row for each, several series in a row, joined where a pair is compared.
+
+use super::Mark;
+use super::axis::{Axis, Ruler};
+use super::frame::{self, Area, Unshown, WIDTH};
+use super::svg::{Anchor, Canvas, text_width};
+
+/// Height of a row, px, and what each further series adds where they stand below each other.
+const ROW: f64 = 17.0;
+const SERIES: f64 = 8.0;
+const RADIUS: f64 = 4.0;
+
+/// A series of a [`DotPlot`].
+pub(in crate::report) struct Dots {
+    pub(in crate::report) name: String,
+    /// Which colour and marker.
+    pub(in crate::report) style: usize,
+    /// A value for each row, if it has one.
+    pub(in crate::report) values: Vec<Option<f64>>,
+}
+
+/// Values by category.
+pub(in crate::report) struct DotPlot {
+    pub(in crate::report) title: String,
+    pub(in crate::report) description: String,
+    pub(in crate::report) x: Axis,
+    pub(in crate::report) rows: Vec<String>,
+    pub(in crate::report) series: Vec<Dots>,
+    /// Whether a row's dots lie on one line that joins them.
+    pub(in crate::report) joined: bool,
+    pub(in crate::report) mark: Option<Mark>,
+}
+
+impl DotPlot {
+    /// The plot as SVG.
+    pub(in crate::report) fn svg(&self) -> String {
+        let values = || self.series.iter().flat_map(|dots| dots.values.iter().flatten());
+        let marked = self.mark.iter().map(|mark| mark.at);
+        let x = self.x.ruler(values().copied().chain(marked));
+        let mut canvas = Canvas::new();
+        let legend: Vec<(usize, &str)> =
+            self.series.iter().map(|dots| (dots.style, dots.name.as_str())).collect();
+        let top =
+            frame::head(&mut canvas, &self.title, &legend, false) + frame::mark_room(self.mark.as_ref());
+        let widest = self.rows.iter().map(|row| text_width(row)).fold(0.0, f64::max);
+        let bottom = top + self.row_height() * self.rows.len().max(1) as f64;
+        // Long labels take from the data, but not more than half.
+        let left = (widest + 18.0).clamp(40.0, WIDTH / 2.0);
+        let area = Area { left, top, right: WIDTH - 24.0, bottom };
+        frame::horizontal_axis(&mut canvas, &area, &x, &self.x.title, self.mark.as_ref());
+        for (k, row) in self.rows.iter().enumerate() {
+            let y = self.row_middle(&area, k);
+            canvas.text([area.left - 8.0, y + 4.0], Anchor::End, row);
+            self.join(&mut canvas, (&area, &x), k);
+        }
+        canvas.axis_line([area.left, area.top], [area.left, area.bottom]);
+        let mut unshown = Unshown::default();
+        for (k, dots) in self.series.iter().enumerate() {
+            self.draw(&mut canvas, k, dots, (&area, &x), &mut unshown);
+        }
+        let height = frame::foot(&mut canvas, &area, values().next().is_some(), &unshown);
+        canvas.finish(WIDTH, height, &self.title, &self.description)
+    }
+
+    fn row_height(&self) -> f64 {
+        if self.joined { ROW } else { ROW + SERIES * self.series.len().saturating_sub(1) as f64 }
+    }
+
+    fn row_middle(&self, area: &Area, row: usize) -> f64 {
+        area.top + self.row_height() * (row as f64 + 0.5)
+    }
+
+    /// The line from a row's least to its largest value.
+    fn join(&self, canvas: &mut Canvas, (area, x): (&Area, &Ruler), row: usize) {
+        let y = self.row_middle(area, row);
+        if !self.joined {
+            return canvas.grid_line([area.left, y], [area.right, y]);
+        }
+        let values = self.series.iter().filter_map(|dots| *dots.values.get(row)?);
+        let places = values.filter_map(|value| x.place(value)).map(|place| area.x(place.share));
+        let (from, to) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        if from < to {
+            canvas.axis_line([from, y], [to, y]);
+        }
+    }
+
+    fn draw(
+        &self,
+        canvas: &mut Canvas,
+        series: usize,
+        dots: &Dots,
+        (area, x): (&Area, &Ruler),
+        unshown: &mut Unshown,
+    ) {
+        let middle = (self.series.len() as f64 - 1.0) / 2.0;
+        let shift = if self.joined { 0.0 } else { SERIES * (series as f64 - middle) };
+        canvas.begin_series(dots.style);
+        let rows = dots.values.iter().take(self.rows.len()).enumerate();
+        for (row, value) in rows.filter_map(|(row, value)| Some((row, (*value)?))) {
+            let Some(place) = x.place(value) else {
+                unshown.not_numbers += 1;
+                continue;
+            };
+            unshown.beyond += usize::from(!place.inside);
+            canvas.marker(
+                dots.style,
+                [area.x(place.share), self.row_middle(area, row) + shift],
+                RADIUS,
+                place.inside,
+            );
+        }
+        canvas.end_series();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::plot::Scale;
+
+    fn plot(scale: Scale, joined: bool, values: &[Option<f64>]) -> String {
+        let dots = |style| Dots { name: "a < b".to_owned(), style, values: values.to_vec() };
+        let plot = DotPlot {
+            title: "Dots".to_owned(),
+            description: String::new(),
+            x: Axis::new("angle, deg", scale),
+            rows: values.iter().map(|_| "row & label".to_owned()).collect(),
+            series: vec![dots(0), dots(7)],
+            joined,
+            mark: None,
+        };
+        plot.svg()
+    }
+
+    #[test]
+    fn any_data_give_well_formed_pictures() {
+        let odd = [0.0, -1.0, 5e-324, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+        let sets = odd.iter().map(|v| vec![Some(*v)]).chain([
+            vec![],
+            vec![None],
+            odd.iter().copied().map(Some).collect(),
+        ]);
+        for values in sets {
+            for (scale, joined) in [(Scale::Linear, false), (Scale::Log, true), (Scale::Log, false)] {
+                let svg = plot(scale, joined, &values);
+                roxmltree::Document::parse(&svg).unwrap();
+                assert!(!svg.contains("NaN") && !svg.contains("\"inf"), "{svg}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_to_show_is_said() {
+        assert!(plot(Scale::Log, true, &[None]).contains("There are no values."));
+    }
+}

@@ -1,0 +1,135 @@
+//! What plots share: title, legend, axes and notes around an area for the data.
+
+use super::Mark;
+use super::axis::Ruler;
+use super::svg::{Anchor, Canvas, text_width, wrapped};
+
+/// Width of every plot, px.
+pub(super) const WIDTH: f64 = 440.0;
+const MARGIN: f64 = 10.0;
+const LINE: f64 = 17.0;
+/// Size of a marker in the legend, px.
+const LEGEND_MARKER: f64 = 4.0;
+/// Room for a marker and its dash in the legend, px.
+const LEGEND_KEY: f64 = 28.0;
+/// Room between the entries of the legend, px.
+const LEGEND_GAP: f64 = 8.0;
+
+/// The area of the data, px.
+#[derive(Clone, Copy)]
+pub(super) struct Area {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+}
+
+impl Area {
+    pub(super) fn x(&self, share: f64) -> f64 {
+        self.left + share * (self.right - self.left)
+    }
+
+    pub(super) fn y(&self, share: f64) -> f64 {
+        self.bottom - share * (self.bottom - self.top)
+    }
+}
+
+/// Values that an axis could not show.
+#[derive(Default)]
+pub(super) struct Unshown {
+    pub(super) beyond: usize,
+    pub(super) not_numbers: usize,
+}
+
+/// Title and legend; gives the y below them.
+pub(super) fn head(canvas: &mut Canvas, title: &str, legend: &[(usize, &str)], dashes: bool) -> f64 {
+    let mut y = MARGIN + 8.0;
+    for line in wrapped(title, WIDTH - 2.0 * MARGIN) {
+        canvas.bold_text([MARGIN, y], &line);
+        y += LINE;
+    }
+    let mut x = MARGIN;
+    for (style, name) in legend {
+        let width = LEGEND_KEY + text_width(name) + LEGEND_GAP;
+        if x > MARGIN && x + width > WIDTH {
+            x = MARGIN;
+            y += LINE;
+        }
+        let key = y - 4.0;
+        canvas.begin_series(*style);
+        if dashes {
+            canvas.path(*style, &[[x, key], [x + LEGEND_KEY - 6.0, key]]);
+        }
+        canvas.marker(*style, [x + (LEGEND_KEY - 6.0) / 2.0, key], LEGEND_MARKER, true);
+        canvas.end_series();
+        canvas.text([x + LEGEND_KEY, y], Anchor::Start, name);
+        x += width;
+    }
+    if legend.is_empty() { y } else { y + LINE + 3.0 }
+}
+
+/// The title of the vertical axis, above it; gives the y below.
+pub(super) fn vertical_title(canvas: &mut Canvas, y: f64, title: &str) -> f64 {
+    canvas.text([MARGIN, y], Anchor::Start, title);
+    y + 13.0
+}
+
+/// Grid, ticks and title of the horizontal axis, and its mark.
+pub(super) fn horizontal_axis(
+    canvas: &mut Canvas,
+    area: &Area,
+    ruler: &Ruler,
+    title: &str,
+    mark: Option<&Mark>,
+) {
+    for (share, label) in &ruler.ticks {
+        let x = area.x(*share);
+        canvas.grid_line([x, area.top], [x, area.bottom]);
+        canvas.text([x, area.bottom + 15.0], Anchor::Middle, label);
+    }
+    canvas.axis_line([area.left, area.bottom], [area.right, area.bottom]);
+    canvas.text([(area.left + area.right) / 2.0, area.bottom + 33.0], Anchor::Middle, title);
+    let Some(mark) = mark else { return };
+    let Some(place) = ruler.place(mark.at) else { return };
+    let x = area.x(place.share);
+    canvas.mark_line([x, area.top - 4.0], [x, area.bottom]);
+    // The label ends with the plot at the latest, and begins with it at the earliest.
+    let half = text_width(&mark.label) / 2.0;
+    let middle = x.min(WIDTH - MARGIN - half).max(MARGIN + half);
+    canvas.text([middle, area.top - 8.0], Anchor::Middle, &mark.label);
+}
+
+/// Grid and ticks of the vertical axis.
+pub(super) fn vertical_axis(canvas: &mut Canvas, area: &Area, ruler: &Ruler) {
+    for (share, label) in &ruler.ticks {
+        let y = area.y(*share);
+        canvas.grid_line([area.left, y], [area.right, y]);
+        canvas.text([area.left - 6.0, y + 4.0], Anchor::End, label);
+    }
+    canvas.axis_line([area.left, area.top], [area.left, area.bottom]);
+}
+
+/// Room for a mark's label above the data.
+pub(super) fn mark_room(mark: Option<&Mark>) -> f64 {
+    if mark.is_some() { LINE } else { 0.0 }
+}
+
+/// Notes below the axes; gives the height of the plot.
+pub(super) fn foot(canvas: &mut Canvas, area: &Area, any: bool, unshown: &Unshown) -> f64 {
+    let mut notes = Vec::new();
+    if !any {
+        notes.push("There are no values.".to_owned());
+    }
+    if unshown.beyond > 0 {
+        notes.push(format!("Hollow: beyond the axis, zero or infinite ({}).", unshown.beyond));
+    }
+    if unshown.not_numbers > 0 {
+        notes.push(format!("Not drawn: {}, not a number.", unshown.not_numbers));
+    }
+    let mut y = area.bottom + 33.0;
+    for note in notes {
+        y += LINE;
+        canvas.text([MARGIN, y], Anchor::Start, &note);
+    }
+    y + MARGIN
+}

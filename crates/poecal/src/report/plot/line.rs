@@ -1,0 +1,145 @@
+//! Lines with markers over two numeric axes.
+
+use super::Mark;
+use super::axis::{Axis, Ruler};
+use super::frame::{self, Area, Unshown, WIDTH};
+use super::svg::Canvas;
+
+/// Height of the area of the data, px.
+const HEIGHT: f64 = 210.0;
+/// Points of a line from which on its markers are small.
+const MANY: usize = 25;
+
+/// A line of a [`LinePlot`].
+pub(in crate::report) struct Line {
+    pub(in crate::report) name: String,
+    /// Which colour, dash and marker: the same thing has the same in every plot.
+    pub(in crate::report) style: usize,
+    pub(in crate::report) points: Vec<[f64; 2]>,
+}
+
+/// Lines over two axes.
+pub(in crate::report) struct LinePlot {
+    pub(in crate::report) title: String,
+    pub(in crate::report) description: String,
+    pub(in crate::report) x: Axis,
+    pub(in crate::report) y: Axis,
+    pub(in crate::report) lines: Vec<Line>,
+    pub(in crate::report) mark: Option<Mark>,
+}
+
+impl LinePlot {
+    /// The plot as SVG.
+    pub(in crate::report) fn svg(&self) -> String {
+        let points = || self.lines.iter().flat_map(|line| &line.points);
+        let marked = self.mark.iter().map(|mark| mark.at);
+        let x = self.x.ruler(points().map(|point| point[0]).chain(marked));
+        let y = self.y.ruler(points().map(|point| point[1]));
+        let mut canvas = Canvas::new();
+        // One line needs no legend: the title says what it is.
+        let legend: Vec<(usize, &str)> = match self.lines.as_slice() {
+            [_] => Vec::new(),
+            lines => lines.iter().map(|line| (line.style, line.name.as_str())).collect(),
+        };
+        let below = frame::head(&mut canvas, &self.title, &legend, true);
+        let top =
+            frame::vertical_title(&mut canvas, below, &self.y.title) + frame::mark_room(self.mark.as_ref());
+        let area = Area { left: 56.0, top, right: WIDTH - 20.0, bottom: top + HEIGHT };
+        frame::vertical_axis(&mut canvas, &area, &y);
+        frame::horizontal_axis(&mut canvas, &area, &x, &self.x.title, self.mark.as_ref());
+        let mut unshown = Unshown::default();
+        for (k, line) in self.lines.iter().enumerate() {
+            // Lines that coincide stay visible: the later ones have smaller markers.
+            let radius = if line.points.len() > MANY { 2.4 } else { (5.2 - 0.8 * k as f64).max(2.4) };
+            draw(&mut canvas, line, radius, (&area, &x, &y), &mut unshown);
+        }
+        let height = frame::foot(&mut canvas, &area, points().next().is_some(), &unshown);
+        canvas.finish(WIDTH, height, &self.title, &self.description)
+    }
+}
+
+/// Draws a line; where a point is not a number, it is broken.
+fn draw(
+    canvas: &mut Canvas,
+    line: &Line,
+    radius: f64,
+    (area, x, y): (&Area, &Ruler, &Ruler),
+    unshown: &mut Unshown,
+) {
+    let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
+    let mut markers = Vec::new();
+    for [across, up] in &line.points {
+        let (Some(across), Some(up)) = (x.place(*across), y.place(*up)) else {
+            unshown.not_numbers += 1;
+            pieces.push(Vec::new());
+            continue;
+        };
+        let at = [area.x(across.share), area.y(up.share)];
+        let inside = across.inside && up.inside;
+        unshown.beyond += usize::from(!inside);
+        markers.push((at, inside));
+        if let Some(piece) = pieces.last_mut() {
+            piece.push(at);
+        }
+    }
+    canvas.begin_series(line.style);
+    for piece in pieces.iter().filter(|piece| piece.len() > 1) {
+        canvas.path(line.style, piece);
+    }
+    for (at, inside) in markers {
+        canvas.marker(line.style, at, radius, inside);
+    }
+    canvas.end_series();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::plot::Scale;
+
+    fn plot(scale: Scale, lines: Vec<Vec<[f64; 2]>>) -> String {
+        let line = |(style, points)| Line { name: format!("line <{style}>"), style, points };
+        let plot = LinePlot {
+            title: "A & B".to_owned(),
+            description: "lines".to_owned(),
+            x: Axis::new("iteration", Scale::Count),
+            y: Axis::new("error, mm", scale),
+            lines: lines.into_iter().enumerate().map(line).collect(),
+            mark: Some(Mark { at: 2.5, label: "rank 2".to_owned() }),
+        };
+        plot.svg()
+    }
+
+    #[test]
+    fn any_data_give_well_formed_pictures() {
+        let odd = [0.0, -1.0, 5e-324, f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+        let sets = odd.iter().map(|v| vec![vec![[0.0, *v]]]).chain([
+            vec![],
+            vec![vec![]],
+            vec![odd.iter().map(|v| [*v, *v]).collect(), vec![[1.0, 1.0]]],
+        ]);
+        for lines in sets {
+            for scale in [Scale::Linear, Scale::Log, Scale::Count] {
+                let svg = plot(scale, lines.clone());
+                let document = roxmltree::Document::parse(&svg).unwrap();
+                assert_eq!(document.root_element().attribute("role"), Some("img"));
+                assert!(!svg.contains("NaN") && !svg.contains("\"inf"), "{svg}");
+            }
+        }
+    }
+
+    #[test]
+    fn zero_on_a_log_axis_is_hollow_and_noted() {
+        let svg = plot(Scale::Log, vec![vec![[0.0, 1.0], [1.0, 0.0], [2.0, f64::NAN]]]);
+        assert_eq!(svg.matches("class=\"hollow\"").count(), 1);
+        assert!(
+            svg.contains("Hollow: beyond the axis, zero or infinite (1).") && svg.contains("Not drawn: 1")
+        );
+    }
+
+    #[test]
+    fn the_same_data_give_the_same_bytes() {
+        let lines = vec![vec![[0.0, 1.0], [1.0, 0.3]], vec![[0.0, 2.0]]];
+        assert_eq!(plot(Scale::Log, lines.clone()), plot(Scale::Log, lines));
+    }
+}

@@ -1,0 +1,223 @@
+//! SVG elements as text, coordinates with two decimals.
+
+use std::fmt::Write as _;
+
+/// A series' colour (Okabe and Ito's, which colour-blind people tell apart), dash and marker.
+struct Style {
+    colour: &'static str,
+    dash: &'static str,
+    marker: Marker,
+}
+
+#[derive(Clone, Copy)]
+enum Marker {
+    Circle,
+    Square,
+    Triangle,
+    Diamond,
+}
+
+const STYLES: [Style; 4] = [
+    Style { colour: "#0072b2", dash: "none", marker: Marker::Circle },
+    Style { colour: "#d55e00", dash: "7 3", marker: Marker::Square },
+    Style { colour: "#00805e", dash: "2 3", marker: Marker::Triangle },
+    Style { colour: "#a8487f", dash: "9 3 2 3", marker: Marker::Diamond },
+];
+
+/// Where text stands relative to its point.
+#[derive(Clone, Copy)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// Text for an element or an attribute: nothing in it is markup.
+pub(in crate::report) fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            // XML has no place for control characters, not even escaped.
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// Width of text at 12 px, estimated from above for common sans-serif fonts.
+pub(super) fn text_width(text: &str) -> f64 {
+    6.7 * text.chars().count() as f64
+}
+
+/// Text broken between words into lines of at most `width` px.
+pub(super) fn wrapped(text: &str, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width(line) + text_width(word) + text_width(" ") <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// An SVG in the making. Coordinates are in px, x to the right and y down.
+pub(super) struct Canvas {
+    body: String,
+}
+
+impl Canvas {
+    pub(super) fn new() -> Self {
+        Canvas { body: String::new() }
+    }
+
+    /// Writes to a String, which cannot fail.
+    fn put(&mut self, element: std::fmt::Arguments<'_>) {
+        let _ = self.body.write_fmt(element);
+        self.body.push('\n');
+    }
+
+    pub(super) fn text(&mut self, at: [f64; 2], anchor: Anchor, text: &str) {
+        self.styled_text(at, anchor, text, "");
+    }
+
+    pub(super) fn bold_text(&mut self, at: [f64; 2], text: &str) {
+        self.styled_text(at, Anchor::Start, text, " font-weight=\"600\"");
+    }
+
+    fn styled_text(&mut self, [x, y]: [f64; 2], anchor: Anchor, text: &str, style: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let text = escape(text);
+        self.put(format_args!(
+            r##"<text class="ink" x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" fill="#1f2933"{style}>{text}</text>"##
+        ));
+    }
+
+    pub(super) fn grid_line(&mut self, from: [f64; 2], to: [f64; 2]) {
+        self.neutral_line("grid", "#d9dde3", from, to, "");
+    }
+
+    pub(super) fn axis_line(&mut self, from: [f64; 2], to: [f64; 2]) {
+        self.neutral_line("axis", "#52606d", from, to, "");
+    }
+
+    pub(super) fn mark_line(&mut self, from: [f64; 2], to: [f64; 2]) {
+        self.neutral_line("axis", "#52606d", from, to, " stroke-dasharray=\"4 3\"");
+    }
+
+    fn neutral_line(
+        &mut self,
+        class: &str,
+        colour: &str,
+        [x, y]: [f64; 2],
+        [to_x, to_y]: [f64; 2],
+        dash: &str,
+    ) {
+        self.put(format_args!(
+            r#"<line class="{class}" x1="{x:.2}" y1="{y:.2}" x2="{to_x:.2}" y2="{to_y:.2}" stroke="{colour}"{dash}/>"#
+        ));
+    }
+
+    /// Begins the marks of a series.
+    pub(super) fn begin_series(&mut self, style: usize) {
+        let class = style % STYLES.len();
+        let colour = STYLES[class].colour;
+        self.put(format_args!(
+            r#"<g class="s{class}" color="{colour}" stroke="currentColor" fill="currentColor">"#
+        ));
+    }
+
+    /// Ends the marks of a series.
+    pub(super) fn end_series(&mut self) {
+        self.put(format_args!("</g>"));
+    }
+
+    /// A line through points, in the series' dash.
+    pub(super) fn path(&mut self, style: usize, points: &[[f64; 2]]) {
+        let dash = STYLES[style % STYLES.len()].dash;
+        let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
+        let points = points.join(" ");
+        self.put(format_args!(
+            r#"<polyline points="{points}" fill="none" stroke-width="1.6" stroke-dasharray="{dash}"/>"#
+        ));
+    }
+
+    /// A series' marker, filled, or hollow for a value that lies beyond the axis.
+    pub(super) fn marker(&mut self, style: usize, [x, y]: [f64; 2], radius: f64, filled: bool) {
+        let hollow = if filled { "" } else { r##" class="hollow" fill="#ffffff""## };
+        match STYLES[style % STYLES.len()].marker {
+            Marker::Circle => {
+                self.put(format_args!(r#"<circle cx="{x:.2}" cy="{y:.2}" r="{radius:.2}"{hollow}/>"#))
+            }
+            Marker::Square => {
+                let (left, top, side) = (x - 0.9 * radius, y - 0.9 * radius, 1.8 * radius);
+                self.put(format_args!(
+                    r#"<rect x="{left:.2}" y="{top:.2}" width="{side:.2}" height="{side:.2}"{hollow}/>"#
+                ));
+            }
+            Marker::Triangle => {
+                let corners = [
+                    [x, y - 1.2 * radius],
+                    [x + 1.1 * radius, y + 0.8 * radius],
+                    [x - 1.1 * radius, y + 0.8 * radius],
+                ];
+                self.polygon(&corners, hollow);
+            }
+            Marker::Diamond => {
+                let far = 1.25 * radius;
+                self.polygon(&[[x, y - far], [x + far, y], [x, y + far], [x - far, y]], hollow);
+            }
+        }
+    }
+
+    fn polygon(&mut self, corners: &[[f64; 2]], hollow: &str) {
+        let corners: Vec<String> = corners.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
+        let corners = corners.join(" ");
+        self.put(format_args!(r#"<polygon points="{corners}"{hollow}/>"#));
+    }
+
+    /// The whole picture of this size.
+    pub(super) fn finish(self, width: f64, height: f64, title: &str, description: &str) -> String {
+        let (title, description, body) = (escape(title), escape(description), self.body);
+        format!(
+            r##"<svg xmlns="http://www.w3.org/2000/svg" class="plot" role="img" viewBox="0 0 {width:.0} {height:.0}" width="{width:.0}" height="{height:.0}" font-family="system-ui, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif" font-size="12">
+<title>{title}</title>
+<desc>{description}</desc>
+<rect class="paper" width="{width:.0}" height="{height:.0}" fill="#ffffff"/>
+{body}</svg>
+"##
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markup_in_text_stays_text() {
+        let svg = Canvas::new().finish(1.0, 1.0, "a < b & \"c\"\u{1}", "</svg>");
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        let text: Vec<&str> = document.root_element().children().filter_map(|node| node.text()).collect();
+        assert!(text.contains(&"a < b & \"c\" ") && text.contains(&"</svg>"), "{text:?}");
+    }
+
+    #[test]
+    fn lines_break_between_words() {
+        assert_eq!(wrapped("one two three", 60.0), ["one two", "three"]);
+        assert_eq!(wrapped("  ", 60.0), Vec::<String>::new());
+    }
+}

@@ -1,0 +1,243 @@
+//! The report of a reproduction says what was found, in every form, and loads nothing.
+
+#![allow(clippy::unwrap_used)]
+
+#[allow(dead_code)]
+mod files;
+mod findings;
+
+use files::Folder;
+use findings::findings;
+use poecal::io::output::write_reproduction;
+use poecal::report::reproduction_files;
+use poecal::reproduce::Reproduction;
+
+fn text(found: &Reproduction, name: &str) -> String {
+    reproduction_files(found).unwrap().into_iter().find(|(other, _)| other == name).unwrap().1
+}
+
+fn plots(found: &Reproduction) -> Vec<(String, String)> {
+    let files = reproduction_files(found).unwrap();
+    files.into_iter().filter(|(name, _)| name.ends_with(".svg")).collect()
+}
+
+/// Findings without any entry.
+fn empty() -> Reproduction {
+    Reproduction {
+        runs: vec![],
+        claims: vec![],
+        screws: vec![],
+        offsets: vec![],
+        spectra: vec![],
+        efficiency: vec![],
+        basin: vec![],
+        ..findings()
+    }
+}
+
+/// Findings in which every real number is `value`.
+fn all_numbers(value: f64) -> Reproduction {
+    let mut found = findings();
+    found.noise_position_m = value;
+    found.length_m = value;
+    for run in &mut found.runs {
+        (run.held_out_rms_m, run.screw_error_max) = (value, value);
+        for state in &mut run.trace {
+            (state.residual_rms_m, state.screw_error_max) = (value, value);
+        }
+    }
+    for row in &mut found.screws {
+        (row.nominal, row.from_poses, row.from_points) = ([value; 6], [value; 6], [value; 6]);
+    }
+    for row in &mut found.offsets {
+        row.screw_offsets_deg = value;
+    }
+    for spectrum in &mut found.spectra {
+        spectrum.singular_values.fill(value);
+    }
+    for row in &mut found.efficiency {
+        row.ratio = value;
+    }
+    for row in &mut found.basin {
+        (row.error_deg, row.share) = (value, value);
+    }
+    found
+}
+
+fn odd_findings() -> Vec<Reproduction> {
+    let odd = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 5e-324].map(all_numbers);
+    odd.into_iter().chain([findings(), empty()]).collect()
+}
+
+#[test]
+fn every_plot_is_well_formed_and_says_what_it_is() {
+    for found in odd_findings() {
+        for (name, svg) in plots(&found) {
+            let document = roxmltree::Document::parse(&svg).unwrap();
+            let root = document.root_element();
+            assert_eq!(root.attribute("role"), Some("img"), "{name}");
+            for child in ["title", "desc"] {
+                assert!(
+                    root.children()
+                        .any(|node| node.has_tag_name((root.tag_name().namespace().unwrap(), child))
+                            && node.text().is_some()),
+                    "{name}"
+                );
+            }
+            for attribute in document.descendants().flat_map(|node| node.attributes()) {
+                assert!(
+                    !attribute.value().contains("NaN") && !attribute.value().contains("inf"),
+                    "{name}: {attribute:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_axis_has_a_unit_or_the_word_for_none() {
+    const WORDS: [&str; 7] = [", mm", ", deg", ", m (v)", "no unit", "iteration", "ratio", "share"];
+    for (name, svg) in plots(&findings()) {
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        let texts: Vec<&str> = document
+            .descendants()
+            .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "text")))
+            .filter_map(|node| node.text())
+            .collect();
+        let titles = texts
+            .iter()
+            .filter(|text| WORDS.iter().any(|word| text.contains(word)) || text.starts_with("number of"));
+        let axes = if svg.contains("<polyline") { 2 } else { 1 };
+        assert!(titles.count() >= axes, "{name}: {texts:?}");
+    }
+}
+
+#[test]
+fn claims_stand_in_both_forms() {
+    let found = findings();
+    let html = text(&found, "report.html");
+    let markdown = text(&found, "report.md");
+    let page = roxmltree::Document::parse(html.trim_start_matches("<!DOCTYPE html>")).ok();
+    assert!(
+        page.is_none(),
+        "HTML's void elements are not XML: this test would read the page as such otherwise"
+    );
+    for claim in &found.claims {
+        for words in [&claim.claim, &claim.paper, &claim.measured] {
+            for number in words
+                .split(|c: char| !(c.is_ascii_digit() || "e.-".contains(c)))
+                .filter(|w| w.chars().any(|c| c.is_ascii_digit()))
+            {
+                assert!(html.contains(number) && markdown.contains(number), "{number}");
+            }
+        }
+    }
+    assert!(html.contains("Text | with &lt;markup&gt; &amp; &quot;quotes&quot; stays *text*."));
+    assert!(markdown.contains(r"Text \| with \<markup> &"));
+    assert!(
+        html.contains("made &amp; up")
+            && markdown.contains("    poecal reproduce lou2009 --out \"made & up\"")
+    );
+    for words in ["4 of 5 statements hold", "from 20 poses"] {
+        assert!(html.contains(words) && markdown.contains(words), "{words}");
+    }
+    assert!(html.contains("<code>adjoint</code> 4; <code>screw</code> 5;"));
+    assert!(markdown.contains("`adjoint` 4; `screw` 5; `screw-offsets` 6; `adjoint-offsets` 7."));
+}
+
+#[test]
+fn tables_have_equal_rows() {
+    for found in odd_findings() {
+        let markdown = text(&found, "report.md");
+        let mut columns = None;
+        for line in markdown.lines() {
+            let bars = line.replace("\\|", "").matches('|').count();
+            columns = (bars > 0).then_some(bars);
+            assert!(line.starts_with('|') == columns.is_some(), "{line}");
+        }
+        assert!(columns.is_some(), "the report ends with a table");
+    }
+}
+
+#[test]
+fn the_page_loads_nothing() {
+    let html = text(&findings(), "report.html").replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+    for word in
+        ["http:", "https:", "<script", "<link", "<img", "src=", "href=", "url(", "@import", "javascript"]
+    {
+        assert!(!html.contains(word), "{word}");
+    }
+    for tag in ["table", "figure", "svg", "div", "tr", "td", "th", "p", "g"] {
+        let opened = html.matches(&format!("<{tag}>")).count() + html.matches(&format!("<{tag} ")).count();
+        assert_eq!(opened, html.matches(&format!("</{tag}>")).count(), "{tag}");
+    }
+}
+
+#[test]
+fn markdown_shows_every_plot_that_is_written() {
+    let found = findings();
+    let markdown = text(&found, "report.md");
+    let names: Vec<String> = plots(&found).into_iter().map(|(name, _)| name).collect();
+    assert!(names.iter().all(|name| markdown.contains(&format!("]({name})"))));
+    assert_eq!(markdown.matches(".svg)").count(), names.len());
+    let mut distinct = names.clone();
+    distinct.sort();
+    distinct.dedup();
+    assert_eq!(distinct.len(), names.len());
+}
+
+#[test]
+fn results_hold_the_findings_and_nulls_where_there_is_no_number() {
+    let mut found = findings();
+    found.runs[0].held_out_rms_m = f64::NAN;
+    let results: serde_json::Value = serde_json::from_str(&text(&found, "results.json")).unwrap();
+    assert!(results["runs"][0]["held_out_rms_m"].is_null());
+    assert_eq!(results["runs"][1]["formulation"], "adjoint");
+    assert_eq!(results["claims"][2]["holds"], false);
+}
+
+#[test]
+fn a_second_run_replaces_the_first_and_leaves_other_files() {
+    let folder = Folder::new();
+    let out = folder.path("out");
+    let files = reproduction_files(&findings()).unwrap();
+    let written = write_reproduction(&out, false, &files).unwrap();
+    assert_eq!(written.files.len(), files.len());
+    std::fs::write(out.join("mine.svg"), "mine").unwrap();
+    let error = write_reproduction(&out, false, &files).unwrap_err();
+    assert!(error.to_string().contains("--force"), "{error}");
+    let fewer = reproduction_files(&empty()).unwrap();
+    write_reproduction(&out, true, &fewer).unwrap();
+    let names =
+        std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.filter(|name| name != "mine.svg").collect();
+    names.sort();
+    let mut expected: Vec<String> = fewer.into_iter().map(|(name, _)| name).collect();
+    expected.sort();
+    assert_eq!(names, expected);
+    assert_eq!(std::fs::read_to_string(out.join("mine.svg")).unwrap(), "mine");
+}
+
+/// Every key of an object and of what is in it.
+fn keys(value: &serde_json::Value, found: &mut Vec<String>) {
+    match value {
+        serde_json::Value::Object(object) => {
+            found.extend(object.keys().cloned());
+            object.values().for_each(|value| keys(value, found));
+        }
+        serde_json::Value::Array(values) => values.iter().for_each(|value| keys(value, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_of_the_results_is_documented() {
+    let document = include_str!("../../../docs/file-formats.md");
+    let (_, section) = document.split_once("### Reproduction of lou2009\n").unwrap();
+    let results = serde_json::from_str(&text(&findings(), "results.json")).unwrap();
+    let mut found = Vec::new();
+    keys(&results, &mut found);
+    for key in found {
+        assert!(section.contains(&format!("`{key}`")), "{key}");
+    }
+}
