@@ -5,7 +5,7 @@
 use nalgebra::{DMatrix, Matrix6, Vector3, Vector6};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::lie::{Pose, Twist, hat};
-use poecal::parameters::{Columns, Formulation, Parameter, ScrewAxis, TargetPlace};
+use poecal::parameters::{Columns, Formulation, FreeScrew, JointOffset, Parameter, ScrewAxis, TargetPlace};
 use poecal::reproduce::Seen;
 use poecal::reproduce::literal::{
     AdjointErrors, Literal, adjoint_jacobian, jacobian, point_rows, singular_values, stacked,
@@ -328,6 +328,48 @@ fn columns_of_the_solver_are_the_blocks_of_the_paper_seen_at_the_target() {
             TargetPlace { target: 0 }.target_twists(&chain, 0, &mut twists);
             for ((v, _), column) in twists.into_iter().zip(own.column_iter()) {
                 worst = worst.max((v - column).norm());
+            }
+        }
+    }
+    println!("solver against paper: {worst:.1e}");
+    assert!(worst < RELATIVE);
+}
+
+/// All columns of free screws, those that the retraction drops too, and of offsets: Q_k and r_k of lou2009 (8) in the axis' own frame,
+/// also for values beyond a turn and with offsets in the estimate.
+#[test]
+fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
+    let mut worst: f64 = 0.0;
+    for robot in robots() {
+        for offset in [0.0, 0.3] {
+            let mut estimate = Estimate::new(&robot, vec![robot.home], device());
+            estimate.joint_offset = vec![offset; robot.joints.len()];
+            for readings in configurations(&robot) {
+                let values: Vec<f64> = readings.iter().map(|reading| reading + offset).collect();
+                let literal = Literal::new(&robot, &values);
+                let packed = Packed::new(&robot, &readings, readings.len());
+                let mut chain = Chain::default();
+                chain.evaluate(&Linkage::new(&estimate), &packed, 0, 0);
+                let mut to_target = Matrix6::identity();
+                to_target.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(&chain.target.translation));
+                let seen = to_target * device().adjoint();
+                for (i, joint) in robot.joints.iter().enumerate() {
+                    let screw = seen * literal.screw_blocks[i] * estimate.base_from_axis[i].adjoint();
+                    let free = Parameter::FreeScrew(FreeScrew { joint: i, kind: joint.kind });
+                    let shift = Parameter::JointOffset(JointOffset { joint: i, kind: joint.kind });
+                    let mut twists = [(Vector3::zeros(), Vector3::zeros()); 6];
+                    let dim = free.model().columns().len();
+                    free.model().target_twists(&chain, 0, &mut twists[..dim]);
+                    for (k, &(v, w)) in twists[..dim].iter().enumerate() {
+                        let error = (Twist::new(v, w).to_vector() - screw.column(k)).norm();
+                        worst = worst.max(error / screw.norm().max(1.0));
+                    }
+                    shift.model().target_twists(&chain, 0, &mut twists[..1]);
+                    let (v, w) = twists[0];
+                    let column = seen * literal.offset_columns[i];
+                    worst =
+                        worst.max((Twist::new(v, w).to_vector() - column).norm() / column.norm().max(1.0));
+                }
             }
         }
     }

@@ -149,13 +149,15 @@ fn claims_stand_in_both_forms() {
 fn tables_have_equal_rows() {
     for found in odd_findings() {
         let markdown = text(&found, "report.md");
-        let mut columns = None;
+        let (mut before, mut tables) = (0, 0);
         for line in markdown.lines() {
             let bars = line.replace("\\|", "").matches('|').count();
-            columns = (bars > 0).then_some(bars);
-            assert!(line.starts_with('|') == columns.is_some(), "{line}");
+            assert_eq!(line.starts_with('|'), bars > 0, "{line}");
+            tables += usize::from(bars > 0 && before == 0);
+            assert!(bars == 0 || before == 0 || bars == before, "{line}");
+            before = bars;
         }
-        assert!(columns.is_some(), "the report ends with a table");
+        assert_eq!(tables, 8);
     }
 }
 

@@ -6,5 +6,6 @@ mod bad_input;
 mod commands;
 mod folder;
 mod offsets;
+mod reproduce;
 mod session;
 mod targets_and_validation;

@@ -93,6 +93,53 @@ pub fn cotc(angle_squared: f64) -> f64 {
     }
 }
 
+/// The coefficients c and d of `ad³` and `ad⁴` in the left Jacobian of SE(3), of `θ²` (theory.md §1 (4)).
+///
+/// ```
+/// assert_eq!(poecal::lie::series::left_jacobian(0.0), (1.0 / 24.0, 1.0 / 120.0));
+/// ```
+#[must_use]
+pub fn left_jacobian(angle_squared: f64) -> (f64, f64) {
+    let x = angle_squared;
+    if x < SWITCH {
+        (
+            horner(x, &[1.0 / 24.0, -1.0 / 360.0, 1.0 / 13_440.0, -1.0 / 907_200.0, 1.0 / 95_800_320.0]),
+            horner(
+                x,
+                &[1.0 / 120.0, -1.0 / 2_520.0, 1.0 / 120_960.0, -1.0 / 9_979_200.0, 1.0 / 1_245_404_160.0],
+            ),
+        )
+    } else {
+        // d is (2 + cos θ - 3 sinc) / (2 θ⁴), written with sincc to cancel less.
+        ((2.0 * cosc(x) - sinc(x)) / (2.0 * x), (3.0 * sincc(x) - cosc(x)) / (2.0 * x))
+    }
+}
+
+/// The coefficients b and d of `ad²` and `ad⁴` in the inverse left Jacobian of SE(3), of `θ²` below `(2π)²` (theory.md §1 (4a)).
+///
+/// ```
+/// assert_eq!(poecal::lie::series::inverse_left_jacobian(0.0), (1.0 / 12.0, -1.0 / 720.0));
+/// ```
+#[must_use]
+pub fn inverse_left_jacobian(angle_squared: f64) -> (f64, f64) {
+    let x = angle_squared;
+    if x < SWITCH {
+        (
+            horner(x, &[1.0 / 12.0, 0.0, -1.0 / 30_240.0, -1.0 / 604_800.0, -1.0 / 15_966_720.0]),
+            horner(x, &[-1.0 / 720.0, -1.0 / 15_120.0, -1.0 / 403_200.0, -1.0 / 11_975_040.0]),
+        )
+    } else {
+        // An even polynomial that has the value and the slope of γ = (θ/2) cot(θ/2) at the double eigenvalues ±iθ of ad.
+        let half = 0.5 * x.sqrt();
+        let (sine, cosine) = half.sin_cos();
+        let gamma = half * cosine / sine;
+        // dγ/dθ² = (γ - (θ/2)² / sin²(θ/2)) / (2θ²)
+        let slope = (gamma - (half / sine).powi(2)) / (2.0 * x);
+        let b = slope - 2.0 * (gamma - 1.0) / x;
+        (b, (gamma - 1.0) / (x * x) + b / x)
+    }
+}
+
 fn horner(x: f64, coefficients: &[f64]) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }

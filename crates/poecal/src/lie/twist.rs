@@ -77,52 +77,22 @@ impl Twist {
     #[must_use]
     pub fn left_jacobian(&self) -> Matrix6<f64> {
         let angle_squared = self.w.norm_squared();
-        let (sinc, cosc, sincc) =
-            (series::sinc(angle_squared), series::cosc(angle_squared), series::sincc(angle_squared));
+        let (cosc, sincc) = (series::cosc(angle_squared), series::sincc(angle_squared));
         let ad = self.ad();
         let ad2 = ad * ad;
         // On se(3) ad satisfies ad⁵ = -2θ² ad³ - θ⁴ ad; matching Σ adᵏ/(k+1)! gives the four coefficients.
-        let (c, d) = if angle_squared < series::SWITCH {
-            let x = angle_squared;
-            (
-                1.0 / 24.0 - x / 360.0 + x * x / 13_440.0 - x * x * x / 907_200.0
-                    + x * x * x * x / 95_800_320.0,
-                1.0 / 120.0 - x / 2_520.0 + x * x / 120_960.0 - x * x * x / 9_979_200.0
-                    + x * x * x * x / 1_245_404_160.0,
-            )
-        } else {
-            (
-                (2.0 * cosc - sinc) / (2.0 * angle_squared),
-                // (2 + cos θ - 3 sinc) / (2 θ⁴) written with sincc to cancel less.
-                (3.0 * sincc - cosc) / (2.0 * angle_squared),
-            )
-        };
+        let (c, d) = series::left_jacobian(angle_squared);
         let a = cosc + angle_squared * c;
         let b = sincc + angle_squared * d;
         Matrix6::identity() + ad * a + ad2 * b + ad2 * ad * c + ad2 * ad2 * d
     }
 
-    /// `J_l(ξ)⁻¹ = I - ad/2 + b ad² + d ad⁴` for `|ω| < 2π`, with coefficients of the angle alone (selig2004 and docs/theory.md §4).
+    /// `J_l(ξ)⁻¹ = I - ad/2 + b ad² + d ad⁴` for `|ω| < 2π`, with coefficients of the angle alone (theory.md §1 (4a)).
     #[must_use]
     pub fn inverse_left_jacobian(&self) -> Matrix6<f64> {
-        let x = self.w.norm_squared();
         let ad = self.ad();
         let ad2 = ad * ad;
-        // An even polynomial that has the value and the slope of γ = (θ/2) cot(θ/2) at the double eigenvalues ±iθ of ad.
-        let (b, d) = if x < series::SWITCH {
-            (
-                1.0 / 12.0 - x * x / 30_240.0 - x * x * x / 604_800.0 - x * x * x * x / 15_966_720.0,
-                -1.0 / 720.0 - x / 15_120.0 - x * x / 403_200.0 - x * x * x / 11_975_040.0,
-            )
-        } else {
-            let half = 0.5 * x.sqrt();
-            let (sine, cosine) = half.sin_cos();
-            let gamma = half * cosine / sine;
-            // dγ/dθ² = (γ - (θ/2)²/sin²(θ/2)) / (2θ²)
-            let slope = (gamma - (half / sine).powi(2)) / (2.0 * x);
-            let b = slope - 2.0 * (gamma - 1.0) / x;
-            (b, (gamma - 1.0) / (x * x) + b / x)
-        };
+        let (b, d) = series::inverse_left_jacobian(self.w.norm_squared());
         Matrix6::identity() - ad * 0.5 + ad2 * b + ad2 * ad2 * d
     }
 }

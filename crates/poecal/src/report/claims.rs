@@ -8,7 +8,7 @@ use crate::reproduce::Reproduction;
 pub fn claims(found: &Reproduction) -> String {
     let mut out = String::new();
     for claim in &found.claims {
-        line(&mut out, if claim.holds { "holds" } else { "does not" }, &claim.claim);
+        line(&mut out, if claim.holds { "holds" } else { "not so" }, &claim.claim);
         line(&mut out, "", &claim.measured);
         out.push('\n');
     }

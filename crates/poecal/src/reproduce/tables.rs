@@ -38,7 +38,7 @@ pub const PRESCRIBED_POINT_MM: [f64; 3] = [839.01, -5.03, 724.974];
 
 /// Joint offsets of the experiment with offsets in the truth, degrees. The paper prescribes some and does not print them; these are
 /// this project's own, of a size that mounting an encoder leaves.
-pub const PRESCRIBED_OFFSETS_DEG: [f64; 6] = [2.0, -1.5, 1.0, 3.0, -2.0, 2.5];
+pub const PRESCRIBED_OFFSETS_DEG: [f64; 6] = [4.0, -3.0, 2.0, 6.0, -4.0, 5.0];
 
 /// The identified screws of Table II as printed, as twists in metres. Rounding has made them no screws: see [`rounding`].
 ///
@@ -87,7 +87,7 @@ pub fn prescribed() -> Robot {
 ///
 /// ```
 /// let robot = poecal::reproduce::tables::prescribed_with_offsets();
-/// assert!((robot.joint_values(&[0.0; 6])[0].to_degrees() - 2.0).abs() < 1e-14);
+/// assert!((robot.joint_values(&[0.0; 6])[0].to_degrees() - 4.0).abs() < 1e-14);
 /// ```
 #[must_use]
 pub fn prescribed_with_offsets() -> Robot {

@@ -206,10 +206,10 @@ pub(super) fn spectra(found: &Reproduction) -> Figure {
     };
     Figure {
         caption: format!(
-            "Figure 5. Singular values as shares of the largest. A dashed line marks the gap: singular values beyond it are rounding. A radian counts as {} m.",
+            "Figure 5. Singular values at the identified robot as shares of the largest. A dashed line marks the gap: singular values beyond it are rounding. A radian counts as {} m.",
             number(found.length_m)
         ),
-        plots: found.spectra.iter().enumerate().map(plot).collect(),
+        plots: found.spectra.iter().filter(|it| it.at == "identified").enumerate().map(plot).collect(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The report of a reproduction of lou2009: Markdown, HTML and plots from the same findings.
 
+mod comparison;
 mod document;
 mod figures;
 mod html;

@@ -38,10 +38,6 @@ pub(super) fn yes_no(value: bool) -> String {
     if value { "yes" } else { "no" }.to_owned()
 }
 
-pub(super) fn with_without(value: bool) -> String {
-    if value { "with" } else { "without" }.to_owned()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,7 @@
 use super::document::{Block, Document};
 use super::numbers::{mm, number};
 use super::tables::largest_difference;
-use super::{figures, tables};
+use super::{comparison, figures, tables};
 use crate::parameters::Formulation;
 use crate::reproduce::{Reproduction, Run, ScrewRow, Seen};
 
@@ -42,7 +42,9 @@ pub(super) fn document(found: &Reproduction) -> Document {
         text("Here the axes of the start are off by a random turn and shift of the stated size. A start counts if the fit ends at the truth: held-out error below 1 µm, without noise."),
         Block::Figure(figures::basin(found)),
         Block::Table(tables::basin(found)),
+        heading("Where the original is as good, and where it is not"),
     ]);
+    blocks.extend(comparison::sentences(found).iter().map(|sentence| text(sentence)));
     Document { title: "Reproduction of lou2009".to_owned(), blocks }
 }
 
