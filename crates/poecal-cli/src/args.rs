@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use poecal::calibration::Level;
 use poecal::io::measurements::{ColumnMap, ReadOptions};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
@@ -216,9 +217,31 @@ pub(crate) struct Calibrate {
     /// Overwrite results in an existing folder
     #[arg(long)]
     pub(crate) force: bool,
+    /// End with code 1 if the verdict is worse than this (results are written all the same)
+    #[arg(long, value_enum, value_name = "VERDICT")]
+    pub(crate) require: Option<RequiredLevel>,
     /// Print the calibration as JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// The verdicts that can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RequiredLevel {
+    /// Good to use anywhere within the limits
+    Good,
+    /// Good to use inside the sampled range, or better
+    #[value(name = "inside_sampled_range")]
+    InsideSampledRange,
+}
+
+impl From<RequiredLevel> for Level {
+    fn from(required: RequiredLevel) -> Self {
+        match required {
+            RequiredLevel::Good => Level::Good,
+            RequiredLevel::InsideSampledRange => Level::InsideSampledRange,
+        }
+    }
 }
 
 /// What a simulated device sees.
@@ -321,6 +344,9 @@ pub(crate) struct Predict {
     /// The frame of the poses
     #[arg(long, value_enum, default_value = "base")]
     pub(crate) frame: PredictIn,
+    /// Add the error to expect of each prediction, and whether it lies in the sampled range (of a calibration.json)
+    #[arg(long)]
+    pub(crate) with_uncertainty: bool,
     /// Predict this target of the model instead of the tip
     #[arg(long, value_name = "NAME")]
     pub(crate) target: Option<String>,

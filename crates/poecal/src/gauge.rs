@@ -166,3 +166,76 @@ fn least_squares(columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
     let factor = linalg::cholesky(&gram, count, 1e-9)?;
     Some(linalg::cholesky_solve(&factor, &gradient))
 }
+
+/// How far a screw is from nominal, and how that changes with the unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deviation {
+    /// Angle between the directions, radians.
+    pub tilt_rad: f64,
+    /// Distance of the axis from the nominal joint's origin, metres; zero of a sliding joint.
+    pub shift_m: f64,
+    /// Derivatives of the tilt (a vector, radians) by each scaled unknown: three rows.
+    pub tilt_by_step: [Vec<f64>; 3],
+    /// Derivatives of the shift (a vector, metres).
+    pub shift_by_step: [Vec<f64>; 3],
+}
+
+/// The deviation of each screw from nominal in the gauge of [`base_motion`] (if `base_free`), to first order (docs/theory.md §8 (38)).
+#[must_use]
+pub fn screw_deviations(
+    estimate: &Estimate,
+    robot: &Robot,
+    layout: &Layout,
+    length_m: f64,
+    base_free: bool,
+) -> Vec<Deviation> {
+    let n = layout.dim();
+    let screws = estimate.screws();
+    let each: Vec<_> =
+        screws.iter().zip(&robot.joints).map(|(screw, joint)| deviations(screw, joint, length_m)).collect();
+    let mut gram = Matrix6::zeros();
+    for (_, derivative) in each.iter().flatten() {
+        gram += derivative.transpose() * derivative;
+    }
+    let upper: Vec<f64> = (0..36).map(|k| gram[(k / 6, k % 6)]).collect();
+    let base = if base_free { linalg::cholesky(&upper, 6, 1e-12 * gram.trace()) } else { None };
+    // Motions of the screws by each unknown, less the motion of the base that follows.
+    let effects: Vec<Vec<Vector6<f64>>> = (0..n)
+        .map(|k| {
+            let mut unit = vec![0.0; n];
+            unit[k] = 1.0;
+            let (mut moved, _) = motions(estimate, layout, unit);
+            if let Some(factor) = &base {
+                let mut pull = Vector6::zeros();
+                for (of_screw, motion) in each.iter().zip(&moved) {
+                    for (_, derivative) in of_screw {
+                        pull += derivative.transpose() * (derivative * motion);
+                    }
+                }
+                let follows = Vector6::from_column_slice(&linalg::cholesky_solve(factor, pull.as_slice()));
+                moved.iter_mut().for_each(|motion| *motion -= follows);
+            }
+            moved
+        })
+        .collect();
+    each.iter()
+        .zip(&screws)
+        .zip(&robot.joints)
+        .enumerate()
+        .map(|(index, ((of_screw, screw), joint))| {
+            let [(_, tilting), (shift, shifting)] = of_screw;
+            let rows = |derivative: &Matrix3x6<f64>, scale: f64| -> [Vec<f64>; 3] {
+                std::array::from_fn(|row| {
+                    effects.iter().map(|effect| (derivative * effect[index])[row] / scale).collect()
+                })
+            };
+            let (a, b) = (screw.direction(), joint.screw.direction());
+            Deviation {
+                tilt_rad: a.cross(&b).norm().atan2(a.dot(&b)),
+                shift_m: shift.norm(),
+                tilt_by_step: rows(tilting, length_m),
+                shift_by_step: rows(shifting, 1.0),
+            }
+        })
+        .collect()
+}

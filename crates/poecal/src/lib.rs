@@ -79,6 +79,7 @@ pub mod robot;
 pub mod simulate;
 pub mod solve;
 pub mod start;
+pub mod uncertainty;
 
 pub use error::{Error, ErrorKind, Result, nearest};
 

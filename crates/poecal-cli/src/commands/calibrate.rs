@@ -48,7 +48,11 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
             written.largest.rotation_rad
         ))?;
     }
-    Ok(if calibration.solver.termination.is_success() { ExitCode::SUCCESS } else { ExitCode::from(3) })
+    if !calibration.solver.termination.is_success() {
+        return Ok(ExitCode::from(3));
+    }
+    let worse = arguments.require.is_some_and(|required| calibration.verdict.level < required.into());
+    Ok(if worse { ExitCode::from(1) } else { ExitCode::SUCCESS })
 }
 
 /// Reads and joins the files; with `--validate`, those rows are held out and all others fitted.

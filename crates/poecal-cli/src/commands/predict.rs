@@ -15,7 +15,8 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<ExitCode
     for warning in &joints.warnings {
         console.warning(warning);
     }
-    let text = predictions::predict(&model, &joints, arguments.frame.into(), arguments.target.as_deref())?;
+    let (frame, target) = (arguments.frame.into(), arguments.target.as_deref());
+    let text = predictions::predict(&model, &joints, frame, target, arguments.with_uncertainty)?;
     console.deliver(&text, arguments.out.as_deref())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -78,6 +78,20 @@ pub fn fit_screws(
     (estimate, normal, summary)
 }
 
+/// Layout and normal information of an estimate in the minimal basis.
+pub(super) fn minimal(
+    data: &Dataset,
+    packed: &Packed,
+    rows: &[u32],
+    estimate: &Estimate,
+    noise: Noise,
+    length_m: f64,
+) -> (Layout, Normal) {
+    let free = free_parameters(estimate, data, rows, Formulation::Adjoint);
+    let problem = Problem::new(data, packed, rows.to_vec(), free, noise, length_m);
+    (problem.layout().clone(), problem.normal(estimate))
+}
+
 /// Fits from a registration with noise that is then estimated anew, unless its source says that it is known.
 pub(super) fn fit(
     task: &Task<'_>,

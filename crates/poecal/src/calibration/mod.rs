@@ -1,17 +1,24 @@
 //! From a robot and measurements to a calibrated robot: the steps by name, and nothing computed here.
 
 mod accuracy;
+mod coverage;
 mod doubts;
 mod fit;
 mod judge;
 mod noise;
 mod split;
+mod trust;
+mod verdict;
 
 pub use accuracy::{Accuracy, ModelAccuracy, RowError, SetAccuracy, Statistic, row_errors, set_accuracy};
+pub use coverage::{Coverage, coverage};
 pub use fit::fit_screws;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
 pub use split::split_rows;
+pub(crate) use trust::inside;
+pub use trust::{Expected, JointCorrection, RangePart, Trust};
+pub use verdict::{Level, Verdict};
 
 use crate::analysis::{Identifiability, identifiability};
 use crate::error::{Error, ErrorKind, Result};
@@ -23,6 +30,7 @@ use crate::parameters::Formulation;
 use crate::robot::{JointKind, Robot};
 use crate::solve;
 use crate::start::{Registration, register, register_again};
+use crate::uncertainty::View;
 
 /// What is known of the measuring device's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -176,6 +184,10 @@ pub struct Calibration {
     pub solver: SolverReport,
     /// What the measurements can tell.
     pub identifiability: Identifiability,
+    /// How far the result can be trusted.
+    pub trust: Trust,
+    /// Whether it is good to use, and where.
+    pub verdict: Verdict,
     /// Noise by which residuals were whitened where a row stated none.
     pub noise: Noise,
     /// Where that noise came from.
@@ -278,6 +290,39 @@ pub fn calibrate_with_progress(
         training: set_accuracy(data, &packed, &fit_rows, &models),
         held_out: (!held_out_rows.is_empty()).then(|| set_accuracy(data, &packed, &held_out_rows, &models)),
     };
+    // Whatever the unknowns of the fit were: what is delivered is judged in the minimal basis.
+    let (layout, normal) = if options.formulation == Formulation::Adjoint {
+        (fitted.layout.clone(), fitted.normal.clone())
+    } else {
+        fit::minimal(data, &packed, &fit_rows, &models.calibrated, fitted.noise, length_m)
+    };
+    let trust = trust::trust(&trust::Finished {
+        view: View {
+            robot,
+            data,
+            packed: &packed,
+            rows: &fit_rows,
+            free: &layout.parameters().map(|(parameter, _)| *parameter).collect::<Vec<_>>(),
+            noise: fitted.noise,
+            noise_is_stated: matches!(fitted.noise_source, NoiseSource::Given | NoiseSource::Rows),
+            length_m,
+            estimate: &models.calibrated,
+        },
+        layout: &layout,
+        normal: &normal,
+        models: &models,
+        base_free: options.frame == DeviceFrameKnowledge::Unknown,
+        seed: options.seed,
+    });
+    let verdict = verdict::verdict(&verdict::Grounds {
+        accuracy: &accuracy,
+        solver: &fitted.report,
+        identifiability: &identifiability,
+        trust: &trust,
+        residuals: fitted.normal.residuals,
+        reach_m: 3.0 * length_m,
+        mistakes: &[],
+    });
     let warnings = doubts::doubts(data, &fit_rows, &accuracy.training.registered, options.frame);
     let (calibrated_robot, targets) = place_tip(robot, data, &data.frames(&fit_rows), &models.calibrated);
     Ok(Calibration {
@@ -293,6 +338,8 @@ pub fn calibrate_with_progress(
         accuracy,
         solver: fitted.report,
         identifiability,
+        trust,
+        verdict,
         noise: fitted.noise,
         noise_source: fitted.noise_source,
         warnings,

@@ -46,6 +46,20 @@ impl Packed {
         Packed { joints: robot.joints.len(), values, angles }
     }
 
+    /// Packs joint values (radians, metres), one a joint and row.
+    #[must_use]
+    pub fn of_values(robot: &Robot, values: &[f64]) -> Self {
+        let joints = robot.joints.len();
+        let pack = |(index, &value): (usize, &f64)| match robot.joints[index % joints.max(1)].kind {
+            JointKind::Revolute => {
+                let (sine, cosine) = value.sin_cos();
+                (cosine, sine)
+            }
+            JointKind::Prismatic => (value, 0.0),
+        };
+        Packed { joints, values: values.iter().enumerate().map(pack).collect(), angles: values.to_vec() }
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn rows(&self) -> usize {

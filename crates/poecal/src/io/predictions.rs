@@ -6,8 +6,12 @@ use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
 use super::numbers::shortest;
 use super::residuals::quoted;
+use crate::calibration::{Coverage, inside};
 use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::estimate::Packed;
 use crate::lie::Pose;
+use crate::robot::Robot;
+use crate::uncertainty::PredictedError;
 
 /// The frame in which poses are predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +39,7 @@ pub enum PredictionFrame {
 /// let robot = Robot::new("slide", vec![joint], Pose::identity())?;
 /// let model = Model { robot, source: ModelSource::Toml, path: "slide.toml".into() };
 /// let joints = JointsTable { readings: vec![0.25], rows: 1, ..JointsTable::default() };
-/// let text = predict(&model, &joints, PredictionFrame::Base, None)?;
+/// let text = predict(&model, &joints, PredictionFrame::Base, None, false)?;
 /// assert_eq!(text, "x[m],y[m],z[m],qx,qy,qz,qw\n0.25,0,0,0,0,0,1\n");
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -44,6 +48,7 @@ pub fn predict(
     joints: &JointsTable,
     frame: PredictionFrame,
     target: Option<&str>,
+    with_uncertainty: bool,
 ) -> Result<String> {
     let robot = &model.robot;
     let tip_from_target = target.map_or(Ok(Pose::identity()), |name| tip_from_target(model, name))?;
@@ -52,8 +57,12 @@ pub fn predict(
         PredictionFrame::Device => device_from_base(model)?,
     };
     let with_ids = !joints.ids.is_empty();
-    let mut out = String::with_capacity((joints.rows + 1) * 140);
-    out.push_str(if with_ids { "id,x[m],y[m],z[m],qx,qy,qz,qw\n" } else { "x[m],y[m],z[m],qx,qy,qz,qw\n" });
+    let doubts = if with_uncertainty { Some(Doubts::new(model, joints, target)?) } else { None };
+    let mut out = String::with_capacity((joints.rows + 1) * 200);
+    out.push_str(if with_ids { "id," } else { "" });
+    out.push_str("x[m],y[m],z[m],qx,qy,qz,qw");
+    out.push_str(if with_uncertainty { UNCERTAINTY_COLUMNS } else { "" });
+    out.push('\n');
     for (row, readings) in joints.readings.chunks_exact(robot.reading_names().len().max(1)).enumerate() {
         let pose = frame_from_base * robot.forward_kinematics(readings) * tip_from_target;
         if with_ids {
@@ -67,9 +76,46 @@ pub fn predict(
             // Adding zero makes negative zero positive; writing to a String cannot fail.
             let _ = write!(out, "{separator}{}", shortest(number + 0.0));
         }
+        if let Some(doubts) = &doubts {
+            doubts.write(row, readings, robot, &mut out);
+        }
         out.push('\n');
     }
     Ok(out)
+}
+
+/// Root mean square distance and angle to expect, the distance not exceeded in 95 % of all cases, and whether every joint is within the range
+/// that was sampled.
+const UNCERTAINTY_COLUMNS: &str =
+    ",sigma_position[m],sigma_rotation[rad],bound95_position[m],inside_sampled_range";
+
+/// What to expect of each predicted row.
+struct Doubts {
+    errors: Vec<PredictedError>,
+    sampled: Vec<Coverage>,
+}
+
+impl Doubts {
+    fn new(model: &Model, joints: &JointsTable, target: Option<&str>) -> Result<Self> {
+        let ModelSource::Calibration(file) = &model.source else {
+            let message = "found a robot model without uncertainty, expected a calibration.json for \
+                           --with-uncertainty: calibrate first";
+            return Err(Error::new(ErrorKind::Option, message).in_file(&model.path));
+        };
+        let (uncertainty, index) = file.uncertainty(target).map_err(|error| error.in_file(&model.path))?;
+        let width = model.robot.reading_names().len();
+        let packed = Packed::new(&model.robot, &joints.readings, width);
+        Ok(Doubts { errors: uncertainty.predictions(&packed, index), sampled: file.sampled_ranges() })
+    }
+
+    fn write(&self, row: usize, readings: &[f64], robot: &Robot, out: &mut String) {
+        if let Some(error) = self.errors.get(row) {
+            for number in [error.sigma_position_m(), error.sigma_rotation_rad(), error.bound_position_m()] {
+                let _ = write!(out, ",{}", shortest(number));
+            }
+        }
+        let _ = write!(out, ",{}", inside(robot, &self.sampled, readings));
+    }
 }
 
 fn tip_from_target(model: &Model, name: &str) -> Result<Pose> {

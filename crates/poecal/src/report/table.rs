@@ -46,6 +46,7 @@ pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
         }
     }
     line(&mut out, "solver", &solver_words(calibration));
+    trust_lines(&mut out, calibration);
     if let Some(words) = formulation_words(calibration) {
         line(&mut out, "formulation", &words);
     }
@@ -183,6 +184,28 @@ fn solver_words(calibration: &Calibration) -> String {
         count => format!(", {count} further starts tried"),
     };
     format!("{} iterations, {end}{restarts}", solver.iterations)
+}
+
+/// What is to be expected of predictions, what cross-validation shows, and the verdict.
+fn trust_lines(out: &mut String, calibration: &Calibration) {
+    let trust = &calibration.trust;
+    if let (Some(measured), Some(range)) = (trust.measured, trust.range) {
+        let words = format!(
+            "{} mm (RMS) where it was measured, {} mm anywhere within the limits",
+            number(measured.sigma_m * 1e3),
+            number(range.sigma_m * 1e3)
+        );
+        line(out, "to expect", &words);
+    }
+    if let Some(found) = &trust.cross_validation {
+        let worst = found.worst().map_or(String::new(), |worst| {
+            format!("; {}: {} mm", worst.name, number(worst.position_rms_m * 1e3))
+        });
+        let words = format!("random rows {} mm (RMS){worst}", number(found.random.position_rms_m * 1e3));
+        line(out, "left out", &words);
+    }
+    let verdict = &calibration.verdict;
+    line(out, "verdict", &format!("{}: {}", verdict.level.words(), verdict.reasons.join("; ")));
 }
 
 /// How the problem was written, where not as usual, and what follows from that.

@@ -2,8 +2,10 @@
 
 mod judging;
 mod schema;
+mod trust;
 
 pub use schema::*;
+pub use trust::*;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -60,6 +62,17 @@ impl CalibrationFile {
                     })
                     .collect(),
             },
+            verdict: Some(calibration.verdict.clone()),
+            coverage: calibration.trust.coverage.iter().map(CoverageEntry::of).collect(),
+            cross_validation: CrossValidationEntry::of(&calibration.trust),
+            corrections: calibration
+                .trust
+                .coverage
+                .iter()
+                .zip(&calibration.trust.joints)
+                .map(CorrectionEntry::of)
+                .collect(),
+            uncertainty: UncertaintyEntry::of(calibration),
             warnings: calibration.warnings.clone(),
             noise: NoiseEntry {
                 sigma_position_mm: calibration.noise.position_m * 1e3,

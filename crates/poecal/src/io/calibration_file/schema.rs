@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::calibration::{Accuracy, NoiseSource};
+use super::trust::{CorrectionEntry, CoverageEntry, CrossValidationEntry, UncertaintyEntry};
+use crate::calibration::{Accuracy, NoiseSource, Verdict};
 use crate::measurement::PoseResidual;
 use crate::parameters::Formulation;
 use crate::solve::{Method, Termination};
@@ -34,6 +35,21 @@ pub struct CalibrationFile {
     pub identifiability: IdentifiabilityEntry,
     /// Noise by which residuals were weighted.
     pub noise: NoiseEntry,
+    /// Whether the result is good to use, and where.
+    #[serde(default)]
+    pub verdict: Option<Verdict>,
+    /// How much of each joint's range was sampled.
+    #[serde(default)]
+    pub coverage: Vec<CoverageEntry>,
+    /// Rows left out in turn, and how the others predict them; null if there are too few.
+    #[serde(default)]
+    pub cross_validation: Option<CrossValidationEntry>,
+    /// Each joint's correction.
+    #[serde(default)]
+    pub corrections: Vec<CorrectionEntry>,
+    /// Errors to expect of predictions; null if there are no more residuals than unknowns.
+    #[serde(default)]
+    pub uncertainty: Option<UncertaintyEntry>,
     /// What makes the result doubtful, a sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,

@@ -1,0 +1,275 @@
+//! How far a calibration can be trusted: cross-validation, uncertainty of predictions and of each screw, and what each joint's correction
+//! is worth.
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::coverage::{Coverage, coverage};
+use super::{Models, row_errors};
+use crate::estimate::{Estimate, Packed, sample_rows};
+use crate::gauge::{Deviation, screw_deviations};
+use crate::problem::Layout;
+use crate::robot::{JointKind, Robot};
+use crate::simulate::random;
+use crate::solve::Normal;
+use crate::start::{Registration, register_again};
+use crate::uncertainty::{
+    CrossValidation, Discrepancy, PRIOR, PredictedError, Uncertainty, View, cross_validate, discrepancy,
+};
+
+/// Random configurations by which the joint range is judged.
+const CONFIGURATIONS: usize = 400;
+/// Parts into which each joint's range is divided.
+const PARTS: usize = 6;
+/// Rows on which the worth of each joint's correction is judged.
+const WORTH_SAMPLE: usize = 300;
+
+/// Expected errors of predicted positions, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// Root mean square distance.
+    pub sigma_m: f64,
+    /// Mean of the distances that are not exceeded in 95 % of all cases.
+    pub bound_m: f64,
+    /// The largest of those.
+    pub worst_bound_m: f64,
+}
+
+impl Expected {
+    fn of(errors: &[PredictedError]) -> Self {
+        let count = errors.len().max(1) as f64;
+        let bounds = errors.iter().map(PredictedError::bound_position_m);
+        Expected {
+            sigma_m: (errors.iter().map(|error| error.position.trace()).sum::<f64>() / count).sqrt(),
+            bound_m: bounds.clone().sum::<f64>() / count,
+            worst_bound_m: bounds.fold(0.0, f64::max),
+        }
+    }
+}
+
+/// A part of a joint's range, and what to expect there when the other joints are anywhere in theirs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RangePart {
+    /// Index of the joint.
+    pub joint: usize,
+    /// From and to, radians or metres.
+    pub range: [f64; 2],
+    /// Root mean square distance to expect, metres.
+    pub sigma_m: f64,
+}
+
+/// A joint's correction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointCorrection {
+    /// Angle between nominal and calibrated direction, radians.
+    pub tilt_rad: f64,
+    /// Distance of the calibrated axis from the nominal joint's origin, metres.
+    pub shift_m: f64,
+    /// Root mean square error to expect of the direction, radians; `None` where the data do not tell it.
+    pub sigma_tilt_rad: Option<f64>,
+    /// Root mean square error to expect of the axis' place at the joint, metres.
+    pub sigma_shift_m: Option<f64>,
+    /// Root mean square position error if this screw alone stayed nominal, tool and device frame found anew, metres.
+    pub left_nominal_rms_m: f64,
+}
+
+/// How far a calibration can be trusted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trust {
+    /// What of each joint's range was sampled.
+    pub coverage: Vec<Coverage>,
+    /// Parts left out in turn; none if the rows are too few.
+    pub cross_validation: Option<CrossValidation>,
+    /// Covariance of the unknowns, and what the model does not describe.
+    pub uncertainty: Option<Uncertainty>,
+    /// What to expect in the configurations that were measured.
+    pub measured: Option<Expected>,
+    /// What to expect in configurations anywhere within the limits.
+    pub range: Option<Expected>,
+    /// The same by parts of each joint's range.
+    pub parts: Vec<RangePart>,
+    /// Each joint's correction.
+    pub joints: Vec<JointCorrection>,
+}
+
+/// What a finished fit hands over.
+pub(super) struct Finished<'a> {
+    pub(super) view: View<'a>,
+    pub(super) layout: &'a Layout,
+    pub(super) normal: &'a Normal,
+    pub(super) models: &'a Models,
+    pub(super) base_free: bool,
+    pub(super) seed: u64,
+}
+
+/// All of it.
+pub(super) fn trust(finished: &Finished<'_>) -> Trust {
+    let view = &finished.view;
+    let cross_validation = cross_validate(view, finished.seed);
+    let found = discrepancy(view, cross_validation.as_ref());
+    let uncertainty = uncertainty(finished, &found);
+    let sampled = sampled_values(view, view.rows);
+    let coverage = coverage(view.robot, view.packed, view.rows);
+    let anywhere = anywhere(&coverage, finished.seed);
+    let (mut measured, mut range, mut parts) = (None, None, Vec::new());
+    if let Some(uncertainty) = &uncertainty {
+        let target = 0;
+        measured =
+            Some(Expected::of(&uncertainty.predictions(&Packed::of_values(view.robot, &sampled), target)));
+        let errors = uncertainty.predictions(&Packed::of_values(view.robot, &anywhere), target);
+        range = Some(Expected::of(&errors));
+        parts = range_parts(&coverage, &anywhere, &errors);
+    }
+    Trust {
+        joints: joints(finished, uncertainty.as_ref()),
+        coverage,
+        cross_validation,
+        uncertainty,
+        measured,
+        range,
+        parts,
+    }
+}
+
+fn uncertainty(finished: &Finished<'_>, found: &Discrepancy) -> Option<Uncertainty> {
+    let normal = finished.normal;
+    let freedom = normal.residuals.checked_sub(normal.dim()).filter(|&freedom| freedom > 0)?;
+    let variance = 2.0 * normal.cost / freedom as f64;
+    // Stated noise is believed where few residuals could tell otherwise.
+    let variance = if finished.view.noise_is_stated { variance.max(1.0) } else { variance };
+    let estimate = finished.view.estimate.clone();
+    Uncertainty::new(estimate, finished.layout.clone(), &normal.gram, variance, finished.view.length_m, found)
+}
+
+/// Joint values of at most some hundred of the rows.
+fn sampled_values(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
+    let sample = sample_rows(rows, CONFIGURATIONS);
+    sample.iter().flat_map(|&row| view.packed.joint_values(row as usize).iter().copied()).collect()
+}
+
+/// Joint values anywhere within the limits; of a revolute joint within a turn about the middle of what was sampled, where the limits
+/// allow more or are missing, and of a sliding joint without limits within what was sampled.
+fn anywhere(coverage: &[Coverage], seed: u64) -> Vec<f64> {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x616e_7977);
+    let ranges: Vec<[f64; 2]> = coverage.iter().map(range).collect();
+    (0..CONFIGURATIONS)
+        .flat_map(|_| {
+            let draw = |[lower, upper]: &[f64; 2]| lower + (upper - lower) * random::uniform(&mut generator);
+            ranges.iter().map(draw).collect::<Vec<f64>>()
+        })
+        .collect()
+}
+
+/// The range in which a joint may be used.
+fn range(coverage: &Coverage) -> [f64; 2] {
+    let half_turn = std::f64::consts::PI;
+    let middle = 0.5 * (coverage.sampled[0] + coverage.sampled[1]);
+    match (coverage.kind, coverage.limits) {
+        (_, Some([lower, upper]))
+            if coverage.kind == JointKind::Prismatic || upper - lower <= 2.0 * half_turn =>
+        {
+            [lower, upper]
+        }
+        (JointKind::Prismatic, _) => coverage.sampled,
+        (JointKind::Revolute, _) => [middle - half_turn, middle + half_turn],
+    }
+}
+
+/// Mean squares of the expected errors by parts of each joint's range.
+fn range_parts(coverage: &[Coverage], values: &[f64], errors: &[PredictedError]) -> Vec<RangePart> {
+    let joints = coverage.len();
+    let mut parts = Vec::new();
+    for (joint, of_joint) in coverage.iter().enumerate() {
+        let [lower, upper] = range(of_joint);
+        let width = (upper - lower) / PARTS as f64;
+        if width <= 0.0 {
+            continue;
+        }
+        for part in 0..PARTS {
+            let from = lower + width * part as f64;
+            let here = errors
+                .iter()
+                .zip(values.chunks_exact(joints))
+                .filter(|(_, values)| (from..=from + width).contains(&values[joint]))
+                .map(|(error, _)| error.position.trace());
+            let count = here.clone().count();
+            if count > 0 {
+                let sigma_m = (here.sum::<f64>() / count as f64).sqrt();
+                parts.push(RangePart { joint, range: [from, from + width], sigma_m });
+            }
+        }
+    }
+    parts
+}
+
+/// Each joint's correction with its uncertainty and its worth.
+fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<JointCorrection> {
+    let view = &finished.view;
+    let calibrated = &finished.models.calibrated;
+    let deviations =
+        screw_deviations(calibrated, view.robot, finished.layout, view.length_m, finished.base_free);
+    let nominal: Vec<_> = view.robot.joints.iter().map(|joint| joint.screw).collect();
+    let rows = sample_rows(view.rows, WORTH_SAMPLE);
+    deviations
+        .into_iter()
+        .enumerate()
+        .map(|(joint, deviation)| {
+            let (sigma_tilt_rad, sigma_shift_m) = sigmas(&deviation, uncertainty, view.length_m);
+            let mut screws = calibrated.screws();
+            screws[joint] = nominal[joint];
+            let left = registered_again(finished, &rows, &calibrated.with_screws(&screws));
+            let errors = row_errors(view.data, view.packed, &rows, &left);
+            let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
+            JointCorrection {
+                tilt_rad: deviation.tilt_rad,
+                shift_m: deviation.shift_m,
+                sigma_tilt_rad,
+                sigma_shift_m,
+                left_nominal_rms_m: (squares / rows.len().max(1) as f64).sqrt(),
+            }
+        })
+        .collect()
+}
+
+/// Standard deviations of tilt and shift; none where they are hardly less than what a drawing leaves open.
+fn sigmas(
+    deviation: &Deviation,
+    uncertainty: Option<&Uncertainty>,
+    length_m: f64,
+) -> (Option<f64>, Option<f64>) {
+    const TOLD: f64 = 0.5;
+    let of = |rows: &[Vec<f64>; 3], most: f64| {
+        let variance: f64 = rows.iter().map(|row| uncertainty.map_or(0.0, |it| it.variance(row))).sum();
+        Some(variance.sqrt()).filter(|sigma| uncertainty.is_some() && *sigma < TOLD * most)
+    };
+    let tilt = of(&deviation.tilt_by_step, PRIOR);
+    let shift = of(&deviation.shift_by_step, PRIOR * length_m);
+    // One without the other means little: the place of an axis of unknown direction.
+    if tilt.is_some() && shift.is_some() { (tilt, shift) } else { (None, None) }
+}
+
+/// Tool and device frame found anew for an estimate's screws.
+fn registered_again(finished: &Finished<'_>, rows: &[u32], start: &Estimate) -> Estimate {
+    let view = &finished.view;
+    let registration = Registration {
+        data: view.data,
+        packed: view.packed,
+        rows,
+        noise: view.noise,
+        length_m: view.length_m,
+        device_free: finished.base_free,
+        targets_free: true,
+    };
+    register_again(&registration, start)
+}
+
+/// The values of a joint, radians or metres, at readings.
+pub(crate) fn inside(robot: &Robot, coverage: &[Coverage], readings: &[f64]) -> bool {
+    let indices = robot.reading_indices();
+    robot
+        .joints
+        .iter()
+        .zip(&indices)
+        .zip(coverage)
+        .all(|((joint, &index), coverage)| coverage.contains(joint.reading.value(readings[index])))
+}

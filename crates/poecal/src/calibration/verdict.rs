@@ -1,0 +1,174 @@
+//! Whether a calibration is good to use, and where: a level with its reasons, by fixed rules (docs/theory.md §9).
+
+use serde::{Deserialize, Serialize};
+
+use super::trust::Trust;
+use super::{Accuracy, SolverReport};
+use crate::analysis::Identifiability;
+
+/// How far a calibration may be used.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Level {
+    /// Not at all: something is wrong with the input, the fit, or both.
+    DoNotUse,
+    /// In configurations like those that were measured.
+    InsideSampledRange,
+    /// Anywhere within the limits.
+    Good,
+}
+
+impl Level {
+    /// What to tell a user.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Level::DoNotUse => "do not use",
+            Level::InsideSampledRange => "use inside the sampled range",
+            Level::Good => "good",
+        }
+    }
+
+    /// The stable word used in files and on the command line.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Level::DoNotUse => "do_not_use",
+            Level::InsideSampledRange => "inside_sampled_range",
+            Level::Good => "good",
+        }
+    }
+}
+
+/// A level and why it is not a better one; what speaks for the level, if it is the best.
+///
+/// ```
+/// use poecal::calibration::{Level, Verdict};
+/// let verdict = Verdict { level: Level::InsideSampledRange, reasons: vec!["joint2 was moved through 27 % of its range".into()] };
+/// assert!(verdict.level < Level::Good);
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Verdict {
+    /// How far it may be used.
+    pub level: Level,
+    /// Sentences with the figures that decided.
+    pub reasons: Vec<String>,
+}
+
+/// Share of the error on unfitted rows that must be gone for a calibration to be worth anything.
+const WORTH: f64 = 0.02;
+/// Calibrated error over the reach beyond which no rigid robot is described: gears and links leave a tenth of it.
+const TOO_LARGE: f64 = 1e-2;
+/// Residuals for each unknown below which a fit mostly describes itself.
+const REDUNDANCY: f64 = 1.5;
+/// Share of its range through which a joint must have moved.
+const COVERED: f64 = 0.5;
+/// Multiple of the random cross-validation's error that the worst block may have.
+const BLOCKS: f64 = 2.0;
+/// Multiple of the error to expect where it was measured that may be expected anywhere.
+const RANGE: f64 = 2.0;
+
+/// What a verdict is made of.
+pub(super) struct Grounds<'a> {
+    pub(super) accuracy: &'a Accuracy,
+    pub(super) solver: &'a SolverReport,
+    pub(super) identifiability: &'a Identifiability,
+    pub(super) trust: &'a Trust,
+    pub(super) residuals: usize,
+    pub(super) reach_m: f64,
+    /// What was found wrong with the input, a sentence each.
+    pub(super) mistakes: &'a [String],
+}
+
+/// The verdict.
+pub(super) fn verdict(grounds: &Grounds<'_>) -> Verdict {
+    let against_all = against_use(grounds);
+    if !against_all.is_empty() {
+        return Verdict { level: Level::DoNotUse, reasons: against_all };
+    }
+    let against_everywhere = against_use_everywhere(grounds);
+    if !against_everywhere.is_empty() {
+        return Verdict { level: Level::InsideSampledRange, reasons: against_everywhere };
+    }
+    Verdict { level: Level::Good, reasons: vec![in_favour(grounds)] }
+}
+
+fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
+    let mut reasons = grounds.mistakes.to_vec();
+    if !grounds.solver.termination.is_success() {
+        reasons.push("the fit did not converge".to_owned());
+    }
+    let unknowns = grounds.identifiability.parameters;
+    if (grounds.residuals as f64) < REDUNDANCY * unknowns as f64 {
+        reasons.push(format!(
+            "{} measured numbers for {unknowns} unknowns leave too little to judge the fit by",
+            grounds.residuals
+        ));
+    }
+    let (set, name) = match &grounds.accuracy.held_out {
+        Some(set) => (set, "held-out"),
+        None => (&grounds.accuracy.training, "fitted"),
+    };
+    let (registered, calibrated) = (set.registered.position_mm.rms, set.calibrated.position_mm.rms);
+    if calibrated > (1.0 - WORTH) * registered {
+        reasons.push(format!(
+            "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} mm against {registered:.3} mm)"
+        ));
+    }
+    if calibrated > 1e3 * TOO_LARGE * grounds.reach_m {
+        reasons.push(format!(
+            "the calibrated model still misses {name} rows by {calibrated:.1} mm, more than 1 % of the robot's reach"
+        ));
+    }
+    reasons
+}
+
+fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
+    let trust = grounds.trust;
+    let mut reasons = Vec::new();
+    for coverage in &trust.coverage {
+        if let Some(share) = coverage.share().filter(|share| *share < COVERED) {
+            reasons.push(format!(
+                "{} was moved through {:.0} % of its range only",
+                coverage.joint,
+                100.0 * share
+            ));
+        }
+    }
+    if grounds.identifiability.rank < grounds.identifiability.parameters {
+        let open = grounds.identifiability.parameters - grounds.identifiability.rank;
+        reasons.push(format!(
+            "{open} of {} unknowns are not determined by these configurations",
+            grounds.identifiability.parameters
+        ));
+    }
+    if let Some((found, worst)) = trust.cross_validation.as_ref().and_then(|it| Some((it, it.worst()?)))
+        && worst.position_rms_m > BLOCKS * found.random.position_rms_m
+    {
+        reasons.push(format!(
+            "{}, left out, is missed by {:.3} mm, {:.1} times what random rows are",
+            worst.name,
+            1e3 * worst.position_rms_m,
+            worst.position_rms_m / found.random.position_rms_m
+        ));
+    }
+    if let (Some(measured), Some(range)) = (trust.measured, trust.range)
+        && range.sigma_m > RANGE * measured.sigma_m
+    {
+        reasons.push(format!(
+            "anywhere within the limits {:.3} mm are to be expected, {:.1} times those where it was measured",
+            1e3 * range.sigma_m,
+            range.sigma_m / measured.sigma_m
+        ));
+    }
+    reasons
+}
+
+fn in_favour(grounds: &Grounds<'_>) -> String {
+    let expected = grounds.trust.range.map_or(String::new(), |range| {
+        format!(", and {:.3} mm (RMS) are to be expected anywhere within the limits", 1e3 * range.sigma_m)
+    });
+    format!("all unknowns are determined, every joint was moved through half of its range or more{expected}")
+}

@@ -1,0 +1,293 @@
+//! Verdict, coverage, cross-validation and uncertainty in `calibration.json`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{CalibrationFile, KindWord, PoseEntry};
+use crate::calibration::{Calibration, Coverage, Expected, JointCorrection, Trust};
+use crate::error::{Error, ErrorKind, Result};
+use crate::estimate::Estimate;
+use crate::lie::Pose;
+use crate::measurement::Noise;
+use crate::parameters::{Formulation, Parameter, TargetFrame, TargetPlace};
+use crate::problem::Layout;
+use crate::robot::JointKind;
+use crate::uncertainty::{LeftOut, Uncertainty};
+
+/// How much of a joint's range the fitted rows take in, radians or metres.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CoverageEntry {
+    /// The joint.
+    pub joint: String,
+    /// Least value.
+    pub sampled_min: f64,
+    /// Largest value.
+    pub sampled_max: f64,
+    /// Lower limit; null if there is none.
+    pub limit_min: Option<f64>,
+    /// Upper limit.
+    pub limit_max: Option<f64>,
+    /// Sampled span over that of the limits, of a revolute joint over at most a turn; null where there is nothing to compare with.
+    pub share: Option<f64>,
+}
+
+/// Rows left out together, and how the others predict them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LeftOutEntry {
+    /// What they have in common.
+    pub left_out: String,
+    /// How many they are.
+    pub rows: usize,
+    /// Root mean square error of position, millimetres.
+    pub position_rms_mm: f64,
+    /// Root mean square error of rotation, degrees, where measured.
+    pub rotation_rms_deg: Option<f64>,
+}
+
+/// Cross-validation on the fitted rows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CrossValidationEntry {
+    /// Random parts left out in turn, all together.
+    pub random: LeftOutEntry,
+    /// The ends of each joint's range, files, and groups of equal `id`, left out in turn.
+    pub blocked: Vec<LeftOutEntry>,
+}
+
+/// Errors to expect of predicted positions, millimetres.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ExpectedEntry {
+    /// Root mean square distance.
+    pub sigma_position_mm: f64,
+    /// Mean of the distances that are not exceeded in 95 % of all cases.
+    pub bound95_position_mm: f64,
+    /// The largest of those.
+    pub worst_bound95_position_mm: f64,
+}
+
+/// A part of a joint's range with the error to expect there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RangeEntry {
+    /// The joint.
+    pub joint: String,
+    /// From, radians or metres.
+    pub from: f64,
+    /// To.
+    pub to: f64,
+    /// Root mean square distance, millimetres, with the other joints anywhere in their ranges.
+    pub sigma_position_mm: f64,
+}
+
+/// A joint's correction, its uncertainty, and its worth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CorrectionEntry {
+    /// The joint.
+    pub joint: String,
+    /// Angle between nominal and calibrated direction, degrees.
+    pub tilt_deg: f64,
+    /// Distance of the calibrated axis from the nominal joint's origin, millimetres.
+    pub shift_mm: f64,
+    /// Error to expect of the direction, degrees (root mean square); null where the data do not tell it.
+    pub sigma_tilt_deg: Option<f64>,
+    /// Error to expect of the axis' place at the joint, millimetres; null where the data do not tell it.
+    pub sigma_shift_mm: Option<f64>,
+    /// Root mean square position error if this screw alone stayed nominal, millimetres.
+    pub left_nominal_rms_mm: f64,
+}
+
+/// What predictions need to state their error, and what is to be expected.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct UncertaintyEntry {
+    /// By how much the covariance is larger than white noise alone would make it.
+    pub inflation: f64,
+    /// What the model does not describe: standard deviation of each position component, millimetres.
+    pub discrepancy_position_mm: f64,
+    /// Of each rotation component, degrees.
+    pub discrepancy_rotation_deg: f64,
+    /// In the configurations that were measured.
+    pub measured: ExpectedEntry,
+    /// In configurations anywhere within the limits.
+    pub range: ExpectedEntry,
+    /// By parts of each joint's range.
+    pub parts: Vec<RangeEntry>,
+    /// Metres that a radian counts in the covariance.
+    pub length_m: f64,
+    /// The frames `base_from_axis` at zero, z along the joint, in which the unknowns of each joint stand: shifts along x and y and turns about
+    /// x and y of a revolute one, turns about x and y of a prismatic one.
+    pub axes: Vec<PoseEntry>,
+    /// The targets whose unknowns follow, with `true` for frames: shifts along their axes, and for frames turns about them. The name of the
+    /// tip is empty.
+    pub targets: Vec<(String, bool)>,
+    /// The unknowns' covariance, square metres, turns multiplied by `length_m`: the upper triangle by rows, in the order of the fit, those
+    /// that only shift a target first.
+    pub covariance_m2: Vec<f64>,
+}
+
+impl CoverageEntry {
+    pub(super) fn of(coverage: &Coverage) -> Self {
+        CoverageEntry {
+            joint: coverage.joint.clone(),
+            sampled_min: coverage.sampled[0],
+            sampled_max: coverage.sampled[1],
+            limit_min: coverage.limits.map(|limits| limits[0]),
+            limit_max: coverage.limits.map(|limits| limits[1]),
+            share: coverage.share(),
+        }
+    }
+
+    fn coverage(&self, kind: KindWord) -> Coverage {
+        Coverage {
+            joint: self.joint.clone(),
+            kind: JointKind::from(kind),
+            sampled: [self.sampled_min, self.sampled_max],
+            limits: self.limit_min.zip(self.limit_max).map(|(lower, upper)| [lower, upper]),
+        }
+    }
+}
+
+impl LeftOutEntry {
+    fn of(found: &LeftOut) -> Self {
+        LeftOutEntry {
+            left_out: found.name.clone(),
+            rows: found.rows,
+            position_rms_mm: found.position_rms_m * 1e3,
+            rotation_rms_deg: found.rotation_rms_rad.map(f64::to_degrees),
+        }
+    }
+}
+
+impl CrossValidationEntry {
+    pub(super) fn of(trust: &Trust) -> Option<Self> {
+        let found = trust.cross_validation.as_ref()?;
+        Some(CrossValidationEntry {
+            random: LeftOutEntry::of(&found.random),
+            blocked: found.blocked.iter().map(LeftOutEntry::of).collect(),
+        })
+    }
+}
+
+impl ExpectedEntry {
+    fn of(expected: &Expected) -> Self {
+        ExpectedEntry {
+            sigma_position_mm: expected.sigma_m * 1e3,
+            bound95_position_mm: expected.bound_m * 1e3,
+            worst_bound95_position_mm: expected.worst_bound_m * 1e3,
+        }
+    }
+}
+
+impl CorrectionEntry {
+    pub(super) fn of((coverage, found): (&Coverage, &JointCorrection)) -> Self {
+        CorrectionEntry {
+            joint: coverage.joint.clone(),
+            tilt_deg: found.tilt_rad.to_degrees(),
+            shift_mm: found.shift_m * 1e3,
+            sigma_tilt_deg: found.sigma_tilt_rad.map(f64::to_degrees),
+            sigma_shift_mm: found.sigma_shift_m.map(|sigma| sigma * 1e3),
+            left_nominal_rms_mm: found.left_nominal_rms_m * 1e3,
+        }
+    }
+}
+
+impl UncertaintyEntry {
+    pub(super) fn of(calibration: &Calibration) -> Option<Self> {
+        let trust = &calibration.trust;
+        let found = trust.uncertainty.as_ref()?;
+        let n = found.layout.dim();
+        let upper = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
+        let names = calibration.targets.iter();
+        Some(UncertaintyEntry {
+            inflation: found.inflation,
+            discrepancy_position_mm: found.discrepancy.position_m * 1e3,
+            discrepancy_rotation_deg: found.discrepancy.rotation_rad.to_degrees(),
+            measured: ExpectedEntry::of(trust.measured.as_ref()?),
+            range: ExpectedEntry::of(trust.range.as_ref()?),
+            parts: trust
+                .parts
+                .iter()
+                .map(|part| RangeEntry {
+                    joint: trust.coverage[part.joint].joint.clone(),
+                    from: part.range[0],
+                    to: part.range[1],
+                    sigma_position_mm: part.sigma_m * 1e3,
+                })
+                .collect(),
+            length_m: found.length_m,
+            axes: found.estimate.base_from_axis.iter().map(PoseEntry::from).collect(),
+            targets: names.map(|it| (it.name.clone().unwrap_or_default(), it.is_frame)).collect(),
+            covariance_m2: upper.map(|(i, j)| found.covariance[i * n + j]).collect(),
+        })
+    }
+}
+
+impl CalibrationFile {
+    /// The uncertainty of predictions with the index of the target that stands for the tip, or for a named target.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the calibration holds none, or has been changed into none.
+    pub fn uncertainty(&self, target: Option<&str>) -> Result<(Uncertainty, usize)> {
+        let bad = |what: &str| {
+            let message = format!(
+                "found {what}, expected the uncertainty that `poecal calibrate` writes: calibrate again with this version"
+            );
+            Error::new(ErrorKind::Model, message)
+        };
+        let entry = self.uncertainty.as_ref().ok_or_else(|| bad("a calibration without uncertainty"))?;
+        let robot = self.robot()?;
+        let axes = entry.axes.iter().map(PoseEntry::pose).collect::<Result<Vec<_>>>()?;
+        if axes.len() != robot.joints.len() {
+            return Err(bad("another number of axes than of joints"));
+        }
+        let mut estimate = Estimate::new(&robot, Vec::new(), self.base_from_device()?.inverse());
+        estimate.base_from_axis = axes;
+        let mut free = Formulation::Adjoint.joint_parameters(&estimate.kinds);
+        let place = |name: &str| robot.targets.iter().find(|(known, _)| known == name).map(|(_, pose)| *pose);
+        for (index, (name, is_frame)) in entry.targets.iter().enumerate() {
+            let tip_from_target = if name.is_empty() { Some(Pose::identity()) } else { place(name) };
+            let tip_from_target =
+                tip_from_target.ok_or_else(|| bad("the uncertainty of an unknown target"))?;
+            estimate.base_from_target.push(robot.home * tip_from_target);
+            free.push(if *is_frame {
+                Parameter::TargetFrame(TargetFrame { target: index })
+            } else {
+                Parameter::TargetPlace(TargetPlace { target: index })
+            });
+        }
+        let wanted = target.unwrap_or_default();
+        let index = entry.targets.iter().position(|(name, _)| name == wanted).unwrap_or_else(|| {
+            // A point fixed to the last link that was not measured itself: as sure as the link.
+            let pose = place(wanted).unwrap_or_else(Pose::identity);
+            estimate.base_from_target.push(robot.home * pose);
+            estimate.base_from_target.len() - 1
+        });
+        let layout = Layout::new(free, entry.length_m);
+        let n = layout.dim();
+        if entry.covariance_m2.len() != n * (n + 1) / 2 {
+            return Err(bad("a covariance of another size than the unknowns make"));
+        }
+        let mut covariance = vec![0.0; n * n];
+        let upper = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
+        for ((i, j), &value) in upper.zip(&entry.covariance_m2) {
+            covariance[i * n + j] = value;
+            covariance[j * n + i] = value;
+        }
+        let discrepancy = Noise {
+            position_m: entry.discrepancy_position_mm * 1e-3,
+            rotation_rad: entry.discrepancy_rotation_deg.to_radians(),
+        };
+        let uncertainty = Uncertainty {
+            estimate,
+            layout,
+            covariance,
+            inflation: entry.inflation,
+            discrepancy,
+            length_m: entry.length_m,
+        };
+        Ok((uncertainty, index))
+    }
+
+    /// The sampled range of each joint.
+    #[must_use]
+    pub fn sampled_ranges(&self) -> Vec<Coverage> {
+        self.coverage.iter().zip(&self.joints).map(|(entry, joint)| entry.coverage(joint.kind)).collect()
+    }
+}

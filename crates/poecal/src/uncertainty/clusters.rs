@@ -1,0 +1,85 @@
+//! Neighbouring configurations together: whether errors there are alike, and so no noise.
+
+use super::view::View;
+use crate::linalg;
+use crate::solve::LeastSquares;
+
+/// Standard deviations by which a figure must be beyond what white noise gives, to count.
+pub(super) const SIGNIFICANT: f64 = 3.0;
+/// Most clusters.
+const CLUSTERS: usize = 16;
+
+/// `Σ gᵀ N⁻¹ g` over clusters, g being the gradient of a cluster's rows, against what white noise makes of it: the cluster-robust
+/// covariance over the ordinary one, on average over all directions (liang1986). `None` if it is no more than chance.
+pub(super) fn inflation(view: &View<'_>) -> Option<f64> {
+    let whole = view.problem(view.rows.to_vec()).normal(view.estimate);
+    let n = whole.dim();
+    let freedom = whole.residuals.saturating_sub(n);
+    if freedom < n || n == 0 {
+        return None;
+    }
+    let variance = 2.0 * whole.cost / freedom as f64;
+    let factor = linalg::cholesky(&whole.gram, n, super::prior_information(view.length_m) * variance)?;
+    let count = (whole.residuals / n).clamp(2, CLUSTERS);
+    let (mut found, mut expected, mut spread) = (0.0, 0.0, 0.0);
+    for cluster in clusters(view, count) {
+        let part = view.problem(cluster).normal(view.estimate);
+        let solved = linalg::cholesky_solve(&factor, &part.gradient);
+        found += solved.iter().zip(&part.gradient).map(|(a, b)| a * b).sum::<f64>();
+        let (mean, square) = share_of(&factor, &part.gram, n);
+        expected += mean * variance;
+        spread += 2.0 * square * variance * variance;
+    }
+    let ratio = found / expected;
+    (ratio.is_finite() && ratio > 1.0 + SIGNIFICANT * spread.sqrt() / expected).then_some(ratio)
+}
+
+/// `tr(D)` and `tr(D²)` of `D = H - H²`, `H = N⁻¹ P`, from the Cholesky factor of N and the upper triangle of P: mean and half the variance
+/// of `gᵀ N⁻¹ g` for a cluster with information P, in white noise of variance 1.
+fn share_of(factor: &[f64], part: &[f64], n: usize) -> (f64, f64) {
+    let mut h = vec![0.0; n * n];
+    for j in 0..n {
+        let column: Vec<f64> = (0..n).map(|i| part[i.min(j) * n + i.max(j)]).collect();
+        for (i, value) in linalg::cholesky_solve(factor, &column).into_iter().enumerate() {
+            h[i * n + j] = value;
+        }
+    }
+    let mut d = h.clone();
+    for i in 0..n {
+        for k in 0..n {
+            for j in 0..n {
+                d[i * n + j] -= h[i * n + k] * h[k * n + j];
+            }
+        }
+    }
+    let trace = (0..n).map(|i| d[i * n + i]).sum();
+    let of_square =
+        (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).map(|(i, j)| d[i * n + j] * d[j * n + i]).sum();
+    (trace, of_square)
+}
+
+/// About `count` clusters: rows are halved at the median of the joint that moves most in them.
+fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
+    let spans = view.spans(view.rows);
+    let mut clusters = vec![view.rows.to_vec()];
+    while clusters.len() < count {
+        // The largest, of equal ones the first, so that the order is settled.
+        let Some(largest) = (0..clusters.len()).max_by_key(|&k| (clusters[k].len(), usize::MAX - k)) else {
+            break;
+        };
+        if clusters[largest].len() < 2 {
+            break;
+        }
+        let rows = clusters.swap_remove(largest);
+        let here = view.spans(&rows);
+        let share = |joint: usize| if spans[joint] > 0.0 { here[joint] / spans[joint] } else { 0.0 };
+        let widest =
+            (0..here.len()).max_by(|&a, &b| share(a).total_cmp(&share(b)).then(b.cmp(&a))).unwrap_or(0);
+        let mut first = view.sorted_by(&rows, widest);
+        let second = first.split_off(first.len() / 2);
+        clusters.push(first);
+        clusters.push(second);
+    }
+    clusters.iter_mut().for_each(|cluster| cluster.sort_unstable());
+    clusters
+}

@@ -1,0 +1,224 @@
+//! Cross-validation without fitting again: the information that some rows leave tells where the fit would have ended without them.
+
+use std::collections::BTreeMap;
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::prediction::position_variance;
+use super::view::View;
+use crate::estimate::{Estimate, sample_rows};
+use crate::linalg;
+use crate::simulate::random;
+use crate::solve::LeastSquares;
+
+/// Rows on which cross-validation is done, if there are more.
+const SAMPLE: usize = 2000;
+/// Random folds; a tail has as many rows as one of them.
+const FOLDS: usize = 5;
+
+/// Names by which rows are grouped, at most: more are names of rows, not of groups.
+const MOST_GROUPS: usize = 30;
+
+/// Rows to leave out together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Fold {
+    pub(super) name: String,
+    pub(super) rows: Vec<u32>,
+}
+
+/// What the other rows predict of those that were left out.
+///
+/// ```
+/// use poecal::uncertainty::LeftOut;
+/// let fold = LeftOut { name: "the low end of joint2".into(), rows: 40, position_rms_m: 1e-4, rotation_rms_rad: None, growth: 1.0 };
+/// assert_eq!(fold.rows, 40);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOut {
+    /// What these rows have in common.
+    pub name: String,
+    /// How many they are.
+    pub rows: usize,
+    /// Root mean square error of position, metres.
+    pub position_rms_m: f64,
+    /// Root mean square error of rotation, radians, where measured.
+    pub rotation_rms_rad: Option<f64>,
+    /// How much the squared error of position grew by leaving them out, over what the covariance of the unknowns makes of it.
+    pub growth: f64,
+}
+
+/// Cross-validation of a fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrossValidation {
+    /// Random parts left out in turn; one entry for all of them.
+    pub random: LeftOut,
+    /// Parts that belong together left out: the ends of each joint's range, files, groups of equal `id`.
+    pub blocked: Vec<LeftOut>,
+    /// Share of the fitted rows that this was done on.
+    pub sampled: f64,
+}
+
+impl CrossValidation {
+    /// The block that was predicted worst.
+    #[must_use]
+    pub fn worst(&self) -> Option<&LeftOut> {
+        self.blocked.iter().max_by(|a, b| a.position_rms_m.total_cmp(&b.position_rms_m))
+    }
+}
+
+/// Random folds, and blocks: tails of every joint's range, each file and each repeated `id`.
+#[must_use]
+pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
+    let sample = sample_rows(view.rows, SAMPLE);
+    if sample.len() < 2 * FOLDS {
+        return None;
+    }
+    let left = Left::new(view, &sample)?;
+    let mut random = Sums::default();
+    for fold in random_folds(&sample, seed) {
+        random.add(&left.sums(&fold.rows)?);
+    }
+    let name = format!("random, {FOLDS} folds");
+    let blocked = blocks(view, &sample)
+        .into_iter()
+        .filter_map(|fold| Some(left.sums(&fold.rows)?.result(fold.name)))
+        .collect();
+    let sampled = sample.len() as f64 / view.rows.len() as f64;
+    Some(CrossValidation { random: random.result(name), blocked, sampled })
+}
+
+fn random_folds(sample: &[u32], seed: u64) -> Vec<Fold> {
+    let mut rows = sample.to_vec();
+    random::shuffle(&mut ChaCha8Rng::seed_from_u64(seed ^ 0xf01d), &mut rows);
+    let part = rows.len().div_ceil(FOLDS);
+    rows.chunks(part).map(|rows| Fold { name: String::new(), rows: rows.to_vec() }).collect()
+}
+
+/// The ends of each joint's range, the rows of each file, and those of each `id` that several rows share.
+fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
+    let mut folds = Vec::new();
+    let size = sample.len() / FOLDS;
+    for (joint, _) in view.spans(sample).iter().enumerate().filter(|(_, span)| **span > 0.0) {
+        let sorted = view.sorted_by(sample, joint);
+        let name = &view.robot.joints[joint].name;
+        folds.push(Fold { name: format!("the lowest fifth of {name}"), rows: sorted[..size].to_vec() });
+        let rows = sorted[sorted.len() - size..].to_vec();
+        folds.push(Fold { name: format!("the highest fifth of {name}"), rows });
+    }
+    let file = |row: u32| {
+        let index = view.data.observations[row as usize].source.file as usize;
+        view.data.files.get(index).map(|path| format!("the file {}", path.display()))
+    };
+    folds.extend(groups(sample, file));
+    if !view.data.ids.is_empty() {
+        folds.extend(groups(sample, |row| {
+            view.data.ids.get(row as usize).map(|id| format!("the rows of id {id}"))
+        }));
+    }
+    folds
+}
+
+/// Rows of one name together, if the names are at least two and no more than a few rows' each.
+fn groups(sample: &[u32], name: impl Fn(u32) -> Option<String>) -> Vec<Fold> {
+    let mut groups: BTreeMap<String, Vec<u32>> = BTreeMap::new();
+    for &row in sample {
+        if let Some(name) = name(row) {
+            groups.entry(name).or_default().push(row);
+        }
+    }
+    if groups.len() < 2 || groups.len() > MOST_GROUPS {
+        return Vec::new();
+    }
+    groups.into_iter().map(|(name, rows)| Fold { name, rows }).collect()
+}
+
+/// Sums over rows that were left out.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    rows: usize,
+    turned: usize,
+    position: f64,
+    rotation: f64,
+    /// Squared position errors of the fit of all rows.
+    before: f64,
+    /// What the covariances make of the growth.
+    expected: f64,
+}
+
+impl Sums {
+    fn add(&mut self, other: &Sums) {
+        self.rows += other.rows;
+        self.turned += other.turned;
+        self.position += other.position;
+        self.rotation += other.rotation;
+        self.before += other.before;
+        self.expected += other.expected;
+    }
+
+    fn result(self, name: String) -> LeftOut {
+        LeftOut {
+            name,
+            rows: self.rows,
+            position_rms_m: (self.position / self.rows.max(1) as f64).sqrt(),
+            rotation_rms_rad: (self.turned > 0).then(|| (self.rotation / self.turned as f64).sqrt()),
+            growth: (self.position - self.before) / self.expected.max(f64::MIN_POSITIVE),
+        }
+    }
+}
+
+/// A fit of a sample, ready to lose rows.
+struct Left<'a> {
+    view: View<'a>,
+    estimate: Estimate,
+    gram: Vec<f64>,
+    variance: f64,
+    covariance: Vec<f64>,
+}
+
+impl<'a> Left<'a> {
+    /// The optimum of the sample is one step from that of all rows.
+    fn new(view: &View<'a>, sample: &[u32]) -> Option<Self> {
+        let problem = view.problem(sample.to_vec());
+        let normal = problem.normal(view.estimate);
+        let n = problem.dim();
+        let freedom = normal.residuals.saturating_sub(n).max(1);
+        let variance = 2.0 * normal.cost / freedom as f64;
+        let factor = linalg::cholesky(&normal.gram, n, super::prior_information(view.length_m) * variance)?;
+        let step = linalg::cholesky_solve(&factor, &normal.gradient);
+        Some(Left {
+            view: *view,
+            estimate: problem.retract(view.estimate, &step),
+            covariance: super::covariance(&normal.gram, n, variance, view.length_m)?,
+            gram: normal.gram,
+            variance,
+        })
+    }
+
+    /// Leaves rows out: `N - N_fold` and `-g_fold` are information and gradient of the others at the optimum of all (theory.md §9).
+    fn sums(&self, rows: &[u32]) -> Option<Sums> {
+        let problem = self.view.problem(rows.to_vec());
+        let part = problem.normal(&self.estimate);
+        let rest: Vec<f64> = self.gram.iter().zip(&part.gram).map(|(all, part)| all - part).collect();
+        let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
+        let n = gradient.len();
+        let floor = super::prior_information(self.view.length_m) * self.variance;
+        let factor = linalg::cholesky(&rest, n, floor)?;
+        let without = problem.retract(&self.estimate, &linalg::cholesky_solve(&factor, &gradient));
+        let covariance = super::covariance(&rest, n, self.variance, self.view.length_m)?;
+        let layout = problem.layout();
+        let expected = position_variance(&self.view, layout, &self.estimate, rows, &covariance)
+            + position_variance(&self.view, layout, &self.estimate, rows, &self.covariance);
+        let mut sums = Sums { rows: rows.len(), expected, ..Sums::default() };
+        for (position, turn) in self.view.residuals(rows, &without) {
+            sums.position += position.norm_squared();
+            if let Some(turn) = turn {
+                sums.rotation += turn.norm_squared();
+                sums.turned += 1;
+            }
+        }
+        let before = self.view.residuals(rows, &self.estimate);
+        sums.before = before.iter().map(|(position, _)| position.norm_squared()).sum();
+        Some(sums)
+    }
+}

@@ -1,0 +1,116 @@
+//! How far a calibrated robot can be trusted, configuration by configuration (docs/theory.md §8a).
+
+mod clusters;
+mod discrepancy;
+mod folds;
+mod neighbours;
+mod prediction;
+mod view;
+
+pub use discrepancy::{Discrepancy, discrepancy};
+pub use folds::{CrossValidation, LeftOut, cross_validate};
+pub use prediction::PredictedError;
+pub use view::View;
+
+use prediction::propagated;
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::estimate::{Chain, Estimate, Linkage, Packed};
+use crate::linalg;
+use crate::measurement::Noise;
+use crate::problem::Layout;
+
+/// Standard deviation of what is believed of a robot's drawing before anything is measured, as a share of the length that a radian
+/// counts: about 2°, or 10 to 20 mm on an arm of ordinary size. It bounds what the data leave open.
+pub const PRIOR: f64 = 0.03;
+
+/// Covariance of an estimate's unknowns, and what the model does not describe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// The estimate that it is about.
+    pub estimate: Estimate,
+    /// The unknowns and their scales.
+    pub layout: Layout,
+    /// Covariance of the scaled unknowns (square metres), row-major `n × n`, with [`Uncertainty::inflation`] in it.
+    pub covariance: Vec<f64>,
+    /// By how much the covariance is larger than white noise alone would make it.
+    pub inflation: f64,
+    /// Standard deviation of each component of what the model does not describe, device axes: the same at every configuration.
+    pub discrepancy: Noise,
+    /// Metres that a radian counts in the scaled unknowns.
+    pub length_m: f64,
+}
+
+impl Uncertainty {
+    /// From whitened information (upper triangle of `JᵀJ`) with residuals of this variance. `None` if a number is not finite.
+    #[must_use]
+    pub fn new(
+        estimate: Estimate,
+        layout: Layout,
+        gram: &[f64],
+        variance: f64,
+        length_m: f64,
+        found: &Discrepancy,
+    ) -> Option<Self> {
+        let covariance = covariance(gram, layout.dim(), variance * found.inflation, length_m)?;
+        Some(Uncertainty {
+            estimate,
+            layout,
+            covariance,
+            inflation: found.inflation,
+            discrepancy: found.standard_deviation,
+            length_m,
+        })
+    }
+
+    /// Variance of a quantity that changes by `row` with each scaled unknown.
+    #[must_use]
+    pub fn variance(&self, row: &[f64]) -> f64 {
+        let n = self.layout.dim().max(1);
+        self.covariance
+            .chunks_exact(n)
+            .zip(row)
+            .map(|(covariance, a)| a * covariance.iter().zip(row).map(|(c, b)| c * b).sum::<f64>())
+            .sum::<f64>()
+            .max(0.0)
+    }
+
+    /// The error to expect of predicted targets, one for each row of joint values.
+    #[must_use]
+    pub fn predictions(&self, packed: &Packed, target: usize) -> Vec<PredictedError> {
+        let linkage = Linkage::new(&self.estimate);
+        let mut chain = Chain::default();
+        let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); self.layout.dim()];
+        (0..packed.rows())
+            .map(|row| {
+                chain.evaluate(&linkage, packed, row, target);
+                self.layout.target_twists(&chain, target, &mut twists);
+                let (position, rotation) = propagated(&self.covariance, &twists);
+                let own = |sigma: f64| Matrix3::identity() * (sigma * sigma);
+                PredictedError {
+                    position: position + own(self.discrepancy.position_m),
+                    rotation: rotation + own(self.discrepancy.rotation_rad),
+                }
+            })
+            .collect()
+    }
+}
+
+/// `(JᵀJ / variance + I / prior²)⁻¹`, row-major and whole.
+fn covariance(gram: &[f64], n: usize, variance: f64, length_m: f64) -> Option<Vec<f64>> {
+    let variance = variance.max(f64::MIN_POSITIVE);
+    let factor = linalg::cholesky(gram, n, prior_information(length_m) * variance)?;
+    let mut covariance = vec![0.0; n * n];
+    for (k, column) in covariance.chunks_exact_mut(n.max(1)).enumerate() {
+        let mut unit = vec![0.0; n];
+        unit[k] = variance;
+        column.copy_from_slice(&linalg::cholesky_solve(&factor, &unit));
+    }
+    covariance.iter().all(|value| value.is_finite()).then_some(covariance)
+}
+
+/// Information of the drawing about each scaled unknown, per square metre.
+fn prior_information(length_m: f64) -> f64 {
+    1.0 / (PRIOR * length_m).powi(2)
+}

@@ -1,0 +1,62 @@
+//! Residuals of nearest neighbours: what they have in common is no noise.
+
+use nalgebra::Vector3;
+
+use super::clusters::SIGNIFICANT;
+use super::view::View;
+use crate::estimate::sample_rows;
+
+/// Rows whose nearest neighbour is looked for, and rows among which it is.
+const PROBES: usize = 400;
+const NEIGHBOURS: usize = 4000;
+
+/// Whether the residuals of one target in neighbouring configurations are alike beyond chance: of positions, and of rotations.
+pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
+    let pool = sample_rows(view.rows, NEIGHBOURS);
+    let residuals = view.residuals(&pool, view.estimate);
+    let spans = view.spans(view.rows);
+    let target = |row: u32| view.data.observations[row as usize].target;
+    let step = pool.len().div_ceil(PROBES).max(1);
+    let (mut position, mut rotation) = (Shared::default(), Shared::default());
+    for (a, &probe) in pool.iter().enumerate().step_by(step) {
+        let others = pool.iter().enumerate().filter(|&(b, &row)| b != a && target(row) == target(probe));
+        let distance = |row: u32| distance(view, &spans, probe, row);
+        let Some((b, _)) =
+            others.min_by(|x, y| distance(*x.1).total_cmp(&distance(*y.1)).then(x.0.cmp(&y.0)))
+        else {
+            continue;
+        };
+        position.add(&residuals[a].0, &residuals[b].0);
+        if let (Some(a), Some(b)) = (&residuals[a].1, &residuals[b].1) {
+            rotation.add(a, b);
+        }
+    }
+    (position.is_significant(), rotation.is_significant())
+}
+
+/// Squared distance of two configurations, each joint against how far it moves.
+fn distance(view: &View<'_>, spans: &[f64], a: u32, b: u32) -> f64 {
+    let each = view.values(a).iter().zip(view.values(b)).zip(spans).filter(|(_, span)| **span > 0.0);
+    each.map(|((a, b), span)| ((a - b) / span).powi(2)).sum()
+}
+
+/// Products of neighbours' residuals.
+#[derive(Default)]
+struct Shared {
+    products: f64,
+    squares: f64,
+    pairs: usize,
+}
+
+impl Shared {
+    fn add(&mut self, a: &Vector3<f64>, b: &Vector3<f64>) {
+        self.products += a.dot(b);
+        self.squares += 0.5 * (a.norm_squared() + b.norm_squared());
+        self.pairs += 1;
+    }
+
+    /// In white noise the correlation of that many components has a standard deviation of one over the root of their number.
+    fn is_significant(&self) -> bool {
+        self.products > SIGNIFICANT / (3.0 * self.pairs as f64).sqrt() * self.squares
+    }
+}

@@ -1,0 +1,85 @@
+//! A finished fit as the judging of it sees it.
+
+use nalgebra::Vector3;
+
+use crate::estimate::{Chain, Estimate, Linkage, Packed};
+use crate::lie::rotation;
+use crate::measurement::{Dataset, Noise};
+use crate::parameters::Parameter;
+use crate::problem::Problem;
+use crate::robot::Robot;
+
+/// Data, rows, unknowns and optimum of a fit.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The robot as delivered: names of joints.
+    pub robot: &'a Robot,
+    /// The measurements.
+    pub data: &'a Dataset,
+    /// Their joint values.
+    pub packed: &'a Packed,
+    /// The rows that were fitted.
+    pub rows: &'a [u32],
+    /// The unknowns.
+    pub free: &'a [Parameter],
+    /// The noise by which residuals were whitened.
+    pub noise: Noise,
+    /// Whether that noise is stated, and not what the residuals show.
+    pub noise_is_stated: bool,
+    /// Metres that a radian counts.
+    pub length_m: f64,
+    /// Where the fit ended.
+    pub estimate: &'a Estimate,
+}
+
+/// A position residual (metres) and, where orientation was measured, a rotation residual (radians), device axes.
+pub(super) type Residual = (Vector3<f64>, Option<Vector3<f64>>);
+
+impl<'a> View<'a> {
+    /// The problem of some of the rows.
+    pub(super) fn problem(&self, rows: Vec<u32>) -> Problem<'a> {
+        Problem::new(self.data, self.packed, rows, self.free.to_vec(), self.noise, self.length_m)
+    }
+
+    /// Residuals of an estimate, not whitened.
+    pub(super) fn residuals(&self, rows: &[u32], estimate: &Estimate) -> Vec<Residual> {
+        let linkage = Linkage::new(estimate);
+        let mut chain = Chain::default();
+        rows.iter()
+            .map(|&row| {
+                let observation = &self.data.observations[row as usize];
+                let model = observation.measurement.residual_model();
+                chain.evaluate(&linkage, self.packed, row as usize, observation.target);
+                let turn = model
+                    .orientation()
+                    .map(|measured| rotation::log(&(measured * chain.target.rotation.transpose())));
+                (model.position() - chain.target.translation, turn)
+            })
+            .collect()
+    }
+
+    /// Joint values of a row.
+    pub(super) fn values(&self, row: u32) -> &'a [f64] {
+        self.packed.joint_values(row as usize)
+    }
+
+    /// How far each joint moves in some rows.
+    pub(super) fn spans(&self, rows: &[u32]) -> Vec<f64> {
+        let joints = rows.first().map_or(0, |&row| self.values(row).len());
+        (0..joints)
+            .map(|joint| {
+                let values = rows.iter().map(|&row| self.values(row)[joint]);
+                let (least, most) = values
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)));
+                most - least
+            })
+            .collect()
+    }
+
+    /// Rows in the order of a joint's value.
+    pub(super) fn sorted_by(&self, rows: &[u32], joint: usize) -> Vec<u32> {
+        let mut sorted = rows.to_vec();
+        sorted.sort_by(|&a, &b| self.values(a)[joint].total_cmp(&self.values(b)[joint]).then(a.cmp(&b)));
+        sorted
+    }
+}
