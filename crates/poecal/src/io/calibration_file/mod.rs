@@ -46,20 +46,7 @@ impl CalibrationFile {
                 restarts: calibration.solver.restarts,
                 joint_offsets: OffsetEntry::of(calibration),
             },
-            identifiability: IdentifiabilityEntry {
-                parameters: calibration.identifiability.parameters,
-                rank: calibration.identifiability.rank,
-                condition: Some(calibration.identifiability.condition).filter(|c| c.is_finite()),
-                unidentifiable: calibration
-                    .identifiability
-                    .unidentifiable
-                    .iter()
-                    .map(|direction| DirectionEntry {
-                        description: direction.description.clone(),
-                        joints: direction.joints.clone(),
-                    })
-                    .collect(),
-            },
+            identifiability: IdentifiabilityEntry::of(&calibration.identifiability),
             warnings: calibration.warnings.clone(),
             noise: NoiseEntry {
                 sigma_position_mm: calibration.noise.position_m * 1e3,
