@@ -1,5 +1,9 @@
 //! The command line.
 
+mod identify;
+
+pub(crate) use identify::Identify;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -10,6 +14,7 @@ use poecal::io::urdf::ChainSelection;
 use poecal::measurement::PoseResidual;
 use poecal::offsets;
 use poecal::parameters::Formulation;
+use poecal::simulate::Kind;
 use poecal::solve::Method;
 
 use crate::quantity::{LengthAndAngle, share, sigma_m, sigma_rad, whole};
@@ -46,6 +51,8 @@ pub(crate) enum Command {
     Convert(Convert),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
+    /// Tell what measuring in some configurations would tell, before anything is measured
+    Identify(Identify),
     /// Print the JSON Schema of calibration.json
     Schema,
 }
@@ -228,6 +235,16 @@ pub(crate) enum SimulatedKind {
     Point,
     /// Both in turn
     Mixed,
+}
+
+impl From<SimulatedKind> for Kind {
+    fn from(kind: SimulatedKind) -> Self {
+        match kind {
+            SimulatedKind::Pose => Kind::Pose,
+            SimulatedKind::Point => Kind::Point,
+            SimulatedKind::Mixed => Kind::Mixed,
+        }
+    }
 }
 
 /// Arguments of `poecal simulate`.

@@ -51,6 +51,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(options) => commands::check(options, &console),
         Command::Convert(options) => commands::convert(options, &console),
         Command::Offsets(options) => commands::offsets(options, &console),
+        Command::Identify(options) => commands::identify(options, &console),
         Command::Schema => commands::schema(&console),
     };
     match result {

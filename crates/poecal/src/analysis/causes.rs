@@ -1,5 +1,5 @@
 //! From directions that are open to sentences: each rule states a cause that is seen in the configurations, and takes from what is open
-//! that which would be told if the quantities it names were known.
+//! that which would be told if the quantities it names were known (theory.md §7 (36a)).
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -33,7 +33,9 @@ pub(super) fn explain(
         Degree::Open => (0, spectrum.open),
         Degree::Weak(count) => (spectrum.open, count),
     };
-    if count == 0 {
+    // Beside too few numbers it means nothing that others are weak.
+    let too_few = excitation.numbers < setup.layout.dim();
+    if count == 0 || too_few && degree != Degree::Open {
         return Vec::new();
     }
     let space = spectrum.vectors.columns(first, count).into_owned();
@@ -147,9 +149,9 @@ impl Rules<'_> {
         let several = joints.len() > 1;
         let (subject, open) =
             if several { ("their screws", "are unknown") } else { ("its screw", "is unknown") };
-        let part = if directions < all { " in part" } else { "" };
-        let words = self.degree_words(&format!("{open}{part}"), several, &self.screws(&joints));
-        let description = format!("{} {what}: {subject} {words}", self.names(&joints));
+        let part = if directions < all { "part of " } else { "" };
+        let words = self.degree_words(open, several, &self.screws(&joints));
+        let description = format!("{} {what}: {part}{subject} {words}", self.names(&joints));
         self.tell(Cause::StoodStill, &joints, directions, description);
     }
 
@@ -236,11 +238,13 @@ impl Rules<'_> {
             (Cause::OneTurningDirection, format!("{tool} {words}"))
         };
         // What else the joints hide by keeping the orientation has the same cause.
-        let mut joints = Vec::new();
         if cause == Cause::OneOrientation && self.left.ncols() > 0 && self.hidden_by_combination() >= before {
-            joints = self.joints_left();
             taken += self.take(&self.places(|_| true));
         }
+        let turns = |&joint: &usize| {
+            !self.excitation.still[joint] && self.setup.robot.joints[joint].kind == JointKind::Revolute
+        };
+        let joints: Vec<usize> = (0..self.excitation.still.len()).filter(turns).collect();
         self.tell(cause, &joints, taken, description);
     }
 
@@ -315,9 +319,9 @@ impl Rules<'_> {
                     JointKind::Revolute => format!("{} deg", rounded(ranges[joint].to_degrees())),
                     JointKind::Prismatic => format!("{} mm", rounded(ranges[joint] * 1e3)),
                 };
-                let part = if directions < screw.len() { " in part" } else { "" };
-                let words = self.degree_words(&format!("is lost in the noise{part}"), false, &screw);
-                let description = format!("{} moved by {by} only: its screw {words}", self.name(joint));
+                let part = if directions < screw.len() { "part of " } else { "" };
+                let words = self.degree_words("is lost in the noise", false, &screw);
+                let description = format!("{} moved by {by} only: {part}its screw {words}", self.name(joint));
                 self.tell(Cause::SmallMotion, &[joint], directions, description);
             }
         }

@@ -19,8 +19,8 @@ const STILL_RAD: f64 = 2.6e-3;
 const STILL_M: f64 = 1e-4;
 /// Joints move together if a combination of their values, each by its own spread, varies by less than this share of one spread.
 const TOGETHER: f64 = 0.01;
-/// Axes within this sine of an angle (about 1°) are parallel.
-const PARALLEL: f64 = 0.02;
+/// Axes within this sine of an angle (about 3°) are parallel: drawn so, but for errors of making.
+const PARALLEL: f64 = 0.05;
 /// Orientations that vary by less than this variance (about 1°) about a direction are one.
 const ONE_ORIENTATION: f64 = 3e-4;
 /// A point is on an axis if it stays within this share of the length that a radian counts.
@@ -53,11 +53,11 @@ pub(super) struct Excitation {
     pub(super) on_axis_m: Vec<Option<f64>>,
     /// For each pair of revolute joints, row by row of a square: whether their axes are always parallel.
     parallel: Vec<bool>,
-    /// Number of measured numbers in configurations that differ.
+    /// Number of measured numbers in configurations that differ; counted no further than there are enough.
     pub(super) numbers: usize,
-    /// Number of configurations that differ.
+    /// Number of configurations that differ, likewise.
     pub(super) configurations: usize,
-    /// For each target, in how many different configurations it was seen.
+    /// For each target, in how many different configurations it was seen, likewise.
     seen: Vec<usize>,
 }
 
@@ -125,8 +125,9 @@ impl Excitation {
         self.turning = turning(&self.mean_turn);
     }
 
-    /// Counts what is measured in different configurations. Rows closer than a jitter are repeats.
+    /// Counts what is measured in different configurations, as far as it could be too little. Rows closer than a jitter are repeats.
     fn count(&mut self, setup: &Setup<'_>) {
+        let unknowns = setup.layout.dim();
         let step = |joint: usize| match setup.robot.joints.get(joint).map(|joint| joint.kind) {
             Some(JointKind::Prismatic) => STILL_M,
             _ => STILL_RAD,
@@ -134,6 +135,9 @@ impl Excitation {
         let (mut all, mut of_targets) = (BTreeSet::new(), BTreeSet::new());
         for &row in setup.rows {
             let observation = &setup.data.observations[row as usize];
+            if self.numbers >= unknowns && self.seen[observation.target] > 1 {
+                continue;
+            }
             let values = setup.packed.joint_values(row as usize).iter().enumerate();
             let place: Vec<i64> = values.map(|(joint, value)| (value / step(joint)).round() as i64).collect();
             all.insert(place.clone());
@@ -201,7 +205,7 @@ fn together(setup: &Setup<'_>, still: &[bool]) -> Vec<Vec<usize>> {
     let moved: Vec<usize> = (0..still.len()).filter(|&joint| !still[joint]).collect();
     let rows = sample_rows(setup.rows, 10 * SAMPLE);
     let k = moved.len();
-    if rows.len() < 3 * k {
+    if k < 2 || rows.len() < 3 * k {
         return Vec::new();
     }
     let count = rows.len() as f64;

@@ -21,7 +21,7 @@ const ROUNDING: f64 = 3e-7;
 pub(super) const PLAUSIBLE: f64 = 0.03;
 /// A direction is weak if its standard deviation is above this share of that length (some 1 to 2 mm, or 0.2°): about what a robot's
 /// drawing is known to, so that a calibration adds little there.
-const WEAK: f64 = 0.003;
+pub(super) const WEAK: f64 = 0.003;
 /// An unknown is determined if no more than this share of it (as a cosine) lies in directions that are open: with those uncertain by
 /// what is plausible, it is less than the tenth of a millimetre on an arm of ordinary size.
 const OPEN_SHARE: f64 = 0.01;
@@ -59,6 +59,19 @@ pub enum Cause {
     /// None of these.
     #[default]
     Other,
+}
+
+impl Cause {
+    /// Whether other combinations of the same joint values would have told it.
+    pub(super) fn is_combination(self) -> bool {
+        matches!(
+            self,
+            Cause::OneOrientation
+                | Cause::OneTurningDirection
+                | Cause::MovedTogether
+                | Cause::DependentMotion
+        )
+    }
 }
 
 /// Something that the measurements do not tell, or hardly.
@@ -108,6 +121,10 @@ impl Spectrum {
     /// metres a radian counts.
     #[must_use]
     pub fn new(gram: &[f64], n: usize, variance: f64, length_m: f64) -> Self {
+        if !gram.iter().all(|value| value.is_finite()) {
+            // Numbers that overflowed tell nothing.
+            return Spectrum { values: vec![0.0; n], vectors: DMatrix::identity(n, n), open: n, variance };
+        }
         let (values, vectors) = linalg::symmetric_eigen(gram, n);
         let least = rounding(&values).max(variance / (PLAUSIBLE * length_m).powi(2));
         let open = values.iter().take_while(|&&value| value <= least || value <= 0.0).count();

@@ -71,7 +71,7 @@ pub struct Foresight {
 }
 
 /// Judges configurations (readings one after the other, in the order of [`Robot::reading_names`]; radians, metres) before they are
-/// measured: theory.md §7 (36), (36b). The robot is taken as its model has it, the noise as given.
+/// measured: theory.md §7 (36), (36c). The robot is taken as its model has it, the noise as given.
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`] if there is no configuration, the number of readings does not fit the robot, or one is not finite.
@@ -109,7 +109,12 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Fo
         length_m,
         device_free: session.device_free,
     };
-    let identifiability = identifiability(&setup, &problem.normal(&estimate).gram, 1.0);
+    let gram = problem.normal(&estimate).gram;
+    if !gram.iter().all(|value| value.is_finite()) {
+        let message = "found joint readings beyond what can be computed with, expected radians and metres: check their units";
+        return Err(Error::new(ErrorKind::Measurement, message));
+    }
+    let identifiability = identifiability(&setup, &gram, 1.0);
     let expected = expected(&setup, &identifiability);
     Ok(Foresight {
         count: data.len(),
@@ -149,7 +154,7 @@ fn imagined(robot: &Robot, readings: &[f64], session: &Session) -> Result<Datase
     Ok(data)
 }
 
-/// The formal error of predicted positions on random configurations: theory.md §7 (36b).
+/// The formal error of predicted positions on random configurations: theory.md §7 (36c).
 fn expected(setup: &Setup<'_>, found: &Identifiability) -> ExpectedError {
     let robot = setup.robot;
     let mut generator = ChaCha8Rng::seed_from_u64(SEED);

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// The indices O1 to O5 of sun2008 over the singular values `s₁ ≥ … ≥ sₙ` of the whitened Jacobian of the scaled minimal unknowns:
-/// theory.md §7 (36a). Larger is better. `None` where a singular value is zero but for rounding.
+/// theory.md §7 (36b). Larger is better. `None` where a singular value is zero but for rounding.
 ///
 /// ```
 /// use poecal::analysis::Observability;

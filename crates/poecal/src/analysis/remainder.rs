@@ -2,9 +2,10 @@
 
 use super::causes::{Degree, Rules, join, joint_of};
 use super::excitation::target_name;
-use super::identifiability::{Cause, Spectrum};
+use super::identifiability::{Cause, PLAUSIBLE, Spectrum, WEAK};
 use super::subspace;
 use crate::estimate::{Packed, sample_rows};
+use crate::measurement::Dataset;
 use crate::parameters::Parameter;
 use crate::problem::Problem;
 use crate::robot::JointKind;
@@ -18,16 +19,20 @@ const NOTABLE: f64 = 0.02;
 impl Rules<'_> {
     pub(super) fn dependent_motion(&mut self) {
         let left = self.left.ncols();
-        if left == 0 || self.hidden_by_combination() < left {
+        let combined = self.told.iter().filter(|told| told.cause.is_combination());
+        let explained: usize = combined.map(|told| told.directions).sum();
+        if left == 0 || self.hidden_by_combination() < explained + left {
             return;
         }
         let joints = self.joints_left();
-        let places = self.places(|_| true);
-        let words = self.degree_words("cannot be told apart", true, &self.screws(&joints));
-        let directions = self.take(&places);
-        let names = self.names(&joints);
+        let several = joints.len() > 1;
+        let (open, subject) =
+            if several { ("cannot be told apart", "their screws") } else { ("cannot be told", "its screw") };
+        let words = self.degree_words(open, several, &self.screws(&joints));
+        let directions = self.take(&self.places(|_| true));
         let description = format!(
-            "{names} moved far enough, but not independently: their screws {words}; vary each while the others stay"
+            "{} moved far enough, but not independently of the others: {subject} {words}",
+            self.names(&joints)
         );
         self.tell(Cause::DependentMotion, &joints, directions, description);
     }
@@ -38,30 +43,29 @@ impl Rules<'_> {
         let rows = sample_rows(setup.rows, SHUFFLED);
         let width = setup.data.reading_names().len();
         let count = rows.len();
-        let mut readings = vec![0.0; setup.data.all_readings().len()];
-        for column in 0..width {
-            for (k, &row) in rows.iter().enumerate() {
-                let other = rows[shuffled(k, column, count)];
-                readings[row as usize * width + column] = setup.data.readings(other as usize)[column];
-            }
+        let mut data = Dataset::new(setup.data.reading_names().to_vec());
+        data.targets.clone_from(&setup.data.targets);
+        for (k, &row) in rows.iter().enumerate() {
+            let other = |column| setup.data.readings(rows[shuffled(k, column, count)] as usize)[column];
+            let readings: Vec<f64> = (0..width).map(other).collect();
+            // Numbers that came from a data set fit into one.
+            let _ = data.push_observation(&readings, setup.data.observations[row as usize]);
         }
-        let packed = Packed::new(setup.robot, &readings, width);
+        let packed = Packed::new(setup.robot, data.all_readings(), width);
         let free: Vec<Parameter> = setup.layout.parameters().map(|(parameter, _)| *parameter).collect();
         let (noise, length_m) = (setup.noise, setup.length_m);
-        let problem = Problem::new(setup.data, &packed, rows, free, noise, length_m);
+        let problem = Problem::new(&data, &packed, (0..count as u32).collect(), free, noise, length_m);
         let mut gram = problem.normal(setup.estimate).gram;
         let scale = setup.rows.len() as f64 / count.max(1) as f64;
         gram.iter_mut().for_each(|value| *value *= scale);
         let then = Spectrum::new(&gram, setup.layout.dim(), self.spectrum.variance, length_m);
-        let beyond = |spectrum: &Spectrum| match self.degree {
-            Degree::Open => spectrum.open,
-            Degree::Weak(_) => {
-                let weakest = self.spectrum.open + self.left.ncols();
-                let sigma_m = self.spectrum.sigma_m(weakest.saturating_sub(1));
-                (0..spectrum.values.len()).take_while(|&k| spectrum.sigma_m(k) >= sigma_m).count()
-            }
+        // What is weak would have to become twice as good: a little better is no cause.
+        let (limit_m, now) = match self.degree {
+            Degree::Open => (PLAUSIBLE * length_m, self.spectrum.open),
+            Degree::Weak(count) => (0.5 * WEAK * length_m, self.spectrum.open + count),
         };
-        beyond(self.spectrum).saturating_sub(beyond(&then))
+        let then_not = (0..then.values.len()).take_while(|&k| k < then.open || then.sigma_m(k) > limit_m);
+        now.saturating_sub(then_not.count())
     }
 
     /// Joints with a notable part in what is left.

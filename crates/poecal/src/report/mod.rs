@@ -1,11 +1,13 @@
 //! Results as text for people. No number here that is not in the result.
 
 mod check;
+mod identify;
 mod judgement;
 mod offsets;
 mod table;
 
 pub use check::{Check, SetCounts};
+pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::Offsets;
 pub use table::{accuracy_table, summary};
