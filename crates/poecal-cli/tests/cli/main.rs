@@ -5,6 +5,7 @@
 mod bad_input;
 mod commands;
 mod folder;
+mod identify;
 mod offsets;
 mod session;
 mod targets_and_validation;

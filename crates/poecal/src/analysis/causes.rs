@@ -12,6 +12,8 @@ use crate::robot::JointKind;
 /// A joint that moved by less than this (20°; of a slide this share of the length that a radian counts) moved by little.
 const LITTLE_RAD: f64 = 0.35;
 const LITTLE_SLIDE: f64 = 0.2;
+/// Share (squared) of a direction that names what it belongs to.
+pub(super) const NOTABLE: f64 = 0.02;
 
 /// What is to be explained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,11 +123,29 @@ impl Rules<'_> {
             .fold(0.0, f64::max)
             .sqrt();
         let verb = if plural { "are" } else { "is" };
-        format!(
-            "{verb} known to {:.1} mm or {:.2} deg only",
-            sigma_m * 1e3,
-            (sigma_m / self.setup.length_m).to_degrees()
-        )
+        let length = format!("{:.1} mm", sigma_m * 1e3);
+        let angle = format!("{:.2} deg", (sigma_m / self.setup.length_m).to_degrees());
+        let known = match self.units(directions) {
+            (true, false) => length,
+            (false, _) => angle,
+            (true, true) => format!("{length} or {angle}"),
+        };
+        format!("{verb} known to {known} only")
+    }
+
+    /// Whether directions have a part in metres, and in radians.
+    fn units(&self, directions: &[Vec<f64>]) -> (bool, bool) {
+        let (mut lengths, mut angles) = (false, false);
+        for (parameter, places) in self.setup.layout.parameters() {
+            for (column, &(place, _)) in parameter.model().columns().iter().zip(places) {
+                let concerned = directions.iter().any(|direction| direction[place].powi(2) > NOTABLE);
+                match column.unit {
+                    Unit::Metre => lengths |= concerned,
+                    Unit::Radian => angles |= concerned,
+                }
+            }
+        }
+        (lengths, angles)
     }
 
     fn stood_still(&mut self) {

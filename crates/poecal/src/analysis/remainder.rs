@@ -1,6 +1,6 @@
 //! What no plain cause explains: whether the joints' combination is to blame, and else the directions as they are.
 
-use super::causes::{Degree, Rules, join, joint_of};
+use super::causes::{Degree, NOTABLE, Rules, join, joint_of};
 use super::excitation::target_name;
 use super::identifiability::{Cause, PLAUSIBLE, Spectrum, WEAK};
 use super::subspace;
@@ -13,8 +13,6 @@ use crate::solve::LeastSquares;
 
 /// Rows whose joint values are shuffled to see whether their combination was the cause.
 const SHUFFLED: usize = 400;
-/// Share (squared) of a direction that names the joint it belongs to.
-const NOTABLE: f64 = 0.02;
 
 impl Rules<'_> {
     pub(super) fn dependent_motion(&mut self) {
