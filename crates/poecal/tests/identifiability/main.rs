@@ -10,8 +10,8 @@ use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
 use poecal::parameters::Formulation;
-use poecal::robot::Robot;
-use poecal::simulate::{Kind, Simulation, elbow, random, random_configuration};
+use poecal::robot::{JointKind, Robot};
+use poecal::simulate::{Kind, Simulation, elbow, random, random_chain, random_configuration};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
@@ -184,4 +184,49 @@ fn a_target_seen_once_is_named() {
     println!("{told}");
     let once = "weak 3: target ball_c was measured in one configuration only: its place fits that one measurement, and nothing checks it";
     assert_eq!(told, format!("33 of 33\n{once}"));
+}
+
+/// Any robot, any joints that stand still or jitter: these are named, and nothing else.
+#[test]
+fn joints_that_stand_still_are_named_and_no_others() {
+    let mut misses = Vec::new();
+    for seed in 0..200 {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let robot = random_chain(2 + (seed % 8) as usize, seed);
+        let still: Vec<bool> = robot.joints.iter().map(|_| random::uniform(&mut generator) < 0.3).collect();
+        let at = random_configuration(&robot, &mut generator);
+        let jitter = if seed % 2 == 0 { 0.0 } else { 1.0 };
+        let mut readings = Vec::new();
+        for _ in 0..80 {
+            let mut row = random_configuration(&robot, &mut generator);
+            for (joint, value) in row.iter_mut().enumerate().filter(|(joint, _)| still[*joint]) {
+                let amplitude = match robot.joints[joint].kind {
+                    JointKind::Revolute => 3e-4,
+                    JointKind::Prismatic => 1e-5,
+                };
+                *value = at[joint] + jitter * amplitude * (2.0 * random::uniform(&mut generator) - 1.0);
+            }
+            readings.extend(row);
+        }
+        let kind = if seed % 3 == 0 { Kind::Point } else { Kind::Pose };
+        let session = Session { kind, ..Session::default() };
+        let found = identify(&robot, &readings, &session).unwrap().identifiability;
+        let named = found.unidentifiable.iter().filter(|it| it.cause == Cause::StoodStill);
+        let named: Vec<&String> = named.flat_map(|it| &it.joints).collect();
+        let frozen: Vec<&String> = robot
+            .joints
+            .iter()
+            .zip(&still)
+            .filter(|(_, still)| **still)
+            .map(|(joint, _)| &joint.name)
+            .collect();
+        let told: usize = found.unidentifiable.iter().map(|it| it.directions).sum();
+        assert_eq!(told, found.parameters - found.rank);
+        let other = found.unidentifiable.iter().any(|it| it.cause != Cause::StoodStill);
+        if named != frozen || other {
+            misses.push(format!("{} {kind:?}, {frozen:?} frozen: {}", robot.name, words(&found)));
+        }
+    }
+    println!("200 robots, {} told otherwise\n{}", misses.len(), misses.join("\n"));
+    assert!(misses.is_empty());
 }
