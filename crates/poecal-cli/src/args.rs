@@ -1,5 +1,9 @@
 //! The command line.
 
+mod identify;
+
+pub(crate) use identify::Identify;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -11,6 +15,7 @@ use poecal::io::urdf::ChainSelection;
 use poecal::measurement::PoseResidual;
 use poecal::offsets;
 use poecal::parameters::Formulation;
+use poecal::simulate::Kind;
 use poecal::solve::Method;
 
 use crate::quantity::{LengthAndAngle, share, sigma_m, sigma_rad, whole};
@@ -49,6 +54,8 @@ pub(crate) enum Command {
     Offsets(Offsets),
     /// Repeat the experiment of a paper, and check its claims
     Reproduce(Reproduce),
+    /// Tell what measuring in some configurations would tell, before anything is measured
+    Identify(Identify),
     /// Print the JSON Schema of calibration.json
     Schema,
 }
@@ -253,6 +260,16 @@ pub(crate) enum SimulatedKind {
     Point,
     /// Both in turn
     Mixed,
+}
+
+impl From<SimulatedKind> for Kind {
+    fn from(kind: SimulatedKind) -> Self {
+        match kind {
+            SimulatedKind::Pose => Kind::Pose,
+            SimulatedKind::Point => Kind::Point,
+            SimulatedKind::Mixed => Kind::Mixed,
+        }
+    }
 }
 
 /// Arguments of `poecal simulate`.

@@ -52,6 +52,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Convert(options) => commands::convert(options, &console),
         Command::Offsets(options) => commands::offsets(options, &console),
         Command::Reproduce(options) => commands::reproduce(options, &console),
+        Command::Identify(options) => commands::identify(options, &console),
         Command::Schema => commands::schema(&console),
     };
     match result {

@@ -51,7 +51,7 @@
 //! | [`parameters`] | what may be wrong: screws, targets, device frame |
 //! | [`solve`] | Levenberg-Marquardt; knows no robots |
 //! | [`problem`] | rows × columns |
-//! | [`analysis`], [`gauge`] | what the data determine; the choice among equals |
+//! | [`analysis`], [`gauge`] | what the data determine, or would; the choice among equals |
 //! | [`start`] | device frame and tool without a guess |
 //! | [`calibration`] | all steps in order |
 //! | [`reproduce`] | the experiment of lou2009 with every formulation |

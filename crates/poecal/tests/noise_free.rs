@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use nalgebra::Vector3;
-use poecal::analysis::identifiability;
+use poecal::analysis::{Setup, identifiability};
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
 use poecal::estimate::Packed;
 use poecal::lie::{Pose, Screw, Twist};
@@ -109,10 +109,20 @@ fn elbow_has_rank_25_where_a_fit_of_points_starts() {
     free.push(Parameter::TargetPlace(TargetPlace { target: 0 }));
     let noise = Noise { position_m: 1e-3, rotation_rad: 1e-3 };
     let problem = Problem::new(&made.data, &packed, (0..100).collect(), free, noise, robot.reach_m() / 3.0);
-    let mut normal = problem.normal(&delivered(robot, &made.data));
+    let estimate = delivered(robot, &made.data);
+    let setup = Setup {
+        robot,
+        data: &made.data,
+        packed: &packed,
+        rows: problem.rows(),
+        estimate: &estimate,
+        layout: problem.layout(),
+        noise,
+        length_m: robot.reach_m() / 3.0,
+        device_free: false,
+    };
     // The residual at the start is not noise: the rank wanted is that of the Jacobian itself.
-    normal.cost = 0.0;
-    let found = identifiability(robot, &made.data, problem.layout(), &normal, robot.reach_m() / 3.0);
+    let found = identifiability(&setup, &problem.normal(&estimate).gram, 0.0);
     println!("rank {} of {}", found.rank, found.parameters);
     found.unidentifiable.iter().for_each(|direction| println!("    {}", direction.description));
     assert_eq!((found.rank, found.parameters), (25, 27));

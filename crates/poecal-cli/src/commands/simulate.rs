@@ -7,7 +7,7 @@ use poecal::io::model::Model;
 use poecal::io::output::{self, Session};
 use poecal::simulate::{Kind, Simulation};
 
-use crate::args::{Chain, Frame, Simulate, SimulatedKind};
+use crate::args::{Chain, Frame, Simulate};
 use crate::console::Console;
 
 pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<ExitCode> {
@@ -22,11 +22,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<ExitCo
         seed: arguments.seed,
         device_anywhere: arguments.frame == Frame::Unknown,
     };
-    let kind = match arguments.kind {
-        SimulatedKind::Pose => Kind::Pose,
-        SimulatedKind::Point => Kind::Point,
-        SimulatedKind::Mixed => Kind::Mixed,
-    };
+    let kind = Kind::from(arguments.kind);
     let made = simulation.run(&model.robot, kind)?;
     let held_out = match arguments.held_out_count {
         0 => None,

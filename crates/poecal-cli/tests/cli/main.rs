@@ -5,6 +5,7 @@
 mod bad_input;
 mod commands;
 mod folder;
+mod identify;
 mod offsets;
 mod reproduce;
 mod session;

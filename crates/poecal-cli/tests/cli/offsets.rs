@@ -6,7 +6,7 @@ use crate::folder::Folder;
 use crate::session::{ROBOT, session};
 
 /// Turns, slides, turns: a joint of each kind.
-const COLUMN: &str = r#"
+pub(crate) const COLUMN: &str = r#"
 poecal_robot = 1
 name = "column"
 length_unit = "mm"

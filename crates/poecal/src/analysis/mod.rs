@@ -1,5 +1,17 @@
 //! What the measurements can tell and what they cannot. Nothing is printed here.
 
+mod causes;
+mod coverage;
+mod excitation;
 mod identifiability;
+mod identify;
+mod observability;
+mod remainder;
+mod subspace;
 
-pub use identifiability::{Direction, Identifiability, identifiability};
+pub use coverage::{JointCoverage, coverage};
+pub use identifiability::{
+    Cause, Direction, Identifiability, Setup, Spectrum, identifiability, residual_variance,
+};
+pub use identify::{ExpectedError, Foresight, Session, identify};
+pub use observability::Observability;

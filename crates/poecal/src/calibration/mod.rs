@@ -20,7 +20,9 @@ pub(crate) use trust::inside;
 pub use trust::{Expected, JointCorrection, RangePart, Trust};
 pub use verdict::{Level, Verdict};
 
-use crate::analysis::{Identifiability, identifiability};
+pub use crate::estimate::{delivered, radian_m};
+
+use crate::analysis::{Identifiability, Setup, identifiability, residual_variance};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed};
 use crate::gauge;
@@ -284,7 +286,18 @@ pub fn calibrate_with_progress(
         }
         DeviceFrameKnowledge::Base => found,
     };
-    let identifiability = identifiability(robot, data, &fitted.layout, &fitted.normal, length_m);
+    let setup = Setup {
+        robot,
+        data,
+        packed: &packed,
+        rows: &fit_rows,
+        estimate: &fitted.estimate,
+        layout: &fitted.layout,
+        noise: fitted.noise,
+        length_m,
+        device_free: options.frame == DeviceFrameKnowledge::Unknown,
+    };
+    let identifiability = identifiability(&setup, &fitted.normal.gram, residual_variance(&fitted.normal));
     let models = Models { nominal, registered, calibrated };
     let accuracy = Accuracy {
         training: set_accuracy(data, &packed, &fit_rows, &models),
@@ -346,35 +359,6 @@ pub fn calibrate_with_progress(
         fit_rows,
         held_out_rows,
     })
-}
-
-/// How many metres a radian counts: a third of how far the arm and the strokes found in the data reach.
-#[must_use]
-pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
-    let strokes: f64 = (0..robot.joints.len())
-        .filter(|&joint| robot.joints[joint].kind == JointKind::Prismatic)
-        .map(|joint| {
-            let values = (0..packed.rows()).map(|row| packed.joint(row, joint).0);
-            let (least, most) =
-                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)));
-            (most - least).max(0.0)
-        })
-        .sum();
-    (robot.arm_m() + strokes) / 3.0
-}
-
-/// The model as delivered: nominal screws, each target where the model has it or else at the tip, device at the base.
-#[must_use]
-pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
-    let base_from_target = data
-        .targets
-        .iter()
-        .map(|name| {
-            let known = robot.targets.iter().find(|(target, _)| Some(target) == name.as_ref());
-            robot.home * known.map_or_else(Pose::identity, |(_, tip_from_target)| *tip_from_target)
-        })
-        .collect();
-    Estimate::new(robot, base_from_target, Pose::identity())
 }
 
 /// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (with points alone its

@@ -2,6 +2,7 @@
 
 mod check;
 mod claims;
+mod identify;
 mod judgement;
 mod offsets;
 mod plot;
@@ -10,6 +11,7 @@ mod table;
 
 pub use check::{Check, SetCounts};
 pub use claims::claims;
+pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::Offsets;
 pub use reproduction::reproduction_files;

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::analysis::{Cause, Identifiability};
 use crate::calibration::{Calibration, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
 use crate::measurement::{Dataset, PoseResidual};
 use crate::parameters::Formulation;
@@ -28,29 +29,33 @@ pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
     out.push('\n');
     out.push_str(&accuracy_table(&calibration.accuracy.training, calibration.accuracy.held_out.as_ref()));
     out.push('\n');
-    let found = &calibration.identifiability;
-    let condition = if found.condition.is_finite() {
-        format!(", condition {:.3e}", found.condition)
-    } else {
-        String::new()
-    };
-    line(&mut out, "determined", &format!("{} of {} unknowns{condition}", found.rank, found.parameters));
-    let mut told: Vec<&str> = Vec::new();
-    for direction in &found.unidentifiable {
-        let words = direction.description.as_str();
-        if !told.contains(&words) {
-            told.push(words);
-            let count = found.unidentifiable.iter().filter(|other| other.description == words).count();
-            let times = if count > 1 { format!(" ({count} directions)") } else { String::new() };
-            line(&mut out, "", &format!("open: {words}{times}"));
-        }
-    }
+    identifiability_lines(&mut out, &calibration.identifiability);
     line(&mut out, "solver", &solver_words(calibration));
     trust_lines(&mut out, calibration);
     if let Some(words) = formulation_words(calibration) {
         line(&mut out, "formulation", &words);
     }
     out
+}
+
+/// What measurements determine, leave open, tell hardly, and could not tell.
+pub(super) fn identifiability_lines(out: &mut String, found: &Identifiability) {
+    let condition = if found.condition.is_finite() {
+        format!(", condition {:.3e}", found.condition)
+    } else {
+        String::new()
+    };
+    line(out, "determined", &format!("{} of {} unknowns{condition}", found.rank, found.parameters));
+    for (label, directions) in [("open", &found.unidentifiable), ("weak", &found.weak)] {
+        for direction in directions {
+            let count = direction.directions;
+            let times = if count > 1 { format!(" ({count} directions)") } else { String::new() };
+            line(out, "", &format!("{label}: {}{times}", direction.description));
+        }
+    }
+    for direction in found.structural.iter().filter(|it| it.cause == Cause::NoOrientation) {
+        line(out, "", &direction.description);
+    }
 }
 
 /// Position and rotation errors of the three models, training and held out apart.

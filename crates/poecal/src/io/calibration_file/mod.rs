@@ -48,20 +48,7 @@ impl CalibrationFile {
                 restarts: calibration.solver.restarts,
                 joint_offsets: OffsetEntry::of(calibration),
             },
-            identifiability: IdentifiabilityEntry {
-                parameters: calibration.identifiability.parameters,
-                rank: calibration.identifiability.rank,
-                condition: Some(calibration.identifiability.condition).filter(|c| c.is_finite()),
-                unidentifiable: calibration
-                    .identifiability
-                    .unidentifiable
-                    .iter()
-                    .map(|direction| DirectionEntry {
-                        description: direction.description.clone(),
-                        joints: direction.joints.clone(),
-                    })
-                    .collect(),
-            },
+            identifiability: IdentifiabilityEntry::of(&calibration.identifiability),
             verdict: Some(calibration.verdict.clone()),
             coverage: calibration.trust.coverage.iter().map(CoverageEntry::of).collect(),
             cross_validation: CrossValidationEntry::of(&calibration.trust),

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::trust::{CorrectionEntry, CoverageEntry, CrossValidationEntry, UncertaintyEntry};
+use crate::analysis::{Direction, Identifiability, Observability};
 use crate::calibration::{Accuracy, NoiseSource, Verdict};
 use crate::measurement::PoseResidual;
 use crate::parameters::Formulation;
@@ -127,17 +128,31 @@ pub struct IdentifiabilityEntry {
     pub rank: usize,
     /// Condition number over those directions; null if there is none.
     pub condition: Option<f64>,
-    /// Directions that the data leave open.
-    pub unidentifiable: Vec<DirectionEntry>,
+    /// What the configurations leave open.
+    pub unidentifiable: Vec<Direction>,
+    /// What they tell, but hardly better than a drawing does.
+    #[serde(default)]
+    pub weak: Vec<Direction>,
+    /// What no measurement of this kind could tell. It is not among the parameters, and changes no prediction.
+    #[serde(default)]
+    pub structural: Vec<Direction>,
+    /// The observability indices; null where a direction is not seen at all.
+    #[serde(default)]
+    pub observability: Observability,
 }
 
-/// A direction that the data leave open.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct DirectionEntry {
-    /// What it is, in words.
-    pub description: String,
-    /// The joints concerned.
-    pub joints: Vec<String>,
+impl IdentifiabilityEntry {
+    pub(crate) fn of(found: &Identifiability) -> Self {
+        IdentifiabilityEntry {
+            parameters: found.parameters,
+            rank: found.rank,
+            condition: Some(found.condition).filter(|condition| condition.is_finite()),
+            unidentifiable: found.unidentifiable.clone(),
+            weak: found.weak.clone(),
+            structural: found.structural.clone(),
+            observability: found.observability,
+        }
+    }
 }
 
 /// Noise by which residuals were weighted where a row stated none.

@@ -1,0 +1,37 @@
+//! The command line of `poecal identify`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Chain, Columns, Frame, SimulatedKind};
+use crate::quantity::{sigma_m, sigma_rad};
+
+/// Arguments of `poecal identify`.
+#[derive(Args, Debug)]
+pub(crate) struct Identify {
+    /// Robot model: URDF, TOML or calibration.json
+    pub(crate) model: PathBuf,
+    /// Joint readings (CSV), joined; other columns than the joints' and `id` are left alone
+    #[arg(required = true)]
+    pub(crate) joints: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) chain: Chain,
+    #[command(flatten)]
+    pub(crate) columns: Columns,
+    /// What the device will see of the tip
+    #[arg(long, value_enum, default_value = "pose")]
+    pub(crate) kind: SimulatedKind,
+    /// Standard deviation of each measured position component [default: 0.05mm]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]
+    pub(crate) sigma_position: Option<f64>,
+    /// Standard deviation of each measured rotation component [default: 0.01deg]
+    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
+    pub(crate) sigma_rotation: Option<f64>,
+    /// The measuring device's frame
+    #[arg(long, value_enum, default_value = "unknown")]
+    pub(crate) frame: Frame,
+    /// Print JSON instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+}

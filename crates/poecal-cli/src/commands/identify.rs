@@ -1,0 +1,45 @@
+//! `poecal identify`: what measuring in some configurations would tell.
+
+use std::process::ExitCode;
+
+use poecal::analysis::{Session, identify as foresee};
+use poecal::io::measurements;
+use poecal::io::model::Model;
+use poecal::measurement::Noise;
+use poecal::{Result, report};
+
+use super::files::refuse_repeats;
+use crate::args::{Frame, Identify};
+use crate::console::Console;
+
+pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<ExitCode> {
+    refuse_repeats(&arguments.joints)?;
+    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    let options = arguments.columns.options()?;
+    let mut readings = Vec::new();
+    for path in &arguments.joints {
+        let joints = measurements::read_joints(path, &model.robot, &options)?;
+        for warning in &joints.warnings {
+            console.warning(warning);
+        }
+        readings.extend(joints.readings);
+    }
+    let usual = Session::default();
+    let session = Session {
+        kind: arguments.kind.into(),
+        noise: Noise {
+            position_m: arguments.sigma_position.unwrap_or(usual.noise.position_m),
+            rotation_rad: arguments.sigma_rotation.unwrap_or(usual.noise.rotation_rad),
+        },
+        device_free: arguments.frame == Frame::Unknown,
+    };
+    let found = foresee(&model.robot, &readings, &session)?;
+    let files: Vec<String> = arguments.joints.iter().map(|path| path.display().to_string()).collect();
+    let report = report::Identify::new(&model, &files, &session, &found);
+    if arguments.json {
+        console.data(&report::json(&report)?)?;
+    } else {
+        console.say(&report.text())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,72 @@
+//! How much of each joint's range was sampled.
+
+use serde::{Deserialize, Serialize};
+
+use crate::estimate::Packed;
+use crate::robot::{JointKind, Limits, Robot};
+
+/// The values of a joint that were sampled, beside those that it can take (radians; metres of a sliding joint).
+///
+/// ```
+/// use poecal::analysis::JointCoverage;
+/// let joint = "elbow".to_owned();
+/// let half = JointCoverage { joint, sampled_min: 0.0, sampled_max: 1.5, limit_min: Some(-1.5), limit_max: Some(1.5) };
+/// assert_eq!(half.share(), Some(0.5));
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct JointCoverage {
+    /// The joint.
+    pub joint: String,
+    /// Smallest value sampled.
+    pub sampled_min: f64,
+    /// Largest value sampled.
+    pub sampled_max: f64,
+    /// Smallest value that the model allows; null where it has no limits, or placeholders.
+    pub limit_min: Option<f64>,
+    /// Largest value that the model allows.
+    pub limit_max: Option<f64>,
+}
+
+impl JointCoverage {
+    /// Share of the allowed range that was sampled, 0 to 1 (more where limits were exceeded); `None` without limits.
+    #[must_use]
+    pub fn share(&self) -> Option<f64> {
+        let allowed = self.limit_max? - self.limit_min?;
+        (allowed > 0.0).then(|| (self.sampled_max - self.sampled_min) / allowed)
+    }
+}
+
+/// The coverage of each joint's range by some rows, from base to tip; nothing if there are no rows.
+#[must_use]
+pub fn coverage(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<JointCoverage> {
+    let ranges = ranges(robot.joints.len(), packed, rows);
+    robot
+        .joints
+        .iter()
+        .zip(ranges)
+        .filter(|(_, (least, most))| least <= most)
+        .map(|(joint, (sampled_min, sampled_max))| {
+            let limits = joint.limits.filter(|limits| {
+                joint.kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M
+            });
+            JointCoverage {
+                joint: joint.name.clone(),
+                sampled_min,
+                sampled_max,
+                limit_min: limits.map(|limits| limits.lower),
+                limit_max: limits.map(|limits| limits.upper),
+            }
+        })
+        .collect()
+}
+
+/// Smallest and largest value of each joint in some rows.
+pub(super) fn ranges(joints: usize, packed: &Packed, rows: &[u32]) -> Vec<(f64, f64)> {
+    let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); joints];
+    for &row in rows {
+        for (range, &value) in ranges.iter_mut().zip(packed.joint_values(row as usize)) {
+            *range = (range.0.min(value), range.1.max(value));
+        }
+    }
+    ranges
+}

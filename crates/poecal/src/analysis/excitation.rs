@@ -1,0 +1,245 @@
+//! What the configurations did: which joints moved and how far, which only together, how the tool turned, what lies on an axis.
+
+use std::collections::BTreeSet;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::coverage::ranges;
+use super::identifiability::{Cause, Direction, Setup};
+use super::subspace;
+use crate::estimate::{Chain, Linkage, sample_rows};
+use crate::linalg;
+use crate::parameters::Parameter;
+use crate::robot::JointKind;
+
+/// Rows on which geometry is looked at.
+const SAMPLE: usize = 400;
+/// A joint whose values vary by no more stood still: encoders at rest jitter by some 1e-4 rad or 0.01 mm.
+const STILL_RAD: f64 = 2.6e-3;
+const STILL_M: f64 = 1e-4;
+/// Joints move together if a combination of their values, each by its own spread, varies by less than this share of one spread.
+const TOGETHER: f64 = 0.01;
+/// Axes within this sine of an angle (about 3°) are parallel: drawn so, but for errors of making.
+const PARALLEL: f64 = 0.05;
+/// Orientations that vary by less than this variance (about 1°) about a direction are one.
+const ONE_ORIENTATION: f64 = 3e-4;
+/// A point is on an axis if it stays within this share of the length that a radian counts.
+const ON_AXIS: f64 = 0.02;
+
+/// How the tool turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Turning {
+    /// Not at all.
+    Not,
+    /// About one direction only, here in the axes of the last link.
+    About(Vector3<f64>),
+    /// Otherwise.
+    Freely,
+}
+
+/// What the configurations did.
+pub(super) struct Excitation {
+    /// By how much each joint's value varies, radians or metres.
+    pub(super) ranges: Vec<f64>,
+    /// Which joints stood still.
+    pub(super) still: Vec<bool>,
+    /// Groups of joints that moved together only.
+    pub(super) together: Vec<Vec<usize>>,
+    /// How the tool turned.
+    pub(super) turning: Turning,
+    /// Mean rotation of the last link's frame in the device's axes.
+    pub(super) mean_turn: Matrix3<f64>,
+    /// For each revolute joint whose axis goes through all targets at all times: how far they come from it, metres.
+    pub(super) on_axis_m: Vec<Option<f64>>,
+    /// For each pair of revolute joints, row by row of a square: whether their axes are always parallel.
+    parallel: Vec<bool>,
+    /// Number of measured numbers in configurations that differ; counted no further than there are enough.
+    pub(super) numbers: usize,
+    /// Number of configurations that differ, likewise.
+    pub(super) configurations: usize,
+    /// For each target, in how many different configurations it was seen, likewise.
+    seen: Vec<usize>,
+}
+
+impl Excitation {
+    pub(super) fn new(setup: &Setup<'_>) -> Self {
+        let joints = &setup.robot.joints;
+        let ranges: Vec<f64> =
+            ranges(joints.len(), setup.packed, setup.rows).iter().map(|(a, b)| (b - a).max(0.0)).collect();
+        let still: Vec<bool> = ranges
+            .iter()
+            .zip(joints)
+            .map(|(&range, joint)| match joint.kind {
+                JointKind::Revolute => range <= STILL_RAD,
+                JointKind::Prismatic => range <= STILL_M,
+            })
+            .collect();
+        let mut found = Excitation {
+            together: together(setup, &still),
+            parallel: vec![true; joints.len() * joints.len()],
+            on_axis_m: vec![None; joints.len()],
+            turning: Turning::Freely,
+            mean_turn: Matrix3::zeros(),
+            ranges,
+            still,
+            numbers: 0,
+            configurations: 0,
+            seen: vec![0; setup.data.targets.len()],
+        };
+        found.look_at_geometry(setup);
+        found.count(setup);
+        found
+    }
+
+    /// Whether the axes of some joints are always parallel.
+    pub(super) fn are_parallel(&self, joints: &[usize]) -> bool {
+        let n = self.still.len();
+        joints.iter().all(|a| joints.iter().all(|b| self.parallel.get(a * n + b).copied().unwrap_or(false)))
+    }
+
+    fn look_at_geometry(&mut self, setup: &Setup<'_>) {
+        let n = self.still.len();
+        let linkage = Linkage::new(setup.estimate);
+        let mut chain = Chain::default();
+        let rows = sample_rows(setup.rows, SAMPLE);
+        let mut away_m = vec![0.0_f64; n];
+        for &row in &rows {
+            let row = row as usize;
+            chain.evaluate(&linkage, setup.packed, row, setup.data.observations[row].target);
+            self.mean_turn += chain.last.rotation / rows.len() as f64;
+            for (a, joint) in chain.joints.iter().enumerate() {
+                let arm = chain.target.translation - joint.origin;
+                let away =
+                    if joint.kind == JointKind::Revolute { arm.cross(&joint.z).norm() } else { f64::MAX };
+                away_m[a] = away_m[a].max(away);
+                for (b, other) in chain.joints.iter().enumerate() {
+                    let revolute = joint.kind == JointKind::Revolute && other.kind == JointKind::Revolute;
+                    self.parallel[a * n + b] &= revolute && joint.z.cross(&other.z).norm() < PARALLEL;
+                }
+            }
+        }
+        if !setup.layout.parameters().any(|(it, _)| matches!(it, Parameter::TargetFrame(_))) {
+            let near = ON_AXIS * setup.length_m;
+            self.on_axis_m = away_m.iter().map(|&away| (away < near).then_some(away)).collect();
+        }
+        self.turning = turning(&self.mean_turn);
+    }
+
+    /// Counts what is measured in different configurations, as far as it could be too little. Rows closer than a jitter are repeats.
+    fn count(&mut self, setup: &Setup<'_>) {
+        let unknowns = setup.layout.dim();
+        let step = |joint: usize| match setup.robot.joints.get(joint).map(|joint| joint.kind) {
+            Some(JointKind::Prismatic) => STILL_M,
+            _ => STILL_RAD,
+        };
+        let (mut all, mut of_targets) = (BTreeSet::new(), BTreeSet::new());
+        for &row in setup.rows {
+            let observation = &setup.data.observations[row as usize];
+            if self.numbers >= unknowns && self.seen[observation.target] > 1 {
+                continue;
+            }
+            let values = setup.packed.joint_values(row as usize).iter().enumerate();
+            let place: Vec<i64> = values.map(|(joint, value)| (value / step(joint)).round() as i64).collect();
+            all.insert(place.clone());
+            if of_targets.insert((observation.target, place)) {
+                self.numbers += observation.measurement.residual_model().dim();
+                self.seen[observation.target] += 1;
+            }
+        }
+        self.configurations = all.len();
+    }
+
+    /// Targets among several that were seen once, which nothing checks.
+    pub(super) fn seen_once(&self, setup: &Setup<'_>) -> Vec<Direction> {
+        let mut found = Vec::new();
+        if self.seen.len() < 2 {
+            return found;
+        }
+        for (parameter, places) in setup.layout.parameters() {
+            let (target, what) = match parameter {
+                Parameter::TargetPlace(it) => (it.target, "its place fits that one measurement"),
+                Parameter::TargetFrame(it) => (it.target, "its frame fits that one measurement"),
+                Parameter::ScrewAxis(_)
+                | Parameter::FreeScrew(_)
+                | Parameter::JointOffset(_)
+                | Parameter::DeviceFrame(_) => continue,
+            };
+            if self.seen.get(target) == Some(&1) {
+                let name = target_name(setup, target);
+                found.push(Direction {
+                    description: format!(
+                        "{name} was measured in one configuration only: {what}, and nothing checks it"
+                    ),
+                    joints: Vec::new(),
+                    cause: Cause::SeenOnce,
+                    directions: places.len(),
+                });
+            }
+        }
+        found
+    }
+}
+
+/// A target by name.
+pub(super) fn target_name(setup: &Setup<'_>, target: usize) -> String {
+    match setup.data.targets.get(target).and_then(Option::as_deref) {
+        Some(name) => format!("target {name}"),
+        None => "the tip".to_owned(),
+    }
+}
+
+/// How rotations turn whose mean is this: a direction u stays where it is if `uᵀ(I - R̄ᵀR̄)u` vanishes.
+fn turning(mean: &Matrix3<f64>) -> Turning {
+    let spread = Matrix3::identity() - mean.transpose() * mean;
+    let upper: Vec<f64> = (0..9).map(|k| spread[(k / 3, k % 3)]).collect();
+    let (values, vectors) = linalg::symmetric_eigen(&upper, 3);
+    match values.iter().filter(|&&value| value < ONE_ORIENTATION).count() {
+        0 => Turning::Freely,
+        1 => Turning::About(Vector3::new(vectors[(0, 0)], vectors[(1, 0)], vectors[(2, 0)])),
+        _ => Turning::Not,
+    }
+}
+
+/// Groups of joints some combination of whose values stays the same while they move.
+fn together(setup: &Setup<'_>, still: &[bool]) -> Vec<Vec<usize>> {
+    let moved: Vec<usize> = (0..still.len()).filter(|&joint| !still[joint]).collect();
+    let rows = sample_rows(setup.rows, 10 * SAMPLE);
+    let k = moved.len();
+    if k < 2 || rows.len() < 3 * k {
+        return Vec::new();
+    }
+    let count = rows.len() as f64;
+    let value = |row: u32, joint: usize| setup.packed.joint_values(row as usize)[joint];
+    let means: Vec<f64> =
+        moved.iter().map(|&joint| rows.iter().map(|&row| value(row, joint)).sum::<f64>() / count).collect();
+    let spreads: Vec<f64> = moved
+        .iter()
+        .zip(&means)
+        .map(|(&joint, mean)| {
+            (rows.iter().map(|&row| (value(row, joint) - mean).powi(2)).sum::<f64>() / count).sqrt()
+        })
+        .collect();
+    let mut correlation = vec![0.0; k * k];
+    for &row in &rows {
+        let scaled: Vec<f64> = (0..k).map(|i| (value(row, moved[i]) - means[i]) / spreads[i]).collect();
+        linalg::add_gram(&mut correlation, k, &scaled, 0);
+    }
+    correlation.iter_mut().for_each(|c| *c /= count);
+    let (values, vectors) = linalg::symmetric_eigen(&correlation, k);
+    let tied = values.iter().take_while(|&&value| value < TOGETHER * TOGETHER).count();
+    let mut groups: Vec<BTreeSet<usize>> = Vec::new();
+    for relation in subspace::sparse(&vectors.columns(0, tied).into_owned()) {
+        let mut group: BTreeSet<usize> =
+            (0..k).filter(|&i| relation[i].abs() > 0.1).map(|i| moved[i]).collect();
+        groups.retain(|other| {
+            let apart = other.is_disjoint(&group);
+            if !apart {
+                group.extend(other);
+            }
+            apart
+        });
+        groups.push(group);
+    }
+    groups.sort();
+    groups.into_iter().map(|group| group.into_iter().collect()).collect()
+}

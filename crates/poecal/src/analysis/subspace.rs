@@ -1,0 +1,97 @@
+//! Subspaces of the unknowns, given by orthonormal columns.
+
+use nalgebra::DMatrix;
+
+use crate::linalg;
+
+/// A direction counts as lying in a subspace's view if more than this share of it (as a cosine) can be seen there.
+const VISIBLE: f64 = 0.1;
+
+/// The part of `space` that does not move along any of some directions, and how many dimensions are gone: what would be left open if
+/// the quantities along these directions were known. The directions need not be orthogonal, but of unit length.
+pub(super) fn without(space: &DMatrix<f64>, directions: &[Vec<f64>]) -> (DMatrix<f64>, usize) {
+    let k = space.ncols();
+    let basis = orthonormal(directions, space.nrows());
+    let seen: Vec<Vec<f64>> = basis
+        .iter()
+        .map(|direction| {
+            space.column_iter().map(|column| column.iter().zip(direction).map(|(a, b)| a * b).sum()).collect()
+        })
+        .collect();
+    let mut gram = vec![0.0; k * k];
+    for row in &seen {
+        linalg::add_gram(&mut gram, k, row, 0);
+    }
+    let (values, vectors) = linalg::symmetric_eigen(&gram, k);
+    let kept = values.iter().take_while(|&&value| value <= VISIBLE * VISIBLE).count();
+    (space * vectors.columns(0, kept), k - kept)
+}
+
+/// Orthonormal vectors that span what some vectors do.
+fn orthonormal(vectors: &[Vec<f64>], n: usize) -> Vec<Vec<f64>> {
+    const DEPENDENT: f64 = 1e-6;
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for vector in vectors.iter().filter(|vector| vector.len() == n) {
+        let mut rest = vector.clone();
+        // Twice is enough against rounding.
+        for _ in 0..2 {
+            for known in &basis {
+                let along: f64 = rest.iter().zip(known).map(|(a, b)| a * b).sum();
+                rest.iter_mut().zip(known).for_each(|(a, b)| *a -= along * b);
+            }
+        }
+        let norm = rest.iter().map(|a| a * a).sum::<f64>().sqrt();
+        if norm > DEPENDENT {
+            rest.iter_mut().for_each(|a| *a /= norm);
+            basis.push(rest);
+        }
+    }
+    basis
+}
+
+/// A basis of the same space with as many zeros as elimination gives: directions that concern few unknowns each, of unit length.
+pub(super) fn sparse(space: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    let mut rows: Vec<Vec<f64>> =
+        space.column_iter().map(|column| column.iter().copied().collect()).collect();
+    let count = rows.len();
+    for k in 0..count {
+        let pivot = (k..count)
+            .flat_map(|r| (0..space.nrows()).map(move |c| (r, c)))
+            .max_by(|&(r, c), &(s, d)| rows[r][c].abs().total_cmp(&rows[s][d].abs()));
+        let Some((row, column)) = pivot else { break };
+        rows.swap(k, row);
+        let value = rows[k][column];
+        rows[k].iter_mut().for_each(|x| *x /= value);
+        let pivot_row = rows[k].clone();
+        for (r, other) in rows.iter_mut().enumerate() {
+            if r != k {
+                let factor = other[column];
+                other.iter_mut().zip(&pivot_row).for_each(|(x, p)| *x -= factor * p);
+            }
+        }
+    }
+    for row in &mut rows {
+        let norm = row.iter().map(|x| x * x).sum::<f64>().sqrt();
+        row.iter_mut().for_each(|x| *x /= norm);
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_leaves_the_rest_open() {
+        // Open: e0 + e1 together, and e2.
+        let half = 0.5f64.sqrt();
+        let space = DMatrix::from_column_slice(4, 2, &[half, half, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        let unit = |k: usize| (0..4).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
+        let (left, gone) = without(&space, &[unit(0), unit(1)]);
+        assert_eq!((left.ncols(), gone), (1, 1));
+        assert!((left[(2, 0)].abs() - 1.0).abs() < 1e-12);
+        assert_eq!(without(&space, &[unit(3)]).1, 0);
+        assert_eq!(without(&space, &[unit(0), unit(2), unit(2)]).1, 2);
+        assert_eq!(sparse(&space).len(), 2);
+    }
+}

@@ -1,0 +1,166 @@
+//! What configurations would tell.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::table::{identifiability_lines, kinds_words, line, number, robot_words};
+use crate::analysis::{Foresight, JointCoverage, Session};
+use crate::io::calibration_file::IdentifiabilityEntry;
+use crate::io::model::Model;
+use crate::robot::JointKind;
+use crate::simulate::Kind;
+
+/// What configurations would tell, for a person to look over or a machine to read.
+///
+/// ```
+/// use poecal::analysis::{Session, identify};
+/// use poecal::io::model::{Model, ModelSource};
+/// use poecal::report::Identify;
+/// let robot = poecal::simulate::scara();
+/// // The sliding joint never moves.
+/// let readings: Vec<f64> = (0..40).flat_map(|k| [0.05 * k as f64, (k % 7) as f64 * 0.3, 0.1, (k % 5) as f64 * 0.4]).collect();
+/// let found = identify(&robot, &readings, &Session::default())?;
+/// let model = Model { robot, source: ModelSource::Toml, path: "scara.toml".into() };
+/// let report = Identify::new(&model, &["joints.csv".to_owned()], &Session::default(), &found);
+/// assert!(report.text().contains("open: joint3 never moved: its screw is unknown"), "{}", report.text());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Identify {
+    model: String,
+    files: Vec<String>,
+    kind: &'static str,
+    frame: &'static str,
+    configurations: usize,
+    noise: NoiseEntry,
+    identifiability: IdentifiabilityEntry,
+    expected_error: ExpectedEntry,
+    coverage: Vec<JointCoverage>,
+    #[serde(skip)]
+    robot_words: String,
+    #[serde(skip)]
+    kinds: Vec<JointKind>,
+    #[serde(skip)]
+    foresight: Foresight,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct NoiseEntry {
+    sigma_position_mm: f64,
+    /// Null for points.
+    sigma_rotation_deg: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct ExpectedEntry {
+    configurations: usize,
+    told: usize,
+    /// Null where no prediction is told.
+    position_mean_mm: Option<f64>,
+    position_worst_mm: Option<f64>,
+}
+
+impl Identify {
+    /// What `identify` found of a model in the configurations of some files, named as the user named them.
+    #[must_use]
+    pub fn new(model: &Model, files: &[String], session: &Session, found: &Foresight) -> Self {
+        let sigma_rotation_deg =
+            (session.kind != Kind::Point).then(|| session.noise.rotation_rad.to_degrees());
+        Identify {
+            model: model.path.display().to_string(),
+            files: files.to_vec(),
+            kind: session.kind.word(),
+            frame: if session.device_free { "unknown" } else { "base" },
+            configurations: found.count,
+            noise: NoiseEntry { sigma_position_mm: session.noise.position_m * 1e3, sigma_rotation_deg },
+            identifiability: IdentifiabilityEntry::of(&found.identifiability),
+            expected_error: ExpectedEntry {
+                configurations: found.expected.configurations,
+                told: found.expected.told,
+                position_mean_mm: found.expected.mean_m.map(|mean| mean * 1e3),
+                position_worst_mm: found.expected.worst_m.map(|worst| worst * 1e3),
+            },
+            coverage: found.coverage.clone(),
+            robot_words: robot_words(&model.robot),
+            kinds: model.robot.joints.iter().map(|joint| joint.kind).collect(),
+            foresight: found.clone(),
+        }
+    }
+
+    /// As text of lines up to 80 characters (but for names that are longer).
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        line(&mut out, "robot", &self.robot_words);
+        let (poses, points) = match self.kind {
+            "pose" => (self.configurations, 0),
+            "point" => (0, self.configurations),
+            _ => (self.configurations.div_ceil(2), self.configurations / 2),
+        };
+        line(&mut out, "to measure", &format!("{}: {}", kinds_words(poses, points), self.files.join(", ")));
+        let rotation =
+            self.noise.sigma_rotation_deg.map_or_else(String::new, |deg| format!(", {} deg", number(deg)));
+        let noise = format!("{} mm{rotation} each component", number(self.noise.sigma_position_mm));
+        line(&mut out, "noise", &noise);
+        identifiability_lines(&mut out, &self.foresight.identifiability);
+        line(&mut out, "observability", &self.observability_words());
+        line(&mut out, "expected", &self.expected_words());
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "coverage", "sampled", "limits", "share");
+        for (joint, &kind) in self.coverage.iter().zip(&self.kinds) {
+            let _ = writeln!(out, "{}", coverage_row(joint, kind));
+        }
+        out
+    }
+
+    fn observability_words(&self) -> String {
+        let found = self.identifiability.observability;
+        let indices = [found.o1, found.o2, found.o3, found.o4, found.o5];
+        let words: Vec<String> = indices
+            .iter()
+            .enumerate()
+            .filter_map(|(k, index)| index.map(|index| format!("O{} {index:.3e}", k + 1)))
+            .collect();
+        if words.is_empty() {
+            "O1 to O5 zero: a direction is not seen at all".to_owned()
+        } else {
+            words.join(", ")
+        }
+    }
+
+    fn expected_words(&self) -> String {
+        let expected = self.expected_error;
+        let (Some(mean), Some(worst)) = (expected.position_mean_mm, expected.position_worst_mm) else {
+            return "no prediction is told: every one moves with what is open".to_owned();
+        };
+        let rest = expected.configurations - expected.told;
+        let open = if rest > 0 {
+            format!("; {rest} others move with what is open, and are not told")
+        } else {
+            String::new()
+        };
+        format!(
+            "predicted tip to {} mm (worst {} mm), as far as noise goes, in {} random configurations within the limits{open}",
+            number(mean),
+            number(worst),
+            expected.told
+        )
+    }
+}
+
+fn coverage_row(joint: &JointCoverage, kind: JointKind) -> String {
+    let (scale, unit) = match kind {
+        JointKind::Revolute => (1f64.to_degrees(), "deg"),
+        JointKind::Prismatic => (1e3, "mm"),
+    };
+    // Adding zero makes negative zero positive.
+    let shown = |value: f64| format!("{:.1}", (value * scale * 10.0).round() / 10.0 + 0.0);
+    let sampled = format!("{} to {} {unit}", shown(joint.sampled_min), shown(joint.sampled_max));
+    let limits = match (joint.limit_min, joint.limit_max) {
+        (Some(least), Some(most)) => format!("{} to {} {unit}", shown(least), shown(most)),
+        _ => "none".to_owned(),
+    };
+    let share = joint.share().map_or_else(|| "-".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    format!("  {:<19}{sampled:>23}{limits:>26}{share:>8}", joint.joint)
+}
