@@ -8,10 +8,10 @@ use crate::robot::{JointKind, Limits, Robot};
 /// The values of a joint that were sampled, beside those that it can take (radians; metres of a sliding joint).
 ///
 /// ```
-/// use poecal::analysis::JointCoverage;
+/// use poecal::{analysis::JointCoverage, robot::JointKind};
 /// let joint = "elbow".to_owned();
 /// let half = JointCoverage { joint, sampled_min: 0.0, sampled_max: 1.5, limit_min: Some(-1.5), limit_max: Some(1.5) };
-/// assert_eq!(half.share(), Some(0.5));
+/// assert_eq!(half.share(JointKind::Revolute), Some(0.5));
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct JointCoverage {
@@ -28,11 +28,32 @@ pub struct JointCoverage {
 }
 
 impl JointCoverage {
-    /// Share of the allowed range that was sampled, 0 to 1 (more where limits were exceeded); `None` without limits.
+    /// Share of the allowed range that was sampled, 0 to 1; of a revolute joint of at most a turn, where limits allow more or are missing,
+    /// since whole turns change no geometry. `None` of a sliding joint without limits.
     #[must_use]
-    pub fn share(&self) -> Option<f64> {
-        let allowed = self.limit_max? - self.limit_min?;
-        (allowed > 0.0).then(|| (self.sampled_max - self.sampled_min) / allowed)
+    pub fn share(&self, kind: JointKind) -> Option<f64> {
+        let turn = std::f64::consts::TAU;
+        let limits = self.limit_min.zip(self.limit_max).map(|(least, most)| most - least);
+        let allowed = match kind {
+            JointKind::Revolute => limits.map_or(turn, |span| span.min(turn)),
+            JointKind::Prismatic => limits?,
+        };
+        (allowed > 0.0).then(|| ((self.sampled_max - self.sampled_min) / allowed).min(1.0))
+    }
+
+    /// Whether a value lies in the sampled range; of a revolute joint also after whole turns.
+    #[must_use]
+    pub fn contains(&self, kind: JointKind, value: f64) -> bool {
+        // Readings come rounded; what differs by less is the same configuration.
+        const ROUNDING: f64 = 1e-6;
+        let (least, most) = (self.sampled_min - ROUNDING, self.sampled_max + ROUNDING);
+        match kind {
+            JointKind::Prismatic => (least..=most).contains(&value),
+            JointKind::Revolute => {
+                let turn = std::f64::consts::TAU;
+                value - turn * ((value - least) / turn).floor() <= most
+            }
+        }
     }
 }
 

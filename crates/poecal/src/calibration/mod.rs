@@ -1,7 +1,6 @@
 //! From a robot and measurements to a calibrated robot: the steps by name, and nothing computed here.
 
 mod accuracy;
-mod coverage;
 mod doubts;
 mod fit;
 mod judge;
@@ -11,7 +10,6 @@ mod trust;
 mod verdict;
 
 pub use accuracy::{Accuracy, ModelAccuracy, RowError, SetAccuracy, Statistic, row_errors, set_accuracy};
-pub use coverage::{Coverage, coverage};
 pub use fit::fit_screws;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
@@ -332,6 +330,7 @@ pub fn calibrate_with_progress(
         solver: &fitted.report,
         identifiability: &identifiability,
         trust: &trust,
+        kinds: &models.calibrated.kinds,
         residuals: fitted.normal.residuals,
         reach_m: 3.0 * length_m,
         mistakes: &[],

@@ -4,12 +4,12 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::coverage::{Coverage, coverage};
 use super::{Models, row_errors};
+use crate::analysis::{JointCoverage, coverage};
 use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge::{Deviation, screw_deviations};
 use crate::problem::Layout;
-use crate::robot::{JointKind, Robot};
+use crate::robot::{Joint, JointKind, Robot};
 use crate::simulate::random;
 use crate::solve::Normal;
 use crate::start::{Registration, register_again};
@@ -77,7 +77,7 @@ pub struct JointCorrection {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trust {
     /// What of each joint's range was sampled.
-    pub coverage: Vec<Coverage>,
+    pub coverage: Vec<JointCoverage>,
     /// Parts left out in turn; none if the rows are too few.
     pub cross_validation: Option<CrossValidation>,
     /// Covariance of the unknowns, and what the model does not describe.
@@ -110,7 +110,8 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let uncertainty = uncertainty(finished, &found);
     let sampled = sampled_values(view, view.rows);
     let coverage = coverage(view.robot, view.packed, view.rows);
-    let anywhere = anywhere(&coverage, finished.seed);
+    let ranges = ranges(view.robot, &coverage);
+    let anywhere = anywhere(&ranges, finished.seed);
     let (mut measured, mut range, mut parts) = (None, None, Vec::new());
     if let Some(uncertainty) = &uncertainty {
         let target = 0;
@@ -118,7 +119,7 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
             Some(Expected::of(&uncertainty.predictions(&Packed::of_values(view.robot, &sampled), target)));
         let errors = uncertainty.predictions(&Packed::of_values(view.robot, &anywhere), target);
         range = Some(Expected::of(&errors));
-        parts = range_parts(&coverage, &anywhere, &errors);
+        parts = range_parts(&ranges, &anywhere, &errors);
     }
     Trust {
         joints: joints(finished, uncertainty.as_ref()),
@@ -147,40 +148,39 @@ fn sampled_values(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
     sample.iter().flat_map(|&row| view.packed.joint_values(row as usize).iter().copied()).collect()
 }
 
-/// Joint values anywhere within the limits; of a revolute joint within a turn about the middle of what was sampled, where the limits
-/// allow more or are missing, and of a sliding joint without limits within what was sampled.
-fn anywhere(coverage: &[Coverage], seed: u64) -> Vec<f64> {
-    let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x616e_7977);
-    let ranges: Vec<[f64; 2]> = coverage.iter().map(range).collect();
-    (0..CONFIGURATIONS)
-        .flat_map(|_| {
-            let draw = |[lower, upper]: &[f64; 2]| lower + (upper - lower) * random::uniform(&mut generator);
-            ranges.iter().map(draw).collect::<Vec<f64>>()
-        })
-        .collect()
+/// The ranges in which joints may be used: the limits; of a revolute joint a turn about the middle of what was sampled, where the limits
+/// allow more or are missing, and of a sliding joint without limits what was sampled.
+fn ranges(robot: &Robot, coverage: &[JointCoverage]) -> Vec<[f64; 2]> {
+    let half_turn = std::f64::consts::PI;
+    let of = |(joint, coverage): (&Joint, &JointCoverage)| {
+        let middle = 0.5 * (coverage.sampled_min + coverage.sampled_max);
+        match (joint.kind, coverage.limit_min.zip(coverage.limit_max)) {
+            (JointKind::Prismatic, Some((least, most))) => [least, most],
+            (JointKind::Revolute, Some((least, most))) if most - least <= 2.0 * half_turn => [least, most],
+            (JointKind::Prismatic, None) => [coverage.sampled_min, coverage.sampled_max],
+            (JointKind::Revolute, _) => [middle - half_turn, middle + half_turn],
+        }
+    };
+    robot.joints.iter().zip(coverage).map(of).collect()
 }
 
-/// The range in which a joint may be used.
-fn range(coverage: &Coverage) -> [f64; 2] {
-    let half_turn = std::f64::consts::PI;
-    let middle = 0.5 * (coverage.sampled[0] + coverage.sampled[1]);
-    match (coverage.kind, coverage.limits) {
-        (_, Some([lower, upper]))
-            if coverage.kind == JointKind::Prismatic || upper - lower <= 2.0 * half_turn =>
-        {
-            [lower, upper]
-        }
-        (JointKind::Prismatic, _) => coverage.sampled,
-        (JointKind::Revolute, _) => [middle - half_turn, middle + half_turn],
+/// Random joint values within ranges.
+fn anywhere(ranges: &[[f64; 2]], seed: u64) -> Vec<f64> {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x616e_7977);
+    let mut values = Vec::with_capacity(CONFIGURATIONS * ranges.len());
+    for _ in 0..CONFIGURATIONS {
+        values.extend(
+            ranges.iter().map(|[lower, upper]| lower + (upper - lower) * random::uniform(&mut generator)),
+        );
     }
+    values
 }
 
 /// Mean squares of the expected errors by parts of each joint's range.
-fn range_parts(coverage: &[Coverage], values: &[f64], errors: &[PredictedError]) -> Vec<RangePart> {
-    let joints = coverage.len();
+fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[PredictedError]) -> Vec<RangePart> {
+    let joints = ranges.len();
     let mut parts = Vec::new();
-    for (joint, of_joint) in coverage.iter().enumerate() {
-        let [lower, upper] = range(of_joint);
+    for (joint, &[lower, upper]) in ranges.iter().enumerate() {
         let width = (upper - lower) / PARTS as f64;
         if width <= 0.0 {
             continue;
@@ -263,13 +263,10 @@ fn registered_again(finished: &Finished<'_>, rows: &[u32], start: &Estimate) -> 
     register_again(&registration, start)
 }
 
-/// The values of a joint, radians or metres, at readings.
-pub(crate) fn inside(robot: &Robot, coverage: &[Coverage], readings: &[f64]) -> bool {
+/// Whether the joint values of some readings are all within the sampled ranges.
+pub(crate) fn inside(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]) -> bool {
     let indices = robot.reading_indices();
-    robot
-        .joints
-        .iter()
-        .zip(&indices)
-        .zip(coverage)
-        .all(|((joint, &index), coverage)| coverage.contains(joint.reading.value(readings[index])))
+    robot.joints.iter().zip(&indices).zip(coverage).all(|((joint, &index), coverage)| {
+        coverage.contains(joint.kind, joint.reading.value(readings[index]))
+    })
 }

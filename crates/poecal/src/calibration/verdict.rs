@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::trust::Trust;
 use super::{Accuracy, SolverReport};
 use crate::analysis::Identifiability;
+use crate::robot::JointKind;
 
 /// How far a calibration may be used.
 #[derive(
@@ -76,6 +77,7 @@ pub(super) struct Grounds<'a> {
     pub(super) solver: &'a SolverReport,
     pub(super) identifiability: &'a Identifiability,
     pub(super) trust: &'a Trust,
+    pub(super) kinds: &'a [JointKind],
     pub(super) residuals: usize,
     pub(super) reach_m: f64,
     /// What was found wrong with the input, a sentence each.
@@ -128,8 +130,8 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
 fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     let trust = grounds.trust;
     let mut reasons = Vec::new();
-    for coverage in &trust.coverage {
-        if let Some(share) = coverage.share().filter(|share| *share < COVERED) {
+    for (coverage, &kind) in trust.coverage.iter().zip(grounds.kinds) {
+        if let Some(share) = coverage.share(kind).filter(|share| *share < COVERED) {
             reasons.push(format!(
                 "{} was moved through {:.0} % of its range only",
                 coverage.joint,

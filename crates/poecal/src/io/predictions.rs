@@ -6,7 +6,8 @@ use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
 use super::numbers::shortest;
 use super::residuals::quoted;
-use crate::calibration::{Coverage, inside};
+use crate::analysis::JointCoverage;
+use crate::calibration::inside;
 use crate::error::{Error, ErrorKind, Result, nearest};
 use crate::estimate::Packed;
 use crate::lie::Pose;
@@ -92,7 +93,7 @@ const UNCERTAINTY_COLUMNS: &str =
 /// What to expect of each predicted row.
 struct Doubts {
     errors: Vec<PredictedError>,
-    sampled: Vec<Coverage>,
+    sampled: Vec<JointCoverage>,
 }
 
 impl Doubts {
@@ -105,7 +106,7 @@ impl Doubts {
         let (uncertainty, index) = file.uncertainty(target).map_err(|error| error.in_file(&model.path))?;
         let width = model.robot.reading_names().len();
         let packed = Packed::new(&model.robot, &joints.readings, width);
-        Ok(Doubts { errors: uncertainty.predictions(&packed, index), sampled: file.sampled_ranges() })
+        Ok(Doubts { errors: uncertainty.predictions(&packed, index), sampled: file.coverage.clone() })
     }
 
     fn write(&self, row: usize, readings: &[f64], robot: &Robot, out: &mut String) {

@@ -161,6 +161,6 @@ fn coverage_row(joint: &JointCoverage, kind: JointKind) -> String {
         (Some(least), Some(most)) => format!("{} to {} {unit}", shown(least), shown(most)),
         _ => "none".to_owned(),
     };
-    let share = joint.share().map_or_else(|| "-".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    let share = joint.share(kind).map_or_else(|| "-".to_owned(), |share| format!("{:.0} %", 100.0 * share));
     format!("  {:<19}{sampled:>23}{limits:>26}{share:>8}", joint.joint)
 }

@@ -50,7 +50,7 @@ impl CalibrationFile {
             },
             identifiability: IdentifiabilityEntry::of(&calibration.identifiability),
             verdict: Some(calibration.verdict.clone()),
-            coverage: calibration.trust.coverage.iter().map(CoverageEntry::of).collect(),
+            coverage: calibration.trust.coverage.clone(),
             cross_validation: CrossValidationEntry::of(&calibration.trust),
             corrections: calibration
                 .trust

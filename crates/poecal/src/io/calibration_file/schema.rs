@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::trust::{CorrectionEntry, CoverageEntry, CrossValidationEntry, UncertaintyEntry};
-use crate::analysis::{Direction, Identifiability, Observability};
+use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
+use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
 use crate::calibration::{Accuracy, NoiseSource, Verdict};
 use crate::measurement::PoseResidual;
 use crate::parameters::Formulation;
@@ -41,7 +41,7 @@ pub struct CalibrationFile {
     pub verdict: Option<Verdict>,
     /// How much of each joint's range was sampled.
     #[serde(default)]
-    pub coverage: Vec<CoverageEntry>,
+    pub coverage: Vec<JointCoverage>,
     /// Rows left out in turn, and how the others predict them; null if there are too few.
     #[serde(default)]
     pub cross_validation: Option<CrossValidationEntry>,

@@ -3,33 +3,16 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{CalibrationFile, KindWord, PoseEntry};
-use crate::calibration::{Calibration, Coverage, Expected, JointCorrection, Trust};
+use super::{CalibrationFile, PoseEntry};
+use crate::analysis::JointCoverage;
+use crate::calibration::{Calibration, Expected, JointCorrection, Trust};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Estimate;
 use crate::lie::Pose;
 use crate::measurement::Noise;
 use crate::parameters::{Formulation, Parameter, TargetFrame, TargetPlace};
 use crate::problem::Layout;
-use crate::robot::JointKind;
 use crate::uncertainty::{LeftOut, Uncertainty};
-
-/// How much of a joint's range the fitted rows take in, radians or metres.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct CoverageEntry {
-    /// The joint.
-    pub joint: String,
-    /// Least value.
-    pub sampled_min: f64,
-    /// Largest value.
-    pub sampled_max: f64,
-    /// Lower limit; null if there is none.
-    pub limit_min: Option<f64>,
-    /// Upper limit.
-    pub limit_max: Option<f64>,
-    /// Sampled span over that of the limits, of a revolute joint over at most a turn; null where there is nothing to compare with.
-    pub share: Option<f64>,
-}
 
 /// Rows left out together, and how the others predict them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -122,28 +105,6 @@ pub struct UncertaintyEntry {
     pub covariance_m2: Vec<f64>,
 }
 
-impl CoverageEntry {
-    pub(super) fn of(coverage: &Coverage) -> Self {
-        CoverageEntry {
-            joint: coverage.joint.clone(),
-            sampled_min: coverage.sampled[0],
-            sampled_max: coverage.sampled[1],
-            limit_min: coverage.limits.map(|limits| limits[0]),
-            limit_max: coverage.limits.map(|limits| limits[1]),
-            share: coverage.share(),
-        }
-    }
-
-    fn coverage(&self, kind: KindWord) -> Coverage {
-        Coverage {
-            joint: self.joint.clone(),
-            kind: JointKind::from(kind),
-            sampled: [self.sampled_min, self.sampled_max],
-            limits: self.limit_min.zip(self.limit_max).map(|(lower, upper)| [lower, upper]),
-        }
-    }
-}
-
 impl LeftOutEntry {
     fn of(found: &LeftOut) -> Self {
         LeftOutEntry {
@@ -176,7 +137,7 @@ impl ExpectedEntry {
 }
 
 impl CorrectionEntry {
-    pub(super) fn of((coverage, found): (&Coverage, &JointCorrection)) -> Self {
+    pub(super) fn of((coverage, found): (&JointCoverage, &JointCorrection)) -> Self {
         CorrectionEntry {
             joint: coverage.joint.clone(),
             tilt_deg: found.tilt_rad.to_degrees(),
@@ -283,11 +244,5 @@ impl CalibrationFile {
             length_m: entry.length_m,
         };
         Ok((uncertainty, index))
-    }
-
-    /// The sampled range of each joint.
-    #[must_use]
-    pub fn sampled_ranges(&self) -> Vec<Coverage> {
-        self.coverage.iter().zip(&self.joints).map(|(entry, joint)| entry.coverage(joint.kind)).collect()
     }
 }
