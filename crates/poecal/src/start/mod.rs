@@ -2,7 +2,10 @@
 
 mod averaging;
 mod hand_eye;
+mod nominal;
 mod registration;
 
+pub(crate) use averaging::mean_rotation;
+pub use nominal::{delivered, radian_m};
 pub(crate) use registration::target_parameters;
 pub use registration::{Registration, register, register_again};
