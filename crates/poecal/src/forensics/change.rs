@@ -2,7 +2,6 @@
 
 use nalgebra::{Matrix3, Vector4};
 
-use super::euler::Reinterpretation;
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement};
 
@@ -25,8 +24,8 @@ pub(super) enum Change {
     Invert,
     /// Orientations inverted, positions kept.
     Transpose,
-    /// Orientations taken as another kind of angles.
-    Angles(Reinterpretation),
+    /// Other orientations, a row.
+    Turn(Vec<Option<Matrix3<f64>>>),
     /// Positions mirrored, and orientations with them or not.
     Mirror(Matrix3<f64>, bool),
 }
@@ -43,7 +42,7 @@ impl Change {
             readings.clear();
             readings.extend_from_slice(data.readings(row));
             self.change_readings(&mut readings);
-            let measurement = self.measurement(&observation.measurement);
+            let measurement = self.measurement(row, &observation.measurement);
             push(&mut changed, &readings, Observation { measurement, ..*observation });
         }
         changed
@@ -60,7 +59,7 @@ impl Change {
         }
     }
 
-    fn measurement(&self, seen: &Measurement) -> Measurement {
+    fn measurement(&self, row: usize, seen: &Measurement) -> Measurement {
         if !seen.sees_orientation() {
             let position = seen.pose().translation;
             return point(match self {
@@ -79,7 +78,9 @@ impl Change {
             }
             Change::Invert => seen.pose().inverse(),
             Change::Transpose => Pose::new(turned.transpose(), translation),
-            Change::Angles(other) => Pose::new(other.rotation(&turned), translation),
+            Change::Turn(others) => {
+                Pose::new(others.get(row).copied().flatten().unwrap_or(turned), translation)
+            }
             Change::Mirror(mirror, turns) => {
                 let turned = if *turns { mirror * turned * mirror } else { turned };
                 Pose::new(turned, mirror * translation)

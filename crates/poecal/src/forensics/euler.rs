@@ -120,10 +120,25 @@ impl Reinterpretation {
         all
     }
 
-    /// The rotation meant.
-    pub(super) fn rotation(&self, r: &Matrix3<f64>) -> Matrix3<f64> {
-        self.meant.rotation(self.read.of(r).map(|angle| angle * self.factor))
+    /// The rotation meant, by each of the two sets of angles that a rotation has.
+    pub(super) fn rotations(&self, r: &Matrix3<f64>) -> [Matrix3<f64>; 2] {
+        let [a, b, c] = self.read.of(r);
+        let other = match self.read {
+            Angles::Intrinsic([i, _, k]) | Angles::Extrinsic([i, _, k]) => {
+                [wrapped(a + PI), if i == k { -b } else { wrapped(PI - b) }, wrapped(c + PI)]
+            }
+            Angles::RotationVector => {
+                let angle = a.hypot(b).hypot(c).max(f64::MIN_POSITIVE);
+                [a, b, c].map(|part| part - 2.0 * PI * part / angle)
+            }
+        };
+        [[a, b, c], other].map(|angles| self.meant.rotation(angles.map(|angle| angle * self.factor)))
     }
+}
+
+/// An angle brought within ±180°.
+fn wrapped(angle: f64) -> f64 {
+    angle - (angle / (2.0 * PI)).round() * 2.0 * PI
 }
 
 #[cfg(test)]
@@ -138,7 +153,8 @@ mod tests {
             for k in 0..50 {
                 let k = f64::from(k);
                 let r = rotation::exp(&Vector3::new((k * 1.3).sin() * 2.0, (k * 0.7).cos(), (k * 2.1).sin()));
-                worst = worst.max((angles.rotation(angles.of(&r)) - r).norm());
+                let same = Reinterpretation { read: angles, meant: angles, factor: 1.0 };
+                worst = same.rotations(&r).into_iter().map(|other| (other - r).norm()).fold(worst, f64::max);
             }
         }
         println!("largest difference {worst:.1e}");

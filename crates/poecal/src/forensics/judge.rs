@@ -8,20 +8,19 @@ use super::hypotheses::{
     Columns, Hypothesis, joint_exchanges, joint_signs, joint_units, mirrors, pose_forms, position_units,
     row_shifts,
 };
-use super::session::{LONG, Misfit, Score, Session, sampled};
+use super::session::{Misfit, SHORT, Score, Session, sampled};
 use super::zero::joint_zeros;
 use super::{Diagnosis, DiagnosisKind};
-use crate::estimate::Estimate;
 use crate::measurement::Dataset;
 
-/// Iterations of the short calibration that compares suppositions.
-const SHORT: usize = 15;
 /// Suppositions that are calibrated at all, and of those that are calibrated for long.
 const CALIBRATED: usize = 24;
-const FINALISTS: usize = 4;
+const FINALISTS: usize = 6;
 /// By how much a supposition must lower the error with nominal screws, or that after a calibration.
 const REGISTERED_GAIN: f64 = 2.0;
 const CALIBRATED_GAIN: f64 = 3.0;
+/// The same of a joint's zero, which only the nominal screws can show.
+const ZERO_GAIN: f64 = 1.7;
 /// How much worse than before the other of the two may get.
 const SLACK: f64 = 1.2;
 /// What nominal errors leave at most, and what a calibration leaves at most, as shares of the reach.
@@ -33,10 +32,9 @@ const NOISE_SHARE: f64 = 3e-5;
 const ALIKE: f64 = 1.15;
 
 /// A supposition with what it makes of the data.
-struct Judged<'h> {
-    hypothesis: &'h Hypothesis,
+struct Judged {
+    index: usize,
     data: Dataset,
-    estimate: Estimate,
     score: Score,
 }
 
@@ -102,35 +100,31 @@ fn best_of(
     base: &Score,
     hypotheses: &[Hypothesis],
 ) -> Option<(usize, Score)> {
-    let judge = |(index, hypothesis): (usize, &'_ Hypothesis)| {
+    let rough = |(index, hypothesis): (usize, &Hypothesis)| {
         // Rows are shifted before a sample is taken of them.
         let shifts = hypothesis.kind == DiagnosisKind::RowShift;
         let data = if shifts { sampled(&hypothesis.apply(all)) } else { hypothesis.apply(sample) };
-        let (estimate, registered) = session.registered(&data);
+        let (estimate, registered) = session.roughly_registered(&data);
         (index, data, estimate, registered)
     };
-    let mut found: Vec<_> = hypotheses.par_iter().enumerate().map(judge).collect();
-    found.retain(|(_, _, _, registered)| registered.total_m < SLACK * base.registered.total_m);
+    let mut found: Vec<_> = hypotheses.par_iter().enumerate().map(rough).collect();
     found.sort_by(|a, b| a.3.total_m.total_cmp(&b.3.total_m));
     found.truncate(CALIBRATED);
-    let mut judged: Vec<(usize, Judged<'_>)> = found
+    let mut judged: Vec<Judged> = found
         .into_par_iter()
         .map(|(index, data, estimate, registered)| {
             let calibrated = session.calibrated(&data, &estimate, SHORT).1;
-            let score = Score { registered, calibrated };
-            (index, Judged { hypothesis: &hypotheses[index], data, estimate, score })
+            Judged { index, data, score: Score { registered, calibrated } }
         })
         .collect();
-    judged.sort_by(|a, b| session.merit(&a.1.score).total_cmp(&session.merit(&b.1.score)));
+    judged.sort_by(|a, b| session.merit(&a.score).total_cmp(&session.merit(&b.score)));
     judged.truncate(FINALISTS);
-    judged.par_iter_mut().for_each(|(_, one)| {
-        one.score.calibrated = session.calibrated(&one.data, &one.estimate, LONG).1;
-    });
-    judged.retain(|(_, one)| session.explains(base, &one.score));
-    let least = judged.iter().map(|(_, one)| session.merit(&one.score)).fold(f64::INFINITY, f64::min);
-    judged.retain(|(_, one)| session.merit(&one.score) < ALIKE * least);
-    let simplest = judged.into_iter().min_by_key(|(index, one)| (one.hypothesis.kind, *index))?;
-    Some((simplest.0, simplest.1.score))
+    judged.par_iter_mut().for_each(|one| one.score = session.judged(&one.data).1);
+    judged.retain(|one| session.explains(hypotheses[one.index].kind, base, &one.score));
+    let least = judged.iter().map(|one| session.merit(&one.score)).fold(f64::INFINITY, f64::min);
+    judged.retain(|one| session.merit(&one.score) < ALIKE * least);
+    let simplest = judged.iter().min_by_key(|one| (hypotheses[one.index].kind, one.index))?;
+    Some((simplest.index, simplest.score))
 }
 
 impl Session<'_> {
@@ -140,12 +134,13 @@ impl Session<'_> {
     }
 
     /// Whether a supposition explains far more than the data as they are, and leaves no more than nominal errors do.
-    fn explains(&self, base: &Score, new: &Score) -> bool {
+    fn explains(&self, kind: DiagnosisKind, base: &Score, new: &Score) -> bool {
         let gain = |before: &Misfit, after: &Misfit, floor: f64| before.total_m.max(floor) / after.total_m.max(floor);
         let reach = self.reach_m();
+        let least = if kind == DiagnosisKind::JointZero { ZERO_GAIN } else { REGISTERED_GAIN };
         let registered = gain(&base.registered, &new.registered, 0.0);
         let calibrated = gain(&base.calibrated, &new.calibrated, NOISE_SHARE * reach);
-        (registered > REGISTERED_GAIN || calibrated > CALIBRATED_GAIN)
+        (registered > least || calibrated > CALIBRATED_GAIN)
             && registered.min(calibrated) * SLACK > 1.0
             && new.registered.total_m < REGISTERED_SHARE * reach
             && new.calibrated.total_m < CALIBRATED_SHARE * reach
@@ -155,7 +150,7 @@ impl Session<'_> {
 /// The sentence with its evidence.
 fn told(best: &Hypothesis, base: &Score, score: &Score) -> Diagnosis {
     let registered = base.registered.total_m / score.registered.total_m.max(f64::MIN_POSITIVE);
-    let (which, before, after) = if registered > REGISTERED_GAIN {
+    let (which, before, after) = if registered > ZERO_GAIN {
         ("registered", &base.registered, &score.registered)
     } else {
         ("calibrated", &base.calibrated, &score.calibrated)

@@ -9,9 +9,9 @@ use crate::lie::{Pose, Screw, rotation};
 use crate::measurement::{Dataset, Noise, Observation, PoseResidual};
 use crate::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis};
 use crate::problem::Problem;
-use crate::robot::{Joint, Robot};
+use crate::robot::{Joint, JointKind, Robot};
 use crate::solve::{Options, minimize};
-use crate::start::{Registration, delivered, register, target_parameters};
+use crate::start::{Registration, delivered, register, register_roughly, target_parameters};
 
 /// Rows that a hypothesis is judged on.
 const SAMPLE: usize = 90;
@@ -23,8 +23,12 @@ const QUIET_SHARE: f64 = 5e-4;
 const OUTSTANDING: f64 = 8.0;
 /// How far a calibration may tilt an axis before its joint's zero or sign is in doubt: 4 degrees.
 const QUIET_TILT_RAD: f64 = 0.07;
+/// How far it may shift an axis, as a share of the reach, before a zero or a unit is in doubt.
+const QUIET_SHIFT_SHARE: f64 = 0.015;
 /// Iterations of a calibration that is to end at its optimum.
-pub(super) const LONG: usize = 60;
+const LONG: usize = 60;
+/// Iterations of a calibration that compares suppositions.
+pub(super) const SHORT: usize = 12;
 
 /// How far a model is from the measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +78,15 @@ impl<'a> Session<'a> {
 
     /// Registers the nominal robot.
     pub(super) fn registered(&self, data: &Dataset) -> (Estimate, Misfit) {
+        self.register(data, |registration| register(registration, &self.start).0)
+    }
+
+    /// Registers the nominal robot quickly, and not always at its optimum.
+    pub(super) fn roughly_registered(&self, data: &Dataset) -> (Estimate, Misfit) {
+        self.register(data, |registration| register_roughly(registration, &self.start))
+    }
+
+    fn register(&self, data: &Dataset, by: impl Fn(&Registration<'_>) -> Estimate) -> (Estimate, Misfit) {
         let packed = self.packed(data);
         let rows = all_rows(data);
         let registration = Registration {
@@ -85,7 +98,7 @@ impl<'a> Session<'a> {
             device_free: self.device_free,
             targets_free: true,
         };
-        let estimate = register(&registration, &self.start).0;
+        let estimate = by(&registration);
         let misfit = self.misfit(data, &packed, &estimate);
         (estimate, misfit)
     }
@@ -122,7 +135,8 @@ impl<'a> Session<'a> {
         let mut start = registered.clone();
         start.recentre(data, &packed, &rows);
         let problem = Problem::new(data, &packed, rows, free, self.noise, self.length_m);
-        let options = Options { iterations, ..Options::default() };
+        // Without following curvature: suppositions that explain nothing would take most of the time.
+        let options = Options { iterations, acceleration: false, ..Options::default() };
         let (estimate, _, _) = minimize(&problem, start, &options);
         let misfit = self.misfit(data, &packed, &estimate);
         (estimate, misfit)
@@ -152,9 +166,18 @@ impl<'a> Session<'a> {
         } else {
             Pose::identity()
         };
-        let screws = calibrated.rebased(&motion).screws();
-        let tilt = |(screw, joint): (&Screw, &Joint)| screw.direction().angle(&joint.screw.direction());
-        screws.iter().zip(&self.robot.joints).map(tilt).fold(0.0, f64::max) < QUIET_TILT_RAD
+        let moved = calibrated.rebased(&motion).screws();
+        let is_near = |(screw, joint): (&Screw, &Joint)| {
+            let tilt = screw.direction().angle(&joint.screw.direction());
+            let place = joint.frame.translation;
+            // A slide has no place.
+            let shift = match joint.kind {
+                JointKind::Revolute => (screw.nearest_point(&place) - place).norm(),
+                JointKind::Prismatic => 0.0,
+            };
+            tilt < QUIET_TILT_RAD && shift < QUIET_SHIFT_SHARE * self.reach_m()
+        };
+        moved.iter().zip(&self.robot.joints).all(is_near)
     }
 
     pub(super) fn misfit(&self, data: &Dataset, packed: &Packed, estimate: &Estimate) -> Misfit {

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::judge::short;
 use super::repeats::place;
-use super::session::{LONG, Score, Session, row_errors, sampled, taken};
+use super::session::{SHORT, Score, Session, row_errors, sampled, taken};
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::Estimate;
 use crate::measurement::Dataset;
@@ -101,7 +101,7 @@ fn exchanged(session: &Session<'_>, all: &Dataset, pair: (usize, usize), base: &
         .into_iter()
         .filter_map(|range| {
             let part: Vec<u32> = range.map(|row| row as u32).collect();
-            settled(session, all, &taken(all, &part), pair)
+            settled(session, all, &taken(all, &part), pair, base.calibrated.total_m)
         })
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (error, concerned, before, after, rest) = best;
@@ -116,9 +116,15 @@ fn exchanged(session: &Session<'_>, all: &Dataset, pair: (usize, usize), base: &
 type Settled = (f64, Vec<usize>, f64, f64, f64);
 
 /// Gives rows to the target that they fit better and fits anew, until nothing changes.
-fn settled(session: &Session<'_>, all: &Dataset, first: &Dataset, pair: (usize, usize)) -> Option<Settled> {
+fn settled(
+    session: &Session<'_>,
+    all: &Dataset,
+    first: &Dataset,
+    pair: (usize, usize),
+    base_m: f64,
+) -> Option<Settled> {
     let exchanged = with_exchanged(all, pair, |_| true);
-    let (mut estimate, _) = session.registered(&sampled(first));
+    let mut estimate = session.roughly_registered(&sampled(first)).0;
     let mut swapped = vec![false; all.len()];
     let packed = session.packed(all);
     let errors = |data: &Dataset, estimate: &Estimate| -> Vec<f64> {
@@ -127,16 +133,20 @@ fn settled(session: &Session<'_>, all: &Dataset, first: &Dataset, pair: (usize, 
         };
         row_errors(data, &packed, estimate).iter().map(weigh).collect()
     };
+    let mut least = base_m;
     for _ in 0..ROUNDS {
         let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
         let next: Vec<bool> = kept.iter().zip(&other).map(|(kept, other)| other < kept).collect();
         let data = sampled(&with_exchanged(all, pair, |row| next[row]));
-        let (registered, _) = session.registered(&data);
-        estimate = session.calibrated(&data, &registered, LONG).0;
-        if next == swapped {
+        let registered = session.roughly_registered(&data).0;
+        let (calibrated, misfit) = session.calibrated(&data, &registered, SHORT);
+        estimate = calibrated;
+        let unchanged = next == swapped;
+        swapped = next;
+        if unchanged || misfit.total_m > least {
             break;
         }
-        swapped = next;
+        least = misfit.total_m;
     }
     let members = all.observations.iter().filter(|row| row.target == pair.0 || row.target == pair.1).count();
     let chosen = swapped.iter().filter(|swapped| **swapped).count();

@@ -11,7 +11,7 @@ use crate::robot::JointKind;
 
 /// Offsets below this are what a calibration is for: radians, and share of the reach for slides.
 const LEAST_RAD: f64 = 0.052;
-const LEAST_SHARE: f64 = 0.02;
+const LEAST_SHARE: f64 = 0.01;
 
 /// The best offset of each joint, where it is gross.
 pub(super) fn joint_zeros(session: &Session<'_>, columns: &Columns, data: &Dataset) -> Vec<Hypothesis> {
@@ -31,7 +31,7 @@ fn joint_zero(session: &Session<'_>, columns: &Columns, data: &Dataset, column: 
     let starts: Vec<f64> =
         if turns { (-3..=4).map(|k| f64::from(k) * FRAC_PI_4).collect() } else { vec![0.0] };
     let of = |by: f64| {
-        let (estimate, misfit) = session.registered(&Change::Add(column, by).apply(data));
+        let (estimate, misfit) = session.roughly_registered(&Change::Add(column, by).apply(data));
         (misfit.total_m, by, estimate)
     };
     let (_, start, estimate) = starts.into_iter().map(of).min_by(|a, b| a.0.total_cmp(&b.0))?;

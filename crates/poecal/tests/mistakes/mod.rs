@@ -11,16 +11,16 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 /// A session of a robot that is not quite as its model says.
-pub struct Session {
-    pub robot: Robot,
-    pub data: Dataset,
-    pub device_free: bool,
-    pub turned: bool,
-    pub words: String,
+pub(crate) struct Session {
+    pub(crate) robot: Robot,
+    pub(crate) data: Dataset,
+    pub(crate) device_free: bool,
+    pub(crate) turned: bool,
+    pub(crate) words: String,
 }
 
 /// The ten robots.
-pub fn robot(index: usize) -> Robot {
+pub(crate) fn robot(index: usize) -> Robot {
     match index % 10 {
         0 => elbow(),
         1 => scara(),
@@ -46,7 +46,7 @@ fn between(generator: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
 impl Session {
     /// A session drawn by its seed: robot, errors of 0.5 to 2 degrees and 1 to 3 mm, noise, 30 to 200 rows of one to three targets, poses
     /// or points or both, random configurations or a smooth path, device anywhere or at the base.
-    pub fn drawn(seed: u64) -> Session {
+    pub(crate) fn drawn(seed: u64) -> Session {
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xf0e5_1c00);
         let g = &mut generator;
         let mut robot = robot(seed as usize);
@@ -122,7 +122,7 @@ impl Session {
     }
 
     /// The data with a mistake of a kind, and what it is; `None` if this session cannot have it.
-    pub fn mistaken(&self, kind: DiagnosisKind, seed: u64) -> Option<(Dataset, String)> {
+    pub(crate) fn mistaken(&self, kind: DiagnosisKind, seed: u64) -> Option<(Dataset, String)> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x3157_a4e5);
         let g = &mut generator;
         let n = self.robot.reading_names().len();
@@ -208,8 +208,8 @@ impl Session {
                     }
                 };
                 let turns = uniform(g) < 0.5;
-                // Mirrored points of a SCARA are those of one whose slide goes the other way, since all its axes are parallel.
-                let same = self.robot.name == "scara" && (!poses && self.device_free);
+                // A mirrored SCARA is one whose slide goes the other way, since all its axes are parallel.
+                let same = self.robot.name == "scara" && (turns || !poses || words == "axis 2");
                 let mirrored = |pose: Pose| {
                     let turned = if turns { mirror * pose.rotation * mirror } else { pose.rotation };
                     Pose::new(turned, mirror * pose.translation)
