@@ -77,7 +77,8 @@ fn mistaken(index: u64) -> (Session, DiagnosisKind, Dataset, String) {
 fn mistakes_are_named() {
     let count = sessions(120);
     let only: Option<u64> = std::env::var("POECAL_ONLY").ok().and_then(|index| index.parse().ok());
-    let indices: Vec<u64> = (0..count as u64).filter(|index| only.is_none_or(|only| only == *index)).collect();
+    let indices: Vec<u64> =
+        (0..count as u64).filter(|index| only.is_none_or(|only| only == *index)).collect();
     let results: Vec<(DiagnosisKind, bool)> = indices
         .into_par_iter()
         .map(|index| {

@@ -16,6 +16,7 @@ pub use split::split_rows;
 use crate::analysis::{Identifiability, identifiability};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed};
+use crate::forensics::{self, Diagnosis};
 use crate::gauge;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise, PoseResidual};
@@ -183,6 +184,8 @@ pub struct Calibration {
     pub noise_source: NoiseSource,
     /// What makes the result doubtful, a sentence each.
     pub warnings: Vec<String>,
+    /// Mistakes that the measurements show, fitted and held out: named, not corrected.
+    pub diagnosis: Vec<Diagnosis>,
     /// Rows fitted.
     pub fit_rows: Vec<u32>,
     /// Rows held out.
@@ -280,6 +283,7 @@ pub fn calibrate_with_progress(
         held_out: (!held_out_rows.is_empty()).then(|| set_accuracy(data, &packed, &held_out_rows, &models)),
     };
     let warnings = doubts::doubts(data, &fit_rows, &accuracy.training.registered, options.frame);
+    let diagnosis = diagnosis(robot, data, options.frame, &models.calibrated);
     let (calibrated_robot, targets) = place_tip(robot, data, &data.frames(&fit_rows), &models.calibrated);
     Ok(Calibration {
         nominal: robot.clone(),
@@ -297,9 +301,22 @@ pub fn calibrate_with_progress(
         noise: fitted.noise,
         noise_source: fitted.noise_source,
         warnings,
+        diagnosis,
         fit_rows,
         held_out_rows,
     })
+}
+
+/// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing.
+fn diagnosis(
+    robot: &Robot,
+    data: &Dataset,
+    frame: DeviceFrameKnowledge,
+    calibrated: &Estimate,
+) -> Vec<Diagnosis> {
+    let rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+    let device_free = frame == DeviceFrameKnowledge::Unknown;
+    forensics::diagnose(robot, data, &rows, &forensics::Options { device_free, calibrated: Some(calibrated) })
 }
 
 /// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (with points alone its

@@ -133,7 +133,11 @@ fn shifted(data: &Dataset, by: i32) -> Dataset {
     for (row, to) in partner.iter().enumerate() {
         if let Some(to) = *to {
             let Observation { measurement, target, source, .. } = data.observations[to];
-            push(&mut changed, data.readings(row), Observation { measurement, target, source, ..data.observations[row] });
+            push(
+                &mut changed,
+                data.readings(row),
+                Observation { measurement, target, source, ..data.observations[row] },
+            );
         }
     }
     changed

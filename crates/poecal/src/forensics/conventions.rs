@@ -45,7 +45,8 @@ pub(super) fn conventions(session: &Session<'_>, data: &Dataset) -> Vec<Hypothes
             seen.push(Seen { row, target: observation.target, link_from_device, turned });
         }
     }
-    let mut judged: Vec<_> = Reinterpretation::all().into_iter().map(|one| (meant(&seen, &one), one)).collect();
+    let mut judged: Vec<_> =
+        Reinterpretation::all().into_iter().map(|one| (meant(&seen, &one), one)).collect();
     judged.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
     judged.truncate(CANDIDATES);
     let turns = |rotations: Vec<Matrix3<f64>>| {

@@ -66,7 +66,8 @@ impl Angles {
 
     /// As words: `extrinsic xyz`.
     pub(super) fn words(self) -> String {
-        let name = |axes: [usize; 3]| -> String { axes.iter().map(|&axis| ['x', 'y', 'z'][axis % 3]).collect() };
+        let name =
+            |axes: [usize; 3]| -> String { axes.iter().map(|&axis| ['x', 'y', 'z'][axis % 3]).collect() };
         match self {
             Angles::Intrinsic(axes) => format!("intrinsic {} angles", name(axes)),
             Angles::Extrinsic([0, 1, 2]) => "roll, pitch, yaw (extrinsic xyz)".to_owned(),

@@ -123,7 +123,9 @@ pub(super) fn row_shifts() -> Vec<Hypothesis> {
         Hypothesis::new(
             DiagnosisKind::RowShift,
             Change::Shift(by),
-            format!("pairing the readings of each row with the measurement {rows} {side} (of the same target)"),
+            format!(
+                "pairing the readings of each row with the measurement {rows} {side} (of the same target)"
+            ),
             "check how readings and measurements were brought together".to_owned(),
         )
     };
@@ -137,7 +139,9 @@ pub(super) fn position_units() -> Vec<Hypothesis> {
             DiagnosisKind::PositionUnit,
             Change::Resize(factor),
             format!("multiplying the positions by {factor}"),
-            format!("check their unit, since it looks as if {words} (or the model's lengths are in another one)"),
+            format!(
+                "check their unit, since it looks as if {words} (or the model's lengths are in another one)"
+            ),
         )
     };
     [
@@ -193,8 +197,7 @@ pub(super) fn mirrors(device_free: bool, turned: bool) -> Vec<Hypothesis> {
         mirror.swap_columns(a, b);
         (mirror, format!("exchanging {} and {}", ["x", "y", "z"][a], ["x", "y", "z"][b]))
     };
-    let axes =
-        [negated(0), negated(1), negated(2), exchanged(0, 1), exchanged(0, 2), exchanged(1, 2)];
+    let axes = [negated(0), negated(1), negated(2), exchanged(0, 1), exchanged(0, 2), exchanged(1, 2)];
     let mut all = Vec::new();
     for (index, (mirror, words)) in axes.into_iter().enumerate() {
         if index == 0 || !device_free {

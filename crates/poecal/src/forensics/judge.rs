@@ -135,7 +135,9 @@ impl Session<'_> {
 
     /// Whether a supposition explains far more than the data as they are, and leaves no more than nominal errors do.
     fn explains(&self, kind: DiagnosisKind, base: &Score, new: &Score) -> bool {
-        let gain = |before: &Misfit, after: &Misfit, floor: f64| before.total_m.max(floor) / after.total_m.max(floor);
+        let gain = |before: &Misfit, after: &Misfit, floor: f64| {
+            before.total_m.max(floor) / after.total_m.max(floor)
+        };
         let reach = self.reach_m();
         let least = if kind == DiagnosisKind::JointZero { ZERO_GAIN } else { REGISTERED_GAIN };
         let registered = gain(&base.registered, &new.registered, 0.0);

@@ -42,17 +42,31 @@ pub(super) fn diagnose(session: &Session<'_>, data: &Dataset, rows: &[u32]) -> V
         repeated.sort_unstable_by_key(|pair| pair.1);
         let statement = format!(
             "{} to the last digit, readings and measurement ({}): leave out what was copied, since it counts twice",
-            if repeated.len() == 1 { "1 row repeats another".to_owned() } else { format!("{} rows repeat others", repeated.len()) },
+            if repeated.len() == 1 {
+                "1 row repeats another".to_owned()
+            } else {
+                format!("{} rows repeat others", repeated.len())
+            },
             pairs(data, &repeated, "as")
         );
         let rows = repeated.iter().map(|pair| pair.1).collect();
-        found.push(Diagnosis { kind: DiagnosisKind::DuplicateRows, statement, rows, before_mm: 0.0, after_mm: 0.0 });
+        found.push(Diagnosis {
+            kind: DiagnosisKind::DuplicateRows,
+            statement,
+            rows,
+            before_mm: 0.0,
+            after_mm: 0.0,
+        });
     }
     if !contradicting.is_empty() {
         contradicting.sort_unstable_by_key(|pair| pair.1);
         let statement = format!(
             "{} the readings of another and contradicts it, by up to {} mm ({}): look which is right, and leave the other out",
-            if contradicting.len() == 1 { "1 row has".to_owned() } else { format!("each of {} rows has", contradicting.len()) },
+            if contradicting.len() == 1 {
+                "1 row has".to_owned()
+            } else {
+                format!("each of {} rows has", contradicting.len())
+            },
             short(furthest * 1e3),
             pairs(data, &contradicting, "against")
         );
@@ -60,7 +74,13 @@ pub(super) fn diagnose(session: &Session<'_>, data: &Dataset, rows: &[u32]) -> V
         rows.sort_unstable();
         rows.dedup();
         let before_mm = furthest * 1e3;
-        found.push(Diagnosis { kind: DiagnosisKind::DuplicateRows, statement, rows, before_mm, after_mm: 0.0 });
+        found.push(Diagnosis {
+            kind: DiagnosisKind::DuplicateRows,
+            statement,
+            rows,
+            before_mm,
+            after_mm: 0.0,
+        });
     }
     found
 }

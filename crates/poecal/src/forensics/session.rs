@@ -104,7 +104,12 @@ impl<'a> Session<'a> {
     }
 
     /// Fits the screws from a registration, a few iterations.
-    pub(super) fn calibrated(&self, data: &Dataset, registered: &Estimate, iterations: usize) -> (Estimate, Misfit) {
+    pub(super) fn calibrated(
+        &self,
+        data: &Dataset,
+        registered: &Estimate,
+        iterations: usize,
+    ) -> (Estimate, Misfit) {
         let kinds = registered.kinds.iter().enumerate();
         // The device's frame stays: beside the screws it is redundant.
         let screws = kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind })).collect();
@@ -227,7 +232,8 @@ pub(super) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
     for &row in rows {
         let observation = data.observations[row as usize];
         let measurement = observation.measurement.with_residual(PoseResidual::Tool);
-        let plain = Observation { measurement, sigma_position_m: None, sigma_rotation_rad: None, ..observation };
+        let plain =
+            Observation { measurement, sigma_position_m: None, sigma_rotation_rad: None, ..observation };
         push(&mut taken, data.readings(row as usize), plain);
     }
     taken

@@ -62,7 +62,8 @@ pub(super) fn rows(
     let pairs = (0..count).flat_map(|b| (0..b).map(move |a| (a, b)));
     let found = pairs.filter_map(|pair| exchanged(session, all, pair, base));
     let (_, pair, concerned, before, after) = found.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let name = |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
+    let name =
+        |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
     let concerned: Vec<u32> = concerned.into_iter().filter_map(|row| rows.get(row).copied()).collect();
     let own = |row: &u32| [pair.0, pair.1].contains(&data.observations[*row as usize].target);
     let from = rows.iter().filter(|row| own(row)).position(|row| Some(row) == concerned.first());

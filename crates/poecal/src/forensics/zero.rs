@@ -20,7 +20,10 @@ pub(super) fn joint_zeros(session: &Session<'_>, columns: &Columns, data: &Datas
         let name = &columns.names[*column];
         robot.joints.iter().filter(|joint| joint.reading.name == *name).count() == 1
     };
-    (0..columns.names.len()).filter(own).filter_map(|column| joint_zero(session, columns, data, column)).collect()
+    (0..columns.names.len())
+        .filter(own)
+        .filter_map(|column| joint_zero(session, columns, data, column))
+        .collect()
 }
 
 fn joint_zero(session: &Session<'_>, columns: &Columns, data: &Dataset, column: usize) -> Option<Hypothesis> {

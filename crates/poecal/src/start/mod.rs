@@ -7,5 +7,5 @@ mod registration;
 
 pub(crate) use averaging::mean_rotation;
 pub use nominal::{delivered, radian_m};
-pub(crate) use registration::{register_roughly, target_parameters};
 pub use registration::{Registration, register, register_again};
+pub(crate) use registration::{register_roughly, target_parameters};

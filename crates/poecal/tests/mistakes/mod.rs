@@ -6,7 +6,9 @@ use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement};
 use poecal::robot::{JointKind, Robot};
 use poecal::simulate::random::{direction, shuffle, uniform};
-use poecal::simulate::{self, Simulation, elbow, gantry, random_chain, random_configuration, scara, seven_axis};
+use poecal::simulate::{
+    self, Simulation, elbow, gantry, random_chain, random_configuration, scara, seven_axis,
+};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
@@ -67,14 +69,19 @@ impl Session {
             .collect();
         robot.targets = nominal.iter().enumerate().map(|(k, pose)| (format!("target{k}"), *pose)).collect();
         let actual = simulation.perturbed(&robot, g);
-        let placed: Vec<Pose> = nominal.iter().map(|pose| *pose * Pose::exp(&simulate::random_twist(0.02, 2e-3, g))).collect();
-        let device =
-            if device_free { Pose::new(simulate::random::rotation(g), direction(g) * 3.0) } else { Pose::identity() };
+        let placed: Vec<Pose> =
+            nominal.iter().map(|pose| *pose * Pose::exp(&simulate::random_twist(0.02, 2e-3, g))).collect();
+        let device = if device_free {
+            Pose::new(simulate::random::rotation(g), direction(g) * 3.0)
+        } else {
+            Pose::identity()
+        };
         let mut data = Dataset::new(robot.reading_names());
         let waves: Vec<[f64; 2]> =
             robot.reading_names().iter().map(|_| [between(g, 0.15, 0.5), between(g, 0.0, 6.3)]).collect();
         for row in 0..count {
-            let readings = if smooth { on_path(&robot, &waves, row) } else { random_configuration(&robot, g) };
+            let readings =
+                if smooth { on_path(&robot, &waves, row) } else { random_configuration(&robot, g) };
             let target = row % targets;
             let seen = device * actual.forward_kinematics(&readings) * placed[target];
             let position = seen.translation + simulate::random::normal_vector(g) * noise_m;
@@ -137,10 +144,14 @@ impl Session {
                 let factor = if uniform(g) < 0.5 { factor } else { 1.0 / factor };
                 let data = self.changed(|_, readings, _| {
                     for (k, reading) in readings.iter_mut().enumerate() {
-                        *reading *= if k == column || all && kinds[k] == kinds[column] { factor } else { 1.0 };
+                        *reading *=
+                            if k == column || all && kinds[k] == kinds[column] { factor } else { 1.0 };
                     }
                 });
-                Some((data, format!("column {column}{} times {factor}", if all { " and its like" } else { "" })))
+                Some((
+                    data,
+                    format!("column {column}{} times {factor}", if all { " and its like" } else { "" }),
+                ))
             }
             DiagnosisKind::PositionUnit => {
                 let factor = [1e3, 1e-3, 1.0 / 0.0254, 1.0 / 25.4][pick(g, 4)];
@@ -160,25 +171,40 @@ impl Session {
             DiagnosisKind::JointZero => {
                 let by = if slides { between(g, 0.05, 0.3) } else { between(g, 8.0, 180.0).to_radians() };
                 let by = if uniform(g) < 0.5 { by } else { -by };
-                Some((self.changed(|_, readings, _| readings[column] += by), format!("column {column} by {by}")))
+                Some((
+                    self.changed(|_, readings, _| readings[column] += by),
+                    format!("column {column} by {by}"),
+                ))
             }
             DiagnosisKind::JointsSwapped => {
                 let other = pick(g, n);
                 let fits = other != column && kinds[other] == kinds[column];
-                fits.then(|| (self.changed(|_, r, _| r.swap(column, other)), format!("columns {column}, {other}")))
+                fits.then(|| {
+                    (self.changed(|_, r, _| r.swap(column, other)), format!("columns {column}, {other}"))
+                })
             }
             DiagnosisKind::QuaternionOrder => {
                 let wxyz_as_xyzw = uniform(g) < 0.5;
                 let reordered = |pose: Pose| {
                     let q = rotation::to_quaternion_xyzw(&pose.rotation);
-                    let q = if wxyz_as_xyzw { Vector4::new(q.w, q.x, q.y, q.z) } else { Vector4::new(q.y, q.z, q.w, q.x) };
+                    let q = if wxyz_as_xyzw {
+                        Vector4::new(q.w, q.x, q.y, q.z)
+                    } else {
+                        Vector4::new(q.y, q.z, q.w, q.x)
+                    };
                     Pose::new(rotation::from_quaternion_xyzw(&q), pose.translation)
                 };
                 poses.then(|| (self.reposed(reordered), format!("w first: {wxyz_as_xyzw}")))
             }
             DiagnosisKind::InvertedPose => {
                 let whole = uniform(g) < 0.7;
-                let inverse = |pose: Pose| if whole { pose.inverse() } else { Pose::new(pose.rotation.transpose(), pose.translation) };
+                let inverse = |pose: Pose| {
+                    if whole {
+                        pose.inverse()
+                    } else {
+                        Pose::new(pose.rotation.transpose(), pose.translation)
+                    }
+                };
                 let data = self.changed(|_, _, observation| {
                     if let Measurement::Pose(seen) = &mut observation.measurement {
                         seen.pose = inverse(seen.pose);
@@ -190,7 +216,12 @@ impl Session {
                 let (meant, read) = (pick(g, 4), pick(g, 4));
                 // The same convention twice: radians read as degrees.
                 let factor = if meant == read { 1f64.to_radians() } else { 1.0 };
-                let other = |pose: Pose| Pose::new(from_angles(read, angles(meant, &pose.rotation).map(|a| a * factor)), pose.translation);
+                let other = |pose: Pose| {
+                    Pose::new(
+                        from_angles(read, angles(meant, &pose.rotation).map(|a| a * factor)),
+                        pose.translation,
+                    )
+                };
                 poses.then(|| (self.reposed(other), format!("meant {meant}, read {read}")))
             }
             DiagnosisKind::LeftHanded => {
@@ -223,7 +254,8 @@ impl Session {
                 data.targets.clone_from(&self.data.targets);
                 for row in by..self.data.len() {
                     let (readings, seen) = if later { (row - by, row) } else { (row, row - by) };
-                    data.push_observation(self.data.readings(readings), self.data.observations[seen]).unwrap();
+                    data.push_observation(self.data.readings(readings), self.data.observations[seen])
+                        .unwrap();
                 }
                 Some((data, format!("by {by}, later: {later}")))
             }
@@ -238,7 +270,8 @@ impl Session {
                     let (from, mut seen) = (order[k], self.data.observations[order[k]]);
                     if !exact {
                         let target = seen.target;
-                        let other = order[copies..].iter().find(|&&row| self.data.observations[row].target == target);
+                        let other =
+                            order[copies..].iter().find(|&&row| self.data.observations[row].target == target);
                         seen = self.data.observations[*other.unwrap()];
                     }
                     data.push_observation(self.data.readings(from), seen).unwrap();
@@ -267,7 +300,13 @@ impl Session {
                 observation.target = 1 - observation.target;
             }
         });
-        any.then(|| (data, ["in all rows".to_owned(), format!("from row {from} on"), format!("rows {single:?}")][how].clone()))
+        any.then(|| {
+            (
+                data,
+                ["in all rows".to_owned(), format!("from row {from} on"), format!("rows {single:?}")][how]
+                    .clone(),
+            )
+        })
     }
 }
 
