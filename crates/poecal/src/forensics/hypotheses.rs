@@ -25,6 +25,12 @@ impl Hypothesis {
         Hypothesis { kind, changes: vec![change], action, advice }
     }
 
+    /// The factor on positions.
+    pub(super) fn resized(&self) -> f64 {
+        let factor = |change: &Change| if let Change::Resize(factor) = change { *factor } else { 1.0 };
+        self.changes.iter().map(factor).product()
+    }
+
     /// The data as they would be without the mistake.
     pub(super) fn apply(&self, data: &Dataset) -> Dataset {
         let mut changes = self.changes.iter();

@@ -8,7 +8,7 @@ use super::hypotheses::{
     Columns, Hypothesis, joint_exchanges, joint_signs, joint_units, mirrors, pose_forms, position_units,
     row_shifts,
 };
-use super::session::{Misfit, SHORT, Score, Session, sampled};
+use super::session::{SHORT, Score, Session, sampled};
 use super::zero::joint_zeros;
 use super::{Diagnosis, DiagnosisKind};
 use crate::measurement::Dataset;
@@ -25,7 +25,7 @@ const ZERO_GAIN: f64 = 1.7;
 const SLACK: f64 = 1.2;
 /// What nominal errors leave at most, and what a calibration leaves at most, as shares of the reach.
 const REGISTERED_SHARE: f64 = 0.12;
-const CALIBRATED_SHARE: f64 = 5e-3;
+pub(super) const CALIBRATED_SHARE: f64 = 5e-3;
 /// Below this share of the reach a calibrated error is noise, whose differences say nothing.
 const NOISE_SHARE: f64 = 3e-5;
 /// Suppositions whose scores differ by less than this factor explain the data alike: the simplest is named.
@@ -34,6 +34,8 @@ const ALIKE: f64 = 1.15;
 /// A supposition with what it makes of the data.
 struct Judged {
     index: usize,
+    /// By how much positions were resized: errors are resized with them, and are compared as they were before.
+    resized: f64,
     data: Dataset,
     score: Score,
 }
@@ -114,38 +116,47 @@ fn best_of(
         .into_par_iter()
         .map(|(index, data, estimate, registered)| {
             let calibrated = session.calibrated(&data, &estimate, SHORT).1;
-            Judged { index, data, score: Score { registered, calibrated } }
+            let resized = hypotheses[index].resized();
+            Judged { index, resized, data, score: Score { registered, calibrated } }
         })
         .collect();
-    judged.sort_by(|a, b| session.merit(&a.score).total_cmp(&session.merit(&b.score)));
+    judged.sort_by(|a, b| session.merit(a).total_cmp(&session.merit(b)));
     judged.truncate(FINALISTS);
     judged.par_iter_mut().for_each(|one| one.score = session.judged(&one.data).1);
-    judged.retain(|one| session.explains(hypotheses[one.index].kind, base, &one.score));
-    let least = judged.iter().map(|one| session.merit(&one.score)).fold(f64::INFINITY, f64::min);
-    judged.retain(|one| session.merit(&one.score) < ALIKE * least);
+    judged.retain(|one| session.explains(hypotheses[one.index].kind, base, one));
+    let least = judged.iter().map(|one| session.merit(one)).fold(f64::INFINITY, f64::min);
+    judged.retain(|one| session.merit(one) < ALIKE * least);
     let simplest = judged.iter().min_by_key(|one| (hypotheses[one.index].kind, one.index))?;
     Some((simplest.index, simplest.score))
 }
 
+impl Judged {
+    /// Registered and calibrated error, metres of the data as they are. A robot can be calibrated to any size, but only data that
+    /// have shrunk bring the errors of the nominal one down with them.
+    fn errors_m(&self) -> (f64, f64) {
+        let registered = self.score.registered.total_m * (1.0 / self.resized).max(1.0);
+        (registered, self.score.calibrated.total_m / self.resized)
+    }
+}
+
 impl Session<'_> {
     /// One number to compare suppositions by: a mistake shows with nominal screws, or after a calibration, or both.
-    fn merit(&self, score: &Score) -> f64 {
-        score.registered.total_m * score.calibrated.total_m.max(NOISE_SHARE * self.reach_m())
+    fn merit(&self, one: &Judged) -> f64 {
+        let (registered, calibrated) = one.errors_m();
+        registered * calibrated.max(NOISE_SHARE * self.reach_m())
     }
 
     /// Whether a supposition explains far more than the data as they are, and leaves no more than nominal errors do.
-    fn explains(&self, kind: DiagnosisKind, base: &Score, new: &Score) -> bool {
-        let gain = |before: &Misfit, after: &Misfit, floor: f64| {
-            before.total_m.max(floor) / after.total_m.max(floor)
-        };
-        let reach = self.reach_m();
+    fn explains(&self, kind: DiagnosisKind, base: &Score, one: &Judged) -> bool {
+        let (reach, after) = (self.reach_m(), one.errors_m());
+        let noise = NOISE_SHARE * reach;
+        let registered = base.registered.total_m / after.0;
+        let calibrated = base.calibrated.total_m.max(noise) / after.1.max(noise);
         let least = if kind == DiagnosisKind::JointZero { ZERO_GAIN } else { REGISTERED_GAIN };
-        let registered = gain(&base.registered, &new.registered, 0.0);
-        let calibrated = gain(&base.calibrated, &new.calibrated, NOISE_SHARE * reach);
         (registered > least || calibrated > CALIBRATED_GAIN)
             && registered.min(calibrated) * SLACK > 1.0
-            && new.registered.total_m < REGISTERED_SHARE * reach
-            && new.calibrated.total_m < CALIBRATED_SHARE * reach
+            && one.score.registered.total_m < REGISTERED_SHARE * reach
+            && one.score.calibrated.total_m < CALIBRATED_SHARE * reach
     }
 }
 

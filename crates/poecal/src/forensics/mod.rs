@@ -118,14 +118,21 @@ pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'
         return Vec::new();
     }
     let session = Session::new(robot, data, options.device_free);
-    let all = taken(data, &rows);
     let mut found = repeats::diagnose(&session, data, &rows);
-    let whole = taken(&all, &sample_rows(&(0..rows.len() as u32).collect::<Vec<_>>(), WHOLE));
-    if let Some(estimate) = options.calibrated {
-        if session.is_sound(&whole, estimate) {
-            found.extend(targets::names(&session, data, estimate));
-            return found;
-        }
+    // Rows that contradict each other say nothing of the others.
+    for contradicting in found.iter().filter(|one| one.before_mm > 0.0) {
+        rows.retain(|row| contradicting.rows.binary_search(row).is_err());
+    }
+    if rows.len() < FEWEST_ROWS {
+        return found;
+    }
+    let all = taken(data, &rows);
+    let whole = taken(data, &sample_rows(&rows, WHOLE));
+    if let Some(estimate) = options.calibrated
+        && session.is_sound(&whole, estimate)
+    {
+        found.extend(targets::names(&session, data, estimate));
+        return found;
     }
     let sample = sampled(&all);
     let (estimate, base) = session.judged(&sample);

@@ -24,7 +24,7 @@ const OUTSTANDING: f64 = 8.0;
 /// How far a calibration may tilt an axis before its joint's zero or sign is in doubt: 4 degrees.
 const QUIET_TILT_RAD: f64 = 0.07;
 /// How far it may shift an axis, as a share of the reach, before a zero or a unit is in doubt.
-const QUIET_SHIFT_SHARE: f64 = 0.015;
+const QUIET_SHIFT_SHARE: f64 = 0.01;
 /// Iterations of a calibration that is to end at its optimum.
 const LONG: usize = 60;
 /// Iterations of a calibration that compares suppositions.

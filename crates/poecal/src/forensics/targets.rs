@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::judge::short;
+use super::judge::{CALIBRATED_SHARE, short};
 use super::repeats::place;
 use super::session::{SHORT, Score, Session, row_errors, sampled, taken};
 use super::{Diagnosis, DiagnosisKind};
@@ -109,7 +109,8 @@ fn exchanged(session: &Session<'_>, all: &Dataset, pair: (usize, usize), base: &
     let plausible = !concerned.is_empty()
         && before > ROW_GAIN * after
         && after < ROW_GAIN * rest
-        && base.calibrated.total_m > GAIN * error;
+        && base.calibrated.total_m > GAIN * error
+        && error < CALIBRATED_SHARE * session.reach_m();
     plausible.then_some((error, pair, concerned, before, after))
 }
 
