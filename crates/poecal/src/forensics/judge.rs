@@ -134,8 +134,8 @@ impl Judged {
     /// Registered and calibrated error, metres of the data as they are. A robot can be calibrated to any size, but only data that
     /// have shrunk bring the errors of the nominal one down with them.
     fn errors_m(&self) -> (f64, f64) {
-        let registered = self.score.registered.total_m * (1.0 / self.resized).max(1.0);
-        (registered, self.score.calibrated.total_m / self.resized)
+        let registered = self.score.registered.resized_m((1.0 / self.resized).max(1.0));
+        (registered, self.score.calibrated.resized_m(1.0 / self.resized))
     }
 }
 

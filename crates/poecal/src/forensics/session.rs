@@ -41,6 +41,14 @@ pub(super) struct Misfit {
     pub(super) total_m: f64,
 }
 
+impl Misfit {
+    /// Both together with the distances times a factor.
+    pub(super) fn resized_m(&self, factor: f64) -> f64 {
+        let turned = (self.total_m.powi(2) - self.position_m.powi(2)).max(0.0);
+        (turned + (factor * self.position_m).powi(2)).sqrt()
+    }
+}
+
 /// Misfits with nominal screws, and with screws fitted briefly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Score {
