@@ -14,8 +14,8 @@ pub(super) enum Change {
     Exchange(usize, usize),
     /// A number added to a column, radians or metres.
     Add(usize, f64),
-    /// Each reading goes with the measurement so many measurements of the same target later.
-    Shift(i32),
+    /// Each reading goes with the measurement so many rows later: of the same target, or whatever target that row names.
+    Shift(i32, Stream),
     /// Positions times a factor.
     Resize(f64),
     /// Parts of the quaternion that stand in the places x, y, z, w.
@@ -33,8 +33,8 @@ pub(super) enum Change {
 impl Change {
     /// The data as they would be without the mistake. Rows that a shift leaves without a partner are dropped.
     pub(super) fn apply(&self, data: &Dataset) -> Dataset {
-        if let Change::Shift(by) = self {
-            return shifted(data, *by);
+        if let Change::Shift(by, stream) = self {
+            return shifted(data, *by, *stream);
         }
         let mut changed = like(data);
         let mut readings = Vec::new();
@@ -90,6 +90,15 @@ impl Change {
     }
 }
 
+/// Which rows a shift counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stream {
+    /// Those of the same target.
+    Target,
+    /// All: the target's name stays with the reading.
+    File,
+}
+
 /// A data set without rows for the same readings and targets.
 pub(super) fn like(data: &Dataset) -> Dataset {
     let mut empty = Dataset::new(data.reading_names().to_vec());
@@ -110,19 +119,25 @@ fn frame(pose: Pose) -> Measurement {
     Measurement::Pose(PoseMeasurement { pose })
 }
 
-/// Readings of each row with the measurement of the same target and file `by` such rows later.
-fn shifted(data: &Dataset, by: i32) -> Dataset {
-    let mut streams: Vec<((usize, u32), Vec<usize>)> = Vec::new();
+/// Readings of each row with the measurement of the same stream and file `by` such rows later.
+fn shifted(data: &Dataset, by: i32, stream: Stream) -> Dataset {
+    let mut keys: Vec<(Option<usize>, u32)> = Vec::new();
+    let mut streams: Vec<Vec<usize>> = Vec::new();
     for (row, observation) in data.observations.iter().enumerate() {
-        let key = (observation.target, observation.source.file);
-        match streams.iter_mut().find(|(known, _)| *known == key) {
-            Some((_, rows)) => rows.push(row),
-            None => streams.push((key, vec![row])),
+        let target = (stream == Stream::Target).then_some(observation.target);
+        let key = (target, observation.source.file);
+        let known = keys.iter().position(|known| *known == key);
+        match known.and_then(|index| streams.get_mut(index)) {
+            Some(rows) => rows.push(row),
+            None => {
+                keys.push(key);
+                streams.push(vec![row]);
+            }
         }
     }
     let mut partner = vec![None; data.len()];
     let distance = by.unsigned_abs() as usize;
-    for (_, rows) in &streams {
+    for rows in &streams {
         for pair in rows.windows(distance + 1) {
             let (first, last) = (pair[0], pair[distance]);
             let (from, to) = if by > 0 { (first, last) } else { (last, first) };
@@ -132,12 +147,8 @@ fn shifted(data: &Dataset, by: i32) -> Dataset {
     let mut changed = like(data);
     for (row, to) in partner.iter().enumerate() {
         if let Some(to) = *to {
-            let Observation { measurement, target, source, .. } = data.observations[to];
-            push(
-                &mut changed,
-                data.readings(row),
-                Observation { measurement, target, source, ..data.observations[row] },
-            );
+            let measurement = data.observations[to].measurement;
+            push(&mut changed, data.readings(row), Observation { measurement, ..data.observations[row] });
         }
     }
     changed

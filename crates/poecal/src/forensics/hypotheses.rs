@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
 use super::DiagnosisKind;
-use super::change::Change;
+use super::change::{Change, Stream};
 use crate::measurement::Dataset;
 use crate::robot::{JointKind, Robot};
 
@@ -122,20 +122,27 @@ pub(super) fn joint_exchanges(columns: &Columns) -> Vec<Hypothesis> {
 }
 
 /// Measurements that belong to readings some rows before or after.
-pub(super) fn row_shifts() -> Vec<Hypothesis> {
-    let one = |by: i32| {
+pub(super) fn row_shifts(targets: usize) -> Vec<Hypothesis> {
+    let one = |stream: Stream, by: i32| {
         let rows = if by.abs() == 1 { "1 row".to_owned() } else { format!("{} rows", by.abs()) };
         let side = if by > 0 { "later" } else { "earlier" };
+        let same = match stream {
+            Stream::Target if targets > 1 => " of the same target",
+            Stream::Target | Stream::File => "",
+        };
         Hypothesis::new(
             DiagnosisKind::RowShift,
-            Change::Shift(by),
-            format!(
-                "pairing the readings of each row with the measurement {rows} {side} (of the same target)"
-            ),
+            Change::Shift(by, stream),
+            format!("pairing the readings of each row with the measurement {rows} {side}{same}"),
             "check how readings and measurements were brought together".to_owned(),
         )
     };
-    [1, -1, 2, -2, 3, -3].into_iter().map(one).collect()
+    let shifts = [1, -1, 2, -2, 3, -3];
+    let mut all: Vec<Hypothesis> = shifts.into_iter().map(|by| one(Stream::Target, by)).collect();
+    if targets > 1 {
+        all.extend(shifts.into_iter().map(|by| one(Stream::File, by)));
+    }
+    all
 }
 
 /// Positions in another unit.

@@ -28,12 +28,15 @@ const REGISTERED_SHARE: f64 = 0.12;
 pub(super) const CALIBRATED_SHARE: f64 = 5e-3;
 /// Below this share of the reach a calibrated error is noise, whose differences say nothing.
 const NOISE_SHARE: f64 = 3e-5;
+/// By how much better a supposition with a fitted number must be: half a turn of one joint is often the sign of its neighbour.
+const FITTED: f64 = 3.0;
 /// Suppositions whose scores differ by less than this factor explain the data alike: the simplest is named.
 const ALIKE: f64 = 1.15;
 
 /// A supposition with what it makes of the data.
 struct Judged {
     index: usize,
+    kind: DiagnosisKind,
     /// By how much positions were resized: errors are resized with them, and are compared as they were before.
     resized: f64,
     data: Dataset,
@@ -65,7 +68,7 @@ fn single_mistakes(session: &Session<'_>, columns: &Columns, sample: &Dataset) -
         all.extend(conventions(session, sample));
     }
     all.extend(mirrors(session.device_free, turned));
-    all.extend(row_shifts());
+    all.extend(row_shifts(sample.targets.len()));
     all.extend(joint_zeros(session, columns, sample));
     all
 }
@@ -116,17 +119,18 @@ fn best_of(
         .into_par_iter()
         .map(|(index, data, estimate, registered)| {
             let calibrated = session.calibrated(&data, &estimate, SHORT).1;
+            let Hypothesis { kind, .. } = hypotheses[index];
             let resized = hypotheses[index].resized();
-            Judged { index, resized, data, score: Score { registered, calibrated } }
+            Judged { index, kind, resized, data, score: Score { registered, calibrated } }
         })
         .collect();
     judged.sort_by(|a, b| session.merit(a).total_cmp(&session.merit(b)));
     judged.truncate(FINALISTS);
     judged.par_iter_mut().for_each(|one| one.score = session.judged(&one.data).1);
-    judged.retain(|one| session.explains(hypotheses[one.index].kind, base, one));
+    judged.retain(|one| session.explains(base, one));
     let least = judged.iter().map(|one| session.merit(one)).fold(f64::INFINITY, f64::min);
     judged.retain(|one| session.merit(one) < ALIKE * least);
-    let simplest = judged.iter().min_by_key(|one| (hypotheses[one.index].kind, one.index))?;
+    let simplest = judged.iter().min_by_key(|one| (one.kind, one.index))?;
     Some((simplest.index, simplest.score))
 }
 
@@ -143,16 +147,17 @@ impl Session<'_> {
     /// One number to compare suppositions by: a mistake shows with nominal screws, or after a calibration, or both.
     fn merit(&self, one: &Judged) -> f64 {
         let (registered, calibrated) = one.errors_m();
-        registered * calibrated.max(NOISE_SHARE * self.reach_m())
+        let fitted = if one.kind == DiagnosisKind::JointZero { FITTED } else { 1.0 };
+        fitted * registered * calibrated.max(NOISE_SHARE * self.reach_m())
     }
 
     /// Whether a supposition explains far more than the data as they are, and leaves no more than nominal errors do.
-    fn explains(&self, kind: DiagnosisKind, base: &Score, one: &Judged) -> bool {
+    fn explains(&self, base: &Score, one: &Judged) -> bool {
         let (reach, after) = (self.reach_m(), one.errors_m());
         let noise = NOISE_SHARE * reach;
         let registered = base.registered.total_m / after.0;
         let calibrated = base.calibrated.total_m.max(noise) / after.1.max(noise);
-        let least = if kind == DiagnosisKind::JointZero { ZERO_GAIN } else { REGISTERED_GAIN };
+        let least = if one.kind == DiagnosisKind::JointZero { ZERO_GAIN } else { REGISTERED_GAIN };
         (registered > least || calibrated > CALIBRATED_GAIN)
             && registered.min(calibrated) * SLACK > 1.0
             && one.score.registered.total_m < REGISTERED_SHARE * reach

@@ -118,29 +118,37 @@ pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'
         return Vec::new();
     }
     let session = Session::new(robot, data, options.device_free);
-    let mut found = repeats::diagnose(&session, data, &rows);
-    // Rows that contradict each other say nothing of the others.
-    for contradicting in found.iter().filter(|one| one.before_mm > 0.0) {
-        rows.retain(|row| contradicting.rows.binary_search(row).is_err());
+    let (repeated, contradicting) = repeats::diagnose(&session, data, &rows);
+    let mut found: Vec<Diagnosis> = repeated.into_iter().collect();
+    let whole = of_rows(&session, data, &rows, options);
+    // Two measurements of one target in one configuration: of two targets, if names are exchanged; otherwise one is wrong, and
+    // neither says anything of the other rows.
+    let exchanged = whole.as_ref().is_some_and(|one| one.kind == DiagnosisKind::TargetsSwapped);
+    match contradicting {
+        Some(contradicting) if !exchanged => {
+            rows.retain(|row| contradicting.rows.binary_search(row).is_err());
+            found.push(contradicting);
+            if rows.len() >= FEWEST_ROWS {
+                found.extend(of_rows(&session, data, &rows, options));
+            }
+        }
+        _ => found.extend(whole),
     }
-    if rows.len() < FEWEST_ROWS {
-        return found;
-    }
-    let all = taken(data, &rows);
-    let whole = taken(data, &sample_rows(&rows, WHOLE));
+    found
+}
+
+/// The mistake that rows show beside repetitions.
+fn of_rows(session: &Session<'_>, data: &Dataset, rows: &[u32], options: &Options<'_>) -> Option<Diagnosis> {
+    let whole = taken(data, &sample_rows(rows, WHOLE));
     if let Some(estimate) = options.calibrated
         && session.is_sound(&whole, estimate)
     {
-        found.extend(targets::names(&session, data, estimate));
-        return found;
+        return targets::names(session, data, estimate);
     }
-    let sample = sampled(&all);
-    let (estimate, base) = session.judged(&sample);
-    let other = if session.is_sound(&whole, &estimate) {
-        targets::names(&session, data, &estimate)
-    } else {
-        targets::rows(&session, data, &all, &rows, &base).or_else(|| judge::diagnose(&session, &all, &base))
-    };
-    found.extend(other);
-    found
+    let all = taken(data, rows);
+    let (estimate, base) = session.judged(&sampled(&all));
+    if session.is_sound(&whole, &estimate) {
+        return targets::names(session, data, &estimate);
+    }
+    targets::rows(session, data, &all, rows, &base).or_else(|| judge::diagnose(session, &all, &base))
 }

@@ -125,14 +125,17 @@ impl<'a> Session<'a> {
     }
 
     /// Fits one joint's offset from a registration; the device moves along.
-    pub(super) fn offset(&self, data: &Dataset, registered: &Estimate, joint: usize) -> f64 {
-        let Some(&kind) = registered.kinds.get(joint) else { return 0.0 };
-        let mut free = vec![Parameter::JointOffset(JointOffset { joint, kind })];
+    pub(super) fn offset(&self, data: &Dataset, registered: &Estimate, joint: usize) -> (f64, Misfit) {
+        let mut free: Vec<Parameter> = Vec::new();
+        free.extend(
+            registered.kinds.get(joint).map(|&kind| Parameter::JointOffset(JointOffset { joint, kind })),
+        );
         if self.device_free {
             let about = data.mean_position(&all_rows(data));
             free.push(Parameter::DeviceFrame(DeviceFrame { about }));
         }
-        self.fit(data, registered, free, 30).0.joint_offset.get(joint).copied().unwrap_or(0.0)
+        let (estimate, misfit) = self.fit(data, registered, free, 30);
+        (estimate.joint_offset.get(joint).copied().unwrap_or(0.0), misfit)
     }
 
     fn fit(

@@ -65,15 +65,7 @@ pub(super) fn rows(
     let name =
         |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
     let concerned: Vec<u32> = concerned.into_iter().filter_map(|row| rows.get(row).copied()).collect();
-    let own = |row: &u32| [pair.0, pair.1].contains(&data.observations[*row as usize].target);
-    let from = rows.iter().filter(|row| own(row)).position(|row| Some(row) == concerned.first());
-    let tail = rows.iter().filter(|row| own(row)).count() - from.unwrap_or(0);
-    let named: Vec<String> = concerned.iter().take(NAMED).map(|&row| place(data, row)).collect();
-    let where_ = if concerned.len() > 1 && tail == concerned.len() {
-        format!("from {} on", named.first().cloned().unwrap_or_default())
-    } else {
-        format!("in {}{}", named.join(", "), if concerned.len() > NAMED { ", …" } else { "" })
-    };
+    let where_ = where_words(data, rows, pair, &concerned);
     Some(Diagnosis {
         kind: DiagnosisKind::TargetsSwapped,
         statement: format!(
@@ -89,6 +81,20 @@ pub(super) fn rows(
         before_mm: before * 1e3,
         after_mm: after * 1e3,
     })
+}
+
+/// Where some of the rows of a pair of targets stand: from a row on, up to a row, or here and there.
+fn where_words(data: &Dataset, rows: &[u32], pair: (usize, usize), concerned: &[u32]) -> String {
+    let own = |row: &u32| [pair.0, pair.1].contains(&data.observations[*row as usize].target);
+    let own: Vec<u32> = rows.iter().copied().filter(own).collect();
+    match concerned {
+        [first, .., _] if own.ends_with(concerned) => format!("from {} on", place(data, *first)),
+        [_, .., last] if own.starts_with(concerned) => format!("up to {}", place(data, *last)),
+        _ => {
+            let named: Vec<String> = concerned.iter().take(NAMED).map(|&row| place(data, row)).collect();
+            format!("in {}{}", named.join(", "), if concerned.len() > NAMED { ", …" } else { "" })
+        }
+    }
 }
 
 /// Error after the exchange, the pair, its rows, and their errors before and after.

@@ -12,6 +12,8 @@ use crate::robot::JointKind;
 /// Offsets below this are what a calibration is for: radians, and share of the reach for slides.
 const LEAST_RAD: f64 = 0.052;
 const LEAST_SHARE: f64 = 0.01;
+/// Starts, the best of eight, from which an offset is fitted.
+const FITTED_STARTS: usize = 3;
 
 /// The best offset of each joint, where it is gross.
 pub(super) fn joint_zeros(session: &Session<'_>, columns: &Columns, data: &Dataset) -> Vec<Hypothesis> {
@@ -33,13 +35,17 @@ fn joint_zero(session: &Session<'_>, columns: &Columns, data: &Dataset, column: 
     let turns = columns.kinds.get(column) == Some(&JointKind::Revolute);
     let starts: Vec<f64> =
         if turns { (-3..=4).map(|k| f64::from(k) * FRAC_PI_4).collect() } else { vec![0.0] };
-    let of = |by: f64| {
+    let rough = |by: f64| {
         let (estimate, misfit) = session.roughly_registered(&Change::Add(column, by).apply(data));
         (misfit.total_m, by, estimate)
     };
-    let (_, start, estimate) = starts.into_iter().map(of).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let rest = session.offset(&Change::Add(column, start).apply(data), &estimate, joint);
-    let by = start + rest / multiplier;
+    let mut rough: Vec<_> = starts.into_iter().map(rough).collect();
+    rough.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let fitted = rough.into_iter().take(FITTED_STARTS).map(|(_, start, estimate)| {
+        let (rest, misfit) = session.offset(&Change::Add(column, start).apply(data), &estimate, joint);
+        (misfit.total_m, start + rest / multiplier)
+    });
+    let (_, by) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (gross, words) = if turns {
         (by.abs() > LEAST_RAD, format!("{:.1} deg", by.to_degrees()))
     } else {
