@@ -77,7 +77,7 @@ fn mistaken(index: u64) -> (Session, DiagnosisKind, Dataset, String) {
 
 #[test]
 fn mistakes_are_named() {
-    let count = sessions(120);
+    let count = sessions(60);
     let results: Vec<(DiagnosisKind, bool)> = (0..count as u64)
         .into_par_iter()
         .map(|index| {
