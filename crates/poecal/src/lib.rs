@@ -53,6 +53,7 @@
 //! | [`problem`] | rows × columns |
 //! | [`analysis`], [`gauge`] | what the data determine, or would; the choice among equals |
 //! | [`start`] | device frame and tool without a guess |
+//! | [`forensics`] | mistakes in the input, named with evidence |
 //! | [`calibration`] | all steps in order |
 //! | [`reproduce`] | the experiment of lou2009 with every formulation |
 //! | [`report`] | the result as text |
@@ -65,6 +66,7 @@ pub mod analysis;
 pub mod calibration;
 pub mod error;
 pub mod estimate;
+pub mod forensics;
 pub mod gauge;
 pub mod io;
 pub mod lie;

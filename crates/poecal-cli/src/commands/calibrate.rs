@@ -27,7 +27,8 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
     });
     bar.finish_and_clear();
     let calibration = calibration?;
-    for warning in &calibration.warnings {
+    let found = calibration.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
+    for warning in calibration.warnings.iter().chain(found) {
         console.warning(warning);
     }
     let inputs = inputs(arguments);

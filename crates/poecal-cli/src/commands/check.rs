@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use poecal::forensics::{Options, diagnose};
 use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::{Result, report};
@@ -17,7 +18,11 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<ExitCode> {
     } else {
         Some(measurements::read(&arguments.measurements, &model.robot, &options)?)
     };
-    let check = report::Check::new(&model, measurements.as_ref());
+    let found = measurements.as_ref().map_or_else(Vec::new, |file| {
+        let rows: Vec<u32> = (0..u32::try_from(file.data.len()).unwrap_or(u32::MAX)).collect();
+        diagnose(&model.robot, &file.data, &rows, &Options::default())
+    });
+    let check = report::Check::new(&model, measurements.as_ref(), &found);
     if arguments.json {
         console.data(&report::json(&check)?)?;
     } else {

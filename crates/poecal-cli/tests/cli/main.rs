@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod commands;
+mod diagnosis;
 mod folder;
 mod identify;
 mod offsets;

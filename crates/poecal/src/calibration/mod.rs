@@ -23,6 +23,7 @@ pub use crate::estimate::{delivered, radian_m};
 use crate::analysis::{Identifiability, Setup, identifiability, residual_variance};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed};
+use crate::forensics::{self, Diagnosis, DiagnosisKind};
 use crate::gauge;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise, PoseResidual};
@@ -194,6 +195,8 @@ pub struct Calibration {
     pub noise_source: NoiseSource,
     /// What makes the result doubtful, a sentence each.
     pub warnings: Vec<String>,
+    /// Mistakes that the measurements show, fitted and held out: named, not corrected.
+    pub diagnosis: Vec<Diagnosis>,
     /// Rows fitted.
     pub fit_rows: Vec<u32>,
     /// Rows held out.
@@ -325,6 +328,8 @@ pub fn calibrate_with_progress(
         base_free: options.frame == DeviceFrameKnowledge::Unknown,
         seed: options.seed,
     });
+    let diagnosis = diagnosis(robot, data, options.frame, &models.calibrated);
+    let grave = diagnosis.iter().filter(|it| it.kind != DiagnosisKind::DuplicateRows);
     let verdict = verdict::verdict(&verdict::Grounds {
         accuracy: &accuracy,
         solver: &fitted.report,
@@ -333,7 +338,7 @@ pub fn calibrate_with_progress(
         kinds: &models.calibrated.kinds,
         residuals: fitted.normal.residuals,
         reach_m: 3.0 * length_m,
-        mistakes: &[],
+        mistakes: &grave.map(|it| it.statement.clone()).collect::<Vec<_>>(),
     });
     let warnings = doubts::doubts(data, &fit_rows, &accuracy.training.registered, options.frame);
     let (calibrated_robot, targets) = place_tip(robot, data, &data.frames(&fit_rows), &models.calibrated);
@@ -355,9 +360,22 @@ pub fn calibrate_with_progress(
         noise: fitted.noise,
         noise_source: fitted.noise_source,
         warnings,
+        diagnosis,
         fit_rows,
         held_out_rows,
     })
+}
+
+/// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing.
+fn diagnosis(
+    robot: &Robot,
+    data: &Dataset,
+    frame: DeviceFrameKnowledge,
+    calibrated: &Estimate,
+) -> Vec<Diagnosis> {
+    let rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+    let device_free = frame == DeviceFrameKnowledge::Unknown;
+    forensics::diagnose(robot, data, &rows, &forensics::Options { device_free, calibrated: Some(calibrated) })
 }
 
 /// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (with points alone its

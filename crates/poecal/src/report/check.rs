@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::{kinds_words, line, robot_words};
+use crate::forensics::Diagnosis;
 use crate::io::measurements::{
     ColumnUnderstanding, DecimalSign, FileUnderstanding, MeasurementFile, Quantity, Separator, Unit,
     UnitSource,
@@ -23,7 +24,7 @@ const WIDEST: usize = 22;
 /// use poecal::io::model::{Model, ModelSource};
 /// use poecal::report::Check;
 /// let model = Model { robot: poecal::simulate::elbow(), source: ModelSource::Toml, path: "elbow.toml".into() };
-/// let check = Check::new(&model, None);
+/// let check = Check::new(&model, None, &[]);
 /// assert!(check.text().contains("joint2: revolute about (0, 1, 0) through (150, 0, 0) mm"));
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -32,6 +33,8 @@ pub struct Check {
     files: Vec<FileUnderstanding>,
     sets: Option<SetCounts>,
     warnings: Vec<String>,
+    /// Mistakes that the measurements show.
+    diagnosis: Vec<Diagnosis>,
     #[serde(skip)]
     robot_words: String,
 }
@@ -90,9 +93,9 @@ pub struct SetCounts {
 }
 
 impl Check {
-    /// What was understood of a model, and of measurements if there are some.
+    /// What was understood of a model, and of measurements with their diagnosis if there are some.
     #[must_use]
-    pub fn new(model: &Model, measurements: Option<&MeasurementFile>) -> Self {
+    pub fn new(model: &Model, measurements: Option<&MeasurementFile>, diagnosis: &[Diagnosis]) -> Self {
         let robot = &model.robot;
         Check {
             model: ModelCheck {
@@ -119,6 +122,7 @@ impl Check {
             files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
             sets: measurements.map(SetCounts::of),
             warnings: measurements.map_or_else(Vec::new, |file| file.warnings.clone()),
+            diagnosis: diagnosis.to_vec(),
             robot_words: robot_words(robot),
         }
     }
@@ -148,6 +152,9 @@ impl Check {
         }
         for (index, warning) in self.warnings.iter().enumerate() {
             line(&mut out, if index == 0 { "warnings" } else { "" }, warning);
+        }
+        for (index, found) in self.diagnosis.iter().enumerate() {
+            line(&mut out, if index == 0 { "diagnosis" } else { "" }, &found.statement);
         }
         out
     }

@@ -39,7 +39,7 @@ pub(super) fn rotation_maximising(s: &Matrix3<f64>) -> Matrix3<f64> {
 }
 
 /// The rotation nearest to all of the given ones in the chordal sense.
-pub(super) fn mean_rotation(rotations: impl Iterator<Item = Matrix3<f64>>) -> Matrix3<f64> {
+pub(crate) fn mean_rotation(rotations: impl Iterator<Item = Matrix3<f64>>) -> Matrix3<f64> {
     let sum: Matrix3<f64> = rotations.sum();
     rotation_maximising(&sum.transpose())
 }

@@ -4,5 +4,6 @@ mod averaging;
 mod hand_eye;
 mod registration;
 
-pub(crate) use registration::target_parameters;
+pub(crate) use averaging::mean_rotation;
 pub use registration::{Registration, register, register_again};
+pub(crate) use registration::{register_roughly, target_parameters};

@@ -58,6 +58,20 @@ pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64)
     polish(problem, best.0, problem.rows.to_vec(), 50)
 }
 
+/// Registers by the best closed form alone and a few iterations: for comparing many suppositions, of which the few that matter are
+/// registered in full afterwards.
+#[must_use]
+pub(crate) fn register_roughly(problem: &Registration<'_>, start: &Estimate) -> Estimate {
+    let sample = sample_rows(problem.rows, SAMPLE);
+    let seen = Seen::new(problem, start, &sample);
+    let candidates = seen.closed_forms(problem, start).into_iter().map(|device| {
+        let candidate = seen.alternate(problem, start, device, ROUNDS);
+        (polish(problem, candidate.clone(), sample.clone(), 0).1, candidate)
+    });
+    let best = candidates.min_by(|a, b| a.0.total_cmp(&b.0));
+    polish(problem, best.map_or_else(|| start.clone(), |(_, best)| best), sample.clone(), 8).0
+}
+
 /// Registers again from a registration that was made with other noise.
 #[must_use]
 pub fn register_again(problem: &Registration<'_>, start: &Estimate) -> Estimate {

@@ -13,6 +13,7 @@ use std::path::Path;
 use super::source_text;
 use crate::calibration::{Calibration, DeviceFrameKnowledge};
 use crate::error::{Error, ErrorKind, Result};
+use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
 use crate::measurement::Dataset;
 use crate::robot::{Joint, JointKind, Limits, Reading, Robot};
@@ -61,6 +62,7 @@ impl CalibrationFile {
                 .collect(),
             uncertainty: UncertaintyEntry::of(calibration),
             warnings: calibration.warnings.clone(),
+            diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             noise: NoiseEntry {
                 sigma_position_mm: calibration.noise.position_m * 1e3,
                 sigma_rotation_deg: data
@@ -190,6 +192,12 @@ impl CalibrationFile {
     #[must_use]
     pub fn targets(&self) -> &BTreeMap<String, TargetEntry> {
         &self.targets
+    }
+}
+
+impl From<&Diagnosis> for DiagnosisEntry {
+    fn from(found: &Diagnosis) -> Self {
+        DiagnosisEntry { kind: found.kind, statement: found.statement.clone(), rows: found.rows.clone() }
     }
 }
 

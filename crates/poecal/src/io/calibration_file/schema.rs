@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
 use crate::calibration::{Accuracy, NoiseSource, Verdict};
+use crate::forensics::DiagnosisKind;
 use crate::measurement::PoseResidual;
 use crate::parameters::Formulation;
 use crate::solve::{Method, Termination};
@@ -54,6 +55,9 @@ pub struct CalibrationFile {
     /// What makes the result doubtful, a sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
+    /// Mistakes that the measurements show: named, not corrected.
+    #[serde(default)]
+    pub diagnosis: Vec<DiagnosisEntry>,
     /// The calibrated robot's frames.
     pub robot: RobotEntry,
     /// The calibrated joints from base to tip.
@@ -164,6 +168,26 @@ pub struct NoiseEntry {
     pub sigma_rotation_deg: Option<f64>,
     /// Where it came from.
     pub source: NoiseSource,
+}
+
+/// A mistake that the measurements show.
+///
+/// ```
+/// use poecal::forensics::DiagnosisKind;
+/// use poecal::io::calibration_file::DiagnosisEntry;
+/// let text = r#"{ "kind": "joint_sign", "statement": "counting joint4 the other way …", "rows": [] }"#;
+/// let entry: DiagnosisEntry = serde_json::from_str(text)?;
+/// assert_eq!(entry.kind, DiagnosisKind::JointSign);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct DiagnosisEntry {
+    /// What it is.
+    pub kind: DiagnosisKind,
+    /// The evidence and what to do.
+    pub statement: String,
+    /// The rows concerned, counted from 0 over all files; empty if all are.
+    pub rows: Vec<u32>,
 }
 
 /// The calibrated robot's frames.

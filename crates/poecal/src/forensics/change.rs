@@ -1,0 +1,155 @@
+//! What undoes a supposed mistake: a change of readings or measurements, row by row.
+
+use nalgebra::{Matrix3, Vector4};
+
+use crate::lie::{Pose, rotation};
+use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement};
+
+/// A change of every row. Columns are indices of readings.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Change {
+    /// Readings of some columns times a factor.
+    Scale(Vec<usize>, f64),
+    /// Two columns exchanged.
+    Exchange(usize, usize),
+    /// A number added to a column, radians or metres.
+    Add(usize, f64),
+    /// Each reading goes with the measurement so many rows later: of the same target, or whatever target that row names.
+    Shift(i32, Stream),
+    /// Positions times a factor.
+    Resize(f64),
+    /// Parts of the quaternion that stand in the places x, y, z, w.
+    Quaternion([usize; 4]),
+    /// Poses inverted.
+    Invert,
+    /// Orientations inverted, positions kept.
+    Transpose,
+    /// Other orientations, a row.
+    Turn(Vec<Option<Matrix3<f64>>>),
+    /// Positions mirrored, and orientations with them or not.
+    Mirror(Matrix3<f64>, bool),
+}
+
+impl Change {
+    /// The data as they would be without the mistake. Rows that a shift leaves without a partner are dropped.
+    pub(super) fn apply(&self, data: &Dataset) -> Dataset {
+        if let Change::Shift(by, stream) = self {
+            return shifted(data, *by, *stream);
+        }
+        let mut changed = like(data);
+        let mut readings = Vec::new();
+        for (row, observation) in data.observations.iter().enumerate() {
+            readings.clear();
+            readings.extend_from_slice(data.readings(row));
+            self.change_readings(&mut readings);
+            let measurement = self.measurement(row, &observation.measurement);
+            push(&mut changed, &readings, Observation { measurement, ..*observation });
+        }
+        changed
+    }
+
+    fn change_readings(&self, readings: &mut [f64]) {
+        match self {
+            Change::Scale(columns, factor) => {
+                columns.iter().for_each(|&column| readings[column] *= factor);
+            }
+            Change::Exchange(a, b) => readings.swap(*a, *b),
+            Change::Add(column, offset) => readings[*column] += offset,
+            _ => {}
+        }
+    }
+
+    fn measurement(&self, row: usize, seen: &Measurement) -> Measurement {
+        if !seen.sees_orientation() {
+            let position = seen.pose().translation;
+            return point(match self {
+                Change::Resize(factor) => position * *factor,
+                Change::Mirror(mirror, _) => mirror * position,
+                _ => position,
+            });
+        }
+        let Pose { rotation: turned, translation } = seen.pose();
+        frame(match self {
+            Change::Resize(factor) => Pose::new(turned, translation * *factor),
+            Change::Quaternion(places) => {
+                let q = rotation::to_quaternion_xyzw(&turned);
+                let [x, y, z, w] = places.map(|place| q[place]);
+                Pose::new(rotation::from_quaternion_xyzw(&Vector4::new(x, y, z, w)), translation)
+            }
+            Change::Invert => seen.pose().inverse(),
+            Change::Transpose => Pose::new(turned.transpose(), translation),
+            Change::Turn(others) => {
+                Pose::new(others.get(row).copied().flatten().unwrap_or(turned), translation)
+            }
+            Change::Mirror(mirror, turns) => {
+                let turned = if *turns { mirror * turned * mirror } else { turned };
+                Pose::new(turned, mirror * translation)
+            }
+            _ => seen.pose(),
+        })
+    }
+}
+
+/// Which rows a shift counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stream {
+    /// Those of the same target.
+    Target,
+    /// All: the target's name stays with the reading.
+    File,
+}
+
+/// A data set without rows for the same readings and targets.
+pub(super) fn like(data: &Dataset) -> Dataset {
+    let mut empty = Dataset::new(data.reading_names().to_vec());
+    empty.targets.clone_from(&data.targets);
+    empty
+}
+
+/// Adds a row; one that a change has made not finite tells nothing and is left out.
+pub(super) fn push(data: &mut Dataset, readings: &[f64], observation: Observation) {
+    data.push_observation(readings, observation).ok();
+}
+
+fn point(position: nalgebra::Vector3<f64>) -> Measurement {
+    Measurement::Point(PointMeasurement { position })
+}
+
+fn frame(pose: Pose) -> Measurement {
+    Measurement::Pose(PoseMeasurement { pose })
+}
+
+/// Readings of each row with the measurement of the same stream and file `by` such rows later.
+fn shifted(data: &Dataset, by: i32, stream: Stream) -> Dataset {
+    let mut keys: Vec<(Option<usize>, u32)> = Vec::new();
+    let mut streams: Vec<Vec<usize>> = Vec::new();
+    for (row, observation) in data.observations.iter().enumerate() {
+        let target = (stream == Stream::Target).then_some(observation.target);
+        let key = (target, observation.source.file);
+        let known = keys.iter().position(|known| *known == key);
+        match known.and_then(|index| streams.get_mut(index)) {
+            Some(rows) => rows.push(row),
+            None => {
+                keys.push(key);
+                streams.push(vec![row]);
+            }
+        }
+    }
+    let mut partner = vec![None; data.len()];
+    let distance = by.unsigned_abs() as usize;
+    for rows in &streams {
+        for pair in rows.windows(distance + 1) {
+            let (first, last) = (pair[0], pair[distance]);
+            let (from, to) = if by > 0 { (first, last) } else { (last, first) };
+            partner[from] = Some(to);
+        }
+    }
+    let mut changed = like(data);
+    for (row, to) in partner.iter().enumerate() {
+        if let Some(to) = *to {
+            let measurement = data.observations[to].measurement;
+            push(&mut changed, data.readings(row), Observation { measurement, ..data.observations[row] });
+        }
+    }
+    changed
+}

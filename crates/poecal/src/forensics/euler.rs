@@ -1,0 +1,164 @@
+//! Orientations whose three numbers were read as angles of one kind and meant as angles of another.
+
+use nalgebra::Matrix3;
+use std::f64::consts::PI;
+
+use crate::lie::rotation;
+
+/// A meaning of three angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Angles {
+    /// Turns about these axes (0 = x), each as it stands after the turns before: `R = R_i(a) R_j(b) R_k(c)`.
+    Intrinsic([usize; 3]),
+    /// Turns about these axes as they stand in the device: `R = R_k(c) R_j(b) R_i(a)`.
+    Extrinsic([usize; 3]),
+    /// Axis times angle.
+    RotationVector,
+}
+
+/// The twelve sequences of axes.
+const SEQUENCES: [[usize; 3]; 12] = [
+    [0, 1, 2],
+    [2, 1, 0],
+    [2, 1, 2],
+    [2, 0, 2],
+    [0, 2, 1],
+    [1, 0, 2],
+    [1, 2, 0],
+    [2, 0, 1],
+    [0, 1, 0],
+    [0, 2, 0],
+    [1, 0, 1],
+    [1, 2, 1],
+];
+
+impl Angles {
+    /// Every meaning, the usual ones first.
+    pub(super) fn all() -> impl Iterator<Item = Angles> {
+        let turns = SEQUENCES.into_iter().flat_map(|axes| [Angles::Extrinsic(axes), Angles::Intrinsic(axes)]);
+        turns.chain([Angles::RotationVector])
+    }
+
+    /// The rotation of three angles, radians.
+    pub(super) fn rotation(self, [a, b, c]: [f64; 3]) -> Matrix3<f64> {
+        match self {
+            Angles::Intrinsic([i, j, k]) => {
+                rotation::about(i, a) * rotation::about(j, b) * rotation::about(k, c)
+            }
+            Angles::Extrinsic([i, j, k]) => {
+                rotation::about(k, c) * rotation::about(j, b) * rotation::about(i, a)
+            }
+            Angles::RotationVector => rotation::exp(&nalgebra::Vector3::new(a, b, c)),
+        }
+    }
+
+    /// Three angles of a rotation, the middle one within ±90° (or from 0 to 180° where the first axis comes again).
+    pub(super) fn of(self, r: &Matrix3<f64>) -> [f64; 3] {
+        match self {
+            Angles::Intrinsic(axes) => intrinsic(axes, r),
+            Angles::Extrinsic([i, j, k]) => {
+                let [c, b, a] = intrinsic([k, j, i], r);
+                [a, b, c]
+            }
+            Angles::RotationVector => rotation::log(r).into(),
+        }
+    }
+
+    /// As words: `extrinsic xyz`.
+    pub(super) fn words(self) -> String {
+        let name =
+            |axes: [usize; 3]| -> String { axes.iter().map(|&axis| ['x', 'y', 'z'][axis % 3]).collect() };
+        match self {
+            Angles::Intrinsic(axes) => format!("intrinsic {} angles", name(axes)),
+            Angles::Extrinsic([0, 1, 2]) => "roll, pitch, yaw (extrinsic xyz)".to_owned(),
+            Angles::Extrinsic(axes) => format!("extrinsic {} angles", name(axes)),
+            Angles::RotationVector => "a rotation vector".to_owned(),
+        }
+    }
+}
+
+/// `a, b, c` with `R = R_i(a) R_j(b) R_k(c)`: the first axis is undone, and the rest read off.
+fn intrinsic([i, j, k]: [usize; 3], r: &Matrix3<f64>) -> [f64; 3] {
+    let (repeated, third) = if i == k { (true, 3 - i - j) } else { (false, k) };
+    // Whether i, j, third stand as x, y, z do or the other way round.
+    let sign = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
+    let (a, b) = if repeated {
+        let a = r[(j, i)].atan2(-sign * r[(third, i)]);
+        (a, r[(j, i)].hypot(r[(third, i)]).atan2(r[(i, i)]))
+    } else {
+        let a = (-sign * r[(j, k)]).atan2(r[(k, k)]);
+        (a, (sign * r[(i, k)]).atan2(r[(j, k)].hypot(r[(k, k)])))
+    };
+    let rest = (rotation::about(i, a) * rotation::about(j, b)).transpose() * r;
+    let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+    [a, b, rest[(last, next)].atan2(rest[(next, next)])]
+}
+
+/// Angles read as of one kind, meant as another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reinterpretation {
+    pub(super) read: Angles,
+    pub(super) meant: Angles,
+    /// By which the angles are too small.
+    pub(super) factor: f64,
+}
+
+impl Reinterpretation {
+    /// Every pair of meanings that differ, and angles of one meaning in radians read as degrees.
+    pub(super) fn all() -> Vec<Self> {
+        let mut all = Vec::new();
+        for read in Angles::all() {
+            for meant in Angles::all() {
+                // Read as extrinsic or intrinsic alike: the angles of one are those of the other backwards, so that half of the
+                // pairs of each say the same. Those read as extrinsic, as files usually are, stand for both.
+                if read == meant || matches!((read, meant), (Angles::Intrinsic(_), Angles::Intrinsic(_))) {
+                    continue;
+                }
+                all.push(Reinterpretation { read, meant, factor: 1.0 });
+            }
+            all.push(Reinterpretation { read, meant: read, factor: 180.0 / PI });
+        }
+        all
+    }
+
+    /// The rotation meant, by each of the two sets of angles that a rotation has.
+    pub(super) fn rotations(&self, r: &Matrix3<f64>) -> [Matrix3<f64>; 2] {
+        let [a, b, c] = self.read.of(r);
+        let other = match self.read {
+            Angles::Intrinsic([i, _, k]) | Angles::Extrinsic([i, _, k]) => {
+                [wrapped(a + PI), if i == k { -b } else { wrapped(PI - b) }, wrapped(c + PI)]
+            }
+            Angles::RotationVector => {
+                let angle = a.hypot(b).hypot(c).max(f64::MIN_POSITIVE);
+                [a, b, c].map(|part| part - 2.0 * PI * part / angle)
+            }
+        };
+        [[a, b, c], other].map(|angles| self.meant.rotation(angles.map(|angle| angle * self.factor)))
+    }
+}
+
+/// An angle brought within ±180°.
+fn wrapped(angle: f64) -> f64 {
+    angle - (angle / (2.0 * PI)).round() * 2.0 * PI
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn angles_of_every_kind_give_their_rotation_back() {
+        let mut worst: f64 = 0.0;
+        for angles in Angles::all() {
+            for k in 0..50 {
+                let k = f64::from(k);
+                let r = rotation::exp(&Vector3::new((k * 1.3).sin() * 2.0, (k * 0.7).cos(), (k * 2.1).sin()));
+                let same = Reinterpretation { read: angles, meant: angles, factor: 1.0 };
+                worst = same.rotations(&r).into_iter().map(|other| (other - r).norm()).fold(worst, f64::max);
+            }
+        }
+        println!("largest difference {worst:.1e}");
+        assert!(worst < 1e-13, "{worst}");
+    }
+}

@@ -1,0 +1,236 @@
+//! The mistakes that are tried, each with what would undo it and what to tell.
+
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::PI;
+
+use super::DiagnosisKind;
+use super::change::{Change, Stream};
+use crate::measurement::Dataset;
+use crate::robot::{JointKind, Robot};
+
+/// A supposed mistake.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Hypothesis {
+    pub(super) kind: DiagnosisKind,
+    /// What undoes it: one change after the other.
+    pub(super) changes: Vec<Change>,
+    /// What is done, as the subject of a sentence.
+    pub(super) action: String,
+    /// What the user should look at.
+    pub(super) advice: String,
+}
+
+impl Hypothesis {
+    pub(super) fn new(kind: DiagnosisKind, change: Change, action: String, advice: String) -> Self {
+        Hypothesis { kind, changes: vec![change], action, advice }
+    }
+
+    /// The factor on positions.
+    pub(super) fn resized(&self) -> f64 {
+        let factor = |change: &Change| if let Change::Resize(factor) = change { *factor } else { 1.0 };
+        self.changes.iter().map(factor).product()
+    }
+
+    /// The data as they would be without the mistake.
+    pub(super) fn apply(&self, data: &Dataset) -> Dataset {
+        let mut changes = self.changes.iter();
+        let Some(first) = changes.next() else { return data.clone() };
+        changes.fold(first.apply(data), |data, change| change.apply(&data))
+    }
+}
+
+/// Columns of readings with their names and kinds; a follower counts with its leader.
+pub(super) struct Columns {
+    pub(super) names: Vec<String>,
+    pub(super) kinds: Vec<JointKind>,
+}
+
+impl Columns {
+    pub(super) fn new(robot: &Robot) -> Self {
+        let names = robot.reading_names();
+        let kind = |name: &String| {
+            let joint = robot.joints.iter().find(|joint| joint.reading.name == *name);
+            joint.map_or(JointKind::Revolute, |joint| joint.kind)
+        };
+        let kinds = names.iter().map(kind).collect();
+        Columns { names, kinds }
+    }
+
+    fn of(&self, kind: JointKind) -> Vec<usize> {
+        (0..self.kinds.len()).filter(|&column| self.kinds[column] == kind).collect()
+    }
+}
+
+/// Units of joints: degrees for radians and millimetres for metres, of all joints and of single ones.
+pub(super) fn joint_units(columns: &Columns) -> Vec<Hypothesis> {
+    let mut all = Vec::new();
+    for (kind, factor, large, small) in [
+        (JointKind::Revolute, 180.0 / PI, "degrees", "radians"),
+        (JointKind::Prismatic, 1e3, "millimetres", "metres"),
+    ] {
+        let members = columns.of(kind);
+        let mut sets: Vec<Vec<usize>> = members.iter().map(|&column| vec![column]).collect();
+        if members.len() > 1 {
+            sets.insert(0, members);
+        }
+        for set in sets {
+            let names: Vec<&str> = set.iter().map(|&column| columns.names[column].as_str()).collect();
+            let names = names.join(", ");
+            for (factor, meant, read) in [(1.0 / factor, large, small), (factor, small, large)] {
+                all.push(Hypothesis::new(
+                    DiagnosisKind::JointUnit,
+                    Change::Scale(set.clone(), factor),
+                    format!("taking the readings of {names} as {meant} instead of {read}"),
+                    format!("state the unit of {names} in the header"),
+                ));
+            }
+        }
+    }
+    all
+}
+
+/// A joint that counts the other way.
+pub(super) fn joint_signs(columns: &Columns) -> Vec<Hypothesis> {
+    let one = |(column, name): (usize, &String)| {
+        Hypothesis::new(
+            DiagnosisKind::JointSign,
+            Change::Scale(vec![column], -1.0),
+            format!("counting {name} the other way"),
+            format!("check the sign of {name} in the readings and the direction of its axis in the model"),
+        )
+    };
+    columns.names.iter().enumerate().map(one).collect()
+}
+
+/// Two joint columns exchanged.
+pub(super) fn joint_exchanges(columns: &Columns) -> Vec<Hypothesis> {
+    let mut all = Vec::new();
+    for (b, second) in columns.names.iter().enumerate() {
+        for (a, first) in columns.names.iter().enumerate().take(b) {
+            // A slide in the place of an axis would be another unit besides.
+            if columns.kinds[a] == columns.kinds[b] {
+                all.push(Hypothesis::new(
+                    DiagnosisKind::JointsSwapped,
+                    Change::Exchange(a, b),
+                    format!("exchanging the readings of {first} and {second}"),
+                    "check the order of the joint columns".to_owned(),
+                ));
+            }
+        }
+    }
+    all
+}
+
+/// Measurements that belong to readings some rows before or after.
+pub(super) fn row_shifts(targets: usize) -> Vec<Hypothesis> {
+    let one = |stream: Stream, by: i32| {
+        let rows = if by.abs() == 1 { "1 row".to_owned() } else { format!("{} rows", by.abs()) };
+        let side = if by > 0 { "later" } else { "earlier" };
+        let same = match stream {
+            Stream::Target if targets > 1 => " of the same target",
+            Stream::Target | Stream::File => "",
+        };
+        Hypothesis::new(
+            DiagnosisKind::RowShift,
+            Change::Shift(by, stream),
+            format!("pairing the readings of each row with the measurement {rows} {side}{same}"),
+            "check how readings and measurements were brought together".to_owned(),
+        )
+    };
+    let shifts = [1, -1, 2, -2, 3, -3];
+    let mut all: Vec<Hypothesis> = shifts.into_iter().map(|by| one(Stream::Target, by)).collect();
+    if targets > 1 {
+        all.extend(shifts.into_iter().map(|by| one(Stream::File, by)));
+    }
+    all
+}
+
+/// Positions in another unit.
+pub(super) fn position_units() -> Vec<Hypothesis> {
+    let one = |(factor, words): (f64, &str)| {
+        Hypothesis::new(
+            DiagnosisKind::PositionUnit,
+            Change::Resize(factor),
+            format!("multiplying the positions by {factor}"),
+            format!(
+                "check their unit, since it looks as if {words} (or the model's lengths are in another one)"
+            ),
+        )
+    };
+    [
+        (1e-3, "millimetres had been read as metres"),
+        (1e3, "metres had been read as millimetres"),
+        (25.4, "inches had been read as millimetres"),
+        (0.0254, "inches had been read as metres"),
+        (1.0 / 25.4, "millimetres had been read as inches"),
+        (1.0 / 0.0254, "metres had been read as inches"),
+        (10.0, "centimetres had been read as millimetres"),
+        (0.1, "millimetres had been read as centimetres"),
+        (100.0, "metres had been read as centimetres"),
+        (0.01, "centimetres had been read as metres"),
+    ]
+    .into_iter()
+    .map(one)
+    .collect()
+}
+
+/// Quaternions in another order, and poses the other way round.
+pub(super) fn pose_forms() -> Vec<Hypothesis> {
+    let order = |places, was, read| {
+        Hypothesis::new(
+            DiagnosisKind::QuaternionOrder,
+            Change::Quaternion(places),
+            format!("taking the quaternions in the order {was} instead of {read}"),
+            "check the order of the quaternion columns".to_owned(),
+        )
+    };
+    let inverse = |change, what: &str, expected| {
+        Hypothesis::new(DiagnosisKind::InvertedPose, change, format!("inverting the {what}"), expected)
+    };
+    let poses = "check which way they go, since device_from_target is expected (`direction` in a mapping)";
+    let turns = "check which way they go, since orientations of the target in the device are expected \
+                 (a transposed matrix or a conjugate quaternion is the other way)";
+    vec![
+        order([1, 2, 3, 0], "w, x, y, z", "x, y, z, w"),
+        order([3, 0, 1, 2], "x, y, z, w", "w, x, y, z"),
+        inverse(Change::Invert, "poses", poses.to_owned()),
+        inverse(Change::Transpose, "orientations", turns.to_owned()),
+    ]
+}
+
+/// Coordinates of a left-handed frame. Where the device may stand anywhere, mirrored points are the same whichever axis it is.
+pub(super) fn mirrors(device_free: bool, turned: bool) -> Vec<Hypothesis> {
+    let negated = |axis: usize| {
+        let mut signs = Vector3::new(1.0, 1.0, 1.0);
+        signs[axis] = -1.0;
+        (Matrix3::from_diagonal(&signs), format!("negating {}", ["x", "y", "z"][axis]))
+    };
+    let exchanged = |a: usize, b: usize| {
+        let mut mirror = Matrix3::identity();
+        mirror.swap_columns(a, b);
+        (mirror, format!("exchanging {} and {}", ["x", "y", "z"][a], ["x", "y", "z"][b]))
+    };
+    let axes = [negated(0), negated(1), negated(2), exchanged(0, 1), exchanged(0, 2), exchanged(1, 2)];
+    let mut all = Vec::new();
+    for (index, (mirror, words)) in axes.into_iter().enumerate() {
+        if index == 0 || !device_free {
+            let what = if turned { "positions and orientations" } else { "positions" };
+            all.push(mirrored(mirror, true, format!("mirroring the {what} ({words})")));
+        }
+        if turned {
+            all.push(mirrored(mirror, false, format!("mirroring the positions ({words})")));
+        }
+    }
+    all
+}
+
+fn mirrored(mirror: Matrix3<f64>, turns: bool, action: String) -> Hypothesis {
+    Hypothesis::new(
+        DiagnosisKind::LeftHanded,
+        Change::Mirror(mirror, turns),
+        action,
+        "check whether an axis of the measuring device has the wrong sign or two are exchanged, since a right-handed \
+         frame is expected"
+            .to_owned(),
+    )
+}

@@ -1,0 +1,116 @@
+//! Rows that stand in the data more than once, and rows that contradict each other.
+
+use super::judge::short;
+use super::session::Session;
+use super::{Diagnosis, DiagnosisKind};
+use crate::lie::rotation;
+use crate::measurement::{Dataset, Measurement};
+
+/// Rows of one configuration contradict each other when they lie further apart than this share of the reach, or are turned by more
+/// than this angle (radians): a hundred times what a robot repeats to.
+const CONTRADICTION_SHARE: f64 = 5e-3;
+const CONTRADICTION_RAD: f64 = 0.035;
+/// Rows of one configuration before a row that it is compared with: a robot may stand still for thousands.
+const NEAR: usize = 100;
+/// Pairs that a statement names.
+const NAMED: usize = 3;
+
+/// Two rows of one target with the same readings: an earlier and a later one.
+type Pair = (u32, u32);
+
+/// Rows that repeat another to the last digit, and rows that contradict another.
+pub(super) fn diagnose(
+    session: &Session<'_>,
+    data: &Dataset,
+    rows: &[u32],
+) -> (Option<Diagnosis>, Option<Diagnosis>) {
+    let key = |row: u32| data.readings(row as usize).iter().map(|value| value.to_bits());
+    let target = |row: u32| data.observations[row as usize].target;
+    let seen = |row: u32| &data.observations[row as usize].measurement;
+    let mut order = rows.to_vec();
+    order.sort_by(|&a, &b| target(a).cmp(&target(b)).then_with(|| key(a).cmp(key(b))).then(a.cmp(&b)));
+    let same = |a: &u32, b: &u32| target(*a) == target(*b) && key(*a).eq(key(*b));
+    let (mut repeated, mut contradicting): (Vec<Pair>, Vec<Pair>) = (Vec::new(), Vec::new());
+    let mut furthest_m: f64 = 0.0;
+    for group in order.chunk_by(same) {
+        for (k, &row) in group.iter().enumerate().skip(1) {
+            let near = &group[k.saturating_sub(NEAR)..k];
+            if let Some(&first) = near.iter().find(|&&first| seen(first) == seen(row)) {
+                repeated.push((first, row));
+            } else if let Some(apart_m) = contradiction_m(session, seen(group[0]), seen(row)) {
+                furthest_m = furthest_m.max(apart_m);
+                contradicting.push((group[0], row));
+            }
+        }
+    }
+    repeated.sort_unstable_by_key(|pair| pair.1);
+    contradicting.sort_unstable_by_key(|pair| pair.1);
+    (repetition(data, &repeated), contradiction(data, &contradicting, furthest_m * 1e3))
+}
+
+fn repetition(data: &Dataset, repeated: &[Pair]) -> Option<Diagnosis> {
+    let what = match repeated.len() {
+        0 => return None,
+        1 => "1 row repeats another".to_owned(),
+        count => format!("{count} rows repeat others"),
+    };
+    Some(Diagnosis {
+        kind: DiagnosisKind::DuplicateRows,
+        statement: format!(
+            "{what} to the last digit, readings and measurement ({}): leave out what was copied, since it counts twice",
+            pairs(data, repeated, "as")
+        ),
+        rows: repeated.iter().map(|pair| pair.1).collect(),
+        before_mm: 0.0,
+        after_mm: 0.0,
+    })
+}
+
+fn contradiction(data: &Dataset, contradicting: &[Pair], furthest_mm: f64) -> Option<Diagnosis> {
+    let what = match contradicting.len() {
+        0 => return None,
+        1 => "1 row has".to_owned(),
+        count => format!("each of {count} rows has"),
+    };
+    let mut rows: Vec<u32> = contradicting.iter().flat_map(|pair| [pair.0, pair.1]).collect();
+    rows.sort_unstable();
+    rows.dedup();
+    Some(Diagnosis {
+        kind: DiagnosisKind::DuplicateRows,
+        statement: format!(
+            "{what} the readings of another and contradicts it, by up to {} mm ({}): look which is right, and leave the \
+             other out",
+            short(furthest_mm),
+            pairs(data, contradicting, "against")
+        ),
+        rows,
+        before_mm: furthest_mm,
+        after_mm: 0.0,
+    })
+}
+
+/// How far two measurements of one configuration are apart, metres, if that is more than a robot's repeatability.
+fn contradiction_m(session: &Session<'_>, a: &Measurement, b: &Measurement) -> Option<f64> {
+    let (first, second) = (a.pose(), b.pose());
+    let apart_m = (first.translation - second.translation).norm();
+    let both = a.sees_orientation() && b.sees_orientation();
+    let turn = if both { rotation::log(&(first.rotation * second.rotation.transpose())).norm() } else { 0.0 };
+    (apart_m > CONTRADICTION_SHARE * session.reach_m() || turn > CONTRADICTION_RAD).then_some(apart_m)
+}
+
+/// The first few pairs of rows by name.
+fn pairs(data: &Dataset, pairs: &[(u32, u32)], word: &str) -> String {
+    let named = pairs.iter().take(NAMED);
+    let named: Vec<String> =
+        named.map(|&(first, row)| format!("{} {word} {}", place(data, row), place(data, first))).collect();
+    format!("{}{}", named.join(", "), if pairs.len() > NAMED { ", …" } else { "" })
+}
+
+/// A row as people find it: file and line, or its number from 1.
+pub(super) fn place(data: &Dataset, row: u32) -> String {
+    let source = data.observations.get(row as usize).map(|observation| observation.source);
+    match source.and_then(|source| Some((data.files.get(source.file as usize)?, source.line))) {
+        Some((file, line)) if line > 0 => format!("{}:{line}", file.display()),
+        _ => format!("row {}", row + 1),
+    }
+}

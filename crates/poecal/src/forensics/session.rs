@@ -1,0 +1,257 @@
+//! A session as the hypotheses see it: a sample of its rows, and how well the nominal robot and a short calibration explain them.
+
+use nalgebra::Vector3;
+
+use super::change::{like, push};
+use crate::estimate::delivered;
+use crate::estimate::{Chain, Estimate, Linkage, Packed, sample_rows};
+use crate::gauge;
+use crate::lie::{Pose, Screw, rotation};
+use crate::measurement::{Dataset, Noise, Observation, PoseResidual};
+use crate::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis};
+use crate::problem::Problem;
+use crate::robot::{Joint, JointKind, Robot};
+use crate::solve::{Options, minimize};
+use crate::start::{Registration, register, register_roughly, target_parameters};
+
+/// Rows that a hypothesis is judged on.
+const SAMPLE: usize = 90;
+/// Position noise that weights the rows, metres: only its ratio to the rotation noise counts.
+const NOISE_M: f64 = 1e-3;
+/// Error after a calibration, as a share of the reach, that is no reason to look further: real robots stay below it.
+const QUIET_SHARE: f64 = 5e-4;
+/// How many times the root mean square error a single row may have.
+const OUTSTANDING: f64 = 8.0;
+/// How far a calibration may tilt an axis before its joint's zero or sign is in doubt: 4 degrees.
+const QUIET_TILT_RAD: f64 = 0.07;
+/// How far it may shift an axis, as a share of the reach, before a zero or a unit is in doubt.
+const QUIET_SHIFT_SHARE: f64 = 0.01;
+/// Iterations of a calibration that is to end at its optimum.
+const LONG: usize = 60;
+/// Iterations of a calibration that compares suppositions.
+pub(super) const SHORT: usize = 12;
+
+/// How far a model is from the measurements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Misfit {
+    /// Root mean square distance, metres.
+    pub(super) position_m: f64,
+    /// Root mean square angle, radians; 0 where no orientation was measured.
+    pub(super) rotation_rad: f64,
+    /// Both together, an angle counted as its arc at the session's length.
+    pub(super) total_m: f64,
+}
+
+impl Misfit {
+    /// Both together with the distances times a factor.
+    pub(super) fn resized_m(&self, factor: f64) -> f64 {
+        let turned = (self.total_m.powi(2) - self.position_m.powi(2)).max(0.0);
+        (turned + (factor * self.position_m).powi(2)).sqrt()
+    }
+}
+
+/// Misfits with nominal screws, and with screws fitted briefly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Score {
+    pub(super) registered: Misfit,
+    pub(super) calibrated: Misfit,
+}
+
+/// A robot and what is known of the session.
+#[derive(Clone, Debug)]
+pub(super) struct Session<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) device_free: bool,
+    /// Metres that one radian counts.
+    pub(super) length_m: f64,
+    pub(super) start: Estimate,
+    noise: Noise,
+}
+
+impl<'a> Session<'a> {
+    pub(super) fn new(robot: &'a Robot, data: &Dataset, device_free: bool) -> Self {
+        // Not from the strokes found in the data, whose unit may be wrong.
+        let length_m = robot.reach_m() / 3.0;
+        let noise = Noise { position_m: NOISE_M, rotation_rad: NOISE_M / length_m };
+        Session { robot, device_free, length_m, start: delivered(robot, data), noise }
+    }
+
+    /// How far the robot reaches, metres.
+    pub(super) fn reach_m(&self) -> f64 {
+        3.0 * self.length_m
+    }
+
+    pub(super) fn packed(&self, data: &Dataset) -> Packed {
+        Packed::new(self.robot, data.all_readings(), data.reading_names().len())
+    }
+
+    /// Registers the nominal robot.
+    pub(super) fn registered(&self, data: &Dataset) -> (Estimate, Misfit) {
+        self.register(data, |registration| register(registration, &self.start).0)
+    }
+
+    /// Registers the nominal robot quickly, and not always at its optimum.
+    pub(super) fn roughly_registered(&self, data: &Dataset) -> (Estimate, Misfit) {
+        self.register(data, |registration| register_roughly(registration, &self.start))
+    }
+
+    fn register(&self, data: &Dataset, by: impl Fn(&Registration<'_>) -> Estimate) -> (Estimate, Misfit) {
+        let packed = self.packed(data);
+        let rows = all_rows(data);
+        let registration = Registration {
+            data,
+            packed: &packed,
+            rows: &rows,
+            noise: self.noise,
+            length_m: self.length_m,
+            device_free: self.device_free,
+            targets_free: true,
+        };
+        let estimate = by(&registration);
+        let misfit = self.misfit(data, &packed, &estimate);
+        (estimate, misfit)
+    }
+
+    /// Fits the screws from a registration, a few iterations.
+    pub(super) fn calibrated(
+        &self,
+        data: &Dataset,
+        registered: &Estimate,
+        iterations: usize,
+    ) -> (Estimate, Misfit) {
+        let kinds = registered.kinds.iter().enumerate();
+        // The device's frame stays: beside the screws it is redundant.
+        let screws = kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind })).collect();
+        self.fit(data, registered, screws, iterations)
+    }
+
+    /// Fits one joint's offset from a registration; the device moves along.
+    pub(super) fn offset(&self, data: &Dataset, registered: &Estimate, joint: usize) -> (f64, Misfit) {
+        let mut free: Vec<Parameter> = Vec::new();
+        free.extend(
+            registered.kinds.get(joint).map(|&kind| Parameter::JointOffset(JointOffset { joint, kind })),
+        );
+        if self.device_free {
+            let about = data.mean_position(&all_rows(data));
+            free.push(Parameter::DeviceFrame(DeviceFrame { about }));
+        }
+        let (estimate, misfit) = self.fit(data, registered, free, 30);
+        (estimate.joint_offset.get(joint).copied().unwrap_or(0.0), misfit)
+    }
+
+    fn fit(
+        &self,
+        data: &Dataset,
+        registered: &Estimate,
+        mut free: Vec<Parameter>,
+        iterations: usize,
+    ) -> (Estimate, Misfit) {
+        let packed = self.packed(data);
+        let rows = all_rows(data);
+        free.extend(target_parameters(data, &rows));
+        let mut start = registered.clone();
+        start.recentre(data, &packed, &rows);
+        let problem = Problem::new(data, &packed, rows, free, self.noise, self.length_m);
+        // Without following curvature: suppositions that explain nothing would take most of the time.
+        let options = Options { iterations, acceleration: false, ..Options::default() };
+        let (estimate, _, _) = minimize(&problem, start, &options);
+        let misfit = self.misfit(data, &packed, &estimate);
+        (estimate, misfit)
+    }
+
+    /// How well the data as they are are explained.
+    pub(super) fn judged(&self, data: &Dataset) -> (Estimate, Score) {
+        let (start, registered) = self.registered(data);
+        let (estimate, calibrated) = self.calibrated(data, &start, LONG);
+        (estimate, Score { registered, calibrated })
+    }
+
+    /// Whether nothing looks wrong: a calibration explains the data, and leaves each axis near where it was.
+    pub(super) fn is_sound(&self, data: &Dataset, calibrated: &Estimate) -> bool {
+        let errors = row_errors(data, &self.packed(data), calibrated);
+        let total = |(shift, turn): &(Vector3<f64>, Option<Vector3<f64>>)| {
+            shift.norm_squared() + turn.map_or(0.0, |turn| turn.norm_squared() * self.length_m.powi(2))
+        };
+        let mean = errors.iter().map(total).sum::<f64>() / errors.len().max(1) as f64;
+        let most = errors.iter().map(total).fold(0.0, f64::max);
+        let quiet = QUIET_SHARE * self.reach_m();
+        if mean.sqrt() > quiet || most.sqrt() > quiet.max(OUTSTANDING * mean.sqrt()) {
+            return false;
+        }
+        let motion = if self.device_free {
+            gauge::base_motion(calibrated, self.robot, &self.start.base_from_target, self.length_m)
+        } else {
+            Pose::identity()
+        };
+        let moved = calibrated.rebased(&motion).screws();
+        let is_near = |(screw, joint): (&Screw, &Joint)| {
+            let tilt = screw.direction().angle(&joint.screw.direction());
+            let place = joint.frame.translation;
+            // A slide has no place.
+            let shift = match joint.kind {
+                JointKind::Revolute => (screw.nearest_point(&place) - place).norm(),
+                JointKind::Prismatic => 0.0,
+            };
+            tilt < QUIET_TILT_RAD && shift < QUIET_SHIFT_SHARE * self.reach_m()
+        };
+        moved.iter().zip(&self.robot.joints).all(is_near)
+    }
+
+    pub(super) fn misfit(&self, data: &Dataset, packed: &Packed, estimate: &Estimate) -> Misfit {
+        let (mut position, mut rotation, mut turned) = (0.0, 0.0, 0usize);
+        let errors = row_errors(data, packed, estimate);
+        for (shift, turn) in &errors {
+            position += shift.norm_squared();
+            if let Some(turn) = turn {
+                rotation += turn.norm_squared();
+                turned += 1;
+            }
+        }
+        let count = errors.len().max(1) as f64;
+        Misfit {
+            position_m: (position / count).sqrt(),
+            rotation_rad: (rotation / turned.max(1) as f64).sqrt(),
+            total_m: ((position + rotation * self.length_m.powi(2)) / count).sqrt(),
+        }
+    }
+}
+
+/// Measured less predicted, a row: position, and rotation vector where orientation was measured.
+pub(super) fn row_errors(
+    data: &Dataset,
+    packed: &Packed,
+    estimate: &Estimate,
+) -> Vec<(Vector3<f64>, Option<Vector3<f64>>)> {
+    let linkage = Linkage::new(estimate);
+    let mut chain = Chain::default();
+    let rows = data.observations.iter().enumerate();
+    rows.map(|(row, observation)| {
+        let model = observation.measurement.residual_model();
+        chain.evaluate(&linkage, packed, row, observation.target);
+        let turn = model.orientation().map(|seen| rotation::log(&(seen * chain.target.rotation.transpose())));
+        (model.position() - chain.target.translation, turn)
+    })
+    .collect()
+}
+
+fn all_rows(data: &Dataset) -> Vec<u32> {
+    (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect()
+}
+
+/// Some rows of a data set, every row counting the same and every pose by its error at the target.
+pub(super) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
+    let mut taken = like(data);
+    for &row in rows {
+        let observation = data.observations[row as usize];
+        let measurement = observation.measurement.with_residual(PoseResidual::Tool);
+        let plain =
+            Observation { measurement, sigma_position_m: None, sigma_rotation_rad: None, ..observation };
+        push(&mut taken, data.readings(row as usize), plain);
+    }
+    taken
+}
+
+/// At most so many rows as hypotheses are judged on.
+pub(super) fn sampled(data: &Dataset) -> Dataset {
+    taken(data, &sample_rows(&all_rows(data), SAMPLE))
+}

@@ -1,0 +1,190 @@
+//! Names of two targets exchanged: in all rows, from a row on, or in single rows.
+
+use nalgebra::Vector3;
+
+use super::judge::{CALIBRATED_SHARE, short};
+use super::repeats::place;
+use super::session::{SHORT, Score, Session, row_errors, sampled, taken};
+use super::{Diagnosis, DiagnosisKind};
+use crate::estimate::Estimate;
+use crate::measurement::Dataset;
+
+/// How many times nearer to their places in the model two targets must be when exchanged.
+const NEARER: f64 = 3.0;
+/// Rounds in which rows are given to the target that they fit better, and the model is fitted anew.
+const ROUNDS: usize = 6;
+/// By how much the exchange must lower the error of the rows concerned, and of all rows.
+const ROW_GAIN: f64 = 5.0;
+const GAIN: f64 = 1.5;
+/// Rows that a statement names.
+const NAMED: usize = 5;
+
+/// Two targets that the model knows, and that lie where it has the other: their names are exchanged in all rows.
+pub(super) fn names(session: &Session<'_>, data: &Dataset, found: &Estimate) -> Option<Diagnosis> {
+    let known = |target: usize| {
+        let name = data.targets.get(target)?.as_ref()?;
+        session.robot.targets.iter().any(|(other, _)| other == name).then_some(name)
+    };
+    let nominal = |target: usize| session.start.base_from_target.get(target).map(|pose| pose.translation);
+    let place = |target: usize| found.base_from_target.get(target).map(|pose| pose.translation);
+    for b in 0..data.targets.len() {
+        for a in 0..b {
+            let (Some(first), Some(second)) = (known(a), known(b)) else { continue };
+            let (Some(from_a), Some(from_b)) = (nominal(a), nominal(b)) else { continue };
+            let (Some(at_a), Some(at_b)) = (place(a), place(b)) else { continue };
+            let before = (at_a - from_a).norm().hypot((at_b - from_b).norm());
+            let after = (at_a - from_b).norm().hypot((at_b - from_a).norm());
+            if before > NEARER * after && before > 0.5 * (from_a - from_b).norm() {
+                let (before_mm, after_mm) = (before * 1e3, after * 1e3);
+                let statement = format!(
+                    "exchanging the names of {first} and {second} brings them from {} to {} mm from their places in the \
+                     model: check which is which",
+                    short(before_mm),
+                    short(after_mm)
+                );
+                let kind = DiagnosisKind::TargetsSwapped;
+                return Some(Diagnosis { kind, statement, rows: Vec::new(), before_mm, after_mm });
+            }
+        }
+    }
+    None
+}
+
+/// Two targets whose names are exchanged in some rows. `rows` are those of `all` in the data.
+pub(super) fn rows(
+    session: &Session<'_>,
+    data: &Dataset,
+    all: &Dataset,
+    rows: &[u32],
+    base: &Score,
+) -> Option<Diagnosis> {
+    let count = data.targets.len();
+    let pairs = (0..count).flat_map(|b| (0..b).map(move |a| (a, b)));
+    let found = pairs.filter_map(|pair| exchanged(session, all, pair, base));
+    let (_, pair, concerned, before, after) = found.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let name =
+        |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
+    let concerned: Vec<u32> = concerned.into_iter().filter_map(|row| rows.get(row).copied()).collect();
+    let where_ = where_words(data, rows, pair, &concerned);
+    Some(Diagnosis {
+        kind: DiagnosisKind::TargetsSwapped,
+        statement: format!(
+            "exchanging the names of {} and {} {where_} lowers the calibrated error of {} from {} to {} mm (RMS): check the \
+             targets' names there",
+            name(pair.0),
+            name(pair.1),
+            if concerned.len() == 1 { "that row" } else { "those rows" },
+            short(before * 1e3),
+            short(after * 1e3)
+        ),
+        rows: concerned,
+        before_mm: before * 1e3,
+        after_mm: after * 1e3,
+    })
+}
+
+/// Where some of the rows of a pair of targets stand: from a row on, up to a row, or here and there.
+fn where_words(data: &Dataset, rows: &[u32], pair: (usize, usize), concerned: &[u32]) -> String {
+    let own = |row: &u32| [pair.0, pair.1].contains(&data.observations[*row as usize].target);
+    let own: Vec<u32> = rows.iter().copied().filter(own).collect();
+    match concerned {
+        [first, .., _] if own.ends_with(concerned) => format!("from {} on", place(data, *first)),
+        [_, .., last] if own.starts_with(concerned) => format!("up to {}", place(data, *last)),
+        _ => {
+            let named: Vec<String> = concerned.iter().take(NAMED).map(|&row| place(data, row)).collect();
+            format!("in {}{}", named.join(", "), if concerned.len() > NAMED { ", …" } else { "" })
+        }
+    }
+}
+
+/// Error after the exchange, the pair, its rows, and their errors before and after.
+type Exchange = (f64, (usize, usize), Vec<usize>, f64, f64);
+
+/// The rows of a pair that fit better exchanged, found from models of all rows, of the first half and of the second.
+fn exchanged(session: &Session<'_>, all: &Dataset, pair: (usize, usize), base: &Score) -> Option<Exchange> {
+    let half = all.len() / 2;
+    let starts = [0..all.len(), 0..half, half..all.len()];
+    let best = starts
+        .into_iter()
+        .filter_map(|range| {
+            let part: Vec<u32> = range.map(|row| row as u32).collect();
+            settled(session, all, &taken(all, &part), pair, base.calibrated.total_m)
+        })
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (error, concerned, before, after, rest) = best;
+    let plausible = !concerned.is_empty()
+        && before > ROW_GAIN * after
+        && after < ROW_GAIN * rest
+        && base.calibrated.total_m > GAIN * error
+        && error < CALIBRATED_SHARE * session.reach_m();
+    plausible.then_some((error, pair, concerned, before, after))
+}
+
+/// Error of all rows, the rows that are exchanged, their error before and after, and the error of the others.
+type Settled = (f64, Vec<usize>, f64, f64, f64);
+
+/// Gives rows to the target that they fit better and fits anew, until nothing changes.
+fn settled(
+    session: &Session<'_>,
+    all: &Dataset,
+    first: &Dataset,
+    pair: (usize, usize),
+    base_m: f64,
+) -> Option<Settled> {
+    let exchanged = with_exchanged(all, pair, |_| true);
+    let mut estimate = session.roughly_registered(&sampled(first)).0;
+    let mut swapped = vec![false; all.len()];
+    let packed = session.packed(all);
+    let errors = |data: &Dataset, estimate: &Estimate| -> Vec<f64> {
+        let weigh = |(shift, turn): &(Vector3<f64>, Option<Vector3<f64>>)| {
+            shift.norm_squared() + turn.map_or(0.0, |turn| turn.norm_squared() * session.length_m.powi(2))
+        };
+        row_errors(data, &packed, estimate).iter().map(weigh).collect()
+    };
+    let mut least = base_m;
+    for _ in 0..ROUNDS {
+        let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
+        let next: Vec<bool> = kept.iter().zip(&other).map(|(kept, other)| other < kept).collect();
+        let data = sampled(&with_exchanged(all, pair, |row| next[row]));
+        let registered = session.roughly_registered(&data).0;
+        let (calibrated, misfit) = session.calibrated(&data, &registered, SHORT);
+        estimate = calibrated;
+        let unchanged = next == swapped;
+        swapped = next;
+        if unchanged || misfit.total_m > least {
+            break;
+        }
+        least = misfit.total_m;
+    }
+    let members = all.observations.iter().filter(|row| row.target == pair.0 || row.target == pair.1).count();
+    let chosen = swapped.iter().filter(|swapped| **swapped).count();
+    // Which of the two names is right cannot be seen: the fewer rows are those that were exchanged.
+    if 2 * chosen > members {
+        let turned = all.observations.iter().map(|row| row.target == pair.0 || row.target == pair.1);
+        swapped.iter_mut().zip(turned).for_each(|(swapped, member)| *swapped = member && !*swapped);
+        estimate.base_from_target.swap(pair.0, pair.1);
+    }
+    let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
+    let concerned: Vec<usize> = (0..all.len()).filter(|&row| swapped[row]).collect();
+    let rms = |values: Vec<f64>| (values.iter().sum::<f64>() / values.len().max(1) as f64).sqrt();
+    let before = rms(concerned.iter().map(|&row| kept[row]).collect());
+    let after = rms(concerned.iter().map(|&row| other[row]).collect());
+    let rest = rms((0..all.len()).filter(|&row| !swapped[row]).map(|row| kept[row]).collect());
+    let error = rms((0..all.len()).map(|row| if swapped[row] { other[row] } else { kept[row] }).collect());
+    error.is_finite().then_some((error, concerned, before, after, rest))
+}
+
+/// The data with the targets of a pair exchanged in some rows.
+fn with_exchanged(all: &Dataset, pair: (usize, usize), which: impl Fn(usize) -> bool) -> Dataset {
+    let mut data = all.clone();
+    for (row, observation) in data.observations.iter_mut().enumerate() {
+        if which(row) {
+            observation.target = match observation.target {
+                target if target == pair.0 => pair.1,
+                target if target == pair.1 => pair.0,
+                target => target,
+            };
+        }
+    }
+    data
+}
