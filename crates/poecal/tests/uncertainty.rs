@@ -26,7 +26,7 @@ struct Tally {
     /// Distances within their bound, of how many.
     bounded: usize,
     predictions: usize,
-    /// `eᵀ P⁻¹ e` of one position.
+    /// Mean `eᵀ P⁻¹ e` of the positions.
     nees: f64,
     /// Whether errors beyond noise were claimed.
     claimed: bool,
@@ -65,9 +65,8 @@ fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
         }
         tally.bounded += usize::from(shift.norm() < expected.bound_position_m());
         tally.predictions += 1;
-        if row == 0 {
-            tally.nees = shift.dot(&expected.position.cholesky().unwrap().solve(&shift));
-        }
+        tally.nees +=
+            1.0 / PREDICTIONS as f64 * shift.dot(&expected.position.cholesky().unwrap().solve(&shift));
     }
     tally
 }
@@ -105,9 +104,8 @@ fn stated_intervals_hold() {
         "{fits} fits: {components:.4}, {distances:.4}, NEES {nees:.3}, {claims} with errors beyond noise"
     );
     assert!((0.93..0.97).contains(&components) && (0.93..0.97).contains(&distances));
-    // Mean of that many χ² of 3 degrees: standard deviation √(6 / fits), three of them; the variance being estimated adds some 2 %.
-    let chance = 3.0 * (6.0 / fits as f64).sqrt();
-    assert!((nees - 3.0).abs() < chance + 0.06);
+    // The 95 % band of the mean of that many χ² of 3 degrees of freedom.
+    assert!((nees - 3.0).abs() < 1.96 * (6.0 / fits as f64).sqrt());
     assert!(claims < fits as usize / 25);
 }
 

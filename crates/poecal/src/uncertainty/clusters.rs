@@ -10,7 +10,7 @@ pub(super) const SIGNIFICANT: f64 = 3.0;
 const CLUSTERS: usize = 16;
 
 /// `Σ gᵀ N⁻¹ g` over clusters, g being the gradient of a cluster's rows, against what white noise makes of it: the cluster-robust
-/// covariance over the ordinary one, on average over all directions (liang1986). `None` if it is no more than chance.
+/// covariance over the ordinary one, on average over all directions (liang1986, theory.md §9 (41)). `None` if it is no more than chance.
 pub(super) fn inflation(view: &View<'_>) -> Option<f64> {
     let whole = view.problem(view.rows.to_vec()).normal(view.estimate);
     let n = whole.dim();

@@ -44,7 +44,7 @@ pub struct LeftOut {
     pub position_rms_m: f64,
     /// Root mean square error of rotation, radians, where measured.
     pub rotation_rms_rad: Option<f64>,
-    /// How much the squared error of position grew by leaving them out, over what the covariance of the unknowns makes of it.
+    /// How much the squared error of position grew by leaving them out, over what the covariance of the unknowns makes of it (theory.md §9 (43)).
     pub growth: f64,
 }
 
@@ -195,7 +195,7 @@ impl<'a> Left<'a> {
         })
     }
 
-    /// Leaves rows out: `N - N_fold` and `-g_fold` are information and gradient of the others at the optimum of all (theory.md §9).
+    /// Leaves rows out: `N - N_fold` and `-g_fold` are information and gradient of the others at the optimum of all (theory.md §9 (42)).
     fn sums(&self, rows: &[u32]) -> Option<Sums> {
         let problem = self.view.problem(rows.to_vec());
         let part = problem.normal(&self.estimate);

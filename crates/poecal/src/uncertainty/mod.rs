@@ -1,4 +1,4 @@
-//! How far a calibrated robot can be trusted, configuration by configuration (docs/theory.md §8a).
+//! How far a calibrated robot can be trusted, configuration by configuration (theory.md §9 (39) to (43)).
 
 mod clusters;
 mod discrepancy;

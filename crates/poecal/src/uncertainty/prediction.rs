@@ -7,7 +7,7 @@ use crate::estimate::{Chain, Estimate, Linkage};
 use crate::lie::TargetTwist;
 use crate::problem::Layout;
 
-/// Covariances of a predicted target's place (square metres) and turn (square radians), device axes.
+/// Covariances of a predicted target's place (square metres) and turn (square radians), device axes (theory.md §9 (40)).
 ///
 /// ```
 /// use nalgebra::Matrix3;
