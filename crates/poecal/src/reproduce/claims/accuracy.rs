@@ -24,9 +24,18 @@ pub(super) fn normalisation(evidence: &Evidence<'_>) -> Result<Claim> {
         let adjoint = evidence.efficiency(Formulation::Adjoint, seen, PoseResidual::Tool)?;
         at_truth &= evidence.run(Formulation::Screw, seen, false)?.run.converged;
         worse &= screw.exceeds(adjoint);
-        told.push(format!("{} from {}, where the adjoint form has {}", ratio(screw), seen.word(), ratio(adjoint)));
+        told.push(format!(
+            "{} from {}, where the adjoint form has {}",
+            ratio(screw),
+            seen.word(),
+            ratio(adjoint)
+        ));
     }
-    let without = if at_truth { "Without noise it ends at the truth." } else { "Even without noise it misses the truth." };
+    let without = if at_truth {
+        "Without noise it ends at the truth."
+    } else {
+        "Even without noise it misses the truth."
+    };
     let with = if worse {
         "With noise it comes to rest beside the least-squares optimum"
     } else {

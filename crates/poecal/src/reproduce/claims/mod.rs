@@ -122,7 +122,8 @@ mod tests {
         let runs = super::super::runs::runs(3).unwrap();
         let without_fits = Reproduction { efficiency: vec![], ..found.clone() };
         let without_starts = Reproduction { basin: vec![], ..found.clone() };
-        for (runs, found) in [(&runs[..0], &found), (&runs[..], &without_fits), (&runs[..], &without_starts)] {
+        for (runs, found) in [(&runs[..0], &found), (&runs[..], &without_fits), (&runs[..], &without_starts)]
+        {
             let error = claims(&Evidence { runs, found, seed: 3 }).unwrap_err();
             println!("{error}");
             assert_eq!(error.kind(), ErrorKind::Problem);

@@ -29,10 +29,16 @@ pub(super) fn original_without_offsets(evidence: &Evidence<'_>) -> Result<Claim>
         "The original formulation works where there are no joint offsets.",
         "Section III.A: \"it works well with joint offset-free assumption\".",
         (
-            format!("From poses and from points it converges, and every coordinate of the screws is within {RECOVERED:.0e} (m; 1 for ω)."),
+            format!(
+                "From poses and from points it converges, and every coordinate of the screws is within {RECOVERED:.0e} (m; 1 for ω)."
+            ),
             works(poses) && works(points),
         ),
-        format!("Noise-free, screws as free numbers: from poses {}; from points {}.", words(poses), words(points)),
+        format!(
+            "Noise-free, screws as free numbers: from poses {}; from points {}.",
+            words(poses),
+            words(points)
+        ),
     ))
 }
 
@@ -73,7 +79,9 @@ pub(super) fn original_prediction_with_offsets(evidence: &Evidence<'_>) -> Resul
         "With joint offsets, the original calibration fails.",
         "Abstract: it \"always fails with the existence of joint offset errors\".",
         (
-            format!("It does not converge, or its held-out error stays above {RECOVERED:.0e} m without noise."),
+            format!(
+                "It does not converge, or its held-out error stays above {RECOVERED:.0e} m without noise."
+            ),
             !predicts,
         ),
         measured,
@@ -141,7 +149,9 @@ pub(super) fn can_be_left_out(evidence: &Evidence<'_>) -> Result<Claim> {
         "Section III.A: \"there is no need to consider joint offset errors at all!\"; Section VI: \"they can be ignored without any \
          danger\".",
         (
-            format!("A robot with offsets, calibrated without any, is predicted within {RECOVERED:.0e} m from poses and from points."),
+            format!(
+                "A robot with offsets, calibrated without any, is predicted within {RECOVERED:.0e} m from poses and from points."
+            ),
             poses.held_out_rms_m < RECOVERED && points.held_out_rms_m < RECOVERED,
         ),
         format!(

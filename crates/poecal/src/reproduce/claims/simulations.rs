@@ -23,7 +23,9 @@ pub(super) fn constraints(evidence: &Evidence<'_>) -> Result<Claim> {
         "The adjoint error eliminates the screw constraints.",
         "Section III.B: \"still satisfies joint screw constraints of the same type\".",
         (
-            format!("In no adjoint run do v·ω (m) and the length of ω miss by {ROUNDING:.0e} when nothing ever normalises the screws."),
+            format!(
+                "In no adjoint run do v·ω (m) and the length of ω miss by {ROUNDING:.0e} when nothing ever normalises the screws."
+            ),
             pitch(false) < ROUNDING && length(false) < ROUNDING,
         ),
         format!(
