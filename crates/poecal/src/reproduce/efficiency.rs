@@ -16,7 +16,7 @@ use crate::solve::{LeastSquares, Method, Options, minimize};
 use nalgebra::Vector3;
 
 /// Configurations of a session.
-const ROWS: usize = 60;
+const ROWS: usize = 40;
 /// Iterations after which a fit has failed.
 const LIMIT: usize = 60;
 

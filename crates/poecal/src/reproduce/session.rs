@@ -14,7 +14,7 @@ use crate::simulate::{random, random_configuration};
 use nalgebra::Vector3;
 
 /// Configurations that a fit never saw.
-const UNSEEN: usize = 100;
+const UNSEEN: usize = 60;
 
 /// Random configurations of a robot within its limits, and the robot that is really there.
 pub(super) struct Session {
