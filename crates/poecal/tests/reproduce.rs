@@ -184,7 +184,9 @@ fn lengths_and_directions_are_told_apart() {
             rows.flat_map(|row| part.clone().map(|k| (of(row)[k] - row.prescribed[k]).abs()))
                 .fold(0.0, f64::max)
         };
-        assert_eq!((run.screw_error_max_v_m, run.screw_error_max_omega), (largest(0..3), largest(3..6)));
+        // The run takes the true screws from their frames, the table as they are: rounding of a number of up to 1 m.
+        assert!((run.screw_error_max_v_m - largest(0..3)).abs() < 1e-15);
+        assert!((run.screw_error_max_omega - largest(3..6)).abs() < 1e-15);
     }
     // With offsets in the truth, the adjoint form ends at the equivalent robot, which equations (14) and (15) give without any fit.
     let prescribed = poecal::reproduce::tables::prescribed();

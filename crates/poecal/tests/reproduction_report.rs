@@ -279,7 +279,10 @@ fn words_follow_the_numbers() {
     };
     // Made-up iterations grow by one from formulation to formulation, and shares of starts fall.
     let before = verdicts(&found);
-    assert!(before.contains("(`screw`) are as good") && before.contains("these starts tell no difference"), "{before}");
+    assert!(
+        before.contains("(`screw`) are as good") && before.contains("these starts tell no difference"),
+        "{before}"
+    );
     assert!(before.contains("From poses, there are too few trials to tell"), "{before}");
     for row in &mut found.efficiency {
         row.ratio_sigma = 1e-4;
