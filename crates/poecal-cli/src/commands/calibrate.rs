@@ -22,7 +22,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
     let options = options(arguments);
     let poses = data.observations.iter().any(|row| matches!(row.measurement, Measurement::Pose(_)));
     if options.pose_residual != PoseResidual::default() && !poses {
-        console.warning(&format!(
+        console.warning(format!(
             "--residual {} has no effect: it is about measured frames, and there are points only",
             options.pose_residual.word()
         ));

@@ -20,7 +20,7 @@ pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<ExitCode
         for (joint, _) in model.robot.joints.iter().zip(&offsets).filter(|(_, offset)| **offset != 0.0) {
             let followers = model.robot.followers(&joint.name);
             if !followers.is_empty() {
-                console.warning(&format!(
+                console.warning(format!(
                     "--offset: joint `{}` alone is moved, not {}, which follows its reading; if its encoder is off, so are these, by \
                      their multiplier: state their offsets too",
                     joint.name,

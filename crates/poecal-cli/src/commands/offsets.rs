@@ -29,7 +29,7 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<ExitCode
     for joint in &nominal.robot.joints {
         let followers = nominal.robot.followers(&joint.name);
         if !followers.is_empty() {
-            console.warning(&format!(
+            console.warning(format!(
                 "joint `{}` is read for {} too: each offset is that of the joint's own value, and an error of this encoder is in all of \
                  them",
                 joint.name,

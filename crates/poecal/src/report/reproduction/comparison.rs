@@ -77,14 +77,14 @@ fn with_noise(found: &Reproduction) -> Option<String> {
     let reason = " The six free numbers of an axis contain its length, which acts as a gear factor, and its pitch; the data pay for \
                   estimating both, and the normalisation throws them away.";
     Some(format!(
-        "With noise, by the held-out error: {} The number after ± is one standard deviation of chance; a difference counts from three on.{}",
+        "With noise, the held-out errors are compared. {} The number after ± is one standard deviation of chance; a difference counts from three on.{}",
         told.join(" "),
         if worse == told.len() { reason } else { "" }
     ))
 }
 
 fn with_chance(it: &Efficiency) -> String {
-    format!("{} ± {}", number(it.ratio), number(it.ratio_sigma))
+    format!("{:.3} ± {:.3}", it.ratio, it.ratio_sigma)
 }
 
 fn with_offsets(found: &Reproduction) -> Option<String> {
