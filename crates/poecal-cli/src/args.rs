@@ -208,7 +208,7 @@ pub(crate) struct Calibrate {
     /// How errors of the joints are written; all but the default are for comparison
     #[arg(long, value_enum, default_value = "adjoint", help_heading = "Comparison")]
     pub(crate) formulation: FormulationWord,
-    /// How errors of measured frames are written; the paper's is for comparison
+    /// How errors of measured frames are written; the paper's is for comparison. Points have one residual only
     #[arg(long, value_enum, default_value = "tool", help_heading = "Comparison")]
     pub(crate) residual: ResidualWord,
     /// By which steps to minimise; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else
@@ -416,7 +416,8 @@ pub(crate) struct Convert {
     /// The form to write [default: as the extension of --out says]
     #[arg(long, value_enum)]
     pub(crate) to: Option<Form>,
-    /// Write the screws and home pose of the robot whose joint is off by so much, like joint2=0.5deg or slide=1.2mm (repeatable)
+    /// Write the screws and home pose of the robot with this added to the joint's value, like joint2=0.5deg or slide=1.2mm
+    /// (repeatable). Mimic joints that follow it stay: an error of its encoder would move them too
     #[arg(long, value_name = "JOINT=ANGLE|LENGTH")]
     pub(crate) offset: Vec<String>,
     /// File to write, over an old one [default: standard output]
@@ -482,7 +483,7 @@ pub(crate) struct Reproduce {
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) trials: u32,
     /// Random starts for each formulation and size of error
-    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) starts: u32,
     /// Seed of everything random
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]

@@ -99,16 +99,17 @@ fn every_axis_has_a_unit_or_the_word_for_none() {
     const WORDS: [&str; 7] = [", mm", ", deg", ", m (v)", "no unit", "iteration", "ratio", "share"];
     for (name, svg) in plots(&findings()) {
         let document = roxmltree::Document::parse(&svg).unwrap();
-        let texts: Vec<&str> = document
+        let titles: Vec<&str> = document
             .descendants()
-            .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "text")))
+            .filter(|node| node.attribute("class").is_some_and(|class| class.contains("axis-title")))
             .filter_map(|node| node.text())
             .collect();
-        let titles = texts
-            .iter()
-            .filter(|text| WORDS.iter().any(|word| text.contains(word)) || text.starts_with("number of"));
         let axes = if svg.contains("<polyline") { 2 } else { 1 };
-        assert!(titles.count() >= axes, "{name}: {texts:?}");
+        assert_eq!(titles.len(), axes, "{name}: {titles:?}");
+        for title in titles {
+            let told = title.starts_with("number of") || WORDS.iter().any(|word| title.contains(word));
+            assert!(told, "{name}: {title}");
+        }
     }
 }
 
@@ -117,28 +118,33 @@ fn claims_stand_in_both_forms() {
     let found = findings();
     let html = text(&found, "report.html");
     let markdown = text(&found, "report.md");
-    let page = roxmltree::Document::parse(html.trim_start_matches("<!DOCTYPE html>")).ok();
-    assert!(
-        page.is_none(),
-        "HTML's void elements are not XML: this test would read the page as such otherwise"
-    );
+    let escaped_html = |text: &str| {
+        text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    };
+    let escaped_markdown = |text: &str| text.replace('|', r"\|").replace('<', r"\<").replace('*', r"\*");
     for claim in &found.claims {
-        for words in [&claim.claim, &claim.paper, &claim.measured] {
-            for number in words
-                .split(|c: char| !(c.is_ascii_digit() || "e.-".contains(c)))
-                .filter(|w| w.chars().any(|c| c.is_ascii_digit()))
-            {
-                assert!(html.contains(number) && markdown.contains(number), "{number}");
-            }
+        for words in [&claim.claim, &claim.paper, &claim.measured, &claim.criterion] {
+            assert!(html.contains(&format!(">{}</td>", escaped_html(words))), "{words}");
+            assert!(markdown.contains(&format!("| {} |", escaped_markdown(words))), "{words}");
         }
+    }
+    // What the paper leaves out stands in a table of its own.
+    for text in [&html, &markdown] {
+        let at = |words: &str| text.find(words).unwrap();
+        let (said, left_out) =
+            (at("Table 1. What the paper says."), at("Table 2. What the paper leaves out."));
+        assert!(said < at("Offsets add no rank") && at("Offsets add no rank") < left_out);
+        assert!(left_out < at("The components of η are redundant."));
     }
     assert!(html.contains("Text | with &lt;markup&gt; &amp; &quot;quotes&quot; stays *text*."));
     assert!(markdown.contains(r"Text \| with \<markup> &"));
+    // On a narrow screen each cell of such a table is labelled.
+    assert!(html.contains("<td data-label=\"holds\">yes</td>"));
     assert!(
         html.contains("made &amp; up")
             && markdown.contains("    poecal reproduce lou2009 --out \"made & up\"")
     );
-    for words in ["4 of 5 statements hold", "from 20 poses"] {
+    for words in ["4 of 5 statements hold", "4 iterations to 2.0e-13 mm from 20 poses"] {
         assert!(html.contains(words) && markdown.contains(words), "{words}");
     }
     assert!(html.contains("<code>adjoint</code> 4; <code>screw</code> 5;"));
@@ -157,7 +163,7 @@ fn tables_have_equal_rows() {
             assert!(bars == 0 || before == 0 || bars == before, "{line}");
             before = bars;
         }
-        assert_eq!(tables, 8);
+        assert_eq!(tables, 9);
     }
 }
 
@@ -192,8 +198,11 @@ fn markdown_shows_every_plot_that_is_written() {
 fn results_hold_the_findings_and_nulls_where_there_is_no_number() {
     let mut found = findings();
     found.runs[0].held_out_rms_m = f64::NAN;
+    (found.efficiency[0].converged, found.efficiency[0].ratio) = (0, f64::NAN);
     let results: serde_json::Value = serde_json::from_str(&text(&found, "results.json")).unwrap();
     assert!(results["runs"][0]["held_out_rms_m"].is_null());
+    assert!(results["efficiency"][0]["ratio"].is_null());
+    assert!(text(&found, "report.md").contains("| not a number |"));
     assert_eq!(results["runs"][1]["formulation"], "adjoint");
     assert_eq!(results["claims"][2]["holds"], false);
 }
@@ -242,4 +251,46 @@ fn every_key_of_the_results_is_documented() {
     for key in found {
         assert!(section.contains(&format!("`{key}`")), "{key}");
     }
+}
+
+#[test]
+fn the_console_shows_both_tables_with_the_places() {
+    let found = findings();
+    let text = poecal::report::claims(&found);
+    println!("{text}");
+    let (said, left_out) = text.split_once("What the paper leaves out\n").unwrap();
+    let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for claim in &found.claims {
+        let part = flat(if claim.said_by_paper { said } else { left_out });
+        for words in [&claim.claim, &claim.paper, &claim.measured, &claim.criterion] {
+            assert!(part.contains(&flat(words)), "{words}");
+        }
+    }
+    assert!(said.contains("4 of 5 hold as they are made") && !left_out.contains("hold as they are made"));
+    assert!(text.lines().all(|line| line.chars().count() <= 80));
+}
+
+#[test]
+fn words_follow_the_numbers() {
+    let mut found = findings();
+    let verdicts = |found: &Reproduction| {
+        let markdown = text(found, "report.md");
+        markdown.split_once("## Where the original is as good").unwrap().1.to_owned()
+    };
+    // Made-up iterations grow by one from formulation to formulation, and shares of starts fall.
+    let before = verdicts(&found);
+    assert!(
+        before.contains("(`screw`) are as good") && before.contains("these starts tell no difference"),
+        "{before}"
+    );
+    assert!(before.contains("From poses, there are too few trials to tell"), "{before}");
+    for row in &mut found.efficiency {
+        row.ratio_sigma = 1e-4;
+    }
+    for run in &mut found.runs {
+        run.converged = false;
+    }
+    let after = verdicts(&found);
+    assert!(after.contains("are not as good") && after.contains("does not reach the truth"), "{after}");
+    assert!(after.contains("From poses, `screw` is worse") && after.contains("gear factor"), "{after}");
 }

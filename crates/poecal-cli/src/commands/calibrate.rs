@@ -8,7 +8,7 @@ use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::output;
-use poecal::measurement::{Dataset, Set};
+use poecal::measurement::{Dataset, Measurement, PoseResidual, Set};
 use poecal::{Error, ErrorKind, Result, report, solve};
 
 use super::files::{refuse_fitted, refuse_repeats};
@@ -20,6 +20,13 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
     let model = Model::read(&arguments.model, &arguments.chain.selection())?;
     let data = read_measurements(arguments, &model, console)?;
     let options = options(arguments);
+    let poses = data.observations.iter().any(|row| matches!(row.measurement, Measurement::Pose(_)));
+    if options.pose_residual != PoseResidual::default() && !poses {
+        console.warning(format!(
+            "--residual {} has no effect: it is about measured frames, and there are points only",
+            options.pose_residual.word()
+        ));
+    }
     let bar = console.progress(Stage::ALL.len() as u64);
     let calibration = calibrate_with_progress(&model.robot, &data, &options, &mut |stage| {
         bar.set_position(Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0) as u64);

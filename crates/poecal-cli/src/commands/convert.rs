@@ -16,7 +16,19 @@ pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<ExitCode
     let form = form(arguments)?;
     let mut model = Model::read(&arguments.model, &arguments.chain.selection())?;
     if !arguments.offset.is_empty() {
-        model.robot = into_screws(&model.robot, &offsets(&arguments.offset, &model.robot)?)?;
+        let offsets = offsets(&arguments.offset, &model.robot)?;
+        for (joint, _) in model.robot.joints.iter().zip(&offsets).filter(|(_, offset)| **offset != 0.0) {
+            let followers = model.robot.followers(&joint.name);
+            if !followers.is_empty() {
+                console.warning(format!(
+                    "--offset: joint `{}` alone is moved, not {}, which follows its reading; if its encoder is off, so are these, by \
+                     their multiplier: state their offsets too",
+                    joint.name,
+                    quoted(&followers)
+                ));
+            }
+        }
+        model.robot = into_screws(&model.robot, &offsets)?;
     }
     let converted = model::convert(&model, form)?;
     for note in &converted.notes {
@@ -48,6 +60,11 @@ fn offsets(stated: &[String], robot: &Robot) -> Result<Vec<f64>> {
         }
     }
     Ok(offsets.into_iter().map(|offset| offset.unwrap_or(0.0)).collect())
+}
+
+/// Names as a message shows them.
+pub(super) fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 fn unknown_joint(name: &str, robot: &Robot) -> String {

@@ -9,6 +9,7 @@ use poecal::io::urdf::ChainSelection;
 use poecal::offsets::{End, Options, explain};
 use poecal::{Result, report};
 
+use super::convert::quoted;
 use crate::args::Offsets;
 use crate::console::Console;
 
@@ -25,6 +26,17 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<ExitCode
     let options = Options { base, tip, ..Options::default() };
     let explanation =
         explain(&nominal.robot, &actual.robot, &options).map_err(|error| error.in_file(&arguments.actual))?;
+    for joint in &nominal.robot.joints {
+        let followers = nominal.robot.followers(&joint.name);
+        if !followers.is_empty() {
+            console.warning(format!(
+                "joint `{}` is read for {} too: each offset is that of the joint's own value, and an error of this encoder is in all of \
+                 them",
+                joint.name,
+                quoted(&followers)
+            ));
+        }
+    }
     let found = report::Offsets::new(&nominal, &actual, &explanation, [base_reason, tip_reason]);
     let text = if arguments.json { report::json(&found)? } else { found.text() };
     if arguments.json || arguments.out.is_some() {

@@ -168,3 +168,23 @@ fn mistakes_get_a_sentence() {
     }
     assert_eq!(folder.run("offsets column.toml column.toml --base fixed").code, 2);
 }
+
+#[test]
+fn an_offset_of_a_leader_says_that_its_followers_stay() {
+    let folder = Folder::new();
+    let mimic = COLUMN.replace(
+        "limits = [-90, 90] }",
+        "limits = [-90, 90], mimic = { joint = \"turn\", multiplier = 2 } }",
+    );
+    folder.write("column.toml", &mimic);
+    let run = folder.run("convert column.toml --offset turn=0.5deg --out actual.toml");
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.err.contains("joint `turn` alone is moved, not `nod`"), "{}", run.err);
+    // The follower has an offset of its own, and no warning is due.
+    let run = folder.run("convert column.toml --offset nod=1deg --out other.toml");
+    assert!(run.code == 0 && !run.err.contains("alone is moved"), "{run:?}");
+    let run = folder.run("offsets column.toml actual.toml");
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.err.contains("joint `turn` is read for `nod` too"), "{}", run.err);
+    assert!(run.out.contains("  turn                     0.5000 deg"), "{}", run.out);
+}

@@ -34,11 +34,19 @@ fn reproduction_writes_its_report() {
         assert!(runs.iter().all(|run| run.get(key).is_some()), "{key}");
     }
     for claim in results["claims"].as_array().unwrap() {
-        assert!(claim["holds"].is_boolean() && claim["claim"].is_string() && claim["paper"].is_string());
+        assert!(claim["holds"].is_boolean() && claim["said_by_paper"].is_boolean());
+        assert!(["claim", "paper", "criterion"].iter().all(|key| claim[key].is_string()));
         let measured = claim["measured"].as_str().unwrap();
         assert!(folder.read("report/report.md").contains(measured.split('|').next().unwrap()));
     }
     assert!(folder.read("report/report.html").contains("</html>"));
+    // The command that the report names makes the same files.
+    let command = results["command"].as_str().unwrap();
+    let arguments = command.strip_prefix("poecal ").unwrap().replace("--out DIR", "--out again --quiet");
+    folder.done(&arguments);
+    for name in ["results.json", "report.md", "report.html"] {
+        assert_eq!(folder.read(&format!("report/{name}")), folder.read(&format!("again/{name}")));
+    }
     // The same command again is refused, and with --force gives the same bytes.
     let before = folder.listing();
     let again = "reproduce lou2009 --out report --trials 3 --starts 2";
@@ -51,10 +59,10 @@ fn reproduction_writes_its_report() {
 fn reproduction_refuses_what_it_cannot_do() {
     let folder = Folder::new();
     for (arguments, words) in [
-        ("reproduce lou2010 --out report", "lou2010"),
-        ("reproduce lou2009 --out report --trials 0", "0"),
-        ("reproduce lou2009 --out report --starts -1", "-1"),
-        ("reproduce lou2009", "--out"),
+        ("reproduce lou2010 --out report", "invalid value 'lou2010' for '<PAPER>'"),
+        ("reproduce lou2009 --out report --trials 0", "0 is not in 1..=1000000"),
+        ("reproduce lou2009 --out report --starts -1", "unexpected argument '-1' found"),
+        ("reproduce lou2009", "required arguments were not provided:\n  --out <DIR>"),
     ] {
         let run = folder.run(arguments);
         assert!(run.code == 2 && run.err.contains(words), "{arguments}: {run:?}");
@@ -103,4 +111,17 @@ fn residual_and_method_can_be_chosen() {
     assert!(out.contains("formulation   adjoint, spatial residual of poses, gauss-newton"), "{out}");
     let run = folder.run("calibrate robot.urdf measurements.csv --formulation screws --out other");
     assert!(run.code == 2 && run.err.contains("screw"), "{run:?}");
+}
+
+#[test]
+fn a_residual_of_poses_says_that_points_have_none() {
+    let folder = session(Kind::Point);
+    let run = folder.run("calibrate robot.urdf measurements.csv --residual spatial");
+    assert_eq!(run.code, 0, "{run:?}");
+    let words = "--residual spatial has no effect: it is about measured frames, and there are points only";
+    assert!(run.err.contains(words), "{}", run.err);
+    assert!(!run.out.contains("residual of poses"), "{}", run.out);
+    let out =
+        folder.done("calibrate robot.urdf measurements.csv --formulation adjoint-offsets --out offsets");
+    assert!(out.contains("formulation   adjoint-offsets, levenberg-marquardt; joint offsets"), "{out}");
 }

@@ -10,7 +10,7 @@ use crate::lie::{Pose, TargetTwist, Twist};
 ///
 /// Its sensitivity is `J_r(e)⁻¹ = J_l(-e)⁻¹` on the spatial twist, exact also for large residuals. To first order the linear part is
 /// `(y - p) + p × r`, so rotation noise counts as position noise times the distance: [`super::PoseMeasurement`] is what a device's
-/// data sheet describes, this is for comparison (docs/theory.md §4).
+/// data sheet describes, this is for comparison (docs/theory.md §4 (16a)).
 ///
 /// ```
 /// use poecal::lie::Pose;

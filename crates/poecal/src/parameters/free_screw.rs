@@ -1,4 +1,4 @@
-//! A joint's screw as free numbers, the original way (docs/theory.md §3).
+//! A joint's screw as free numbers, the original way (docs/theory.md §5 (22a) to (22c)).
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -32,7 +32,7 @@ pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
     identifiability_lines(&mut out, &calibration.identifiability);
     line(&mut out, "solver", &solver_words(calibration));
     trust_lines(&mut out, calibration);
-    if let Some(words) = formulation_words(calibration) {
+    if let Some(words) = formulation_words(calibration, data) {
         line(&mut out, "formulation", &words);
     }
     out
@@ -214,17 +214,19 @@ fn trust_lines(out: &mut String, calibration: &Calibration) {
 }
 
 /// How the problem was written, where not as usual, and what follows from that.
-fn formulation_words(calibration: &Calibration) -> Option<String> {
-    let usual = (Formulation::default(), PoseResidual::default(), Method::default());
-    if (calibration.formulation, calibration.pose_residual, calibration.method) == usual {
+fn formulation_words(calibration: &Calibration, data: &Dataset) -> Option<String> {
+    let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
+    let usual_residual = !poses || calibration.pose_residual == PoseResidual::default();
+    let usual = (Formulation::default(), Method::default());
+    if usual_residual && (calibration.formulation, calibration.method) == usual {
         return None;
     }
-    let mut words = format!(
-        "{}, {} residual of poses, {}",
-        calibration.formulation.word(),
-        calibration.pose_residual.word(),
-        calibration.method.word()
-    );
+    let residual = if poses {
+        format!(" {} residual of poses,", calibration.pose_residual.word())
+    } else {
+        String::new()
+    };
+    let mut words = format!("{},{residual} {}", calibration.formulation.word(), calibration.method.word());
     if calibration.formulation.has_free_screws() && calibration.method == Method::GaussNewton {
         words
             .push_str("; screws are normalised after each step, so with noise this is not the least squares");

@@ -4,6 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
 
+use super::seeds::{Purpose, derived};
 use super::session::Session;
 use super::{Basin, LENGTH_M, Seen, tables};
 use crate::error::Result;
@@ -43,7 +44,7 @@ pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
         for error_deg in ERRORS_DEG {
             let reached: Vec<[bool; WAYS.len()]> = (0..trials as u64)
                 .into_par_iter()
-                .map(|trial| reached(seen, error_deg, seed.wrapping_add(trial)))
+                .map(|trial| reached(seen, error_deg, seed, trial))
                 .collect::<Result<_>>()?;
             by_error.push((error_deg, reached));
         }
@@ -53,12 +54,12 @@ pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
                 found.push(Basin {
                     formulation,
                     measurement: seen,
-                    residual: residual(method).word().to_owned(),
+                    residual: residual(seen, method).word().to_owned(),
                     method: method.word().to_owned(),
                     error_deg: *error_deg,
                     error_mm: error_deg * MM_PER_DEG,
                     trials,
-                    share: count as f64 / trials.max(1) as f64,
+                    share: count as f64 / trials as f64,
                 });
             }
         }
@@ -66,30 +67,32 @@ pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
     Ok(found)
 }
 
-/// The paper's residual belongs to the paper's method.
-fn residual(method: Method) -> PoseResidual {
-    match method {
-        Method::GaussNewton => PoseResidual::Spatial,
-        Method::LevenbergMarquardt => PoseResidual::Tool,
+/// The paper's residual of poses belongs to the paper's method. Points have one residual only.
+fn residual(seen: Seen, method: Method) -> PoseResidual {
+    match (seen, method) {
+        (Seen::Poses, Method::GaussNewton) => PoseResidual::Spatial,
+        (Seen::Poses, Method::LevenbergMarquardt) | (Seen::Points, _) => PoseResidual::Tool,
     }
 }
 
 /// Which ways reach a random truth from the nominal elbow.
-fn reached(seen: Seen, error_deg: f64, seed: u64) -> Result<[bool; WAYS.len()]> {
+fn reached(seen: Seen, error_deg: f64, seed: u64, trial: u64) -> Result<[bool; WAYS.len()]> {
     let nominal = tables::nominal();
     let simulation = Simulation {
         error_rotation_rad: error_deg.to_radians(),
         error_position_m: error_deg * MM_PER_DEG * 1e-3,
         ..Simulation::default()
     };
-    let actual = simulation.perturbed(&nominal, &mut ChaCha8Rng::seed_from_u64(seed));
+    let mut generator = ChaCha8Rng::seed_from_u64(derived(seed, Purpose::Truth, trial));
+    let actual = simulation.perturbed(&nominal, &mut generator);
     let truth = Estimate::new(&actual, vec![actual.home], Pose::identity());
-    let session = Session::new(&nominal, truth, seen, ROWS, seed ^ 0x6261_7369);
+    let session = Session::new(&nominal, truth, seen, ROWS, derived(seed, Purpose::TruthRows, trial));
     // Radians count as the length of the arm that they move, so that neither outweighs the other.
     let noise = Noise { position_m: LENGTH_M, rotation_rad: 1.0 };
+    let exact = session.exact();
     let mut reached = [false; WAYS.len()];
     for (reached, (formulation, method)) in reached.iter_mut().zip(WAYS) {
-        let data = session.data(residual(method), None)?;
+        let data = session.data(residual(seen, method), &exact)?;
         let free = session.free(formulation);
         let problem = Problem::new(&data, &session.packed, session.rows(), free, noise, LENGTH_M);
         let options = Options { method, iterations: LIMIT, ..Options::default() };

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::seeds::{Purpose, derived};
 use super::session::Session;
 use super::{Efficiency, LENGTH_M, NOISE, Seen, runs, tables};
 use crate::error::Result;
@@ -15,7 +16,7 @@ use crate::solve::{LeastSquares, Method, Options, minimize};
 use nalgebra::Vector3;
 
 /// Configurations of a session.
-const ROWS: usize = 60;
+const ROWS: usize = 40;
 /// Iterations after which a fit has failed.
 const LIMIT: usize = 60;
 
@@ -43,63 +44,81 @@ const POINT_WAYS: [Way; 5] = [
     (Formulation::Adjoint, PoseResidual::Tool, Method::LevenbergMarquardt),
 ];
 
-/// All comparisons: one session of configurations for each kind of measurement, its noise drawn anew in every trial.
+/// All comparisons: one session of configurations for each kind of measurement, its noise drawn anew in every trial, the same for
+/// every way.
 pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
     let mut found = Vec::new();
     for (seen, ways) in [(Seen::Poses, &POSE_WAYS[..]), (Seen::Points, &POINT_WAYS[..])] {
-        let session = Session::new(&tables::nominal(), runs::truth(false), seen, ROWS, seed ^ 0x6372);
-        let bound_rms_m = bound_rms_m(&session)?;
-        for &way in ways {
-            found.push(one(&session, way, trials, bound_rms_m)?);
+        let rows_seed = derived(seed, Purpose::Fits, 0);
+        let session = Session::new(&tables::nominal(), runs::truth(false), seen, ROWS, rows_seed);
+        let (bound_rms_m, unknowns) = bound(&session)?;
+        let trials: Vec<Vec<Option<f64>>> = (0..trials as u64)
+            .into_par_iter()
+            .map(|trial| fits(&session, ways, derived(seed, Purpose::FitNoise, trial)))
+            .collect::<Result<_>>()?;
+        for (k, &way) in ways.iter().enumerate() {
+            let ends: Vec<Option<f64>> = trials.iter().map(|ends| ends[k]).collect();
+            found.push(summary(seen, way, &ends, bound_rms_m, unknowns));
         }
     }
     Ok(found)
 }
 
-fn one(session: &Session, way: Way, trials: usize, bound_rms_m: f64) -> Result<Efficiency> {
-    let (formulation, residual, method) = way;
-    let ends: Vec<Option<f64>> =
-        (0..trials as u64).into_par_iter().map(|trial| fit(session, way, trial)).collect::<Result<_>>()?;
-    let errors: Vec<f64> = ends.into_iter().flatten().collect();
-    let squares: f64 = errors.iter().map(|error| error * error).sum();
-    let held_out_rms_m = (squares / errors.len().max(1) as f64).sqrt();
-    Ok(Efficiency {
-        formulation,
-        measurement: session.seen,
-        residual: residual.word().to_owned(),
-        method: method.word().to_owned(),
-        trials,
-        converged: errors.len(),
-        held_out_rms_m,
-        bound_rms_m,
-        ratio: held_out_rms_m / bound_rms_m,
-    })
+/// Squared held-out errors of one noisy session fitted in every way; nothing for a fit that did not end.
+fn fits(session: &Session, ways: &[Way], seed: u64) -> Result<Vec<Option<f64>>> {
+    let measured = session.noisy(NOISE, seed);
+    let tool = session.data(PoseResidual::Tool, &measured)?;
+    let spatial = session.data(PoseResidual::Spatial, &measured)?;
+    let fit = |&(formulation, residual, method): &Way| {
+        let data = if residual == PoseResidual::Tool { &tool } else { &spatial };
+        let free = session.free(formulation);
+        let problem = Problem::new(data, &session.packed, session.rows(), free, NOISE, LENGTH_M);
+        let options = Options { method, iterations: LIMIT, ..Options::default() };
+        let (found, _, summary) = minimize(&problem, session.start(), &options);
+        summary.termination.is_success().then(|| session.held_out_rms_m(&found).powi(2))
+    };
+    Ok(ways.iter().map(fit).collect())
 }
 
-/// RMS held-out error of one noisy fit, or nothing if it did not end.
-fn fit(session: &Session, (formulation, residual, method): Way, trial: u64) -> Result<Option<f64>> {
-    let data = session.data(residual, Some((NOISE, trial)))?;
-    let free = session.free(formulation);
-    let problem = Problem::new(&data, &session.packed, session.rows(), free, NOISE, LENGTH_M);
-    let options = Options { method, iterations: LIMIT, ..Options::default() };
-    let (found, _, summary) = minimize(&problem, session.start(), &options);
-    Ok(summary.termination.is_success().then(|| session.held_out_rms_m(&found)))
+/// What the fits of one way have in common.
+fn summary(seen: Seen, way: Way, ends: &[Option<f64>], bound_rms_m: f64, unknowns: usize) -> Efficiency {
+    let squares: Vec<f64> = ends.iter().flatten().copied().collect();
+    let count = squares.len() as f64;
+    // Not a number without any fit.
+    let mean = squares.iter().sum::<f64>() / count;
+    let variance = squares.iter().map(|square| (square - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    let least = 1.0 / (2.0 * unknowns as f64 * count).sqrt();
+    let scatter = (0.5 * (variance / count).sqrt() / mean).max(least);
+    let (formulation, residual, method) = way;
+    let ratio = mean.sqrt() / bound_rms_m;
+    Efficiency {
+        formulation,
+        measurement: seen,
+        residual: residual.word().to_owned(),
+        method: method.word().to_owned(),
+        trials: ends.len(),
+        converged: squares.len(),
+        held_out_rms_m: mean.sqrt(),
+        bound_rms_m,
+        ratio,
+        ratio_sigma: ratio * scatter,
+    }
 }
 
 /// The least RMS error of predicted positions that an unbiased estimator can have, metres: `tr(J N⁻¹ Jᵀ)` at the truth, N being the
-/// information of the minimal basis about what a device with this noise sees.
-fn bound_rms_m(session: &Session) -> Result<f64> {
-    let data = session.data(PoseResidual::Tool, None)?;
+/// information of the minimal basis about what a device with this noise sees. With the number of unknowns.
+fn bound(session: &Session) -> Result<(f64, usize)> {
+    let data = session.data(PoseResidual::Tool, &session.exact())?;
     let free = session.free(Formulation::Adjoint);
     let problem = Problem::new(&data, &session.packed, session.rows(), free, NOISE, LENGTH_M);
     let n = problem.dim();
     let Some(factor) = linalg::cholesky(&problem.normal(&session.truth).gram, n, 0.0) else {
-        return Ok(f64::INFINITY);
+        return Ok((f64::INFINITY, n));
     };
-    Ok((variance(session, &problem, &session.truth, |row| {
+    let sum = variance(session, &problem, &session.truth, |row| {
         row.iter().zip(linalg::cholesky_solve(&factor, row)).map(|(a, b)| a * b).sum()
-    }) / session.unseen.rows() as f64)
-        .sqrt())
+    });
+    Ok(((sum / session.unseen.rows() as f64).sqrt(), n))
 }
 
 /// Sum over unseen configurations and coordinates of the variance of the predicted position.
@@ -122,4 +141,18 @@ fn variance(
         }
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_any_fit_there_is_no_ratio() {
+        let none = summary(Seen::Poses, POSE_WAYS[0], &[None, None], 1e-5, 30);
+        assert!(none.converged == 0 && none.ratio.is_nan() && none.held_out_rms_m.is_nan());
+        let some = summary(Seen::Poses, POSE_WAYS[0], &[Some(4e-10), None], 1e-5, 30);
+        assert!((some.ratio - 2.0).abs() < 1e-12 && (some.ratio_sigma - 2.0 / 60_f64.sqrt()).abs() < 1e-12);
+        assert!(!some.exceeds(&none) && !none.exceeds(&some));
+    }
 }

@@ -38,7 +38,8 @@ pub struct Run {
     pub noise: bool,
     /// Number of measurements fitted.
     pub measurements: usize,
-    /// Iterations until the step vanished (noise-free) or promised nothing beyond the noise.
+    /// Iterations until the step or the residual was nothing but rounding (noise-free), or the step promised nothing beyond the
+    /// noise. The paper gives no rule.
     pub iterations: usize,
     /// Whether it ended there, at the truth (noise-free: held-out error below 1 nm).
     pub converged: bool,
@@ -53,8 +54,21 @@ pub struct Run {
     /// Largest difference of a screw's coordinate from the prescribed one (metres for v, 1 for ω); not a number of the
     /// prediction, and large where the formulation cannot tell screws from offsets.
     pub screw_error_max: f64,
-    /// The same with all offsets moved into the screws (lou2009 14 and 15), in the truth and in what was identified: what data can tell.
+    /// Its part of v, metres.
+    pub screw_error_max_v_m: f64,
+    /// Its part of ω, no unit.
+    pub screw_error_max_omega: f64,
+    /// As [`screw_error_max`](Self::screw_error_max), with all offsets moved into the screws (lou2009 14 and 15), in the truth and in what was identified: what data can tell.
     pub equivalent_screw_error_max: f64,
+    /// Its part of v, metres.
+    pub equivalent_screw_error_max_v_m: f64,
+    /// Its part of ω, no unit.
+    pub equivalent_screw_error_max_omega: f64,
+    /// Largest `|v·ω|` over the iterations, metres: of `ξ + dξ` before it is normalised (free screws), or of the screws that
+    /// `ξ ← Ad(e^η) ξ` makes from the nominal ones without any normalisation (adjoint).
+    pub constraint_miss_pitch_m: f64,
+    /// Largest `||ω| - 1|` of the same.
+    pub constraint_miss_length: f64,
     /// Largest difference of an identified joint offset from the prescribed one, degrees; null without offsets in the formulation.
     pub offset_error_max_deg: Option<f64>,
     /// By iteration, the start first.
@@ -133,7 +147,7 @@ pub struct Efficiency {
     pub formulation: Formulation,
     /// What was seen.
     pub measurement: Seen,
-    /// `tool` (at the tool, whitened) or `spatial` (the paper's logarithm, whitened alike).
+    /// `tool` (at the tool, whitened) or `spatial` (the paper's logarithm, whitened alike); points have `tool` only.
     pub residual: String,
     /// `gauss-newton` or `levenberg-marquardt`.
     pub method: String,
@@ -141,12 +155,25 @@ pub struct Efficiency {
     pub trials: usize,
     /// Fits that ended at an optimum.
     pub converged: usize,
-    /// RMS held-out position error of those, metres.
+    /// RMS held-out position error of those, metres; not a number if there are none.
     pub held_out_rms_m: f64,
     /// RMS that the Cramér-Rao bound allows, metres.
     pub bound_rms_m: f64,
     /// Ratio of the two: 1 is the best that any unbiased estimator can do.
     pub ratio: f64,
+    /// Standard deviation that chance gives the ratio, from the scatter of the fits, but at least `ratio / √(2 · unknowns · fits)`.
+    pub ratio_sigma: f64,
+}
+
+/// Standard deviations beyond which a difference is not chance.
+const BEYOND_CHANCE: f64 = 3.0;
+
+impl Efficiency {
+    /// Whether this ratio is larger than another by more than chance explains: three standard deviations.
+    #[must_use]
+    pub fn exceeds(&self, other: &Efficiency) -> bool {
+        self.ratio - other.ratio > BEYOND_CHANCE * self.ratio_sigma.hypot(other.ratio_sigma)
+    }
 }
 
 /// The share of random starts from which a formulation reaches the truth.
@@ -160,9 +187,9 @@ pub struct Basin {
     pub residual: String,
     /// `gauss-newton` or `levenberg-marquardt`.
     pub method: String,
-    /// Angle by which each axis is off, degrees.
+    /// Angle by which each axis and the tip of the truth is off the nominal start, degrees.
     pub error_deg: f64,
-    /// Distance by which each axis is off, millimetres.
+    /// Distance by which each is off, millimetres.
     pub error_mm: f64,
     /// Number of starts.
     pub trials: usize,
@@ -170,17 +197,34 @@ pub struct Basin {
     pub share: f64,
 }
 
-/// A statement of the paper, or one that it leaves out, against what was measured.
+impl Basin {
+    /// Whether this share is larger than another by more than chance explains: three standard deviations.
+    #[must_use]
+    pub fn exceeds(&self, other: &Basin) -> bool {
+        // A share of 0 or 1 is known to about one start.
+        let sigma = |it: &Basin| {
+            let starts = it.trials as f64;
+            (it.share * (1.0 - it.share) / starts).sqrt().max(1.0 / starts)
+        };
+        self.share - other.share > BEYOND_CHANCE * sigma(self).hypot(sigma(other))
+    }
+}
+
+/// A statement of the paper, or a finding that it leaves out, against what was measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
     /// The statement.
     pub claim: String,
-    /// What the paper says, with the place.
+    /// What the paper says, with the place; of a finding, what it says near by.
     pub paper: String,
     /// What the runs show, with the numbers.
     pub measured: String,
-    /// Whether the statement holds as the paper makes it.
+    /// What has to be so for the statement to hold.
+    pub criterion: String,
+    /// Whether it is so.
     pub holds: bool,
+    /// Whether the paper makes the statement; else it is a finding that the paper leaves out.
+    pub said_by_paper: bool,
 }
 
 /// All that was found.

@@ -2,10 +2,12 @@
 
 mod basin;
 mod claims;
+mod constraints;
 mod efficiency;
 mod findings;
 pub mod literal;
 mod runs;
+mod seeds;
 mod session;
 pub mod tables;
 
@@ -45,7 +47,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { trials: 1000, starts: 200, seed: 1 }
+        Options { trials: 1000, starts: 100, seed: 1 }
     }
 }
 
@@ -61,7 +63,7 @@ impl Default for Options {
 /// ```
 ///
 /// # Errors
-/// [`ErrorKind::Option`] without a trial or a start.
+/// [`ErrorKind::Option`] without a trial or a start; [`ErrorKind::Problem`] if a claim lacks what it is judged by.
 pub fn lou2009(options: &Options) -> Result<Reproduction> {
     if options.trials == 0 || options.starts == 0 {
         return Err(Error::new(
@@ -73,7 +75,7 @@ pub fn lou2009(options: &Options) -> Result<Reproduction> {
     let mut found = Reproduction {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         command: format!(
-            "poecal reproduce lou2009 --trials {} --starts {} --seed {}",
+            "poecal reproduce lou2009 --trials {} --starts {} --seed {} --out DIR",
             options.trials, options.starts, options.seed
         ),
         seed: options.seed,
@@ -89,7 +91,7 @@ pub fn lou2009(options: &Options) -> Result<Reproduction> {
         efficiency: efficiency::efficiency(options.trials, options.seed)?,
         basin: basin::basin(options.starts, options.seed)?,
     };
-    found.claims = claims(&Evidence { runs: &ended, found: &found, seed: options.seed });
+    found.claims = claims(&Evidence { runs: &ended, found: &found, seed: options.seed })?;
     Ok(found)
 }
 
@@ -161,8 +163,7 @@ fn offsets(ended: &[Ended]) -> Vec<OffsetRow> {
 fn spectra(ended: &[Ended], seed: u64) -> Vec<Spectrum> {
     let mut spectra = Vec::new();
     for seen in [Seen::Poses, Seen::Points] {
-        let count = if seen == Seen::Poses { runs::POSES } else { runs::POINTS };
-        let session = session::Session::new(&tables::nominal(), runs::truth(false), seen, count, seed);
+        let session = runs::session(false, seen, seed);
         for formulation in Formulation::ALL {
             let Some(identified) = exact(ended, formulation, seen, false) else { continue };
             for (at, estimate) in [("nominal", &session.start()), ("identified", &identified.estimate)] {

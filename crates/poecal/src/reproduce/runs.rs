@@ -1,12 +1,13 @@
 //! The paper's calibrations from the nominal screws, with every formulation, traced by iteration.
 
+use super::constraints::{State, Watched};
 use super::literal;
+use super::seeds::{Purpose, derived};
 use super::session::Session;
 use super::tables;
 use super::{Iteration, LENGTH_M, NOISE, Run, Seen};
 use crate::error::Result;
 use crate::estimate::{Estimate, Packed};
-use crate::lie::Screw;
 use crate::measurement::{Dataset, Noise, PoseResidual};
 use crate::parameters::Formulation;
 use crate::problem::Problem;
@@ -40,8 +41,6 @@ pub(super) struct Ended {
     pub(super) plan: Plan,
     pub(super) run: Run,
     pub(super) estimate: Estimate,
-    /// Largest violation of the screw constraints by any iterate: `||ω| - 1|`, and `|v·ω|` in metres.
-    pub(super) violation: f64,
 }
 
 /// The truth of the experiment: the prescribed screws and point, with joint offsets or without.
@@ -69,59 +68,88 @@ pub(super) fn runs(seed: u64) -> Result<Vec<Ended>> {
     Ok(runs)
 }
 
+/// Measurements of a kind that a run fits.
+fn count(seen: Seen) -> usize {
+    match seen {
+        Seen::Poses => POSES,
+        Seen::Points => POINTS,
+    }
+}
+
+/// The configurations of the runs of a kind, and the robot that is there.
+pub(super) fn session(offsets_in_truth: bool, seen: Seen, seed: u64) -> Session {
+    let seed = derived(seed, Purpose::Runs, 0);
+    Session::new(&tables::nominal(), truth(offsets_in_truth), seen, count(seen), seed)
+}
+
 /// One run by plain Gauss-Newton, with the paper's residual of poses.
 fn run(plan: Plan, seed: u64) -> Result<Ended> {
-    let count = if plan.seen == Seen::Poses { POSES } else { POINTS };
-    let session = Session::new(&tables::nominal(), truth(plan.offsets_in_truth), plan.seen, count, seed);
-    let noise = plan.noise.then_some((NOISE, seed ^ 0x6e6f_6973));
-    let data = session.data(PoseResidual::Spatial, noise)?;
+    let session = session(plan.offsets_in_truth, plan.seen, seed);
+    let measured =
+        if plan.noise { session.noisy(NOISE, derived(seed, Purpose::RunNoise, 0)) } else { session.exact() };
+    let data = session.data(PoseResidual::Spatial, &measured)?;
     let sigma = if plan.noise { NOISE } else { Noise { position_m: 1.0, rotation_rad: 1.0 } };
     let free = session.free(plan.formulation);
     let problem = Problem::new(&data, &session.packed, session.rows(), free, sigma, LENGTH_M);
     let once = Options { method: Method::GaussNewton, iterations: 1, ..Options::default() };
 
-    let mut estimate = session.start();
-    let mut trace = vec![iteration(&session, &data, &estimate)];
-    let mut violation = 0.0_f64;
+    let mut state = State::new(session.start());
+    let mut trace = vec![iteration(&session, &data, &state.estimate)];
     let termination = loop {
-        let (next, _, summary) = minimize(&problem, estimate.clone(), &once);
+        let (next, _, summary) = minimize(&Watched(&problem), state.clone(), &once);
         if summary.iterations == 0 || trace.len() > LIMIT {
             break summary.termination;
         }
-        estimate = next;
-        trace.push(iteration(&session, &data, &estimate));
-        violation = violation.max(constraint_violation(&estimate.screws()));
+        state = next;
+        trace.push(iteration(&session, &data, &state.estimate));
         if !matches!(summary.termination, Termination::IterationLimit) {
             break summary.termination;
         }
     };
-    let held_out_rms_m = session.held_out_rms_m(&estimate);
+    let run = measures(&session, plan, &state, trace, (problem.layout().dim(), termination));
+    Ok(Ended { plan, run, estimate: state.estimate })
+}
+
+/// What is told of a run that ended.
+fn measures(
+    session: &Session,
+    plan: Plan,
+    state: &State,
+    trace: Vec<Iteration>,
+    (unknowns, termination): (usize, Termination),
+) -> Run {
+    let estimate = &state.estimate;
+    let held_out_rms_m = session.held_out_rms_m(estimate);
     let most = if plan.noise { NOISY_FACTOR * NOISE.position_m } else { REACHED_M };
-    let (parameters, rank) = rank(&session, &estimate, plan.formulation);
-    let run = Run {
+    let (parameters, rank) = rank(session, estimate, plan.formulation);
+    let error = ScrewError::of(estimate, &session.truth);
+    let equivalent = ScrewError::of(&estimate.without_offsets(), &session.truth.without_offsets());
+    Run {
         formulation: plan.formulation,
         measurement: plan.seen,
         offsets_in_truth: plan.offsets_in_truth,
         noise: plan.noise,
-        measurements: count,
+        measurements: session.packed.rows(),
         iterations: trace.len() - 1,
         converged: termination.is_success() && held_out_rms_m < most,
         parameters,
         rank,
-        unknowns: problem.layout().dim(),
+        unknowns,
         held_out_rms_m,
-        screw_error_max: screw_error(&estimate.screws(), &session.truth.screws()),
-        equivalent_screw_error_max: screw_error(
-            &estimate.without_offsets().screws(),
-            &session.truth.without_offsets().screws(),
-        ),
+        screw_error_max: error.largest(),
+        screw_error_max_v_m: error.v_m,
+        screw_error_max_omega: error.omega,
+        equivalent_screw_error_max: equivalent.largest(),
+        equivalent_screw_error_max_v_m: equivalent.v_m,
+        equivalent_screw_error_max_omega: equivalent.omega,
+        constraint_miss_pitch_m: state.miss.pitch_m,
+        constraint_miss_length: state.miss.length,
         offset_error_max_deg: plan
             .formulation
             .has_offsets()
-            .then(|| offset_error_deg(&estimate, &session.truth)),
+            .then(|| offset_error_deg(estimate, &session.truth)),
         trace,
-    };
-    Ok(Ended { plan, run, estimate, violation })
+    }
 }
 
 /// Residual and parameter error of an estimate.
@@ -130,25 +158,35 @@ fn iteration(session: &Session, data: &Dataset, estimate: &Estimate) -> Iteratio
     let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
     Iteration {
         residual_rms_m: (squares / errors.len() as f64).sqrt(),
-        screw_error_max: screw_error(&estimate.screws(), &session.truth.screws()),
+        screw_error_max: ScrewError::of(estimate, &session.truth).largest(),
     }
 }
 
-/// Largest difference of a coordinate of some screws, metres for v and 1 for ω.
-pub(super) fn screw_error(found: &[Screw], truth: &[Screw]) -> f64 {
-    let pairs = found.iter().zip(truth);
-    pairs.map(|(a, b)| (a.twist().to_vector() - b.twist().to_vector()).amax()).fold(0.0, f64::max)
+/// Largest differences of screws' coordinates.
+#[derive(Clone, Copy, Default)]
+struct ScrewError {
+    v_m: f64,
+    omega: f64,
+}
+
+impl ScrewError {
+    fn of(found: &Estimate, truth: &Estimate) -> Self {
+        let pairs = found.screws().into_iter().zip(truth.screws());
+        pairs.fold(ScrewError::default(), |worst, (a, b)| ScrewError {
+            v_m: worst.v_m.max((a.v() - b.v()).amax()),
+            omega: worst.omega.max((a.w() - b.w()).amax()),
+        })
+    }
+
+    fn largest(self) -> f64 {
+        self.v_m.max(self.omega)
+    }
 }
 
 /// Largest difference of a joint offset, degrees, whole turns left out.
 fn offset_error_deg(found: &Estimate, truth: &Estimate) -> f64 {
     let pairs = found.joint_offset.iter().zip(&truth.joint_offset);
     pairs.map(|(a, b)| (a - b).sin().atan2((a - b).cos()).abs().to_degrees()).fold(0.0, f64::max)
-}
-
-fn constraint_violation(screws: &[Screw]) -> f64 {
-    let each = screws.iter().map(|screw| (screw.w().norm() - 1.0).abs().max(screw.v().dot(&screw.w()).abs()));
-    each.fold(0.0, f64::max)
 }
 
 /// Columns and rank of the paper's own matrix at an estimate, on the configurations of a session.

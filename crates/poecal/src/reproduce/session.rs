@@ -11,9 +11,10 @@ use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeas
 use crate::parameters::{Formulation, Parameter, TargetFrame, TargetPlace};
 use crate::robot::Robot;
 use crate::simulate::{random, random_configuration};
+use nalgebra::Vector3;
 
 /// Configurations that a fit never saw.
-const UNSEEN: usize = 100;
+const UNSEEN: usize = 60;
 
 /// Random configurations of a robot within its limits, and the robot that is really there.
 pub(super) struct Session {
@@ -23,6 +24,8 @@ pub(super) struct Session {
     pub(super) readings: Vec<f64>,
     pub(super) packed: Packed,
     pub(super) unseen: Packed,
+    /// Where the tip truly is in the unseen configurations.
+    unseen_positions: Vec<Vector3<f64>>,
 }
 
 impl Session {
@@ -35,7 +38,8 @@ impl Session {
         let width = nominal.joints.len();
         let packed = Packed::new(nominal, &readings, width);
         let unseen = Packed::new(nominal, &configurations(UNSEEN), width);
-        Session { nominal: nominal.clone(), truth, seen, readings, packed, unseen }
+        let unseen_positions = poses(&truth, &unseen).map(|pose| pose.translation).collect();
+        Session { nominal: nominal.clone(), truth, seen, readings, packed, unseen, unseen_positions }
     }
 
     /// All rows.
@@ -43,23 +47,29 @@ impl Session {
         (0..self.packed.rows() as u32).collect()
     }
 
-    /// What the device sees: exactly, or with noise drawn from a seed.
-    pub(super) fn data(&self, residual: PoseResidual, noise: Option<(Noise, u64)>) -> Result<Dataset> {
-        let linkage = Linkage::new(&self.truth);
-        let mut chain = Chain::default();
-        let mut data = Dataset::new(self.nominal.reading_names());
-        let mut generator = ChaCha8Rng::seed_from_u64(noise.map_or(0, |(_, seed)| seed));
-        let sigma = noise.map_or(Noise { position_m: 0.0, rotation_rad: 0.0 }, |(sigma, _)| sigma);
-        for (row, readings) in self.readings.chunks_exact(self.nominal.joints.len()).enumerate() {
-            chain.evaluate(&linkage, &self.packed, row, 0);
-            let position =
-                chain.target.translation + random::normal_vector(&mut generator) * sigma.position_m;
+    /// The target's poses in the measured configurations.
+    pub(super) fn exact(&self) -> Vec<Pose> {
+        poses(&self.truth, &self.packed).collect()
+    }
+
+    /// The same with noise drawn from a seed.
+    pub(super) fn noisy(&self, sigma: Noise, seed: u64) -> Vec<Pose> {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let measured = |pose: Pose| {
+            let position = pose.translation + random::normal_vector(&mut generator) * sigma.position_m;
             let turn = rotation::exp(&(random::normal_vector(&mut generator) * sigma.rotation_rad));
+            Pose::new(turn * pose.rotation, position)
+        };
+        poses(&self.truth, &self.packed).map(measured).collect()
+    }
+
+    /// What the device says of these poses.
+    pub(super) fn data(&self, residual: PoseResidual, measured: &[Pose]) -> Result<Dataset> {
+        let mut data = Dataset::new(self.nominal.reading_names());
+        for (readings, &pose) in self.readings.chunks_exact(self.nominal.joints.len()).zip(measured) {
             let measurement = match self.seen {
-                Seen::Poses => Measurement::Pose(PoseMeasurement {
-                    pose: Pose::new(turn * chain.target.rotation, position),
-                }),
-                Seen::Points => Measurement::Point(PointMeasurement { position }),
+                Seen::Poses => Measurement::Pose(PoseMeasurement { pose }),
+                Seen::Points => Measurement::Point(PointMeasurement { position: pose.translation }),
             };
             data.push(readings, None, measurement.with_residual(residual))?;
         }
@@ -83,14 +93,17 @@ impl Session {
 
     /// RMS distance from an estimate's predictions to the truth on configurations that were not measured, metres.
     pub(super) fn held_out_rms_m(&self, estimate: &Estimate) -> f64 {
-        let (found, truth) = (Linkage::new(estimate), Linkage::new(&self.truth));
-        let (mut at_found, mut at_truth) = (Chain::default(), Chain::default());
-        let mut squares = 0.0;
-        for row in 0..self.unseen.rows() {
-            at_found.evaluate(&found, &self.unseen, row, 0);
-            at_truth.evaluate(&truth, &self.unseen, row, 0);
-            squares += (at_found.target.translation - at_truth.target.translation).norm_squared();
-        }
+        let pairs = poses(estimate, &self.unseen).zip(&self.unseen_positions);
+        let squares: f64 = pairs.map(|(pose, position)| (pose.translation - position).norm_squared()).sum();
         (squares / self.unseen.rows() as f64).sqrt()
     }
+}
+
+/// An estimate's target in configurations.
+fn poses(estimate: &Estimate, packed: &Packed) -> impl Iterator<Item = Pose> {
+    let (linkage, mut chain) = (Linkage::new(estimate), Chain::default());
+    (0..packed.rows()).map(move |row| {
+        chain.evaluate(&linkage, packed, row, 0);
+        chain.target
+    })
 }

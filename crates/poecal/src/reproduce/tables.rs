@@ -66,7 +66,7 @@ pub fn nominal() -> Robot {
     simulate::elbow()
 }
 
-/// The robot that is to be identified: the printed screws, each made a screw ([`Screw::project`], theory.md §5 (22c)), and the printed point
+/// The robot that is to be identified: the printed screws, each made a screw as by [`Screw::project`] (theory.md §5 (22c)), and the printed point
 /// as home pose without rotation.
 ///
 /// ```
@@ -77,7 +77,9 @@ pub fn nominal() -> Robot {
 /// ```
 #[must_use]
 pub fn prescribed() -> Robot {
-    let screws: Vec<Screw> = printed_screws().iter().filter_map(Screw::project).collect();
+    // The axis along ω through its point nearest to the origin.
+    let screws =
+        printed_screws().map(|it| Screw::revolute(&it.w, &(it.w.cross(&it.v) / it.w.norm_squared())));
     let mut robot = nominal().with_screws(&screws);
     robot.home = Pose::from_translation(Vector3::from(PRESCRIBED_POINT_MM) / 1000.0);
     robot
@@ -145,7 +147,10 @@ mod tests {
         let rounding = rounding();
         println!("|v·ω| up to {:.4} mm, ||ω| - 1| up to {:.1e}", rounding.pitch_mm, rounding.length);
         assert!((rounding.pitch_mm - 0.0319).abs() < 1e-4 && (rounding.length - 4.4e-5).abs() < 1e-6);
+        assert_eq!(robot.joints.len(), PRINTED_SCREWS_MM.len());
         for (joint, printed) in robot.joints.iter().zip(printed_screws()) {
+            let projected = Screw::project(&printed).unwrap().twist().to_vector();
+            assert!((joint.screw.twist().to_vector() - projected).amax() < 1e-15, "{}", joint.name);
             // Rounding of |ω| is a share of v too, which is up to 1.1 m.
             assert!((joint.screw.v() - printed.v).norm() < 1e-4, "{}", joint.name);
             assert!((joint.screw.w() - printed.w).norm() < 1e-4, "{}", joint.name);

@@ -74,6 +74,20 @@ impl Robot {
         })
     }
 
+    /// Names of the mimic joints that follow a joint: an error of its encoder moves them too.
+    ///
+    /// ```
+    /// let mut robot = poecal::simulate::elbow();
+    /// robot.joints[2].reading.name = "joint2".to_owned();
+    /// assert_eq!(robot.followers("joint2"), ["joint3"]);
+    /// assert!(robot.followers("joint1").is_empty());
+    /// ```
+    #[must_use]
+    pub fn followers(&self, joint: &str) -> Vec<&str> {
+        let follows = |other: &&Joint| other.name != joint && other.reading.name == joint;
+        self.joints.iter().filter(follows).map(|other| other.name.as_str()).collect()
+    }
+
     /// Names of the readings that a configuration consists of, in order: each joint's own, once; a mimic joint has its leader's.
     #[must_use]
     pub fn reading_names(&self) -> Vec<String> {

@@ -5,7 +5,7 @@ use super::{LeastSquares, Normal, Options, Summary, Termination};
 use crate::linalg;
 
 /// Minimises from `start` by full steps. It ends where the part of the step that the retraction keeps is nothing, which with
-/// constraints put right after each step need not be a minimum (docs/theory.md §3). It may diverge.
+/// constraints put right after each step need not be a minimum (docs/theory.md §5 (22d)). It may diverge.
 pub(super) fn gauss_newton<P: LeastSquares>(
     problem: &P,
     start: P::State,

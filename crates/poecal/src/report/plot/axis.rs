@@ -64,6 +64,8 @@ const MOST_DECADES: i32 = 20;
 /// Largest and smallest size that a linear axis works with, so that differences and steps stay finite.
 const LARGEST: f64 = 1e300;
 const SMALLEST: f64 = 1e-290;
+/// Room at each end of a linear axis, as a share of it.
+const PADDING: f64 = 0.03;
 /// Ticks that an axis aims at.
 const TICKS: f64 = 5.0;
 
@@ -115,13 +117,25 @@ impl Ruler {
             (low, high) = (low - room, high + room);
         }
         let step = step(high - low);
-        Ruler::stepped((low / step).floor() * step, (high / step).ceil() * step, step)
+        // Values that differ from a tick by rounding lie on it.
+        let (low, high) = ((low / step + 1e-9).floor() * step, (high / step - 1e-9).ceil() * step);
+        Ruler::stepped(low, high, step).padded()
     }
 
     fn count(values: &[f64]) -> Self {
         let (_, high) = range(values).unwrap_or((0.0, 1.0));
         let high = high.max(1.0).ceil();
         Ruler::stepped(0.0, high, step(high).max(1.0))
+    }
+
+    /// The same with room at both ends, so that a marker at an end lies whole on the plot.
+    fn padded(mut self) -> Self {
+        for (share, _) in &mut self.ticks {
+            *share = (*share + PADDING) / (1.0 + 2.0 * PADDING);
+        }
+        let room = PADDING * (self.high - self.low);
+        (self.low, self.high) = (self.low - room, self.high + room);
+        self
     }
 
     /// Ticks from `low` on, `step` apart, as far as `high`.
@@ -226,6 +240,19 @@ mod tests {
         assert_eq!(labels(Scale::Log, &[0.02, 30.0]), ["0.01", "0.1", "1", "10", "100"]);
         assert_eq!(labels(Scale::Log, &[0.03, 0.04]), ["0.01", "0.02", "0.05", "0.1"]);
         assert_eq!(labels(Scale::Log, &[1e-12, 1.0]), ["10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"]);
+    }
+
+    #[test]
+    fn values_at_the_ends_of_a_linear_axis_lie_inside() {
+        let ruler = ruler(Scale::Linear, &[-4.0, 6.0]);
+        let (low, high) = (ruler.place(-4.0).unwrap(), ruler.place(6.0).unwrap());
+        assert!(low.inside && low.share > 0.02 && high.inside && high.share < 0.98, "{low:?} {high:?}");
+        assert_eq!(labels(Scale::Linear, &[-4.0, 6.0]), ["−4", "−2", "0", "2", "4", "6"]);
+        assert_eq!(labels(Scale::Linear, &[0.9, 1.0]).last().unwrap(), "1.00");
+        for (share, label) in &ruler.ticks {
+            let value: f64 = label.replace('−', "-").parse().unwrap();
+            assert!((ruler.place(value).unwrap().share - share).abs() < 1e-12);
+        }
     }
 
     #[test]

@@ -101,7 +101,9 @@ impl DotPlot {
                 unshown.not_numbers += 1;
                 continue;
             };
-            unshown.beyond += usize::from(!place.inside);
+            if !place.inside {
+                unshown.beyond(value);
+            }
             canvas.marker(
                 dots.style,
                 [area.x(place.share), self.row_middle(area, row) + shift],

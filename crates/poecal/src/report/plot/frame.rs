@@ -37,8 +37,22 @@ impl Area {
 /// Values that an axis could not show.
 #[derive(Default)]
 pub(super) struct Unshown {
-    pub(super) beyond: usize,
+    zero: usize,
+    infinite: usize,
+    other: usize,
     pub(super) not_numbers: usize,
+}
+
+impl Unshown {
+    /// Counts a value that is drawn at an end of its axis.
+    pub(super) fn beyond(&mut self, value: f64) {
+        let count = match value {
+            0.0 => &mut self.zero,
+            value if value.is_infinite() => &mut self.infinite,
+            _ => &mut self.other,
+        };
+        *count += 1;
+    }
 }
 
 /// Title and legend; gives the y below them.
@@ -70,7 +84,7 @@ pub(super) fn head(canvas: &mut Canvas, title: &str, legend: &[(usize, &str)], d
 
 /// The title of the vertical axis, above it; gives the y below.
 pub(super) fn vertical_title(canvas: &mut Canvas, y: f64, title: &str) -> f64 {
-    canvas.text([MARGIN, y], Anchor::Start, title);
+    canvas.axis_title([MARGIN, y], Anchor::Start, title);
     y + 13.0
 }
 
@@ -88,7 +102,7 @@ pub(super) fn horizontal_axis(
         canvas.text([x, area.bottom + 15.0], Anchor::Middle, label);
     }
     canvas.axis_line([area.left, area.bottom], [area.right, area.bottom]);
-    canvas.text([(area.left + area.right) / 2.0, area.bottom + 33.0], Anchor::Middle, title);
+    canvas.axis_title([(area.left + area.right) / 2.0, area.bottom + 33.0], Anchor::Middle, title);
     let Some(mark) = mark else { return };
     let Some(place) = ruler.place(mark.at) else { return };
     let x = area.x(place.share);
@@ -120,8 +134,12 @@ pub(super) fn foot(canvas: &mut Canvas, area: &Area, any: bool, unshown: &Unshow
     if !any {
         notes.push("There are no values.".to_owned());
     }
-    if unshown.beyond > 0 {
-        notes.push(format!("Hollow: beyond the axis, zero or infinite ({}).", unshown.beyond));
+    for (count, words) in
+        [(unshown.zero, "exactly zero"), (unshown.infinite, "infinite"), (unshown.other, "beyond the axis")]
+    {
+        if count > 0 {
+            notes.push(format!("Hollow: {words} ({count})."));
+        }
     }
     if unshown.not_numbers > 0 {
         notes.push(format!("Not drawn: {}, not a number.", unshown.not_numbers));

@@ -68,15 +68,17 @@ fn draw(
 ) {
     let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
     let mut markers = Vec::new();
-    for [across, up] in &line.points {
-        let (Some(across), Some(up)) = (x.place(*across), y.place(*up)) else {
+    for &[across_value, up_value] in &line.points {
+        let (Some(across), Some(up)) = (x.place(across_value), y.place(up_value)) else {
             unshown.not_numbers += 1;
             pieces.push(Vec::new());
             continue;
         };
         let at = [area.x(across.share), area.y(up.share)];
         let inside = across.inside && up.inside;
-        unshown.beyond += usize::from(!inside);
+        if !inside {
+            unshown.beyond(if up.inside { across_value } else { up_value });
+        }
         markers.push((at, inside));
         if let Some(piece) = pieces.last_mut() {
             piece.push(at);
@@ -132,9 +134,7 @@ mod tests {
     fn zero_on_a_log_axis_is_hollow_and_noted() {
         let svg = plot(Scale::Log, vec![vec![[0.0, 1.0], [1.0, 0.0], [2.0, f64::NAN]]]);
         assert_eq!(svg.matches("class=\"hollow\"").count(), 1);
-        assert!(
-            svg.contains("Hollow: beyond the axis, zero or infinite (1).") && svg.contains("Not drawn: 1")
-        );
+        assert!(svg.contains("Hollow: exactly zero (1).") && svg.contains("Not drawn: 1"));
     }
 
     #[test]

@@ -87,14 +87,19 @@ impl Canvas {
     }
 
     pub(super) fn text(&mut self, at: [f64; 2], anchor: Anchor, text: &str) {
-        self.styled_text(at, anchor, text, "");
+        self.styled_text(at, anchor, text, "ink", "");
+    }
+
+    /// The title of an axis, which a style sheet can tell from other text.
+    pub(super) fn axis_title(&mut self, at: [f64; 2], anchor: Anchor, text: &str) {
+        self.styled_text(at, anchor, text, "ink axis-title", "");
     }
 
     pub(super) fn bold_text(&mut self, at: [f64; 2], text: &str) {
-        self.styled_text(at, Anchor::Start, text, " font-weight=\"600\"");
+        self.styled_text(at, Anchor::Start, text, "ink", " font-weight=\"600\"");
     }
 
-    fn styled_text(&mut self, [x, y]: [f64; 2], anchor: Anchor, text: &str, style: &str) {
+    fn styled_text(&mut self, [x, y]: [f64; 2], anchor: Anchor, text: &str, class: &str, style: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -102,7 +107,7 @@ impl Canvas {
         };
         let text = escape(text);
         self.put(format_args!(
-            r##"<text class="ink" x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" fill="#1f2933"{style}>{text}</text>"##
+            r##"<text class="{class}" x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" fill="#1f2933"{style}>{text}</text>"##
         ));
     }
 

@@ -1,8 +1,8 @@
-//! The original formulation beside the adjoint one, in words.
+//! The original formulation beside the adjoint one, in words that the numbers choose.
 
-use super::numbers::{mm, number};
+use super::numbers::{mm, number, percent, stated};
 use crate::parameters::Formulation;
-use crate::reproduce::{Basin, Reproduction, Run, Seen};
+use crate::reproduce::{Basin, Efficiency, Reproduction, Run, Seen};
 use crate::solve::Method;
 
 /// Without noise, with noise, with offsets, from afar: a paragraph for each that the findings can tell.
@@ -21,48 +21,88 @@ fn run(found: &Reproduction, formulation: Formulation, seen: Seen, offsets: bool
 }
 
 fn without_noise(found: &Reproduction) -> Option<String> {
-    let iterations = |formulation, seen| run(found, formulation, seen, false).map(|run| run.iterations);
-    let error = |seen| run(found, Formulation::Screw, seen, false).map(|run| mm(run.held_out_rms_m));
+    let pair = |seen| {
+        Some((run(found, Formulation::Screw, seen, false)?, run(found, Formulation::Adjoint, seen, false)?))
+    };
+    let (poses, points) = (pair(Seen::Poses)?, pair(Seen::Points)?);
+    let as_good = |(screw, adjoint): (&Run, &Run)| {
+        screw.converged && adjoint.converged && screw.iterations <= adjoint.iterations + 1
+    };
+    let verdict = if as_good(poses) && as_good(points) { "are as good" } else { "are not as good" };
+    let end = |run: &Run| if run.converged { "" } else { " (not converged)" };
+    let words = |(screw, adjoint): (&Run, &Run), seen: Seen| {
+        format!(
+            "from {} {} iterations{} to a held-out error of {} mm (`adjoint`: {}{})",
+            seen.word(),
+            screw.iterations,
+            end(screw),
+            mm(screw.held_out_rms_m),
+            adjoint.iterations,
+            end(adjoint)
+        )
+    };
     Some(format!(
-        "Without noise and offsets, free screws that are normalised after each step (`screw`) are as good: {} iterations from poses and {} \
-         from points (`adjoint`: {} and {}), to held-out errors of {} and {} mm.",
-        iterations(Formulation::Screw, Seen::Poses)?,
-        iterations(Formulation::Screw, Seen::Points)?,
-        iterations(Formulation::Adjoint, Seen::Poses)?,
-        iterations(Formulation::Adjoint, Seen::Points)?,
-        error(Seen::Poses)?,
-        error(Seen::Points)?
+        "Without noise and offsets, free screws that are normalised after each step (`screw`) {verdict}: {}, {}.",
+        words(poses, Seen::Poses),
+        words(points, Seen::Points)
     ))
 }
 
 fn with_noise(found: &Reproduction) -> Option<String> {
-    let ratio = |formulation, seen| {
-        let way = |it: &&crate::reproduce::Efficiency| {
+    let fits = |formulation, seen| {
+        let way = |it: &&Efficiency| {
             (it.formulation, it.measurement, it.residual.as_str(), it.method.as_str())
                 == (formulation, seen, "tool", Method::GaussNewton.word())
         };
-        found.efficiency.iter().find(way).map(|it| number(it.ratio))
+        found.efficiency.iter().find(way)
     };
+    let (mut told, mut worse) = (Vec::new(), 0);
+    for seen in [Seen::Poses, Seen::Points] {
+        let (screw, adjoint) = (fits(Formulation::Screw, seen)?, fits(Formulation::Adjoint, seen)?);
+        let verdict = if screw.exceeds(adjoint) {
+            worse += 1;
+            "`screw` is worse"
+        } else if adjoint.exceeds(screw) {
+            "`screw` is better"
+        } else {
+            "there are too few trials to tell"
+        };
+        told.push(format!(
+            "From {}, {verdict}: {} times the Cramér-Rao bound, `adjoint` {} times.",
+            seen.word(),
+            with_chance(screw),
+            with_chance(adjoint)
+        ));
+    }
+    let reason = " The six free numbers of an axis contain its length, which acts as a gear factor, and its pitch; the data pay for \
+                  estimating both, and the normalisation throws them away.";
     Some(format!(
-        "With noise they are not: the held-out error of `screw` is {} times the Cramér-Rao bound from poses and {} times from points, that of \
-         `adjoint` {} and {}. The six free numbers of an axis contain its length, which acts as a gear factor, and its pitch; the data pay \
-         for estimating both, and the normalisation throws them away.",
-        ratio(Formulation::Screw, Seen::Poses)?,
-        ratio(Formulation::Screw, Seen::Points)?,
-        ratio(Formulation::Adjoint, Seen::Poses)?,
-        ratio(Formulation::Adjoint, Seen::Points)?
+        "With noise, the held-out errors are compared. {} The number after ± is one standard deviation of chance; a difference counts from three on.{}",
+        told.join(" "),
+        if worse == told.len() { reason } else { "" }
     ))
+}
+
+fn with_chance(it: &Efficiency) -> String {
+    format!("{:.3} ± {:.3}", it.ratio, it.ratio_sigma)
 }
 
 fn with_offsets(found: &Reproduction) -> Option<String> {
     let of = |formulation| run(found, formulation, Seen::Poses, true);
     let (original, adjoint) = (of(Formulation::ScrewOffsets)?, of(Formulation::Adjoint)?);
+    let verdict = match (original.converged, adjoint.converged) {
+        (true, true) => "predicts as well as `adjoint` without any",
+        (true, false) => "predicts better than `adjoint` without any",
+        (false, _) => "does not reach the truth",
+    };
     Some(format!(
-        "With joint offsets in the truth, the original (`screw-offsets`) predicts as well as `adjoint` without any ({} and {} mm held out), \
-         and its offsets are up to {} deg off the prescribed ones: what it adds are columns without rank.",
+        "With joint offsets in the truth, the original (`screw-offsets`) {verdict} (held out {} mm, `adjoint` {} mm), and its offsets are \
+         up to {} deg off the prescribed ones: {} of its {} columns add no rank.",
         mm(original.held_out_rms_m),
         mm(adjoint.held_out_rms_m),
-        number(original.offset_error_max_deg?)
+        number(original.offset_error_max_deg?),
+        original.parameters.saturating_sub(original.rank),
+        original.parameters
     ))
 }
 
@@ -75,15 +115,22 @@ fn from_afar(found: &Reproduction) -> Option<String> {
                 && row.error_deg == furthest
         })
     };
-    let original = row(Formulation::Screw, Method::GaussNewton)?;
-    let share = |row: &Basin| number(100.0 * row.share);
+    let (screw, adjoint) =
+        (row(Formulation::Screw, Method::GaussNewton)?, row(Formulation::Adjoint, Method::GaussNewton)?);
+    let verdict = if screw.exceeds(adjoint) {
+        "the original is better"
+    } else if adjoint.exceeds(screw) {
+        "the original is worse"
+    } else {
+        "these starts tell no difference"
+    };
     Some(format!(
-        "From afar the original is no worse: from {} deg and {} mm, with points, plain Gauss-Newton reaches the truth from {} % of the starts \
-         with `screw` and from {} % with `adjoint`; Levenberg-Marquardt with `adjoint` from {} %.",
-        number(original.error_deg),
-        number(original.error_mm),
-        share(original),
-        share(row(Formulation::Adjoint, Method::GaussNewton)?),
-        share(row(Formulation::Adjoint, Method::LevenbergMarquardt)?)
+        "From afar {verdict}: from {} deg and {} mm, with points, plain Gauss-Newton reaches the truth from {} of the starts with `screw` \
+         and from {} with `adjoint`; Levenberg-Marquardt with `adjoint` from {}.",
+        stated(screw.error_deg),
+        stated(screw.error_mm),
+        percent(screw.share),
+        percent(adjoint.share),
+        percent(row(Formulation::Adjoint, Method::LevenbergMarquardt)?.share)
     ))
 }

@@ -1,7 +1,7 @@
 //! The figures of the report.
 
 use super::document::Figure;
-use super::numbers::number;
+use super::numbers::stated;
 use super::tables::distinct;
 use crate::parameters::Formulation;
 use crate::report::plot::{Axis, DotPlot, Dots, Line, LinePlot, Mark, NamedPlot, Scale};
@@ -12,6 +12,8 @@ const SEEN: [Seen; 2] = [Seen::Poses, Seen::Points];
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// From this ratio on, an axis of ratios is logarithmic.
 const WIDE_RATIO: f64 = 10.0;
+/// An axis of shares goes from here, or from the least share, to 1.
+const LEAST_SHARE: f64 = 0.9;
 
 /// The style of a formulation, the same in every figure.
 fn style(formulation: Formulation) -> usize {
@@ -207,7 +209,7 @@ pub(super) fn spectra(found: &Reproduction) -> Figure {
     Figure {
         caption: format!(
             "Figure 5. Singular values at the identified robot as shares of the largest. A dashed line marks the gap: singular values beyond it are rounding. A radian counts as {} m.",
-            number(found.length_m)
+            stated(found.length_m)
         ),
         plots: found.spectra.iter().filter(|it| it.at == "identified").enumerate().map(plot).collect(),
     }
@@ -269,15 +271,15 @@ pub(super) fn basin(found: &Reproduction) -> Figure {
         let plot = LinePlot {
             description: format!("{title}: share by the error of the start, a line for each formulation."),
             title,
-            x: Axis::new("error of each axis at the start, deg", Scale::Linear).including(&[0.0]),
-            y: Axis::new("share of starts", Scale::Linear).including(&[0.0, 1.0]),
+            x: Axis::new("error of each axis, deg", Scale::Linear).including(&[0.0]),
+            y: Axis::new("share of starts", Scale::Linear).including(&[LEAST_SHARE, 1.0]),
             lines: distinct(here().map(|row| row.formulation)).into_iter().map(line).collect(),
             mark: None,
         };
         named_lines(format!("7-basin-{}-{}", seen.word(), k + 1), plot)
     };
     Figure {
-        caption: "Figure 7. Share of random starts from which the truth is reached, without noise."
+        caption: "Figure 7. Share of starts from which the truth is reached, without noise. The axis of shares does not begin at 0."
             .to_owned(),
         plots: panels.iter().enumerate().map(plot).collect(),
     }

@@ -41,31 +41,39 @@ fn with_code(text: &str) -> String {
 fn write_table(out: &mut String, table: &Table) {
     // The box scrolls on narrow screens, and is reached by the keyboard.
     let caption = escape(&table.caption);
+    // Sentences in columns are too wide for a narrow screen: there each row becomes a block of labelled cells.
+    let sentences = table.rows.iter().flatten().any(|cell| is_long(cell));
+    let class = if sentences { " class=\"sentences\"" } else { "" };
     let _ = writeln!(
         out,
-        "<p class=\"caption\">{caption}</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{caption}\"><table>"
+        "<p class=\"caption\">{caption}</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{caption}\"><table{class}>"
     );
-    let row = |name: &str, cells: Vec<String>| {
-        let cells = cells.iter().enumerate().map(|(k, cell)| {
-            let class = match (k < table.words, cell.chars().count() > LONG) {
+    out.push_str("<thead><tr>");
+    for (k, name) in table.head.iter().enumerate() {
+        let class = if k < table.words { "" } else { " class=\"number\"" };
+        let _ = write!(out, "<th{class}>{}</th>", escape(name));
+    }
+    out.push_str("</tr>\n</thead>\n<tbody>\n");
+    for cells in &table.rows {
+        out.push_str("<tr>");
+        for (k, (cell, name)) in cells.iter().zip(&table.head).enumerate() {
+            let class = match (k < table.words, is_long(cell)) {
                 (true, true) => " class=\"long\"",
                 (true, false) => "",
                 (false, _) => " class=\"number\"",
             };
-            format!("<{name}{class}>{}</{name}>", escape(cell))
-        });
-        format!("<tr>{}</tr>\n", cells.collect::<String>())
-    };
-    let head = row("th", table.head.clone());
-    let _ = write!(out, "<thead>{head}</thead>\n<tbody>\n");
-    for cells in &table.rows {
-        out.push_str(&row("td", cells.clone()));
+            let label = if sentences { format!(" data-label=\"{}\"", escape(name)) } else { String::new() };
+            let _ = write!(out, "<td{class}{label}>{}</td>", escape(cell));
+        }
+        out.push_str("</tr>\n");
     }
     out.push_str("</tbody>\n</table></div>\n");
 }
 
-/// Characters from which on a cell holds a sentence, which needs room.
-const LONG: usize = 30;
+/// Whether a cell holds a sentence, which needs room.
+fn is_long(cell: &str) -> bool {
+    cell.chars().count() > 30
+}
 
 fn write_figure(out: &mut String, figure: &Figure) {
     out.push_str("<figure>\n<div class=\"plots\">\n");

@@ -1,19 +1,28 @@
 //! The tables of the report. Lengths in millimetres, as in the paper.
 
 use super::document::Table;
-use super::numbers::{four_decimals, mm, number, number_or_dash, yes_no};
+use super::numbers::{four_decimals, mm, number, number_or_dash, percent, stated, yes_no};
 use crate::parameters::Formulation;
 use crate::reproduce::{Reproduction, ScrewRow, Seen};
 
 pub(super) fn claims(found: &Reproduction) -> Table {
+    statements(found, true, "Table 1. What the paper says.", "claim")
+}
+
+pub(super) fn left_out(found: &Reproduction) -> Table {
+    statements(found, false, "Table 2. What the paper leaves out.", "finding")
+}
+
+fn statements(found: &Reproduction, said_by_paper: bool, caption: &str, what: &str) -> Table {
     let row = |claim: &crate::reproduce::Claim| {
-        vec![claim.claim.clone(), claim.paper.clone(), claim.measured.clone(), yes_no(claim.holds)]
+        let cells = [&claim.claim, &claim.paper, &claim.measured, &claim.criterion];
+        cells.into_iter().cloned().chain([yes_no(claim.holds)]).collect()
     };
     Table {
-        caption: "Table 1. Claims.".to_owned(),
-        head: words(&["claim", "the paper", "measured", "holds"]),
-        rows: found.claims.iter().map(row).collect(),
-        words: 4,
+        caption: caption.to_owned(),
+        head: words(&[what, "the paper", "measured", "holds if", "holds"]),
+        rows: found.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper).map(row).collect(),
+        words: 5,
     }
 }
 
@@ -35,7 +44,7 @@ pub(super) fn runs(found: &Reproduction) -> Table {
         ]
     };
     Table {
-        caption: "Table 2. Runs of plain Gauss-Newton from the nominal screws, with joint offsets in the true robot or noise in the measurements, both or none. Rank is of the paper's own matrix, unknowns are those solved for. The held-out error is the RMS distance to the truth on configurations that were not measured; the screw error is the largest of any coordinate (m for v, no unit for ω), as it stands and with all joint offsets moved into the screws. Rows are the measurements fitted.".to_owned(),
+        caption: "Table 3. Runs of plain Gauss-Newton from the nominal screws, with joint offsets in the true robot or noise in the measurements, both or none. Rank is of the paper's own matrix, unknowns are those solved for. The held-out error is the RMS distance to the truth on configurations that were not measured; the screw error is the largest of any coordinate (m for v, no unit for ω), as it stands and with all joint offsets moved into the screws. Rows are the measurements fitted.".to_owned(),
         head: words(&[
             "formulation", "seen", "with", "converged", "rows", "iterations",
             "unknowns", "rank", "held-out, mm", "screw error", "moved", "offset error, deg",
@@ -57,7 +66,7 @@ fn truth_words(offsets: bool, noise: bool) -> &'static str {
 
 pub(super) fn screws(found: &Reproduction) -> Table {
     Table {
-        caption: "Table 3. Screws beside Table II: v in mm, ω without unit. The last two columns are the largest differences from the prescribed screw.".to_owned(),
+        caption: "Table 4. Screws beside Table II: v in mm, ω without unit. The last two columns are the largest differences from the prescribed screw.".to_owned(),
         head: words(&["joint", "screw", "vx", "vy", "vz", "ωx", "ωy", "ωz", "v off, mm", "ω off"]),
         rows: found.screws.iter().flat_map(screw_rows).collect(),
         words: 2,
@@ -105,7 +114,7 @@ pub(super) fn point(found: &Reproduction) -> Table {
     let rows =
         [("nominal", &point.nominal), ("prescribed", &point.prescribed), ("from points", &point.from_points)];
     Table {
-        caption: "Table 4. The point P_c0 beside Table II, mm. The last column is the largest difference from the prescribed point.".to_owned(),
+        caption: "Table 5. The point P_c0 beside Table II, mm. The last column is the largest difference from the prescribed point.".to_owned(),
         head: words(&["point", "x", "y", "z", "off"]),
         rows: rows.into_iter().map(row).collect(),
         words: 1,
@@ -118,7 +127,7 @@ pub(super) fn offsets(found: &Reproduction) -> Table {
         std::iter::once(row.joint.clone()).chain(numbers.map(four_decimals)).collect()
     };
     Table {
-        caption: "Table 5. Joint offsets, deg.".to_owned(),
+        caption: "Table 6. Joint offsets, deg.".to_owned(),
         head: words(&["joint", "prescribed", "screw-offsets", "adjoint-offsets"]),
         rows: found.offsets.iter().map(row).collect(),
         words: 1,
@@ -138,7 +147,7 @@ pub(super) fn ranks(found: &Reproduction) -> Table {
         ]
     };
     Table {
-        caption: "Table 6. Ranks: singular values above 1e-9 of the largest, and those on both sides of the gap as shares of the largest.".to_owned(),
+        caption: "Table 7. Ranks: singular values above 1e-9 of the largest, and those on both sides of the gap as shares of the largest.".to_owned(),
         head: words(&["matrix", "at", "columns", "rank", "last above the gap", "first below"]),
         rows: found.spectra.iter().map(row).collect(),
         words: 2,
@@ -150,17 +159,18 @@ pub(super) fn efficiency(found: &Reproduction) -> Table {
         vec![
             row.formulation.word().to_owned(),
             row.measurement.word().to_owned(),
-            row.residual.clone(),
+            residual(row.measurement, &row.residual),
             row.method.clone(),
             row.trials.to_string(),
             row.converged.to_string(),
             mm(row.held_out_rms_m),
             mm(row.bound_rms_m),
             four_decimals(row.ratio),
+            four_decimals(row.ratio_sigma),
         ]
     };
     Table {
-        caption: "Table 7. Accuracy with noise. Error and bound are RMS over the fits that converged."
+        caption: "Table 8. Accuracy with noise. Error and bound are RMS over the fits that converged; ± is one standard deviation of the ratio by chance. Points have one residual only."
             .to_owned(),
         head: words(&[
             "formulation",
@@ -172,6 +182,7 @@ pub(super) fn efficiency(found: &Reproduction) -> Table {
             "held-out, mm",
             "bound, mm",
             "ratio",
+            "±",
         ]),
         rows: found.efficiency.iter().map(row).collect(),
         words: 4,
@@ -180,37 +191,43 @@ pub(super) fn efficiency(found: &Reproduction) -> Table {
 
 pub(super) fn basin(found: &Reproduction) -> Table {
     let sizes = distinct(found.basin.iter().map(|row| (row.error_deg, row.error_mm)));
-    let fits =
-        distinct(found.basin.iter().map(|row| (row.formulation, row.measurement, row.method.as_str())));
-    let row = |(formulation, seen, method): &(Formulation, Seen, &str)| {
-        let here = || {
-            let fit = (*formulation, *seen, *method);
-            found
-                .basin
-                .iter()
-                .filter(move |row| (row.formulation, row.measurement, row.method.as_str()) == fit)
-        };
+    let fit = |row: &crate::reproduce::Basin| {
+        (row.formulation, row.measurement, residual(row.measurement, &row.residual), row.method.clone())
+    };
+    let fits = distinct(found.basin.iter().map(fit));
+    let row = |chosen: &(Formulation, Seen, String, String)| {
+        let here = || found.basin.iter().filter(|row| fit(row) == *chosen);
+        let (formulation, seen, residual, method) = chosen;
         let trials = here().map(|row| row.trials).min().unwrap_or_default();
         let mut cells = vec![
             formulation.word().to_owned(),
             seen.word().to_owned(),
-            (*method).to_owned(),
+            residual.clone(),
+            method.clone(),
             trials.to_string(),
         ];
         cells.extend(sizes.iter().map(|size| {
             let share = here().find(|row| (row.error_deg, row.error_mm) == *size).map(|row| row.share);
-            number_or_dash(share)
+            share.map_or_else(|| "–".to_owned(), percent)
         }));
         cells
     };
-    let mut head = words(&["formulation", "seen", "method", "starts"]);
-    head.extend(sizes.iter().map(|(deg, mm)| format!("{deg} deg, {mm} mm")));
+    let mut head = words(&["formulation", "seen", "residual", "method", "starts"]);
+    head.extend(sizes.iter().map(|(deg, mm)| format!("{} deg, {} mm", stated(*deg), stated(*mm))));
     Table {
-        caption: "Table 8. Share of random starts that reach the truth, by the error of the start."
+        caption: "Table 9. Share of starts that reach the truth, by how far each axis and the tip is off."
             .to_owned(),
         head,
         rows: fits.iter().map(row).collect(),
-        words: 3,
+        words: 4,
+    }
+}
+
+/// The residual of poses; points have one only.
+fn residual(seen: Seen, word: &str) -> String {
+    match seen {
+        Seen::Poses => word.to_owned(),
+        Seen::Points => "–".to_owned(),
     }
 }
 
