@@ -5,12 +5,14 @@ mod doubts;
 mod fit;
 mod judge;
 mod noise;
+mod robust;
 mod split;
 
 pub use accuracy::{Accuracy, ModelAccuracy, RowError, SetAccuracy, Statistic, row_errors, set_accuracy};
 pub use fit::fit_screws;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
+pub use robust::{Loss, Robust, Robustness, RowJudgement};
 pub use split::split_rows;
 
 use crate::analysis::{Identifiability, identifiability};
@@ -57,6 +59,8 @@ pub struct CalibrationOptions {
     pub formulation: Formulation,
     /// How the errors of measured frames are written. The paper's is for comparison.
     pub pose_residual: PoseResidual,
+    /// What to do about grossly wrong rows.
+    pub robust: Robust,
     /// Options of the solver.
     pub solver: solve::Options,
     /// Further starts tried when the fit looks as if it ended beside the optimum.
@@ -73,6 +77,7 @@ impl Default for CalibrationOptions {
             seed: 1,
             formulation: Formulation::default(),
             pose_residual: PoseResidual::default(),
+            robust: Robust::default(),
             solver: solve::Options::default(),
             restarts: 24,
         }
@@ -180,6 +185,8 @@ pub struct Calibration {
     pub noise: Noise,
     /// Where that noise came from.
     pub noise_source: NoiseSource,
+    /// What was done about outliers, and what the fit says of each row.
+    pub robustness: Robustness,
     /// What makes the result doubtful, a sentence each.
     pub warnings: Vec<String>,
     /// Rows fitted.
@@ -242,28 +249,35 @@ pub fn calibrate_with_progress(
     let delivered = delivered(robot, data);
     let length_m = radian_m(robot, &packed);
     let (mut noise, source) = noise::first_guess(data, options);
-    let registration = |noise: Noise, targets_free: bool| Registration {
+    let registration = |rows, noise: Noise, targets_free: bool| Registration {
         data,
         packed: &packed,
-        rows: &fit_rows,
+        rows,
         noise,
         length_m,
         device_free: options.frame == DeviceFrameKnowledge::Unknown,
         targets_free,
     };
     progress(Stage::Registration);
-    let (mut registered, _) = register(&registration(noise, true), &delivered);
+    let (mut registered, _) = register(&registration(&fit_rows, noise, true), &delivered);
     if source == NoiseSource::Estimated
         && let Some(found) = estimate_noise(data, &packed, &fit_rows, &registered, 6, noise)
     {
         noise = noise::stated(options, found);
-        registered = register_again(&registration(noise, true), &registered);
+        registered = register_again(&registration(&fit_rows, noise, true), &registered);
     }
     progress(Stage::Fit);
-    let task = fit::Task { robot, data, packed: &packed, rows: &fit_rows, length_m, options };
-    let fitted = fit::fit(&task, &registered, noise, source)?;
+    let task =
+        fit::Task { robot, data, packed: &packed, rows: &fit_rows, weights: None, length_m, options };
+    let robust::RobustFit { fitted, loss, rows } =
+        robust::fit(&task, &registration(&fit_rows, noise, true), &registered, source)?;
     progress(Stage::Analysis);
-    let nominal = register(&registration(fitted.noise, false), &delivered).0;
+    let mut kept = fit_rows.clone();
+    if loss.is_some() {
+        kept = robust::registrable(&rows, &fit_rows);
+        registered = register(&registration(&kept, fitted.noise, true), &delivered).0;
+    }
+    let nominal = register(&registration(&kept, fitted.noise, false), &delivered).0;
     let found = fitted.estimate.without_offsets();
     let calibrated = match options.frame {
         DeviceFrameKnowledge::Unknown => {
@@ -278,7 +292,11 @@ pub fn calibrate_with_progress(
         training: set_accuracy(data, &packed, &fit_rows, &models),
         held_out: (!held_out_rows.is_empty()).then(|| set_accuracy(data, &packed, &held_out_rows, &models)),
     };
-    let warnings = doubts::doubts(data, &fit_rows, &accuracy.training.registered, options.frame);
+    let mut warnings = doubts::doubts(data, &fit_rows, &accuracy.training.registered, options.frame);
+    let robustness = Robustness::new(loss, rows, [&fit_rows, &held_out_rows], |rows| {
+        set_accuracy(data, &packed, rows, &models)
+    });
+    warnings.extend(robustness.warning(&fit_rows, &held_out_rows));
     let (calibrated_robot, targets) = place_tip(robot, data, &data.frames(&fit_rows), &models.calibrated);
     Ok(Calibration {
         nominal: robot.clone(),
@@ -295,6 +313,7 @@ pub fn calibrate_with_progress(
         identifiability,
         noise: fitted.noise,
         noise_source: fitted.noise_source,
+        robustness,
         warnings,
         fit_rows,
         held_out_rows,

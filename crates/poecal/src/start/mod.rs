@@ -5,4 +5,4 @@ mod hand_eye;
 mod registration;
 
 pub(crate) use registration::target_parameters;
-pub use registration::{Registration, register, register_again};
+pub use registration::{Registration, register, register_again, register_robustly};
