@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use poecal::calibration::{Loss, Robust};
 use poecal::io::measurements::{ColumnMap, ReadOptions};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
@@ -152,6 +153,33 @@ impl From<ResidualWord> for PoseResidual {
     }
 }
 
+/// What to do about grossly wrong rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RobustWord {
+    /// Least squares, unless outliers are evident: then the tukey loss, and a warning
+    Auto,
+    /// Least squares: every row counts in full
+    Off,
+    /// Far rows pull no more than near ones
+    Huber,
+    /// Far rows pull less the farther they are
+    Cauchy,
+    /// Far rows do not pull
+    Tukey,
+}
+
+impl From<RobustWord> for Robust {
+    fn from(word: RobustWord) -> Self {
+        match word {
+            RobustWord::Auto => Robust::Auto,
+            RobustWord::Off => Robust::Off,
+            RobustWord::Huber => Robust::Loss(Loss::Huber),
+            RobustWord::Cauchy => Robust::Loss(Loss::Cauchy),
+            RobustWord::Tukey => Robust::Loss(Loss::Tukey),
+        }
+    }
+}
+
 /// By which steps to minimise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MethodWord {
@@ -197,6 +225,9 @@ pub(crate) struct Calibrate {
     /// Seed of that choice [default: 1]
     #[arg(long, value_parser = whole::<u64>)]
     pub(crate) seed: Option<u64>,
+    /// What to do about grossly wrong rows: auto fits by least squares, and by the tukey loss where that shows outliers
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) robust: RobustWord,
     /// How errors of the joints are written; all but the default are for comparison
     #[arg(long, value_enum, default_value = "adjoint", help_heading = "Comparison")]
     pub(crate) formulation: FormulationWord,

@@ -1,9 +1,7 @@
 //! Grossly wrong rows: what they do to a fit, whether they are found, and that clean data are left alone.
 
 use nalgebra::Vector3;
-use poecal::calibration::{
-    Calibration, CalibrationOptions, Loss, Robust, calibrate, row_errors,
-};
+use poecal::calibration::{Calibration, CalibrationOptions, Loss, Robust, calibrate, row_errors};
 use poecal::estimate::Packed;
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
@@ -77,7 +75,12 @@ struct Tally {
     missed_auto: usize,
 }
 
-fn run(robots: &[(&str, Robot)], share: f64, seeds: std::ops::Range<u64>, robust: Robust) -> Vec<(String, Tally)> {
+fn run(
+    robots: &[(&str, Robot)],
+    share: f64,
+    seeds: std::ops::Range<u64>,
+    robust: Robust,
+) -> Vec<(String, Tally)> {
     let mut out = vec![];
     for (name, robot) in robots {
         for kind in [Kind::Pose, Kind::Point] {
@@ -118,7 +121,13 @@ fn explore() {
         for (name, t) in run(&robots(), share, 0..12, Robust::Auto) {
             println!(
                 "{share} {name}: ratio {:.3} worst {:.2} found {}/{} false {}/{} missed {}",
-                (t.spoilt_squares / t.clean_squares).sqrt(), t.worst, t.found, t.gross, t.false_alarms, t.clean, t.missed_auto
+                (t.spoilt_squares / t.clean_squares).sqrt(),
+                t.worst,
+                t.found,
+                t.gross,
+                t.false_alarms,
+                t.clean,
+                t.missed_auto
             );
         }
         println!("{:?}", start.elapsed());

@@ -267,8 +267,7 @@ pub fn calibrate_with_progress(
         registered = register_again(&registration(&fit_rows, noise, true), &registered);
     }
     progress(Stage::Fit);
-    let task =
-        fit::Task { robot, data, packed: &packed, rows: &fit_rows, weights: None, length_m, options };
+    let task = fit::Task { robot, data, packed: &packed, rows: &fit_rows, weights: None, length_m, options };
     let robust::RobustFit { fitted, loss, rows } =
         robust::fit(&task, &registration(&fit_rows, noise, true), &registered, source)?;
     progress(Stage::Analysis);

@@ -4,6 +4,7 @@ mod check;
 mod claims;
 mod judgement;
 mod offsets;
+mod outliers;
 mod plot;
 mod reproduction;
 mod table;

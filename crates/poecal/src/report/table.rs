@@ -28,6 +28,7 @@ pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
     out.push('\n');
     out.push_str(&accuracy_table(&calibration.accuracy.training, calibration.accuracy.held_out.as_ref()));
     out.push('\n');
+    out.push_str(&super::outliers::suspected(calibration, data));
     let found = &calibration.identifiability;
     let condition = if found.condition.is_finite() {
         format!(", condition {:.3e}", found.condition)

@@ -87,7 +87,14 @@ fn least_distances(problem: &Registration<'_>, start: Estimate) -> (Estimate, f6
     let free = free_parameters(problem, problem.rows);
     let options = Options { iterations: 5, trust: 10.0, ..Options::default() };
     let unweighted = |rows: &[u32]| {
-        Problem::new(problem.data, problem.packed, rows.to_vec(), free.clone(), problem.noise, problem.length_m)
+        Problem::new(
+            problem.data,
+            problem.packed,
+            rows.to_vec(),
+            free.clone(),
+            problem.noise,
+            problem.length_m,
+        )
     };
     let mut estimate = start;
     let mut weights = vec![0.0; problem.data.len()];

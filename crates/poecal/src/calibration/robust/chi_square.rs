@@ -60,9 +60,14 @@ mod tests {
     /// Quantiles as tables print them.
     #[test]
     fn quantiles_agree_with_tables() {
-        for (probability, freedom, table) in
-            [(0.05, 1, 3.841), (0.05, 2, 5.991), (0.05, 3, 7.815), (0.001, 3, 16.266), (0.01, 5, 15.086), (0.001, 6, 22.458)]
-        {
+        for (probability, freedom, table) in [
+            (0.05, 1, 3.841),
+            (0.05, 2, 5.991),
+            (0.05, 3, 7.815),
+            (0.001, 3, 16.266),
+            (0.01, 5, 15.086),
+            (0.001, 6, 22.458),
+        ] {
             let found = upper_quantile(probability, freedom);
             println!("{probability} {freedom}: {found:.4}, table {table}");
             assert!((found - table).abs() < 6e-4);

@@ -177,7 +177,6 @@ pub(super) fn judge_rows(
 
 /// The rows by which devices and targets are registered for the table: without those suspected, unless that would leave too few.
 pub(in crate::calibration) fn registrable(robustness: &[RowJudgement], rows: &[u32]) -> Vec<u32> {
-    let kept: Vec<u32> =
-        rows.iter().copied().filter(|&row| !robustness[row as usize].suspected).collect();
+    let kept: Vec<u32> = rows.iter().copied().filter(|&row| !robustness[row as usize].suspected).collect();
     if kept.len() * 2 > rows.len() { kept } else { rows.to_vec() }
 }

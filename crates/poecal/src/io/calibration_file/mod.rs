@@ -1,8 +1,10 @@
 //! `calibration.json`: a finished calibration as a file, versioned, with everything that a prediction needs.
 
 mod judging;
+mod outliers;
 mod schema;
 
+pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use schema::*;
 
 use std::collections::BTreeMap;
@@ -60,6 +62,8 @@ impl CalibrationFile {
                     })
                     .collect(),
             },
+            robust: RobustEntry::of(calibration),
+            outliers: OutlierEntry::of(calibration, data),
             warnings: calibration.warnings.clone(),
             noise: NoiseEntry {
                 sigma_position_mm: calibration.noise.position_m * 1e3,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::{OutlierEntry, RobustEntry};
 use crate::calibration::{Accuracy, NoiseSource};
 use crate::measurement::PoseResidual;
 use crate::parameters::Formulation;
@@ -34,6 +35,12 @@ pub struct CalibrationFile {
     pub identifiability: IdentifiabilityEntry,
     /// Noise by which residuals were weighted.
     pub noise: NoiseEntry,
+    /// What was done about grossly wrong rows.
+    #[serde(default)]
+    pub robust: RobustEntry,
+    /// The rows that are suspected, the worst first, at most 1,000; `robust` has their number.
+    #[serde(default)]
+    pub outliers: Vec<OutlierEntry>,
     /// What makes the result doubtful, a sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
