@@ -47,7 +47,7 @@ pub(crate) enum Command {
     Convert(Convert),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
-    /// Repeat the experiment of a paper, and check its claims
+    /// Repeat the experiment of a paper and check its claims, or show what gross errors do
     Reproduce(Reproduce),
     /// Print the JSON Schema of calibration.json
     Schema,
@@ -453,23 +453,25 @@ pub(crate) struct Offsets {
     pub(crate) out: Option<PathBuf>,
 }
 
-/// The papers whose experiments can be repeated.
+/// The experiments that can be repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Paper {
+pub(crate) enum Experiment {
     /// Lou, Chen, Wu, Li, Jiang 2009: POE calibration of an elbow manipulator
     Lou2009,
+    /// What a growing share of gross errors does to a calibration, with least squares and with each robust loss
+    Breakdown,
 }
 
 /// Arguments of `poecal reproduce`.
 #[derive(Args, Debug)]
 pub(crate) struct Reproduce {
-    /// The paper
+    /// The experiment
     #[arg(value_enum)]
-    pub(crate) paper: Paper,
-    /// Noisy sessions by which formulations are compared
+    pub(crate) experiment: Experiment,
+    /// Sessions by which formulations, or losses, are compared
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) trials: u32,
-    /// Random starts for each formulation and size of error
+    /// Random starts for each formulation and size of error (lou2009)
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) starts: u32,
     /// Seed of everything random

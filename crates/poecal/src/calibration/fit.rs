@@ -67,7 +67,7 @@ pub(super) struct Fitted {
 }
 
 /// All screws and targets: what a fit with a settled device frame frees.
-fn free_parameters(
+pub(super) fn free_parameters(
     estimate: &Estimate,
     data: &Dataset,
     rows: &[u32],

@@ -12,7 +12,7 @@ pub use accuracy::{Accuracy, ModelAccuracy, RowError, SetAccuracy, Statistic, ro
 pub use fit::fit_screws;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
-pub use robust::{Loss, Robust, Robustness, RowJudgement};
+pub use robust::{Loss, Robust, Robustness, RowJudgement, row_influence};
 pub use split::split_rows;
 
 use crate::analysis::{Identifiability, identifiability};
@@ -268,12 +268,12 @@ pub fn calibrate_with_progress(
     }
     progress(Stage::Fit);
     let task = fit::Task { robot, data, packed: &packed, rows: &fit_rows, weights: None, length_m, options };
-    let robust::RobustFit { fitted, loss, rows } =
+    let robust::RobustFit { fitted, loss, judged } =
         robust::fit(&task, &registration(&fit_rows, noise, true), &registered, source)?;
     progress(Stage::Analysis);
     let mut kept = fit_rows.clone();
     if loss.is_some() {
-        kept = robust::registrable(&rows, &fit_rows);
+        kept = robust::registrable(&judged.rows, &fit_rows);
         registered = register(&registration(&kept, fitted.noise, true), &delivered).0;
     }
     let nominal = register(&registration(&kept, fitted.noise, false), &delivered).0;
@@ -292,7 +292,7 @@ pub fn calibrate_with_progress(
         held_out: (!held_out_rows.is_empty()).then(|| set_accuracy(data, &packed, &held_out_rows, &models)),
     };
     let mut warnings = doubts::doubts(data, &fit_rows, &accuracy.training.registered, options.frame);
-    let robustness = Robustness::new(loss, rows, [&fit_rows, &held_out_rows], |rows| {
+    let robustness = Robustness::new(loss, judged, [&fit_rows, &held_out_rows], |rows| {
         set_accuracy(data, &packed, rows, &models)
     });
     warnings.extend(robustness.warning(&fit_rows, &held_out_rows));

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::calibration::{Calibration, RowError, RowJudgement, row_errors};
+use crate::analysis::Influence;
+use crate::calibration::{Calibration, RowError, RowJudgement, row_errors, row_influence};
 use crate::estimate::{Estimate, Packed};
 use crate::measurement::Dataset;
 
@@ -16,6 +17,7 @@ pub fn text(data: &Dataset, calibration: &Calibration) -> String {
     let nominal = of(&calibration.models.nominal);
     let registered = of(&calibration.models.registered);
     let calibrated = of(&calibration.models.calibrated);
+    let influences = row_influence(calibration, data, &rows);
     let mut held_out = vec![false; data.len()];
     for &row in &calibration.held_out_rows {
         held_out[row as usize] = true;
@@ -44,7 +46,8 @@ pub fn text(data: &Dataset, calibration: &Calibration) -> String {
         }
         write_rotations(&mut out, models, &calibrated[row]);
         if let Some(judged) = calibration.robustness.rows.get(row) {
-            let RowJudgement { weight, leverage, studentized, suspected } = judged;
+            let Influence { leverage, studentized } = influences[row];
+            let RowJudgement { weight, suspected } = judged;
             let _ = write!(out, ",{weight},{leverage},{studentized},{}", u8::from(*suspected));
         }
         out.push('\n');

@@ -1,5 +1,6 @@
 //! Results as text for people. No number here that is not in the result.
 
+mod breakdown;
 mod check;
 mod claims;
 mod judgement;
@@ -9,6 +10,7 @@ mod plot;
 mod reproduction;
 mod table;
 
+pub use breakdown::{breakdown_files, breakdown_table};
 pub use check::{Check, SetCounts};
 pub use claims::claims;
 pub use judgement::judgement;

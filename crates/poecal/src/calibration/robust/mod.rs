@@ -8,7 +8,7 @@ mod scale;
 
 pub use loss::{Loss, Robust};
 pub(super) use rows::registrable;
-pub use rows::{Robustness, RowJudgement};
+pub use rows::{Robustness, RowJudgement, row_influence};
 
 use super::fit::{Fitted, Found, Task};
 use super::noise::{NoiseSource, stated};
@@ -18,7 +18,7 @@ use crate::estimate::Estimate;
 use crate::measurement::Noise;
 use crate::solve;
 use crate::start::{Registration, register_robustly};
-use rows::{Bounds, is_judgeable, judge_rows};
+use rows::{Bounds, Judged, is_judgeable, judge_rows};
 use scale::{Parts, Scale, parts, settle};
 
 /// Most reweightings with one loss.
@@ -32,7 +32,7 @@ const SETTLED: f64 = 1e-3;
 pub(super) struct RobustFit {
     pub(super) fitted: Fitted,
     pub(super) loss: Option<Loss>,
-    pub(super) rows: Vec<RowJudgement>,
+    pub(super) judged: Judged,
 }
 
 /// Fits as the options ask: by least squares, by a robust loss, or by Tukey's where least squares shows outliers.
@@ -72,7 +72,7 @@ pub(super) fn fit(
 impl RobustFit {
     /// Whether a fitted row is suspected.
     fn is_evident(&self, task: &Task<'_>) -> bool {
-        task.rows.iter().any(|&row| self.rows[row as usize].suspected)
+        task.rows.iter().any(|&row| self.judged.rows[row as usize].suspected)
     }
 
     /// Whether the rows in the middle are missed by more than gears and links explain.
@@ -93,8 +93,8 @@ fn ordinary(
 ) -> Result<RobustFit> {
     let fitted = task.complete(found, registered, noise, source)?;
     let weights = vec![1.0; task.data.len()];
-    let rows = judge_rows(task, &fitted, &weights, None);
-    Ok(RobustFit { fitted, loss: None, rows })
+    let judged = judge_rows(task, &fitted, &weights, None);
+    Ok(RobustFit { fitted, loss: None, judged })
 }
 
 /// Whether some residual of a least squares fit is longer than normal noise, as its middle shows it, would make one row of a thousand
@@ -102,7 +102,7 @@ fn ordinary(
 fn shows_outliers(task: &Task<'_>, found: &Found, noise: Noise, source: NoiseSource) -> bool {
     let unknowns = found.normal.dim();
     let mut parts = parts(task.data, task.packed, task.rows, &found.estimate, noise);
-    if !is_judgeable(&parts, unknowns) {
+    if !is_judgeable(parts.iter(), unknowns) {
         return false;
     }
     let (_, scale) = settle(&mut parts, unknowns, noise, open(task, source));
@@ -244,7 +244,7 @@ impl Reweighted {
         };
         found.report.iterations += self.iterations;
         let fitted = weighted.finish(found, self.noise, source)?;
-        let rows = judge_rows(&weighted, &fitted, &self.weights, Some(loss));
-        Ok(RobustFit { fitted, loss: Some(loss), rows })
+        let judged = judge_rows(&weighted, &fitted, &self.weights, Some(loss));
+        Ok(RobustFit { fitted, loss: Some(loss), judged })
     }
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::calibration::{Calibration, Loss, RowError, SetAccuracy, row_errors};
+use crate::calibration::{Calibration, Loss, RowError, SetAccuracy, row_errors, row_influence};
 use crate::estimate::Packed;
 use crate::measurement::Dataset;
 
@@ -74,17 +74,16 @@ impl OutlierEntry {
     #[must_use]
     pub fn of(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
         let robustness = &calibration.robustness;
-        let judged = |row: &u32| robustness.rows.get(*row as usize);
-        let mut rows: Vec<u32> = robustness.suspects().collect();
-        if rows.is_empty() {
-            return Vec::new();
-        }
-        let studentized = |row: &u32| judged(row).map_or(0.0, |judged| judged.studentized);
-        rows.sort_by(|a, b| studentized(b).total_cmp(&studentized(a)).then(a.cmp(b)));
+        let rows: Vec<u32> = robustness.suspects().collect();
+        let influences = row_influence(calibration, data, &rows);
+        let mut rows: Vec<(u32, f64)> =
+            rows.into_iter().zip(influences.iter().map(|influence| influence.studentized)).collect();
+        rows.sort_by(|(a, first), (b, second)| second.total_cmp(first).then(a.cmp(b)));
         rows.truncate(LISTED);
+        let numbers: Vec<u32> = rows.iter().map(|(row, _)| *row).collect();
         let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
-        let errors = row_errors(data, &packed, &rows, &calibration.models.calibrated);
-        let entry = |(row, error): (&u32, &RowError)| {
+        let errors = row_errors(data, &packed, &numbers, &calibration.models.calibrated);
+        let entry = |((row, studentized), error): (&(u32, f64), &RowError)| {
             let source = data.observations[*row as usize].source;
             let file = data.files.get(source.file as usize);
             let held_out = calibration.held_out_rows.binary_search(row).is_ok();
@@ -94,8 +93,8 @@ impl OutlierEntry {
                 set: if held_out { OutlierSet::HeldOut } else { OutlierSet::Fit },
                 residual_mm: error.position_m.norm() * 1e3,
                 residual_deg: error.rotation_rad.map(|turn| turn.norm().to_degrees()),
-                studentized: studentized(row),
-                weight: judged(row).map_or(1.0, |judged| judged.weight),
+                studentized: *studentized,
+                weight: robustness.rows.get(*row as usize).map_or(1.0, |judged| judged.weight),
             }
         };
         rows.iter().zip(&errors).map(entry).collect()
