@@ -1,5 +1,7 @@
 //! Grossly wrong rows: what they do to a fit, whether they are found, and that clean data are left alone.
 
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
 use poecal::calibration::{
     Calibration, CalibrationOptions, Loss, Robust, calibrate, delivered, radian_m, row_errors, row_influence,
 };
