@@ -7,7 +7,7 @@ pub(crate) use identify::Identify;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use poecal::calibration::Level;
+use poecal::calibration::{Level, Loss, Robust};
 use poecal::io::measurements::{ColumnMap, ReadOptions};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
@@ -52,7 +52,7 @@ pub(crate) enum Command {
     Convert(Convert),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
-    /// Repeat the experiment of a paper, and check its claims
+    /// Repeat the experiment of a paper and check its claims, or show what gross errors do
     Reproduce(Reproduce),
     /// Tell what measuring in some configurations would tell, before anything is measured
     Identify(Identify),
@@ -160,6 +160,33 @@ impl From<ResidualWord> for PoseResidual {
     }
 }
 
+/// What to do about grossly wrong rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RobustWord {
+    /// Least squares, unless outliers are evident: then the tukey loss, and a warning
+    Auto,
+    /// Least squares: every row counts in full
+    Off,
+    /// Far rows pull no more than near ones
+    Huber,
+    /// Far rows pull less the farther they are
+    Cauchy,
+    /// Far rows do not pull
+    Tukey,
+}
+
+impl From<RobustWord> for Robust {
+    fn from(word: RobustWord) -> Self {
+        match word {
+            RobustWord::Auto => Robust::Auto,
+            RobustWord::Off => Robust::Off,
+            RobustWord::Huber => Robust::Loss(Loss::Huber),
+            RobustWord::Cauchy => Robust::Loss(Loss::Cauchy),
+            RobustWord::Tukey => Robust::Loss(Loss::Tukey),
+        }
+    }
+}
+
 /// By which steps to minimise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MethodWord {
@@ -205,6 +232,9 @@ pub(crate) struct Calibrate {
     /// Seed of that choice [default: 1]
     #[arg(long, value_parser = whole::<u64>)]
     pub(crate) seed: Option<u64>,
+    /// What to do about grossly wrong rows: auto fits by least squares, and by the tukey loss where that shows outliers
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) robust: RobustWord,
     /// How errors of the joints are written; all but the default are for comparison
     #[arg(long, value_enum, default_value = "adjoint", help_heading = "Comparison")]
     pub(crate) formulation: FormulationWord,
@@ -466,23 +496,25 @@ pub(crate) struct Offsets {
     pub(crate) out: Option<PathBuf>,
 }
 
-/// The papers whose experiments can be repeated.
+/// The experiments that can be repeated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Paper {
+pub(crate) enum Experiment {
     /// Lou, Chen, Wu, Li, Jiang 2009: POE calibration of an elbow manipulator
     Lou2009,
+    /// What a growing share of gross errors does to a calibration, with least squares and with each robust loss
+    Breakdown,
 }
 
 /// Arguments of `poecal reproduce`.
 #[derive(Args, Debug)]
 pub(crate) struct Reproduce {
-    /// The paper
+    /// The experiment
     #[arg(value_enum)]
-    pub(crate) paper: Paper,
-    /// Noisy sessions by which formulations are compared
+    pub(crate) experiment: Experiment,
+    /// Sessions by which formulations, or losses, are compared
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) trials: u32,
-    /// Random starts for each formulation and size of error
+    /// Random starts for each formulation and size of error (lou1009)
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) starts: u32,
     /// Seed of everything random

@@ -71,14 +71,20 @@ pub(crate) fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Vec<f64>
     Some(factor)
 }
 
-/// Solves `L Lᵀ x = b`.
-pub(crate) fn cholesky_solve(factor: &[f64], b: &[f64]) -> Vec<f64> {
-    let n = b.len();
-    let mut x = b.to_vec();
+/// Solves `L x = b` in place.
+pub(crate) fn lower_solve(factor: &[f64], x: &mut [f64]) {
+    let n = x.len();
     for i in 0..n {
         let dot: f64 = factor[i * n..i * n + i].iter().zip(&x[..i]).map(|(a, b)| a * b).sum();
         x[i] = (x[i] - dot) / factor[i * n + i];
     }
+}
+
+/// Solves `L Lᵀ x = b`.
+pub(crate) fn cholesky_solve(factor: &[f64], b: &[f64]) -> Vec<f64> {
+    let n = b.len();
+    let mut x = b.to_vec();
+    lower_solve(factor, &mut x);
     for i in (0..n).rev() {
         x[i] /= factor[i * n + i];
         let xi = x[i];

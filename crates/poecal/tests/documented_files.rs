@@ -114,7 +114,7 @@ fn results_have_the_documented_columns_and_keys() {
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let documented = blocks("Results", "text")[0].lines().next().unwrap();
     assert_eq!(residuals::text(&made.data, &calibration).lines().next().unwrap(), documented);
-    assert!(blocks("Results", "text")[0].lines().all(|line| line.matches(',').count() == 16));
+    assert!(blocks("Results", "text")[0].lines().all(|line| line.matches(',').count() == 20));
 
     let inputs = Inputs { model: String::new(), measurements: Vec::new() };
     let text = CalibrationFile::new(&calibration, &made.data, inputs).to_text().unwrap();

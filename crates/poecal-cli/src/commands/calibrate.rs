@@ -132,6 +132,7 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
         sigma_rotation_rad: arguments.sigma_rotation,
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
+        robust: arguments.robust.into(),
         pose_residual: arguments.residual.into(),
         solver: solve::Options {
             method: arguments.method.map_or(usual.solver.method, Into::into),

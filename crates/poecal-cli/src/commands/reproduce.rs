@@ -1,12 +1,12 @@
-//! `poecal reproduce`: the experiment of a paper, and what became of its claims.
+//! `poecal reproduce`: the experiment of a paper and what became of its claims, or what gross errors do.
 
 use std::process::ExitCode;
 
 use poecal::io::output;
-use poecal::reproduce::{Options, lou2009};
+use poecal::reproduce::{Options, breakdown, lou2009};
 use poecal::{Result, report};
 
-use crate::args::{Paper, Reproduce};
+use crate::args::{Experiment, Reproduce};
 use crate::console::Console;
 
 pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<ExitCode> {
@@ -18,14 +18,16 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<Exit
     };
     let bar = console.progress(1);
     bar.set_message("repeating the experiment");
-    let found = match arguments.paper {
-        Paper::Lou2009 => lou2009(&options),
+    let found = match arguments.experiment {
+        Experiment::Lou2009 => lou2009(&options)
+            .and_then(|found| Ok((report::reproduction_files(&found)?, report::claims(&found)))),
+        Experiment::Breakdown => breakdown(&options)
+            .and_then(|found| Ok((report::breakdown_files(&found)?, report::breakdown_table(&found)))),
     };
     bar.finish_and_clear();
-    let found = found?;
-    let files = report::reproduction_files(&found)?;
+    let (files, words) = found?;
     let written = output::write_reproduction(&arguments.out, arguments.force, &files)?;
-    console.say(&report::claims(&found))?;
+    console.say(&words)?;
     console.say(&format!("written       {}: {}\n", written.folder.display(), written.files.join(", ")))?;
     Ok(ExitCode::SUCCESS)
 }

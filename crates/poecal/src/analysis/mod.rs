@@ -5,6 +5,7 @@ mod coverage;
 mod excitation;
 mod identifiability;
 mod identify;
+mod influence;
 mod observability;
 mod remainder;
 mod subspace;
@@ -14,4 +15,5 @@ pub use identifiability::{
     Cause, Direction, Identifiability, Setup, Spectrum, identifiability, residual_variance,
 };
 pub use identify::{ExpectedError, Foresight, Session, identify};
+pub use influence::{Influence, influence};
 pub use observability::Observability;

@@ -27,6 +27,35 @@ const RESTART_SAMPLE: usize = 200;
 /// gears and links giving, are left with a tenth of it, false optima with several times it.
 const SUSPICIOUS: f64 = 3e-3;
 
+/// A fit under way.
+pub(super) struct Found {
+    pub(super) estimate: Estimate,
+    pub(super) normal: Normal,
+    pub(super) report: SolverReport,
+}
+
+impl Found {
+    /// What one minimisation found.
+    pub(super) fn new((estimate, normal, summary): (Estimate, Normal, Summary)) -> Self {
+        let report = SolverReport {
+            iterations: summary.iterations,
+            termination: summary.termination,
+            restarts: 0,
+            trace: summary.trace,
+            joint_offsets: None,
+        };
+        Found { estimate, normal, report }
+    }
+
+    /// What one more minimisation made of it.
+    pub(super) fn follow(&mut self, (estimate, normal, summary): (Estimate, Normal, Summary)) {
+        (self.estimate, self.normal) = (estimate, normal);
+        self.report.iterations += summary.iterations;
+        self.report.termination = summary.termination;
+        self.report.trace.extend(summary.trace);
+    }
+}
+
 /// A finished fit.
 pub(super) struct Fitted {
     pub(super) estimate: Estimate,
@@ -38,7 +67,7 @@ pub(super) struct Fitted {
 }
 
 /// All screws and targets: what a fit with a settled device frame frees.
-fn free_parameters(
+pub(super) fn free_parameters(
     estimate: &Estimate,
     data: &Dataset,
     rows: &[u32],
@@ -92,67 +121,6 @@ pub(super) fn minimal(
     (problem.layout().clone(), problem.normal(estimate))
 }
 
-/// Fits from a registration with noise that is then estimated anew, unless its source says that it is known.
-pub(super) fn fit(
-    task: &Task<'_>,
-    registered: &Estimate,
-    noise: Noise,
-    source: NoiseSource,
-) -> Result<Fitted> {
-    let Task { data, packed, rows, options, .. } = *task;
-    let mut start = registered.clone();
-    start.recentre(data, packed, rows);
-    let (mut estimate, mut normal, mut summary) = task.fit(start, noise);
-    let mut report = SolverReport {
-        iterations: summary.iterations,
-        termination: summary.termination,
-        restarts: 0,
-        trace: summary.trace.clone(),
-        joint_offsets: None,
-    };
-    if let Some((better, tried)) = task.restart(registered, &estimate, noise) {
-        report.restarts = tried;
-        if let Some(better) = better {
-            (estimate, normal, summary) = task.fit(better, noise);
-            report.iterations += summary.iterations;
-            report.trace.extend(summary.trace.iter());
-        }
-    }
-    let (mut noise, mut source) = (noise, source);
-    if source == NoiseSource::Estimated {
-        for _ in 0..6 {
-            let unknowns = normal.dim();
-            let Some(found) = estimate_noise(data, packed, rows, &estimate, unknowns, noise) else {
-                source = NoiseSource::Exact;
-                break;
-            };
-            let change =
-                (found.position_m * noise.rotation_rad / (found.rotation_rad * noise.position_m)).ln();
-            let unchanged = found == noise;
-            noise = stated(options, found);
-            if unchanged || change.abs() < 0.02 && normal.mean_square().ln().abs() < 0.5 {
-                break;
-            }
-            (estimate, normal, summary) = task.fit(estimate, noise);
-            report.iterations += summary.iterations;
-            report.trace.extend(summary.trace.iter());
-        }
-    }
-    if !normal.cost.is_finite() {
-        return Err(Error::new(
-            ErrorKind::Solver,
-            "found residuals that are not finite numbers, expected a fit: check the measurements' units and joint columns",
-        ));
-    }
-    report.termination = summary.termination;
-    if options.formulation == Formulation::Adjoint {
-        (estimate, normal) = task.settle_null_directions(estimate, normal, noise, &mut report);
-    }
-    report.joint_offsets = options.formulation.has_offsets().then(|| estimate.joint_offset.clone());
-    let layout = task.problem(&estimate, noise).layout().clone();
-    Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
-}
-
 /// What is fitted to what.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
@@ -160,18 +128,97 @@ pub(super) struct Task<'a> {
     pub(super) data: &'a Dataset,
     pub(super) packed: &'a Packed,
     pub(super) rows: &'a [u32],
+    /// Weights of all rows of the data, where they differ.
+    pub(super) weights: Option<&'a [f64]>,
     pub(super) length_m: f64,
     pub(super) options: &'a CalibrationOptions,
 }
 
 impl Task<'_> {
-    fn fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
+    /// The first fit from a registration.
+    pub(super) fn begin(&self, registered: &Estimate, noise: Noise) -> Found {
+        let mut start = registered.clone();
+        start.recentre(self.data, self.packed, self.rows);
+        Found::new(self.fit(start, noise))
+    }
+
+    /// The rest of the way: further starts if need be, and noise estimated anew unless its source says that it is known.
+    pub(super) fn complete(
+        &self,
+        mut found: Found,
+        registered: &Estimate,
+        noise: Noise,
+        source: NoiseSource,
+    ) -> Result<Fitted> {
+        if let Some((better, tried)) = self.restart(registered, &found.estimate, noise) {
+            found.report.restarts = tried;
+            if let Some(better) = better {
+                found.follow(self.fit(better, noise));
+            }
+        }
+        let (mut noise, mut source) = (noise, source);
+        if source == NoiseSource::Estimated {
+            for _ in 0..6 {
+                let unknowns = found.normal.dim();
+                let Some(estimated) =
+                    estimate_noise(self.data, self.packed, self.rows, &found.estimate, unknowns, noise)
+                else {
+                    source = NoiseSource::Exact;
+                    break;
+                };
+                let change = (estimated.position_m * noise.rotation_rad
+                    / (estimated.rotation_rad * noise.position_m))
+                    .ln();
+                let unchanged = estimated == noise;
+                noise = stated(self.options, estimated);
+                if unchanged || change.abs() < 0.02 && found.normal.mean_square().ln().abs() < 0.5 {
+                    break;
+                }
+                let estimate = found.estimate.clone();
+                found.follow(self.fit(estimate, noise));
+            }
+        }
+        self.finish(found, noise, source)
+    }
+
+    /// What a fit at its optimum comes to.
+    pub(super) fn finish(&self, found: Found, noise: Noise, source: NoiseSource) -> Result<Fitted> {
+        let Found { mut estimate, mut normal, mut report } = found;
+        if !normal.cost.is_finite() {
+            return Err(Error::new(
+                ErrorKind::Solver,
+                "found residuals that are not finite numbers, expected a fit: check the measurements' units and joint columns",
+            ));
+        }
+        if self.options.formulation == Formulation::Adjoint {
+            (estimate, normal) = self.settle_null_directions(estimate, normal, noise, &mut report);
+        }
+        report.joint_offsets = self.options.formulation.has_offsets().then(|| estimate.joint_offset.clone());
+        let layout = self.problem(&estimate, noise).layout().clone();
+        Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
+    }
+
+    /// One fit; with weights it goes straight to all rows, since it begins near their optimum.
+    pub(super) fn fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
+        if self.weights.is_some() {
+            return minimize(&self.problem(&start, noise), start, &self.options.solver);
+        }
         fit_screws(self.data, self.packed, self.rows, start, noise, self.length_m, self.options)
     }
 
-    fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
+    /// The problem of these rows with these weights.
+    pub(super) fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
         let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
-        Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m)
+        let problem = Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m);
+        match self.weights {
+            Some(weights) => problem.with_weights(weights),
+            None => problem,
+        }
+    }
+
+    /// Whether a position error is more than what a robot's gears and links leave.
+    pub(super) fn is_suspicious(&self, rms_m: f64) -> bool {
+        rms_m >= SUSPICIOUS * 3.0 * self.length_m
     }
 
     /// Further starts, when what the fit leaves is more than a robot's own errors: random screws around the registered ones, on a
@@ -187,7 +234,7 @@ impl Task<'_> {
             let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
             Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m)
         };
-        if self.options.restarts == 0 || self.position_rms(fitted) < SUSPICIOUS * 3.0 * self.length_m {
+        if self.options.restarts == 0 || !self.is_suspicious(self.position_rms(fitted)) {
             return None;
         }
         let after = problem(fitted).normal(fitted).cost;
@@ -202,7 +249,7 @@ impl Task<'_> {
             let (found, normal, _) = minimize(&problem(&start), start, &options);
             if normal.cost < best.0 {
                 best.0 = 0.999 * normal.cost;
-                if self.position_rms(&found) < SUSPICIOUS * 3.0 * self.length_m {
+                if !self.is_suspicious(self.position_rms(&found)) {
                     best.1 = Some(found);
                     break;
                 }

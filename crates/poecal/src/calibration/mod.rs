@@ -5,6 +5,7 @@ mod doubts;
 mod fit;
 mod judge;
 mod noise;
+mod robust;
 mod split;
 mod trust;
 mod verdict;
@@ -13,6 +14,7 @@ pub use accuracy::{Accuracy, ModelAccuracy, RowError, SetAccuracy, Statistic, ro
 pub use fit::fit_screws;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
+pub use robust::{Loss, Robust, Robustness, RowJudgement, row_influence};
 pub use split::split_rows;
 pub(crate) use trust::inside;
 pub use trust::{Expected, JointCorrection, RangePart, Trust};
@@ -66,6 +68,8 @@ pub struct CalibrationOptions {
     pub formulation: Formulation,
     /// How the errors of measured frames are written. The paper's is for comparison.
     pub pose_residual: PoseResidual,
+    /// What to do about grossly wrong rows.
+    pub robust: Robust,
     /// Options of the solver.
     pub solver: solve::Options,
     /// Further starts tried when the fit looks as if it ended beside the optimum.
@@ -82,6 +86,7 @@ impl Default for CalibrationOptions {
             seed: 1,
             formulation: Formulation::default(),
             pose_residual: PoseResidual::default(),
+            robust: Robust::default(),
             solver: solve::Options::default(),
             restarts: 24,
         }
@@ -193,6 +198,8 @@ pub struct Calibration {
     pub noise: Noise,
     /// Where that noise came from.
     pub noise_source: NoiseSource,
+    /// What was done about outliers, and what the fit says of each row.
+    pub robustness: Robustness,
     /// What makes the result doubtful, a sentence each.
     pub warnings: Vec<String>,
     /// Mistakes that the measurements show, fitted and held out: named, not corrected.
@@ -257,28 +264,34 @@ pub fn calibrate_with_progress(
     let delivered = delivered(robot, data);
     let length_m = radian_m(robot, &packed);
     let (mut noise, source) = noise::first_guess(data, options);
-    let registration = |noise: Noise, targets_free: bool| Registration {
+    let registration = |rows, noise: Noise, targets_free: bool| Registration {
         data,
         packed: &packed,
-        rows: &fit_rows,
+        rows,
         noise,
         length_m,
         device_free: options.frame == DeviceFrameKnowledge::Unknown,
         targets_free,
     };
     progress(Stage::Registration);
-    let (mut registered, _) = register(&registration(noise, true), &delivered);
+    let (mut registered, _) = register(&registration(&fit_rows, noise, true), &delivered);
     if source == NoiseSource::Estimated
         && let Some(found) = estimate_noise(data, &packed, &fit_rows, &registered, 6, noise)
     {
         noise = noise::stated(options, found);
-        registered = register_again(&registration(noise, true), &registered);
+        registered = register_again(&registration(&fit_rows, noise, true), &registered);
     }
     progress(Stage::Fit);
-    let task = fit::Task { robot, data, packed: &packed, rows: &fit_rows, length_m, options };
-    let fitted = fit::fit(&task, &registered, noise, source)?;
+    let task = fit::Task { robot, data, packed: &packed, rows: &fit_rows, weights: None, length_m, options };
+    let robust::RobustFit { fitted, loss, judged } =
+        robust::fit(&task, &registration(&fit_rows, noise, true), &registered, source)?;
     progress(Stage::Analysis);
-    let nominal = register(&registration(fitted.noise, false), &delivered).0;
+    let mut kept = fit_rows.clone();
+    if loss.is_some() {
+        kept = robust::registrable(&judged.rows, &fit_rows);
+        registered = register(&registration(&kept, fitted.noise, true), &delivered).0;
+    }
+    let nominal = register(&registration(&kept, fitted.noise, false), &delivered).0;
     let found = fitted.estimate.without_offsets();
     let calibrated = match options.frame {
         DeviceFrameKnowledge::Unknown => {
@@ -304,18 +317,18 @@ pub fn calibrate_with_progress(
         training: set_accuracy(data, &packed, &fit_rows, &models),
         held_out: (!held_out_rows.is_empty()).then(|| set_accuracy(data, &packed, &held_out_rows, &models)),
     };
-    // Whatever the unknowns of the fit were: what is delivered is judged in the minimal basis.
-    let (layout, normal) = if options.formulation == Formulation::Adjoint {
+    // Whatever the unknowns and the loss of the fit were: what is delivered is judged in the minimal basis, by the rows that it believes.
+    let (layout, normal) = if options.formulation == Formulation::Adjoint && loss.is_none() {
         (fitted.layout.clone(), fitted.normal.clone())
     } else {
-        fit::minimal(data, &packed, &fit_rows, &models.calibrated, fitted.noise, length_m)
+        fit::minimal(data, &packed, &kept, &models.calibrated, fitted.noise, length_m)
     };
     let trust = trust::trust(&trust::Finished {
         view: View {
             robot,
             data,
             packed: &packed,
-            rows: &fit_rows,
+            rows: &kept,
             free: &layout.parameters().map(|(parameter, _)| *parameter).collect::<Vec<_>>(),
             noise: fitted.noise,
             noise_is_stated: matches!(fitted.noise_source, NoiseSource::Given | NoiseSource::Rows),
@@ -328,7 +341,8 @@ pub fn calibrate_with_progress(
         base_free: options.frame == DeviceFrameKnowledge::Unknown,
         seed: options.seed,
     });
-    let diagnosis = diagnosis(robot, data, options.frame, &models.calibrated);
+    let diagnosis =
+        diagnosis(robot, data, loss.is_some().then_some(&kept[..]), options.frame, &models.calibrated);
     let grave = diagnosis.iter().filter(|it| it.kind != DiagnosisKind::DuplicateRows);
     let verdict = verdict::verdict(&verdict::Grounds {
         accuracy: &accuracy,
@@ -340,7 +354,11 @@ pub fn calibrate_with_progress(
         reach_m: 3.0 * length_m,
         mistakes: &grave.map(|it| it.statement.clone()).collect::<Vec<_>>(),
     });
-    let warnings = doubts::doubts(data, &fit_rows, &accuracy.training.registered, options.frame);
+    let mut warnings = doubts::doubts(data, &fit_rows, &accuracy.training.registered, options.frame);
+    let robustness = Robustness::new(loss, judged, [&fit_rows, &held_out_rows], |rows| {
+        set_accuracy(data, &packed, rows, &models)
+    });
+    warnings.extend(robustness.warning(&fit_rows, &held_out_rows));
     let (calibrated_robot, targets) = place_tip(robot, data, &data.frames(&fit_rows), &models.calibrated);
     Ok(Calibration {
         nominal: robot.clone(),
@@ -359,6 +377,7 @@ pub fn calibrate_with_progress(
         verdict,
         noise: fitted.noise,
         noise_source: fitted.noise_source,
+        robustness,
         warnings,
         diagnosis,
         fit_rows,
@@ -366,14 +385,17 @@ pub fn calibrate_with_progress(
     })
 }
 
-/// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing.
+/// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing. After a robust fit in the rows that it
+/// believes: what is wrong with single ones is told by that.
 fn diagnosis(
     robot: &Robot,
     data: &Dataset,
+    believed: Option<&[u32]>,
     frame: DeviceFrameKnowledge,
     calibrated: &Estimate,
 ) -> Vec<Diagnosis> {
-    let rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+    let all = || (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+    let rows: Vec<u32> = believed.map_or_else(all, <[u32]>::to_vec);
     let device_free = frame == DeviceFrameKnowledge::Unknown;
     forensics::diagnose(robot, data, &rows, &forensics::Options { device_free, calibrated: Some(calibrated) })
 }

@@ -21,7 +21,7 @@ pub enum NoiseSource {
 }
 
 /// Below this (1 nm, 1 nrad) residuals are rounding, and their ratio says nothing.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// Residuals, beyond a part's own unknowns, that it takes to estimate a noise.
 const REDUNDANT: f64 = 6.0;

@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
-use crate::calibration::{Calibration, RowError, row_errors};
+use crate::analysis::Influence;
+use crate::calibration::{Calibration, RowError, RowJudgement, row_errors, row_influence};
 use crate::estimate::{Estimate, Packed};
 use crate::measurement::Dataset;
 
 /// The text of the file: rows in the order of the data, errors of the three models, and the calibrated model's residual (measured
-/// less predicted) by component in the device's axes.
+/// less predicted) by component in the device's axes; then what the row meant to the fit.
 #[must_use]
 pub fn text(data: &Dataset, calibration: &Calibration) -> String {
     let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
@@ -16,6 +17,7 @@ pub fn text(data: &Dataset, calibration: &Calibration) -> String {
     let nominal = of(&calibration.models.nominal);
     let registered = of(&calibration.models.registered);
     let calibrated = of(&calibration.models.calibrated);
+    let influences = row_influence(calibration, data, &rows);
     let mut held_out = vec![false; data.len()];
     for &row in &calibration.held_out_rows {
         held_out[row as usize] = true;
@@ -23,7 +25,8 @@ pub fn text(data: &Dataset, calibration: &Calibration) -> String {
     let mut out = String::with_capacity(data.len() * 160);
     out.push_str(
         "file,line,id,set,target,position_nominal[mm],position_registered[mm],position_calibrated[mm],x[mm],y[mm],z[mm],\
-         rotation_nominal[deg],rotation_registered[deg],rotation_calibrated[deg],rx[deg],ry[deg],rz[deg]\n",
+         rotation_nominal[deg],rotation_registered[deg],rotation_calibrated[deg],rx[deg],ry[deg],rz[deg],\
+         weight,leverage,studentized,suspected\n",
     );
     for (row, observation) in data.observations.iter().enumerate() {
         let file = data.files.get(observation.source.file as usize);
@@ -42,6 +45,11 @@ pub fn text(data: &Dataset, calibration: &Calibration) -> String {
             let _ = write!(out, ",{}", component * 1e3);
         }
         write_rotations(&mut out, models, &calibrated[row]);
+        if let Some(judged) = calibration.robustness.rows.get(row) {
+            let Influence { leverage, studentized } = influences[row];
+            let RowJudgement { weight, suspected } = judged;
+            let _ = write!(out, ",{weight},{leverage},{studentized},{}", u8::from(*suspected));
+        }
         out.push('\n');
     }
     out

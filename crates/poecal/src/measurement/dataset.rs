@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Measurement, PoseResidual};
+use super::{Measurement, Noise, PoseResidual};
 use crate::error::{Error, ErrorKind, Result};
 use std::path::PathBuf;
 
@@ -39,6 +39,17 @@ pub struct Observation {
     pub set: Option<Set>,
     /// Where it came from.
     pub source: Source,
+}
+
+impl Observation {
+    /// The noise that the row states, and that of `usual` which it does not.
+    #[must_use]
+    pub fn noise_or(&self, usual: Noise) -> Noise {
+        Noise {
+            position_m: self.sigma_position_m.unwrap_or(usual.position_m),
+            rotation_rad: self.sigma_rotation_rad.unwrap_or(usual.rotation_rad),
+        }
+    }
 }
 
 /// Measurements with the configurations they were taken in. Readings are stored flat, one after the other.

@@ -49,6 +49,7 @@ pub struct Problem<'a> {
     rows: Vec<u32>,
     layout: Layout,
     noise: Noise,
+    weights: Option<&'a [f64]>,
     rounding_m: f64,
 }
 
@@ -67,7 +68,16 @@ impl<'a> Problem<'a> {
         let farthest =
             rows.iter().map(|&row| data.observations[row as usize].measurement.pose().translation.amax());
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
-        Problem { data, packed, rows, layout: Layout::new(free, length_m), noise, rounding_m }
+        Problem { data, packed, rows, layout: Layout::new(free, length_m), noise, weights: None, rounding_m }
+    }
+
+    /// The same problem with a weight for every row of the data: its noise is divided by the weight's square root, and a weight of
+    /// zero leaves it out (theory.md §6 (34b)).
+    #[must_use]
+    pub fn with_weights(mut self, weights: &'a [f64]) -> Self {
+        self.rows.retain(|&row| weights.get(row as usize).is_none_or(|&weight| weight > 0.0));
+        self.weights = Some(weights);
+        self
     }
 
     /// The arrangement of the unknowns.
@@ -85,10 +95,29 @@ impl<'a> Problem<'a> {
     /// The noise that whitens a row.
     #[must_use]
     pub fn noise(&self, row: usize) -> Noise {
-        let observation = &self.data.observations[row];
-        Noise {
-            position_m: observation.sigma_position_m.unwrap_or(self.noise.position_m),
-            rotation_rad: observation.sigma_rotation_rad.unwrap_or(self.noise.rotation_rad),
+        let noise = self.data.observations[row].noise_or(self.noise);
+        let Some(weight) = self.weights.and_then(|weights| weights.get(row)) else { return noise };
+        let root = weight.sqrt();
+        Noise { position_m: noise.position_m / root, rotation_rad: noise.rotation_rad / root }
+    }
+
+    /// Gives the whitened Jacobian of the prediction (row-major) and residual of each of some rows of the data, in turn.
+    pub fn for_rows(&self, state: &Estimate, rows: &[u32], mut each: impl FnMut(u32, &[f64], &[f64])) {
+        let n = self.layout.dim();
+        let linkage = Linkage::new(state);
+        let mut chain = Chain::default();
+        let mut columns: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
+        let mut jacobian = vec![0.0; 6 * n];
+        let mut residual = [0.0; 6];
+        for &row in rows {
+            let observation = &self.data.observations[row as usize];
+            let measurement = observation.measurement.residual_model();
+            let (noise, dim) = (self.noise(row as usize), measurement.dim());
+            chain.evaluate(&linkage, self.packed, row as usize, observation.target);
+            self.layout.target_twists(&chain, observation.target, &mut columns);
+            measurement.project(&chain.target, &columns, &noise, n, &mut jacobian);
+            measurement.residual(&chain.target, &noise, &mut residual);
+            each(row, &jacobian[..dim * n], &residual[..dim]);
         }
     }
 

@@ -1,14 +1,17 @@
 //! Results as text for people. No number here that is not in the result.
 
+mod breakdown;
 mod check;
 mod claims;
 mod identify;
 mod judgement;
 mod offsets;
+mod outliers;
 mod plot;
 mod reproduction;
 mod table;
 
+pub use breakdown::{breakdown_files, breakdown_table};
 pub use check::{Check, SetCounts};
 pub use claims::claims;
 pub use identify::Identify;

@@ -29,6 +29,7 @@ pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
     out.push('\n');
     out.push_str(&accuracy_table(&calibration.accuracy.training, calibration.accuracy.held_out.as_ref()));
     out.push('\n');
+    out.push_str(&super::outliers::suspected(calibration, data));
     identifiability_lines(&mut out, &calibration.identifiability);
     line(&mut out, "solver", &solver_words(calibration));
     trust_lines(&mut out, calibration);

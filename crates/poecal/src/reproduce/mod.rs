@@ -1,6 +1,7 @@
-//! The experiment of lou2009 with every formulation, and what became of its claims.
+//! The experiment of lou2009 with every formulation, and what became of its claims; and what gross errors do to a calibration.
 
 mod basin;
+mod breakdown;
 mod claims;
 mod constraints;
 mod efficiency;
@@ -11,6 +12,7 @@ mod seeds;
 mod session;
 pub mod tables;
 
+pub use breakdown::{Breakdown, BreakdownEntry, breakdown};
 pub use findings::{
     Basin, Claim, Efficiency, Iteration, OffsetRow, PointRow, Reproduction, Run, ScrewRow, Seen, Spectrum,
 };

@@ -1,8 +1,10 @@
 //! Synthetic robots and measurements with seeded noise: for tests, for learning, and for planning.
 
+mod gross;
 pub mod random;
 mod robots;
 
+pub use gross::Gross;
 pub use robots::{elbow, gantry, random_chain, scara, seven_axis};
 
 use nalgebra::Vector3;

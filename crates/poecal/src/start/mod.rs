@@ -5,5 +5,5 @@ mod hand_eye;
 mod registration;
 
 pub(crate) use averaging::mean_rotation;
-pub use registration::{Registration, register, register_again};
+pub use registration::{Registration, register, register_again, register_robustly};
 pub(crate) use registration::{register_roughly, target_parameters};

@@ -1,9 +1,11 @@
 //! `calibration.json`: a finished calibration as a file, versioned, with everything that a prediction needs.
 
 mod judging;
+mod outliers;
 mod schema;
 mod trust;
 
+pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use schema::*;
 pub use trust::*;
 
@@ -61,6 +63,8 @@ impl CalibrationFile {
                 .map(CorrectionEntry::of)
                 .collect(),
             uncertainty: UncertaintyEntry::of(calibration),
+            robust: RobustEntry::of(calibration),
+            outliers: OutlierEntry::of(calibration, data),
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             noise: NoiseEntry {

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
+use super::{OutlierEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
 use crate::calibration::{Accuracy, NoiseSource, Verdict};
 use crate::forensics::DiagnosisKind;
@@ -52,6 +53,12 @@ pub struct CalibrationFile {
     /// Errors to expect of predictions; null if there are no more residuals than unknowns.
     #[serde(default)]
     pub uncertainty: Option<UncertaintyEntry>,
+    /// What was done about grossly wrong rows.
+    #[serde(default)]
+    pub robust: RobustEntry,
+    /// The rows that are suspected, the worst first, at most 1,000; `robust` has their number.
+    #[serde(default)]
+    pub outliers: Vec<OutlierEntry>,
     /// What makes the result doubtful, a sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,

@@ -1,0 +1,250 @@
+//! Fits that a few grossly wrong rows cannot spoil: iteratively reweighted least squares, and when it is called for (theory.md §6,
+//! *Outliers*).
+
+mod chi_square;
+mod loss;
+mod rows;
+mod scale;
+
+pub use loss::{Loss, Robust};
+pub(super) use rows::registrable;
+pub use rows::{Robustness, RowJudgement, row_influence};
+
+use super::fit::{Fitted, Found, Task};
+use super::noise::{NoiseSource, stated};
+use super::{CalibrationOptions, estimate_noise};
+use crate::error::Result;
+use crate::estimate::Estimate;
+use crate::measurement::Noise;
+use crate::solve;
+use crate::start::{Registration, register_robustly};
+use rows::{Bounds, Judged, is_judgeable, judge_rows};
+use scale::{Parts, Scale, parts, settle};
+
+/// Most reweightings with one loss.
+const REWEIGHTINGS: usize = 60;
+/// Iterations between two reweightings.
+const ITERATIONS: usize = 6;
+/// Weights that change by no more than this have settled.
+const SETTLED: f64 = 1e-3;
+
+/// A fit, by which loss it was made, and what it says of every row of the data.
+pub(super) struct RobustFit {
+    pub(super) fitted: Fitted,
+    pub(super) loss: Option<Loss>,
+    pub(super) judged: Judged,
+}
+
+/// Fits as the options ask: by least squares, by a robust loss, or by Tukey's where least squares shows outliers.
+pub(super) fn fit(
+    task: &Task<'_>,
+    registration: &Registration<'_>,
+    registered: &Estimate,
+    source: NoiseSource,
+) -> Result<RobustFit> {
+    let noise = registration.noise;
+    let attempt = |loss, other| attempt(task, registration, registered, source, loss, other);
+    match task.options.robust {
+        Robust::Off => ordinary(task, task.begin(registered, noise), registered, noise, source),
+        Robust::Loss(loss) => attempt(loss, None),
+        Robust::Auto => {
+            let found = task.begin(registered, noise);
+            if !shows_outliers(task, &found, noise, source) {
+                return ordinary(task, found, registered, noise, source);
+            }
+            let tried = attempt(Loss::Tukey, None)?;
+            if tried.is_evident(task) && !tried.is_suspicious(task) {
+                return Ok(tried);
+            }
+            // What looked like outliers may have been a fit beside the optimum: further starts come first.
+            let ordinary = ordinary(task, found, registered, noise, source)?;
+            if tried.is_evident(task) && ordinary.is_evident(task) {
+                let again = attempt(Loss::Tukey, Some(&ordinary.fitted.estimate))?;
+                if again.is_evident(task) {
+                    return Ok(again);
+                }
+            }
+            Ok(ordinary)
+        }
+    }
+}
+
+impl RobustFit {
+    /// Whether a fitted row is suspected.
+    fn is_evident(&self, task: &Task<'_>) -> bool {
+        task.rows.iter().any(|&row| self.judged.rows[row as usize].suspected)
+    }
+
+    /// Whether the rows in the middle are missed by more than gears and links explain.
+    fn is_suspicious(&self, task: &Task<'_>) -> bool {
+        let parts = parts(task.data, task.packed, task.rows, &self.fitted.estimate, self.fitted.noise);
+        let scale = Scale::of(parts.iter(), self.fitted.normal.dim());
+        task.is_suspicious(3f64.sqrt() * scale.0[0] * self.fitted.noise.position_m)
+    }
+}
+
+/// Least squares to the end.
+fn ordinary(
+    task: &Task<'_>,
+    found: Found,
+    registered: &Estimate,
+    noise: Noise,
+    source: NoiseSource,
+) -> Result<RobustFit> {
+    let fitted = task.complete(found, registered, noise, source)?;
+    let weights = vec![1.0; task.data.len()];
+    let judged = judge_rows(task, &fitted, &weights, None);
+    Ok(RobustFit { fitted, loss: None, judged })
+}
+
+/// Whether some residual of a least squares fit is longer than normal noise, as its middle shows it, would make one row of a thousand
+/// such data sets. That costs little, and only begs the question.
+fn shows_outliers(task: &Task<'_>, found: &Found, noise: Noise, source: NoiseSource) -> bool {
+    let unknowns = found.normal.dim();
+    let mut parts = parts(task.data, task.packed, task.rows, &found.estimate, noise);
+    if !is_judgeable(parts.iter(), unknowns) {
+        return false;
+    }
+    let (_, scale) = settle(&mut parts, unknowns, noise, open(task, source));
+    let bounds = Bounds::new(task.rows.len(), 1.0);
+    parts.iter().any(|row| {
+        let (length, components) = scale.length(row);
+        length > bounds.of(components)
+    })
+}
+
+/// The options by which noise is estimated, if it is.
+fn open<'a>(task: &Task<'a>, source: NoiseSource) -> Option<&'a CalibrationOptions> {
+    (source == NoiseSource::Estimated).then_some(task.options)
+}
+
+/// A robust fit: from a robust registration by Huber's loss, which has no false optimum of its own, and from there by the loss asked
+/// for. `other` is a further start, used if the middle of the rows is missed by much.
+fn attempt(
+    task: &Task<'_>,
+    registration: &Registration<'_>,
+    registered: &Estimate,
+    source: NoiseSource,
+    loss: Loss,
+    other: Option<&Estimate>,
+) -> Result<RobustFit> {
+    let start = register_robustly(registration, registered);
+    let mut best = Reweighted::new(task, start, registration.noise);
+    best.run(task, Loss::Huber, source);
+    if let Some(other) = other.filter(|_| task.is_suspicious(3f64.sqrt() * best.position_m())) {
+        let mut second = Reweighted::new(task, other.clone(), registration.noise);
+        second.run(task, Loss::Huber, source);
+        if second.position_m() < best.position_m() {
+            best = second;
+        }
+    }
+    if loss != Loss::Huber {
+        best.run(task, loss, source);
+    }
+    best.end(task, loss, source)
+}
+
+/// A fit under reweighting.
+struct Reweighted {
+    estimate: Estimate,
+    noise: Noise,
+    scale: Scale,
+    weights: Vec<f64>,
+    iterations: usize,
+}
+
+impl Reweighted {
+    fn new(task: &Task<'_>, mut start: Estimate, noise: Noise) -> Self {
+        start.recentre(task.data, task.packed, task.rows);
+        let weights = vec![1.0; task.data.len()];
+        Reweighted { estimate: start, noise, scale: Scale([1.0; 2]), weights, iterations: 0 }
+    }
+
+    /// Standard deviation of a position component as the middle of the rows shows it.
+    fn position_m(&self) -> f64 {
+        self.scale.0[0] * self.noise.position_m
+    }
+
+    /// Reweights until the weights have settled.
+    fn run(&mut self, task: &Task<'_>, loss: Loss, source: NoiseSource) {
+        let quick = CalibrationOptions {
+            solver: solve::Options { iterations: ITERATIONS, ..task.options.solver },
+            ..*task.options
+        };
+        for _ in 0..REWEIGHTINGS {
+            let mut parts = parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
+            let unknowns = task.problem(&self.estimate, self.noise).layout().dim();
+            (self.noise, self.scale) = settle(&mut parts, unknowns, self.noise, open(task, source));
+            if self.reweight(task, &parts, loss) < SETTLED {
+                break;
+            }
+            let weighted = Task { weights: Some(&self.weights), options: &quick, ..*task };
+            let (estimate, _, summary) = weighted.fit(self.estimate.clone(), self.noise);
+            self.iterations += summary.iterations;
+            self.estimate = estimate;
+        }
+    }
+
+    /// Weights of the fitted rows by their residuals; returns the largest change.
+    fn reweight(&mut self, task: &Task<'_>, parts: &[Parts], loss: Loss) -> f64 {
+        let mut change: f64 = 0.0;
+        for (&row, part) in task.rows.iter().zip(parts) {
+            let (length, components) = self.scale.length(part);
+            let weight = loss.weight(length, components);
+            let old = std::mem::replace(&mut self.weights[row as usize], weight);
+            change = change.max((weight - old).abs());
+        }
+        change
+    }
+
+    /// The last word: noise from the rows that are not suspected, weights by it, and the fit with these to the end.
+    fn end(mut self, task: &Task<'_>, loss: Loss, source: NoiseSource) -> Result<RobustFit> {
+        let bounds = Bounds::suspected(task.rows.len());
+        let mut source = source;
+        let mut found: Option<Found> = None;
+        for _ in 0..ITERATIONS {
+            let mut parts = parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
+            let unknowns = task.problem(&self.estimate, self.noise).layout().dim();
+            let kept: Vec<u32> = task
+                .rows
+                .iter()
+                .zip(&parts)
+                .filter(|(_, part)| {
+                    let (length, components) = self.scale.length(part);
+                    length <= bounds.of(components)
+                })
+                .map(|(&row, _)| row)
+                .collect();
+            if source == NoiseSource::Estimated {
+                let before = self.noise;
+                match estimate_noise(task.data, task.packed, &kept, &self.estimate, unknowns, before) {
+                    Some(noise) => self.noise = stated(task.options, noise),
+                    None => source = NoiseSource::Exact,
+                }
+                parts = scale::parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
+            }
+            let kept_parts = parts.iter().zip(task.rows).filter(|(_, row)| kept.binary_search(row).is_ok());
+            self.scale = Scale::of(kept_parts.map(|(part, _)| part), unknowns).at_least_rounding(self.noise);
+            let change = self.reweight(task, &parts, loss);
+            if change < SETTLED && found.is_some() {
+                break;
+            }
+            let weighted = Task { weights: Some(&self.weights), ..*task };
+            let renewed = weighted.fit(self.estimate, self.noise);
+            self.estimate = renewed.0.clone();
+            match &mut found {
+                Some(found) => found.follow(renewed),
+                None => found = Some(Found::new(renewed)),
+            }
+        }
+        let weighted = Task { weights: Some(&self.weights), ..*task };
+        let mut found = match found {
+            Some(found) => found,
+            None => Found::new(weighted.fit(self.estimate, self.noise)),
+        };
+        found.report.iterations += self.iterations;
+        let fitted = weighted.finish(found, self.noise, source)?;
+        let judged = judge_rows(&weighted, &fitted, &self.weights, Some(loss));
+        Ok(RobustFit { fitted, loss: Some(loss), judged })
+    }
+}

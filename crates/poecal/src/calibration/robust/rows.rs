@@ -1,0 +1,253 @@
+//! What each row means to the fit, and which rows are suspected (theory.md §6 (34d) to (34f)).
+
+use super::{Loss, Parts, Scale, chi_square, parts};
+use crate::analysis::{Influence, influence};
+use crate::calibration::fit::{self, Fitted, Task};
+use crate::calibration::{Calibration, SetAccuracy, measurements_words, radian_m};
+use crate::estimate::Packed;
+use crate::measurement::{Dataset, PoseResidual};
+use crate::parameters::Formulation;
+use crate::problem::Problem;
+use crate::solve::LeastSquares;
+
+/// Probability that clean, normal data show a row beyond the bound of normal noise.
+const FAMILY: f64 = 1e-3;
+/// A row is suspected beyond so many times that bound: what real robots leave has heavier tails than noise, and no row of these is
+/// wrong.
+const TAILS: f64 = 2.0;
+
+/// What a fit says of one row.
+///
+/// ```
+/// use poecal::calibration::RowJudgement;
+/// let row = RowJudgement { weight: 1.0, suspected: false };
+/// assert!(!row.suspected);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowJudgement {
+    /// The weight that the row had in the fit, 0 to 1; of a row that was held out, the weight that it would have had (1 without a
+    /// robust loss).
+    pub weight: f64,
+    /// Whether it is suspected to be grossly wrong.
+    pub suspected: bool,
+}
+
+/// What a calibration did about outliers, and what it says of each row.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
+/// let robustness = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?.robustness;
+/// assert_eq!(robustness.loss, None);
+/// assert_eq!(robustness.suspects().count(), 0);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robustness {
+    /// The loss of the fit; none: least squares.
+    pub loss: Option<Loss>,
+    /// One for each row of the data.
+    pub rows: Vec<RowJudgement>,
+    /// How many times the calibration's noise the residuals in the middle really are, positions and rotations: the scale that rows are
+    /// judged by.
+    pub scale: [f64; 2],
+    /// Errors on the fitted rows without those suspected; none if none is.
+    pub training_rest: Option<SetAccuracy>,
+    /// Errors on the rows held out without those suspected; none if none is, or none is left.
+    pub held_out_rest: Option<SetAccuracy>,
+}
+
+impl Robustness {
+    /// Puts together what a fit by this loss says of the rows that were fitted and held out; `accuracy` gives the errors on some rows.
+    pub(in crate::calibration) fn new(
+        loss: Option<Loss>,
+        Judged { rows, scale }: Judged,
+        [fitted, held_out]: [&[u32]; 2],
+        accuracy: impl Fn(&[u32]) -> SetAccuracy,
+    ) -> Self {
+        let scale = scale.0;
+        let mut robustness = Robustness { loss, rows, scale, training_rest: None, held_out_rest: None };
+        let of_rest = |rows: &[u32]| {
+            let rest = robustness.rest(rows);
+            (rest.len() < rows.len() && !rest.is_empty()).then(|| accuracy(&rest))
+        };
+        let (training_rest, held_out_rest) = (of_rest(fitted), of_rest(held_out));
+        robustness.training_rest = training_rest;
+        robustness.held_out_rest = held_out_rest;
+        robustness
+    }
+
+    /// The suspected rows, in the order of the data.
+    pub fn suspects(&self) -> impl Iterator<Item = u32> {
+        let rows = self.rows.iter().enumerate().filter(|(_, row)| row.suspected);
+        rows.filter_map(|(row, _)| u32::try_from(row).ok())
+    }
+
+    /// These rows without the suspected ones.
+    #[must_use]
+    pub fn rest(&self, rows: &[u32]) -> Vec<u32> {
+        let suspected = |row: u32| self.rows.get(row as usize).is_some_and(|judged| judged.suspected);
+        rows.iter().copied().filter(|&row| !suspected(row)).collect()
+    }
+
+    /// A sentence about the outliers among the fitted rows and those held out, if there are any.
+    pub(in crate::calibration) fn warning(&self, fit_rows: &[u32], held_out_rows: &[u32]) -> Option<String> {
+        let suspected = |rows: &[u32]| rows.len() - self.rest(rows).len();
+        let (fitted, held_out) = (suspected(fit_rows), suspected(held_out_rows));
+        if fitted + held_out == 0 {
+            return None;
+        }
+        let what = match self.loss {
+            Some(loss) => format!("they hardly count in the fit ({} loss, --robust)", loss.word()),
+            None if fitted == 0 => "they were not fitted".to_owned(),
+            None => "they count in full; fit robustly with --robust tukey".to_owned(),
+        };
+        Some(format!(
+            "found {} grossly off ({fitted} of {} fitted, {held_out} of {} held out), too far for noise: {what}; \
+             `outliers` in calibration.json and residuals.csv name the rows",
+            measurements_words(fitted + held_out),
+            fit_rows.len(),
+            held_out_rows.len()
+        ))
+    }
+}
+
+/// Lengths of residuals that noise does not reach, by the number of a row's components.
+pub(super) struct Bounds([f64; 6]);
+
+impl Bounds {
+    /// The length that normal noise exceeds in one of a thousand sets of so many rows, times a factor (theory.md §6 (34f)).
+    pub(super) fn new(rows: usize, factor: f64) -> Self {
+        let probability = FAMILY / rows.max(1) as f64;
+        Bounds([1, 2, 3, 4, 5, 6].map(|dof| factor * chi_square::upper_quantile(probability, dof).sqrt()))
+    }
+
+    /// Beyond these a row is suspected.
+    pub(super) fn suspected(rows: usize) -> Self {
+        Bounds::new(rows, TAILS)
+    }
+
+    pub(super) fn of(&self, components: usize) -> f64 {
+        self.0[components.clamp(1, 6) - 1]
+    }
+}
+
+/// Whether there are numbers enough to tell a scale by: twice the unknowns. Fewer leave residuals that show the fit, not the noise.
+pub(super) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a Parts>, unknowns: usize) -> bool {
+    parts.flatten().map(|part| part.components).sum::<usize>() >= 2 * unknowns
+}
+
+/// Every row of the data judged, with the scale that they were judged by.
+pub(in crate::calibration) struct Judged {
+    pub(in crate::calibration) rows: Vec<RowJudgement>,
+    scale: Scale,
+}
+
+/// Judges every row of the data by a fit with these weights. Rows held out count with weight 0.
+pub(super) fn judge_rows(task: &Task<'_>, fitted: &Fitted, weights: &[f64], loss: Option<Loss>) -> Judged {
+    let all: Vec<u32> = (0..u32::try_from(task.data.len()).unwrap_or(u32::MAX)).collect();
+    let mut is_fitted = vec![false; all.len()];
+    task.rows.iter().for_each(|&row| is_fitted[row as usize] = true);
+    let bounds = Bounds::suspected(all.len());
+    let parts = parts(task.data, task.packed, &all, &fitted.estimate, fitted.noise);
+    let unknowns = fitted.normal.dim();
+    let judge = |scale: Scale| -> Judged {
+        // Influence is worked out only where it may matter: of rows that decide most of their own prediction little can be said.
+        let lengths = parts.iter().map(|row| scale.length(row));
+        let near: Vec<u32> = all
+            .iter()
+            .zip(lengths)
+            .filter(|(_, (length, components))| *length > 0.5 * bounds.of(*components))
+            .map(|(&row, _)| row)
+            .collect();
+        let mut rows: Vec<RowJudgement> = all
+            .iter()
+            .map(|&row| {
+                let (length, components) = scale.length(&parts[row as usize]);
+                let usual = loss.map_or(1.0, |loss| loss.weight(length, components));
+                let weight = if is_fitted[row as usize] { weights[row as usize] } else { usual };
+                RowJudgement { weight, suspected: false }
+            })
+            .collect();
+        let counted: Vec<f64> = near
+            .iter()
+            .map(|&row| if is_fitted[row as usize] { weights[row as usize] } else { 0.0 })
+            .collect();
+        let problem = Task { weights: None, ..*task };
+        let problem = problem.problem(&fitted.estimate, fitted.noise);
+        let found =
+            influence(&problem, &fitted.estimate, &fitted.normal, &near, &counted, |row, component| {
+                component_scale(task.data, scale.0, row, component)
+            });
+        for (&row, influence) in near.iter().zip(&found) {
+            let (_, components) = scale.length(&parts[row as usize]);
+            rows[row as usize].suspected = influence.studentized > bounds.of(components);
+        }
+        Judged { rows, scale }
+    };
+    let of_fit = || task.rows.iter().map(|&row| (row, &parts[row as usize]));
+    let scale = Scale::of(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    if !is_judgeable(of_fit().map(|(_, part)| part), unknowns) {
+        let rows = weights.iter().map(|&weight| RowJudgement { weight, suspected: false }).collect();
+        return Judged { rows, scale };
+    }
+    let judged = judge(scale);
+    if !judged.rows.iter().any(|row| row.suspected) {
+        return judged;
+    }
+    // Suspected rows widen the scale that they are judged by: once more without them.
+    let kept = of_fit().filter(|(row, _)| !judged.rows[*row as usize].suspected);
+    judge(Scale::of(kept.map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise))
+}
+
+/// The scale of one number of a row's residual.
+fn component_scale(data: &Dataset, scale: [f64; 2], row: u32, component: usize) -> f64 {
+    let turns = data.observations[row as usize].measurement.residual_model().rotation_row();
+    scale[usize::from(component >= turns)]
+}
+
+/// What each of these rows means to a finished calibration, and how far it is off when that is allowed for (theory.md §6 (34d), (34e)).
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate, row_influence};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let found = row_influence(&calibration, &made.data, &calibration.fit_rows);
+/// let sum: f64 = found.iter().map(|row| 6.0 * row.leverage).sum();
+/// assert!((sum - 30.0).abs() < 1e-3);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[must_use]
+pub fn row_influence(calibration: &Calibration, data: &Dataset, rows: &[u32]) -> Vec<Influence> {
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let converted = (calibration.pose_residual != PoseResidual::Tool)
+        .then(|| data.with_residual(calibration.pose_residual));
+    let data = converted.as_ref().unwrap_or(data);
+    let nominal = &calibration.nominal;
+    let packed = Packed::new(nominal, data.all_readings(), data.reading_names().len());
+    let estimate = &calibration.models.calibrated;
+    let fitted = &calibration.fit_rows;
+    let judged = &calibration.robustness;
+    let problem = |rows: &[u32]| {
+        let free = fit::free_parameters(estimate, data, fitted, Formulation::Adjoint);
+        let length_m = radian_m(nominal, &packed);
+        Problem::new(data, &packed, rows.to_vec(), free, calibration.noise, length_m)
+    };
+    let weights: Vec<f64> = judged.rows.iter().map(|row| row.weight).collect();
+    let normal = problem(fitted).with_weights(&weights).normal(estimate);
+    let counted: Vec<f64> =
+        rows.iter().map(|row| fitted.binary_search(row).map_or(0.0, |_| weights[*row as usize])).collect();
+    influence(&problem(rows), estimate, &normal, rows, &counted, |row, component| {
+        component_scale(data, judged.scale, row, component)
+    })
+}
+
+/// The rows by which devices and targets are registered for the table: without those suspected, unless that would leave too few.
+pub(in crate::calibration) fn registrable(robustness: &[RowJudgement], rows: &[u32]) -> Vec<u32> {
+    let kept: Vec<u32> = rows.iter().copied().filter(|&row| !robustness[row as usize].suspected).collect();
+    if kept.len() * 2 > rows.len() { kept } else { rows.to_vec() }
+}

@@ -1,0 +1,117 @@
+//! Robust scale: the noise that the middle of the rows shows, whatever the worst half does (theory.md §6 (34a)).
+
+use super::chi_square;
+use crate::calibration::CalibrationOptions;
+use crate::calibration::noise::{ROUNDING, stated};
+use crate::estimate::{Chain, Estimate, Linkage, Packed};
+use crate::measurement::{Dataset, Noise};
+
+/// Squared whitened residual of one part of a row, position or rotation.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Part {
+    pub(super) squares: f64,
+    pub(super) components: usize,
+    /// Whether the row states this part's noise.
+    stated: bool,
+}
+
+/// Position and rotation of a row.
+pub(super) type Parts = [Part; 2];
+
+/// The parts of some rows, whitened by the noise.
+pub(super) fn parts(
+    data: &Dataset,
+    packed: &Packed,
+    rows: &[u32],
+    estimate: &Estimate,
+    noise: Noise,
+) -> Vec<Parts> {
+    let linkage = Linkage::new(estimate);
+    let mut chain = Chain::default();
+    let mut e = [0.0; 6];
+    rows.iter()
+        .map(|&row| {
+            let observation = &data.observations[row as usize];
+            let model = observation.measurement.residual_model();
+            chain.evaluate(&linkage, packed, row as usize, observation.target);
+            model.residual(&chain.target, &observation.noise_or(noise), &mut e);
+            let (split, dim) = (model.rotation_row(), model.dim());
+            let part = |e: &[f64], stated: Option<f64>| Part {
+                squares: e.iter().map(|e| e * e).sum(),
+                components: e.len(),
+                stated: stated.is_some(),
+            };
+            [
+                part(&e[..split], observation.sigma_position_m),
+                part(&e[split..dim], observation.sigma_rotation_rad),
+            ]
+        })
+        .collect()
+}
+
+/// How many times the noise the residuals of each part really are.
+#[derive(Clone, Copy)]
+pub(super) struct Scale(pub(super) [f64; 2]);
+
+impl Scale {
+    /// Of these rows, with the unknowns taken off in proportion; 1 for a part that no row has.
+    pub(super) fn of<'a>(rows: impl Iterator<Item = &'a Parts> + Clone, unknowns: usize) -> Self {
+        let count: usize = rows.clone().flatten().map(|part| part.components).sum();
+        let left = (1.0 - unknowns as f64 / count.max(1) as f64).max(0.05);
+        Scale([0, 1].map(|side| median_scale(rows.clone().map(|row| &row[side]), left).unwrap_or(1.0)))
+    }
+
+    /// Exact data leave rounding, which is no scale to judge by.
+    pub(super) fn at_least_rounding(self, noise: Noise) -> Self {
+        let [position, rotation] = self.0;
+        Scale([position.max(ROUNDING / noise.position_m), rotation.max(ROUNDING / noise.rotation_rad)])
+    }
+
+    /// Length of a row's residual in units of the scaled noise, and of how many numbers it is.
+    pub(super) fn length(&self, row: &Parts) -> (f64, usize) {
+        let squares: f64 = row.iter().zip(self.0).map(|(part, scale)| part.squares / (scale * scale)).sum();
+        (squares.sqrt(), row.iter().map(|part| part.components).sum())
+    }
+}
+
+/// Takes the noise of rows that state none, where the user states none, from the middle of those rows; `parts` follow. Returns it
+/// with the scale of all rows then.
+pub(super) fn settle(
+    parts: &mut [Parts],
+    unknowns: usize,
+    noise: Noise,
+    options: Option<&CalibrationOptions>,
+) -> (Noise, Scale) {
+    let mut settled = noise;
+    if let Some(options) = options {
+        let count: usize = parts.iter().flatten().map(|part| part.components).sum();
+        let left = (1.0 - unknowns as f64 / count.max(1) as f64).max(0.05);
+        let of = |side: usize, sigma: f64| {
+            let open = parts.iter().map(|row| &row[side]).filter(|part| !part.stated);
+            median_scale(open, left).map_or(sigma, |scale| (scale * sigma).max(ROUNDING))
+        };
+        let found = Noise { position_m: of(0, noise.position_m), rotation_rad: of(1, noise.rotation_rad) };
+        settled = stated(options, found);
+        let ratios = [noise.position_m / settled.position_m, noise.rotation_rad / settled.rotation_rad];
+        for part in parts.iter_mut().flat_map(|row| row.iter_mut().zip(ratios)) {
+            if !part.0.stated {
+                part.0.squares *= part.1 * part.1;
+            }
+        }
+    }
+    (settled, Scale::of(parts.iter(), unknowns).at_least_rounding(settled))
+}
+
+/// Root of the median of squares over the median of χ², with only a share `left` of the rows' freedom left by the fit.
+fn median_scale<'a>(rows: impl Iterator<Item = &'a Part>, left: f64) -> Option<f64> {
+    let mut squares: Vec<f64> = rows
+        .filter(|part| part.components > 0)
+        .map(|part| part.squares / chi_square::median(part.components))
+        .collect();
+    if squares.is_empty() {
+        return None;
+    }
+    let middle = squares.len() / 2;
+    let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
+    Some((*median / left).sqrt())
+}

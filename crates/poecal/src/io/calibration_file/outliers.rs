@@ -1,0 +1,102 @@
+//! What `calibration.json` says of outliers.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::calibration::{Calibration, Loss, RowError, SetAccuracy, row_errors, row_influence};
+use crate::estimate::Packed;
+use crate::measurement::Dataset;
+
+/// Suspected rows that a file lists at most; `robust` has their number.
+const LISTED: usize = 1000;
+
+/// What was done about outliers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RobustEntry {
+    /// The robust loss of the fit; null: least squares.
+    pub loss: Option<Loss>,
+    /// Number of suspected rows among those fitted.
+    pub suspected_fit: usize,
+    /// Number of suspected rows among those held out.
+    pub suspected_held_out: usize,
+    /// `accuracy.training` without the suspected rows; null if none is.
+    pub training_without_suspected: Option<SetAccuracy>,
+    /// `accuracy.held_out` without the suspected rows; null if none is.
+    pub held_out_without_suspected: Option<SetAccuracy>,
+}
+
+/// A row that is suspected to be grossly wrong.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OutlierEntry {
+    /// The file that it came from, as named by the user.
+    pub file: String,
+    /// Its line in that file, from 1.
+    pub row: u32,
+    /// Whether it was fitted.
+    pub set: OutlierSet,
+    /// Distance from the position that the calibrated model predicts, millimetres.
+    pub residual_mm: f64,
+    /// Angle from the orientation that it predicts, degrees; null where none was measured.
+    pub residual_deg: Option<f64>,
+    /// Length of its residual in units of that residual's own standard deviation.
+    pub studentized: f64,
+    /// Its weight in the fit, 0 to 1; of a row held out, what it would have had.
+    pub weight: f64,
+}
+
+/// The set of a suspected row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum OutlierSet {
+    /// It was fitted.
+    Fit,
+    /// It was held out.
+    HeldOut,
+}
+
+impl RobustEntry {
+    /// Of a finished calibration.
+    pub(super) fn of(calibration: &Calibration) -> Self {
+        let robustness = &calibration.robustness;
+        let suspected = |rows: &[u32]| rows.len() - robustness.rest(rows).len();
+        RobustEntry {
+            loss: robustness.loss,
+            suspected_fit: suspected(&calibration.fit_rows),
+            suspected_held_out: suspected(&calibration.held_out_rows),
+            training_without_suspected: robustness.training_rest,
+            held_out_without_suspected: robustness.held_out_rest,
+        }
+    }
+}
+
+impl OutlierEntry {
+    /// The suspected rows of a finished calibration, the worst first, at most 1,000.
+    #[must_use]
+    pub fn of(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
+        let robustness = &calibration.robustness;
+        let rows: Vec<u32> = robustness.suspects().collect();
+        let influences = row_influence(calibration, data, &rows);
+        let mut rows: Vec<(u32, f64)> =
+            rows.into_iter().zip(influences.iter().map(|influence| influence.studentized)).collect();
+        rows.sort_by(|(a, first), (b, second)| second.total_cmp(first).then(a.cmp(b)));
+        rows.truncate(LISTED);
+        let numbers: Vec<u32> = rows.iter().map(|(row, _)| *row).collect();
+        let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
+        let errors = row_errors(data, &packed, &numbers, &calibration.models.calibrated);
+        let entry = |((row, studentized), error): (&(u32, f64), &RowError)| {
+            let source = data.observations[*row as usize].source;
+            let file = data.files.get(source.file as usize);
+            let held_out = calibration.held_out_rows.binary_search(row).is_ok();
+            OutlierEntry {
+                file: file.map_or_else(String::new, |path| path.display().to_string()),
+                row: source.line,
+                set: if held_out { OutlierSet::HeldOut } else { OutlierSet::Fit },
+                residual_mm: error.position_m.norm() * 1e3,
+                residual_deg: error.rotation_rad.map(|turn| turn.norm().to_degrees()),
+                studentized: *studentized,
+                weight: robustness.rows.get(*row as usize).map_or(1.0, |judged| judged.weight),
+            }
+        };
+        rows.iter().zip(&errors).map(entry).collect()
+    }
+}

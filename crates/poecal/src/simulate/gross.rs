@@ -1,0 +1,73 @@
+//! Gross errors among measurements: rows that are plainly wrong.
+
+use nalgebra::Vector3;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::random;
+use crate::lie::{Pose, rotation};
+use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
+
+/// Gross errors of a share of the rows: each is moved in a random direction, and every second one that sees orientation is turned too.
+/// Distances and angles are uniform between their two limits.
+///
+/// ```
+/// use poecal::simulate::{Gross, Kind, Simulation, elbow};
+/// let mut made = Simulation::default().run(&elbow(), Kind::Pose)?;
+/// let rows = Gross { share: 0.1, ..Gross::default() }.spoil(&mut made.data);
+/// assert_eq!(rows.len(), 5);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gross {
+    /// Share of the rows, 0 to 1.
+    pub share: f64,
+    /// Least and greatest distance, metres.
+    pub distance_m: [f64; 2],
+    /// Least and greatest angle, radians.
+    pub angle_rad: [f64; 2],
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+impl Default for Gross {
+    fn default() -> Self {
+        let angle_rad = [1f64.to_radians(), 20f64.to_radians()];
+        Gross { share: 0.1, distance_m: [5e-3, 0.1], angle_rad, seed: 1 }
+    }
+}
+
+impl Gross {
+    /// Spoils the data; returns the rows that are wrong now, in their order.
+    pub fn spoil(&self, data: &mut Dataset) -> Vec<u32> {
+        let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
+        // Another stream than the one that made the session of the same seed.
+        generator.set_stream(2);
+        let mut rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+        random::shuffle(&mut generator, &mut rows);
+        rows.truncate((self.share.clamp(0.0, 1.0) * data.len() as f64).round() as usize);
+        for (count, &row) in rows.iter().enumerate() {
+            let measurement = &mut data.observations[row as usize].measurement;
+            *measurement = self.spoilt(measurement, count % 2 == 0, &mut generator);
+        }
+        rows.sort_unstable();
+        rows
+    }
+
+    fn spoilt(&self, measurement: &Measurement, turned: bool, generator: &mut ChaCha8Rng) -> Measurement {
+        let mut between = |[least, most]: [f64; 2]| -> Vector3<f64> {
+            let direction = random::direction(generator);
+            direction * (least + (most - least) * random::uniform(generator))
+        };
+        let (shift, turn) = (between(self.distance_m), between(self.angle_rad));
+        let Pose { rotation: seen, translation } = measurement.pose();
+        let position = translation + shift;
+        match measurement {
+            Measurement::Point(_) => Measurement::Point(PointMeasurement { position }),
+            Measurement::Pose(_) | Measurement::SpatialPose(_) => {
+                let rotation = if turned { rotation::exp(&turn) * seen } else { seen };
+                Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position) })
+            }
+        }
+    }
+}
