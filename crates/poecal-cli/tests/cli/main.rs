@@ -11,3 +11,4 @@ mod offsets;
 mod reproduce;
 mod session;
 mod targets_and_validation;
+mod trust;

@@ -1,0 +1,80 @@
+//! The verdict, and the uncertainty of predictions.
+
+use poecal::simulate::Kind;
+
+use crate::folder::Folder;
+use crate::session::session;
+
+fn json(folder: &Folder, name: &str) -> serde_json::Value {
+    serde_json::from_str(&folder.read(name)).unwrap()
+}
+
+/// Measurements in which joint2 hardly moves.
+fn narrow() -> Folder {
+    let folder = session(Kind::Pose);
+    let text = folder.read("measurements.csv");
+    let mut kept = vec![text.lines().next().unwrap().to_owned()];
+    let column = kept[0].split(',').position(|name| name == "joint2").unwrap();
+    let small = |line: &&str| line.split(',').nth(column).unwrap().parse::<f64>().unwrap().abs() < 1.0;
+    kept.extend(text.lines().skip(1).filter(small).map(str::to_owned));
+    folder.write("narrow.csv", kept.join("\n") + "\n");
+    folder
+}
+
+#[test]
+fn verdict_says_how_far_a_calibration_may_be_used() {
+    let folder = narrow();
+    let good = folder.run("calibrate robot.urdf measurements.csv --out all --require good");
+    assert_eq!(good.code, 0, "{good:?}");
+    assert_eq!(json(&folder, "all/calibration.json")["verdict"]["level"], "good");
+
+    let run = folder.run("calibrate robot.urdf narrow.csv --out some --require good");
+    assert_eq!(run.code, 1, "{run:?}");
+    let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("verdict use inside the sampled range: joint2 was moved through"), "{words}");
+    let file = json(&folder, "some/calibration.json");
+    assert_eq!(file["verdict"]["level"], "inside_sampled_range");
+    assert!(file["coverage"][1]["sampled_max"].as_f64().unwrap() < 1.0);
+    let enough =
+        folder.run("calibrate robot.urdf narrow.csv --out some --force --require inside_sampled_range");
+    assert_eq!(enough.code, 0, "{enough:?}");
+    for file in [json(&folder, "all/calibration.json"), file] {
+        assert!(file["cross_validation"]["random"]["position_rms_mm"].as_f64().unwrap() > 0.0);
+        assert_eq!(file["cross_validation"]["blocked"].as_array().unwrap().len(), 12);
+        for correction in file["corrections"].as_array().unwrap() {
+            assert!(
+                correction["sigma_shift_mm"].as_f64().unwrap() < correction["shift_mm"].as_f64().unwrap()
+            );
+            assert!(correction["left_nominal_rms_mm"].as_f64().unwrap() > 0.1);
+        }
+    }
+}
+
+#[test]
+fn predictions_state_their_error() {
+    let folder = narrow();
+    folder.done("calibrate robot.urdf narrow.csv --out some");
+    folder.write(
+        "joints.csv",
+        "id,joint1,joint2,joint3,joint4,joint5,joint6\na,0.3,-0.4,-0.9,1,0.2,-3\nb,1.3,2.9,-0.7,0,1,2\n",
+    );
+    let plain = folder.done("predict some/calibration.json joints.csv");
+    let text = folder.done("predict some/calibration.json joints.csv --with-uncertainty");
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(
+        rows[0][8..],
+        ["sigma_position[m]", "sigma_rotation[rad]", "bound95_position[m]", "inside_sampled_range"]
+    );
+    for (line, row) in plain.lines().zip(&rows) {
+        assert_eq!(line, row[..8].join(","));
+    }
+    let number = |row: usize, column: usize| rows[row][column].parse::<f64>().unwrap();
+    assert_eq!((rows[1][11], rows[2][11]), ("true", "false"));
+    assert!(number(1, 8) > 1e-6 && number(1, 8) < number(1, 10) && number(1, 10) < 1e-3);
+    assert!(number(2, 8) > number(1, 8), "{text}");
+    let run = folder.run("predict robot.urdf joints.csv --with-uncertainty");
+    assert!(
+        run.code == 2 && run.err.contains("expected a calibration.json for --with-uncertainty"),
+        "{run:?}"
+    );
+}
