@@ -48,7 +48,7 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let start = simulation.perturbed(&elbow(), &mut generator);
     let made = simulation.measure(&elbow(), elbow(), kind, &mut generator).unwrap();
-    let options = CalibrationOptions { frame, held_out: 0.0, ..Default::default() };
+    let options = CalibrationOptions { frame, held_out: 0.0, diagnose: false, ..Default::default() };
     let fit =
         |robot: &Robot| mean_square(&calibrate(robot, &made.data, &options).unwrap(), &made.data, robot);
     let optimum = fit(&elbow());

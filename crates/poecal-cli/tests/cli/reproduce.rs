@@ -59,7 +59,7 @@ fn reproduction_writes_its_report() {
 fn reproduction_refuses_what_it_cannot_do() {
     let folder = Folder::new();
     for (arguments, words) in [
-        ("reproduce lou2010 --out report", "invalid value 'lou2010' for '<PAPER>'"),
+        ("reproduce lou2010 --out report", "invalid value 'lou2010' for '<EXPERIMENT>'"),
         ("reproduce lou2009 --out report --trials 0", "0 is not in 1..=1000000"),
         ("reproduce lou2009 --out report --starts -1", "unexpected argument '-1' found"),
         ("reproduce lou2009", "required arguments were not provided:\n  --out <DIR>"),

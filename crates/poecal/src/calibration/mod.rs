@@ -72,6 +72,8 @@ pub struct CalibrationOptions {
     pub robust: Robust,
     /// Options of the solver.
     pub solver: solve::Options,
+    /// Whether mistakes in the input are looked for where the fit leaves room for them; that can take some tenths of a second.
+    pub diagnose: bool,
     /// Further starts tried when the fit looks as if it ended beside the optimum.
     pub restarts: usize,
 }
@@ -88,6 +90,7 @@ impl Default for CalibrationOptions {
             pose_residual: PoseResidual::default(),
             robust: Robust::default(),
             solver: solve::Options::default(),
+            diagnose: true,
             restarts: 24,
         }
     }
@@ -341,8 +344,12 @@ pub fn calibrate_with_progress(
         base_free: options.frame == DeviceFrameKnowledge::Unknown,
         seed: options.seed,
     });
-    let diagnosis =
-        diagnosis(robot, data, loss.is_some().then_some(&kept[..]), options.frame, &models.calibrated);
+    let diagnosis = if options.diagnose {
+        let believed = loss.is_some().then_some(&kept[..]);
+        diagnosis(robot, data, believed, options.frame, &models.calibrated)
+    } else {
+        Vec::new()
+    };
     let grave = diagnosis.iter().filter(|it| it.kind != DiagnosisKind::DuplicateRows);
     let verdict = verdict::verdict(&verdict::Grounds {
         accuracy: &accuracy,

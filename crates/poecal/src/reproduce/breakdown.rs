@@ -99,7 +99,11 @@ fn session(robot: &Robot, kind: Kind, seed: u64) -> Result<Vec<Outcome>> {
     let made = simulation.run(robot, kind)?;
     let judging = simulation.held_out(&made, kind, JUDGING)?;
     let fit = |data: &Dataset, robust| {
-        calibrate(robot, data, &CalibrationOptions { held_out: 0.0, robust, ..Default::default() })
+        calibrate(
+            robot,
+            data,
+            &CalibrationOptions { held_out: 0.0, robust, diagnose: false, ..Default::default() },
+        )
     };
     let clean = held_out_m(robot, &judging, &fit(&made.data, Robust::Off)?.models);
     let mut outcomes = Vec::with_capacity(4 * SHARES.len());

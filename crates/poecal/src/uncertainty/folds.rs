@@ -17,8 +17,9 @@ const SAMPLE: usize = 2000;
 /// Random folds; a tail has as many rows as one of them.
 const FOLDS: usize = 5;
 
-/// Names by which rows are grouped, at most: more are names of rows, not of groups.
+/// Names by which rows are grouped, at most, and rows of a name on average, at least: others are names of rows, not of groups.
 const MOST_GROUPS: usize = 30;
+const LEAST_ROWS: usize = 4;
 
 /// Rows to leave out together.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -119,7 +120,7 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
     folds
 }
 
-/// Rows of one name together, if the names are at least two and no more than a few rows' each.
+/// Rows of one name together, if the names are those of groups.
 fn groups(sample: &[u32], name: impl Fn(u32) -> Option<String>) -> Vec<Fold> {
     let mut groups: BTreeMap<String, Vec<u32>> = BTreeMap::new();
     for &row in sample {
@@ -127,7 +128,7 @@ fn groups(sample: &[u32], name: impl Fn(u32) -> Option<String>) -> Vec<Fold> {
             groups.entry(name).or_default().push(row);
         }
     }
-    if groups.len() < 2 || groups.len() > MOST_GROUPS {
+    if groups.len() < 2 || groups.len() > MOST_GROUPS || groups.len() * LEAST_ROWS > sample.len() {
         return Vec::new();
     }
     groups.into_iter().map(|(name, rows)| Fold { name, rows }).collect()
