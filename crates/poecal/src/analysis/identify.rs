@@ -88,7 +88,7 @@ pub struct Foresight {
 pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Foresight> {
     let data = imagined(robot, readings, session)?;
     let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
-    let rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+    let rows: Vec<u32> = data.all_rows();
     let length_m = radian_m(robot, &packed);
     let mut estimate = delivered(robot, &data);
     estimate.recentre(&data, &packed, &rows);

@@ -4,10 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Models;
-use crate::estimate::{Chain, Estimate, Linkage, Packed};
-use crate::lie::rotation;
+use crate::estimate::{Estimate, Packed, RowError, row_errors};
 use crate::measurement::Dataset;
-use nalgebra::Vector3;
 
 /// Mean, root mean square, 95th percentile (linear between ranks) and maximum of errors.
 ///
@@ -75,35 +73,6 @@ pub struct Accuracy {
     pub training: SetAccuracy,
     /// On the rows that were not; null if none was held out.
     pub held_out: Option<SetAccuracy>,
-}
-
-/// Error of one row: measured less predicted, device axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RowError {
-    /// Position, metres.
-    pub position_m: Vector3<f64>,
-    /// Rotation vector, radians, if orientation was measured.
-    pub rotation_rad: Option<Vector3<f64>>,
-}
-
-/// Errors of an estimate, one a row.
-#[must_use]
-pub fn row_errors(data: &Dataset, packed: &Packed, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
-    let linkage = Linkage::new(estimate);
-    let mut chain = Chain::default();
-    rows.iter()
-        .map(|&row| {
-            let observation = &data.observations[row as usize];
-            let model = observation.measurement.residual_model();
-            chain.evaluate(&linkage, packed, row as usize, observation.target);
-            RowError {
-                position_m: model.position() - chain.target.translation,
-                rotation_rad: model
-                    .orientation()
-                    .map(|measured| rotation::log(&(measured * chain.target.rotation.transpose()))),
-            }
-        })
-        .collect()
 }
 
 /// Errors of the three models on some rows (at least one).

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::accuracy::{ModelAccuracy, model_accuracy, row_errors};
+use super::accuracy::{ModelAccuracy, model_accuracy};
 use super::{DeviceFrameKnowledge, delivered, measurements_words, radian_m};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::Packed;
+use crate::estimate::{Packed, row_errors};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
 use crate::robot::Robot;
@@ -106,7 +106,7 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
 /// Errors of a robot's screws, with device frame and targets found anew as asked.
 fn accuracy(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> ModelAccuracy {
     let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
-    let rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+    let rows: Vec<u32> = data.all_rows();
     let mut estimate = delivered(robot, data);
     estimate.device_from_base = subject.base_from_device.inverse();
     if subject.refit_frame || subject.refit_tool {

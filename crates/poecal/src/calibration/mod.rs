@@ -10,7 +10,7 @@ mod split;
 mod trust;
 mod verdict;
 
-pub use accuracy::{Accuracy, ModelAccuracy, RowError, SetAccuracy, Statistic, row_errors, set_accuracy};
+pub use accuracy::{Accuracy, ModelAccuracy, SetAccuracy, Statistic, set_accuracy};
 pub use fit::fit_screws;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
@@ -20,7 +20,7 @@ pub(crate) use trust::inside;
 pub use trust::{Expected, JointCorrection, RangePart, Trust};
 pub use verdict::{Level, Verdict};
 
-pub use crate::estimate::{delivered, radian_m};
+pub use crate::estimate::{RowError, delivered, radian_m, row_errors};
 
 use crate::analysis::{Identifiability, Setup, identifiability, residual_variance};
 use crate::error::{Error, ErrorKind, Result};
@@ -401,8 +401,7 @@ fn diagnosis(
     frame: DeviceFrameKnowledge,
     calibrated: &Estimate,
 ) -> Vec<Diagnosis> {
-    let all = || (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
-    let rows: Vec<u32> = believed.map_or_else(all, <[u32]>::to_vec);
+    let rows = believed.map_or_else(|| data.all_rows(), <[u32]>::to_vec);
     let device_free = frame == DeviceFrameKnowledge::Unknown;
     forensics::diagnose(robot, data, &rows, &forensics::Options { device_free, calibrated: Some(calibrated) })
 }

@@ -5,9 +5,11 @@
 
 mod chain;
 mod packing;
+mod row_error;
 
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
+pub use row_error::{RowError, row_errors};
 
 use nalgebra::Vector3;
 

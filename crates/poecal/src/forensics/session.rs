@@ -1,12 +1,9 @@
 //! A session as the hypotheses see it: a sample of its rows, and how well the nominal robot and a short calibration explain them.
 
-use nalgebra::Vector3;
-
 use super::change::{like, push};
-use crate::estimate::delivered;
-use crate::estimate::{Chain, Estimate, Linkage, Packed, sample_rows};
+use crate::estimate::{Estimate, Packed, RowError, delivered, row_errors, sample_rows};
 use crate::gauge;
-use crate::lie::{Pose, Screw, rotation};
+use crate::lie::{Pose, Screw};
 use crate::measurement::{Dataset, Noise, Observation, PoseResidual};
 use crate::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis};
 use crate::problem::Problem;
@@ -97,7 +94,7 @@ impl<'a> Session<'a> {
 
     fn register(&self, data: &Dataset, by: impl Fn(&Registration<'_>) -> Estimate) -> (Estimate, Misfit) {
         let packed = self.packed(data);
-        let rows = all_rows(data);
+        let rows = data.all_rows();
         let registration = Registration {
             data,
             packed: &packed,
@@ -132,7 +129,7 @@ impl<'a> Session<'a> {
             registered.kinds.get(joint).map(|&kind| Parameter::JointOffset(JointOffset { joint, kind })),
         );
         if self.device_free {
-            let about = data.mean_position(&all_rows(data));
+            let about = data.mean_position(&data.all_rows());
             free.push(Parameter::DeviceFrame(DeviceFrame { about }));
         }
         let (estimate, misfit) = self.fit(data, registered, free, 30);
@@ -147,7 +144,7 @@ impl<'a> Session<'a> {
         iterations: usize,
     ) -> (Estimate, Misfit) {
         let packed = self.packed(data);
-        let rows = all_rows(data);
+        let rows = data.all_rows();
         free.extend(target_parameters(data, &rows));
         let mut start = registered.clone();
         start.recentre(data, &packed, &rows);
@@ -168,12 +165,10 @@ impl<'a> Session<'a> {
 
     /// Whether nothing looks wrong: a calibration explains the data, and leaves each axis near where it was.
     pub(super) fn is_sound(&self, data: &Dataset, calibrated: &Estimate) -> bool {
-        let errors = row_errors(data, &self.packed(data), calibrated);
-        let total = |(shift, turn): &(Vector3<f64>, Option<Vector3<f64>>)| {
-            shift.norm_squared() + turn.map_or(0.0, |turn| turn.norm_squared() * self.length_m.powi(2))
-        };
-        let mean = errors.iter().map(total).sum::<f64>() / errors.len().max(1) as f64;
-        let most = errors.iter().map(total).fold(0.0, f64::max);
+        let errors = row_errors(data, &self.packed(data), &data.all_rows(), calibrated);
+        let totals = errors.iter().map(|error| self.squared_m2(error));
+        let mean = totals.clone().sum::<f64>() / errors.len().max(1) as f64;
+        let most = totals.fold(0.0, f64::max);
         let quiet = QUIET_SHARE * self.reach_m();
         if mean.sqrt() > quiet || most.sqrt() > quiet.max(OUTSTANDING * mean.sqrt()) {
             return false;
@@ -197,12 +192,18 @@ impl<'a> Session<'a> {
         moved.iter().zip(&self.robot.joints).all(is_near)
     }
 
+    /// Squared error of a row, an angle counted as its arc at the session's length.
+    pub(super) fn squared_m2(&self, error: &RowError) -> f64 {
+        let turned = error.rotation_rad.map_or(0.0, |turn| turn.norm_squared() * self.length_m.powi(2));
+        error.position_m.norm_squared() + turned
+    }
+
     pub(super) fn misfit(&self, data: &Dataset, packed: &Packed, estimate: &Estimate) -> Misfit {
         let (mut position, mut rotation, mut turned) = (0.0, 0.0, 0usize);
-        let errors = row_errors(data, packed, estimate);
-        for (shift, turn) in &errors {
-            position += shift.norm_squared();
-            if let Some(turn) = turn {
+        let errors = row_errors(data, packed, &data.all_rows(), estimate);
+        for error in &errors {
+            position += error.position_m.norm_squared();
+            if let Some(turn) = &error.rotation_rad {
                 rotation += turn.norm_squared();
                 turned += 1;
             }
@@ -214,28 +215,6 @@ impl<'a> Session<'a> {
             total_m: ((position + rotation * self.length_m.powi(2)) / count).sqrt(),
         }
     }
-}
-
-/// Measured less predicted, a row: position, and rotation vector where orientation was measured.
-pub(super) fn row_errors(
-    data: &Dataset,
-    packed: &Packed,
-    estimate: &Estimate,
-) -> Vec<(Vector3<f64>, Option<Vector3<f64>>)> {
-    let linkage = Linkage::new(estimate);
-    let mut chain = Chain::default();
-    let rows = data.observations.iter().enumerate();
-    rows.map(|(row, observation)| {
-        let model = observation.measurement.residual_model();
-        chain.evaluate(&linkage, packed, row, observation.target);
-        let turn = model.orientation().map(|seen| rotation::log(&(seen * chain.target.rotation.transpose())));
-        (model.position() - chain.target.translation, turn)
-    })
-    .collect()
-}
-
-fn all_rows(data: &Dataset) -> Vec<u32> {
-    (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect()
 }
 
 /// Some rows of a data set, every row counting the same and every pose by its error at the target.
@@ -253,5 +232,5 @@ pub(super) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
 
 /// At most so many rows as hypotheses are judged on.
 pub(super) fn sampled(data: &Dataset) -> Dataset {
-    taken(data, &sample_rows(&all_rows(data), SAMPLE))
+    taken(data, &sample_rows(&data.all_rows(), SAMPLE))
 }

@@ -1,12 +1,10 @@
 //! Names of two targets exchanged: in all rows, from a row on, or in single rows.
 
-use nalgebra::Vector3;
-
 use super::judge::{CALIBRATED_SHARE, short};
 use super::repeats::place;
-use super::session::{SHORT, Score, Session, row_errors, sampled, taken};
+use super::session::{SHORT, Score, Session, sampled, taken};
 use super::{Diagnosis, DiagnosisKind};
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, row_errors};
 use crate::measurement::Dataset;
 
 /// How many times nearer to their places in the model two targets must be when exchanged.
@@ -136,10 +134,8 @@ fn settled(
     let mut swapped = vec![false; all.len()];
     let packed = session.packed(all);
     let errors = |data: &Dataset, estimate: &Estimate| -> Vec<f64> {
-        let weigh = |(shift, turn): &(Vector3<f64>, Option<Vector3<f64>>)| {
-            shift.norm_squared() + turn.map_or(0.0, |turn| turn.norm_squared() * session.length_m.powi(2))
-        };
-        row_errors(data, &packed, estimate).iter().map(weigh).collect()
+        let errors = row_errors(data, &packed, &data.all_rows(), estimate);
+        errors.iter().map(|error| session.squared_m2(error)).collect()
     };
     let mut least = base_m;
     for _ in 0..ROUNDS {

@@ -12,7 +12,7 @@ use crate::measurement::Dataset;
 #[must_use]
 pub fn text(data: &Dataset, calibration: &Calibration) -> String {
     let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
-    let rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+    let rows: Vec<u32> = data.all_rows();
     let of = |estimate: &Estimate| row_errors(data, &packed, &rows, estimate);
     let nominal = of(&calibration.models.nominal);
     let registered = of(&calibration.models.registered);

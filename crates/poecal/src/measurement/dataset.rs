@@ -169,6 +169,12 @@ impl Dataset {
         self.observations.is_empty()
     }
 
+    /// The indices of all rows.
+    #[must_use]
+    pub fn all_rows(&self) -> Vec<u32> {
+        (0..u32::try_from(self.len()).unwrap_or(u32::MAX)).collect()
+    }
+
     /// The readings of a row (radians, metres).
     #[must_use]
     pub fn readings(&self, row: usize) -> &[f64] {

@@ -43,7 +43,7 @@ impl Gross {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         // Another stream than the one that made the session of the same seed.
         generator.set_stream(2);
-        let mut rows: Vec<u32> = (0..u32::try_from(data.len()).unwrap_or(u32::MAX)).collect();
+        let mut rows: Vec<u32> = data.all_rows();
         random::shuffle(&mut generator, &mut rows);
         rows.truncate((self.share.clamp(0.0, 1.0) * data.len() as f64).round() as usize);
         for (count, &row) in rows.iter().enumerate() {
