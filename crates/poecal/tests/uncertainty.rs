@@ -7,7 +7,7 @@ use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::estimate::{Chain, Linkage, Packed};
 use poecal::lie::rotation;
 use poecal::robot::Robot;
-use poecal::simulate::{Kind, Simulation, elbow, gantry, random_configuration, scara, seven_axis};
+use poecal::simulate::{Kind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
@@ -159,4 +159,52 @@ fn errors_that_the_model_does_not_describe_are_stated() {
     let share = inside as f64 / f64::from(all);
     println!("with sagging links {:.1} % of the errors are within their bound", 100.0 * share);
     assert!(share > 0.9);
+}
+
+/// Drawn anew, noise spreads predictions as the covariance says: the drawings use neither its variance nor that rows are alike.
+#[test]
+fn drawing_rows_anew_agrees_with_the_covariance_where_there_is_only_noise() {
+    let mut ratios = Vec::new();
+    for robot in [elbow(), scara(), seven_axis(), gantry()] {
+        for seed in 0..10 {
+            let made =
+                Simulation { count: 200, seed, ..Simulation::default() }.run(&robot, Kind::Point).unwrap();
+            let found = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+            let bootstrap = found.trust.bootstrap.unwrap();
+            ratios.push(bootstrap.sigma_m / bootstrap.formal_sigma_m);
+        }
+    }
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    let (least, most) = ratios.iter().fold((f64::MAX, 0.0_f64), |(a, b), &r| (a.min(r), b.max(r)));
+    println!("drawn anew over formal: mean {mean:.3}, {least:.2} to {most:.2}");
+    // One step with the information of all rows neglects that a drawing's own information varies: some per cent too small with few rows.
+    assert!((0.9..1.1).contains(&mean) && least > 0.7 && most < 1.4);
+}
+
+/// Errors that neighbours share are no white noise: six rows that err alike tell little more than one, which drawing anew sees.
+#[test]
+fn drawing_rows_anew_sees_what_neighbours_share() {
+    let robot = elbow();
+    let mut generator = ChaCha8Rng::seed_from_u64(5);
+    let actual = Simulation::default().perturbed(&robot, &mut generator);
+    let mut data = poecal::measurement::Dataset::new(robot.reading_names());
+    for _ in 0..60 {
+        let near = random_configuration(&robot, &mut generator);
+        let shared = random::normal_vector(&mut generator) * 2e-4;
+        for _ in 0..6 {
+            let readings: Vec<f64> =
+                near.iter().map(|value| value + 1e-2 * random::normal(&mut generator)).collect();
+            let seen = actual.forward_kinematics(&readings).translation;
+            let position = seen + shared + random::normal_vector(&mut generator) * 2e-5;
+            let point = poecal::measurement::PointMeasurement { position };
+            data.push(&readings, None, poecal::measurement::Measurement::Point(point)).unwrap();
+        }
+    }
+    let options = CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() };
+    let found = calibrate(&robot, &data, &options).unwrap();
+    let bootstrap = found.trust.bootstrap.unwrap();
+    let ratio = bootstrap.sigma_m / bootstrap.formal_sigma_m;
+    println!("six alike: drawn anew {:.4} mm, {ratio:.2} times the formal", 1e3 * bootstrap.sigma_m);
+    // Rows that are all alike in groups of six would make it the root of six, 2.4; neighbourhoods of four see about the root of four.
+    assert!((1.5..2.6).contains(&ratio));
 }

@@ -78,3 +78,31 @@ fn predictions_state_their_error() {
         "{run:?}"
     );
 }
+
+#[test]
+fn validation_says_whether_the_promise_was_kept() {
+    let folder = narrow();
+    folder.done("calibrate robot.urdf measurements.csv --fit-where stage=1 --out all");
+    let run = folder.run("validate all/calibration.json measurements.csv --json");
+    assert_eq!(run.code, 0, "{run:?}");
+    let found: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    let promised = &found["promised"];
+    let share = promised["inside_bound95"].as_f64().unwrap();
+    let expected = promised["expected_rms_mm"].as_f64().unwrap();
+    let rms = found["calibrated"]["position_mm"]["rms"].as_f64().unwrap();
+    println!("{:.1} % inside, expected {expected:.4} mm, found {rms:.4} mm", 100.0 * share);
+    assert!(share > 0.85 && (0.7..1.4).contains(&(rms / expected)));
+    assert!(promised["inside_sampled_range"].as_f64().unwrap() > 0.8);
+    let text = folder.done("validate all/calibration.json measurements.csv");
+    assert!(text.contains("of the errors are inside theirs"), "{text}");
+
+    // A tool that is found anew was promised nothing, and one that was bent breaks the promise.
+    let anew = folder.done("validate all/calibration.json measurements.csv --refit-tool --json");
+    assert!(serde_json::from_str::<serde_json::Value>(&anew).unwrap()["promised"].is_null());
+    let mut bent = json(&folder, "all/calibration.json");
+    let home = bent["robot"]["base_from_tip_at_zero"]["position_m"][2].as_f64().unwrap();
+    bent["robot"]["base_from_tip_at_zero"]["position_m"][2] = (home + 5e-4).into();
+    folder.write("bent.json", bent.to_string());
+    let run = folder.run("validate bent.json measurements.csv");
+    assert!(run.err.contains("of the errors exceed their 95 % bound"), "{run:?}");
+}

@@ -82,7 +82,7 @@ pub fn coverage(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<JointCovera
 }
 
 /// Smallest and largest value of each joint in some rows.
-pub(super) fn ranges(joints: usize, packed: &Packed, rows: &[u32]) -> Vec<(f64, f64)> {
+pub(crate) fn ranges(joints: usize, packed: &Packed, rows: &[u32]) -> Vec<(f64, f64)> {
     let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); joints];
     for &row in rows {
         for (range, &value) in ranges.iter_mut().zip(packed.joint_values(row as usize)) {

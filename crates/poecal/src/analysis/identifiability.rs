@@ -18,7 +18,7 @@ use crate::solve::Normal;
 const ROUNDING: f64 = 3e-7;
 /// A direction is told by the data if its standard deviation is below this share of the length that a radian counts (about 2°,
 /// or some 10 to 20 mm on an arm of ordinary size): a robot's drawing is known better than that.
-pub(super) const PLAUSIBLE: f64 = 0.03;
+pub(crate) const PLAUSIBLE: f64 = 0.03;
 /// A direction is weak if its standard deviation is above this share of that length (some 1 to 2 mm, or 0.2°): about what a robot's
 /// drawing is known to, so that a calibration adds little there.
 pub(super) const WEAK: f64 = 0.003;

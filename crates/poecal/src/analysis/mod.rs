@@ -10,7 +10,9 @@ mod observability;
 mod remainder;
 mod subspace;
 
+pub(crate) use coverage::ranges;
 pub use coverage::{JointCoverage, coverage};
+pub(crate) use identifiability::PLAUSIBLE;
 pub use identifiability::{
     Cause, Direction, Identifiability, Setup, Spectrum, identifiability, residual_variance,
 };

@@ -3,9 +3,10 @@
 use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy};
+use super::expectation::{Kept, Promise};
 use super::{DeviceFrameKnowledge, delivered, measurements_words, radian_m};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Packed, row_errors};
+use crate::estimate::{Packed, RowError, row_errors};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
 use crate::robot::Robot;
@@ -27,6 +28,7 @@ use crate::start::{Registration, register};
 ///     noise: calibration.noise,
 ///     refit_frame: false,
 ///     refit_tool: false,
+///     promise: None,
 /// };
 /// let judgement = judge(&subject, &made.data)?;
 /// assert!(judgement.calibrated.position_mm.max < 1e-6);
@@ -49,6 +51,8 @@ pub struct Subject<'a> {
     pub refit_frame: bool,
     /// Find every target that was measured anew.
     pub refit_tool: bool,
+    /// What the calibration promises of its predictions. It says nothing of a tool that is found anew.
+    pub promise: Option<Promise<'a>>,
 }
 
 /// What was found anew from the judging measurements themselves.
@@ -67,7 +71,7 @@ pub enum Refitted {
 /// use poecal::calibration::{Judgement, ModelAccuracy, Statistic};
 /// let position_mm = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = ModelAccuracy { position_mm, rotation_deg: None };
-/// let judgement = Judgement { count: 20, refitted: vec![], calibrated, nominal: None };
+/// let judgement = Judgement { count: 20, refitted: vec![], calibrated, nominal: None, promised: None };
 /// assert_eq!(judgement.calibrated.position_mm.max, 0.25);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,6 +85,8 @@ pub struct Judgement {
     /// Errors of the nominal screws with the same found anew; none unless that takes in all that the nominal model cannot know, the
     /// tool and a device frame that was unknown.
     pub nominal: Option<ModelAccuracy>,
+    /// Whether the errors are what the calibration promised, if it promised something.
+    pub promised: Option<Kept>,
 }
 
 /// Judges a calibration by measurements. The readings must be those of the robot, and every target must be one of its targets unless
@@ -98,13 +104,16 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
         refitted.push(Refitted::Tool);
     }
     let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
-    let nominal = (frame_is_common && subject.refit_tool).then(|| accuracy(subject, subject.nominal, data));
-    let calibrated = accuracy(subject, subject.calibrated, data);
-    Ok(Judgement { count: data.len(), refitted, calibrated, nominal })
+    let nominal = (frame_is_common && subject.refit_tool)
+        .then(|| model_accuracy(&errors(subject, subject.nominal, data).1));
+    let (packed, errors) = errors(subject, subject.calibrated, data);
+    let promise = subject.promise.filter(|_| !subject.refit_tool);
+    let promised = promise.map(|it| it.kept(subject.calibrated, data, &packed, &errors));
+    Ok(Judgement { count: data.len(), refitted, calibrated: model_accuracy(&errors), nominal, promised })
 }
 
-/// Errors of a robot's screws, with device frame and targets found anew as asked.
-fn accuracy(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> ModelAccuracy {
+/// Joint values, and the errors of a robot's screws with device frame and targets found anew as asked.
+fn errors(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> (Packed, Vec<RowError>) {
     let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
     let rows: Vec<u32> = data.all_rows();
     let mut estimate = delivered(robot, data);
@@ -121,7 +130,8 @@ fn accuracy(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> ModelAccura
         };
         estimate = register(&registration, &estimate).0;
     }
-    model_accuracy(&row_errors(data, &packed, &rows, &estimate))
+    let errors = row_errors(data, &packed, &rows, &estimate);
+    (packed, errors)
 }
 
 /// Refuses measurements that cannot determine what is found anew, and none at all.

@@ -2,15 +2,18 @@
 
 mod accuracy;
 mod doubts;
+mod expectation;
 mod fit;
 mod judge;
 mod noise;
 mod robust;
 mod split;
+mod suspicion;
 mod trust;
 mod verdict;
 
 pub use accuracy::{Accuracy, ModelAccuracy, SetAccuracy, Statistic, set_accuracy};
+pub use expectation::{Kept, Promise};
 pub use fit::fit_screws;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};

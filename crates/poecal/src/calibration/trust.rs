@@ -4,8 +4,9 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::suspicion::suspicions;
 use super::{Models, row_errors};
-use crate::analysis::{JointCoverage, coverage};
+use crate::analysis::{JointCoverage, PLAUSIBLE, coverage, residual_variance};
 use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge::{Deviation, screw_deviations};
 use crate::problem::Layout;
@@ -14,7 +15,8 @@ use crate::simulate::random;
 use crate::solve::Normal;
 use crate::start::{Registration, register_again};
 use crate::uncertainty::{
-    CrossValidation, Discrepancy, PRIOR, PredictedError, Uncertainty, View, cross_validate, discrepancy,
+    Bootstrap, CrossValidation, Discrepancy, PredictedError, Uncertainty, View, bootstrap, cross_validate,
+    discrepancy,
 };
 
 /// Random configurations by which the joint range is judged.
@@ -71,6 +73,8 @@ pub struct JointCorrection {
     pub sigma_shift_m: Option<f64>,
     /// Root mean square position error if this screw alone stayed nominal, tool and device frame found anew, metres.
     pub left_nominal_rms_m: f64,
+    /// What speaks against the joint: a correction beyond those of the others, or errors left that follow its position.
+    pub suspicious: Option<String>,
 }
 
 /// How far a calibration can be trusted.
@@ -82,6 +86,8 @@ pub struct Trust {
     pub cross_validation: Option<CrossValidation>,
     /// Covariance of the unknowns, and what the model does not describe.
     pub uncertainty: Option<Uncertainty>,
+    /// The spread of predictions as drawing rows anew shows it; none if they are too few.
+    pub bootstrap: Option<Bootstrap>,
     /// What to expect in the configurations that were measured.
     pub measured: Option<Expected>,
     /// What to expect in configurations anywhere within the limits.
@@ -106,7 +112,7 @@ pub(super) struct Finished<'a> {
 pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let view = &finished.view;
     let cross_validation = cross_validate(view, finished.seed);
-    let found = discrepancy(view, cross_validation.as_ref());
+    let found = discrepancy(view, finished.normal, cross_validation.as_ref());
     let uncertainty = uncertainty(finished, &found);
     let sampled = sampled_values(view, view.rows);
     let coverage = coverage(view.robot, view.packed, view.rows);
@@ -126,6 +132,7 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
         coverage,
         cross_validation,
         uncertainty,
+        bootstrap: bootstrap(view, finished.seed),
         measured,
         range,
         parts,
@@ -134,8 +141,10 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
 
 fn uncertainty(finished: &Finished<'_>, found: &Discrepancy) -> Option<Uncertainty> {
     let normal = finished.normal;
-    let freedom = normal.residuals.checked_sub(normal.dim()).filter(|&freedom| freedom > 0)?;
-    let variance = 2.0 * normal.cost / freedom as f64;
+    if normal.residuals <= normal.dim() {
+        return None;
+    }
+    let variance = residual_variance(normal);
     // Stated noise is believed where few residuals could tell otherwise.
     let variance = if finished.view.noise_is_stated { variance.max(1.0) } else { variance };
     let estimate = finished.view.estimate.clone();
@@ -210,7 +219,7 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
         screw_deviations(calibrated, view.robot, finished.layout, view.length_m, finished.base_free);
     let nominal: Vec<_> = view.robot.joints.iter().map(|joint| joint.screw).collect();
     let rows = sample_rows(view.rows, WORTH_SAMPLE);
-    deviations
+    let mut joints: Vec<JointCorrection> = deviations
         .into_iter()
         .enumerate()
         .map(|(joint, deviation)| {
@@ -226,9 +235,13 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
                 sigma_tilt_rad,
                 sigma_shift_m,
                 left_nominal_rms_m: (squares / rows.len().max(1) as f64).sqrt(),
+                suspicious: None,
             }
         })
-        .collect()
+        .collect();
+    let suspicions = suspicions(view, finished.normal, &joints);
+    joints.iter_mut().zip(suspicions).for_each(|(joint, words)| joint.suspicious = words);
+    joints
 }
 
 /// Standard deviations of tilt and shift; none where they are hardly less than what a drawing leaves open.
@@ -242,8 +255,8 @@ fn sigmas(
         let variance: f64 = rows.iter().map(|row| uncertainty.map_or(0.0, |it| it.variance(row))).sum();
         Some(variance.sqrt()).filter(|sigma| uncertainty.is_some() && *sigma < TOLD * most)
     };
-    let tilt = of(&deviation.tilt_by_step, PRIOR);
-    let shift = of(&deviation.shift_by_step, PRIOR * length_m);
+    let tilt = of(&deviation.tilt_by_step, PLAUSIBLE);
+    let shift = of(&deviation.shift_by_step, PLAUSIBLE * length_m);
     // One without the other means little: the place of an axis of unknown direction.
     if tilt.is_some() && shift.is_some() { (tilt, shift) } else { (None, None) }
 }

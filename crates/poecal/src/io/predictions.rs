@@ -103,10 +103,14 @@ impl Doubts {
                            --with-uncertainty: calibrate first";
             return Err(Error::new(ErrorKind::Option, message).in_file(&model.path));
         };
-        let (uncertainty, index) = file.uncertainty(target).map_err(|error| error.in_file(&model.path))?;
+        let (uncertainty, indices) =
+            file.uncertainty(&[target]).map_err(|error| error.in_file(&model.path))?;
         let width = model.robot.reading_names().len();
         let packed = Packed::new(&model.robot, &joints.readings, width);
-        Ok(Doubts { errors: uncertainty.predictions(&packed, index), sampled: file.coverage.clone() })
+        Ok(Doubts {
+            errors: uncertainty.predictions(&packed, indices.first().copied().unwrap_or_default()),
+            sampled: file.coverage.clone(),
+        })
     }
 
     fn write(&self, row: usize, readings: &[f64], robot: &Robot, out: &mut String) {

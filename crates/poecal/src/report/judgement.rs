@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::table::{STATISTICS, line, number};
-use crate::calibration::{Judgement, ModelAccuracy, Refitted, Statistic};
+use crate::calibration::{Judgement, Kept, ModelAccuracy, Refitted, Statistic};
 
 /// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
 /// `measurements` name the files.
@@ -19,7 +19,23 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
         out.push('\n');
         block(&mut out, "rotation, deg", judgement, |model| model.rotation_deg);
     }
+    if let Some(kept) = &judgement.promised {
+        out.push('\n');
+        promise(&mut out, kept, judgement.calibrated.position_mm.rms);
+    }
     out
+}
+
+fn promise(out: &mut String, kept: &Kept, found_mm: f64) {
+    let expected = number(kept.expected_rms_mm);
+    line(out, "promised", &format!("{expected} mm (RMS, noise included), found {}", number(found_mm)));
+    line(
+        out,
+        "95 % bounds",
+        &format!("{:.1} % of the errors are inside theirs", 100.0 * kept.inside_bound95),
+    );
+    let sampled = 100.0 * kept.inside_sampled_range;
+    line(out, "sampled range", &format!("{sampled:.1} % of the configurations are inside it"));
 }
 
 fn refitted_words(judgement: &Judgement) -> String {

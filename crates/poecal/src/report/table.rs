@@ -210,8 +210,34 @@ fn trust_lines(out: &mut String, calibration: &Calibration) {
         let words = format!("random rows {} mm (RMS){worst}", number(found.random.position_rms_m * 1e3));
         line(out, "left out", &words);
     }
+    line(out, "per joint", &per_joint_words(calibration));
+    for (coverage, joint) in trust.coverage.iter().zip(&trust.joints) {
+        if let Some(words) = &joint.suspicious {
+            line(out, "suspicious", &format!("{}: {words}", coverage.joint));
+        }
+    }
     let verdict = &calibration.verdict;
     line(out, "verdict", &format!("{}: {}", verdict.level.words(), verdict.reasons.join("; ")));
+}
+
+/// What is left if one joint alone stays nominal, the dearest first.
+fn per_joint_words(calibration: &Calibration) -> String {
+    const MOST: usize = 7;
+    let trust = &calibration.trust;
+    let mut joints: Vec<_> = trust
+        .coverage
+        .iter()
+        .zip(&trust.joints)
+        .map(|(coverage, joint)| (joint.left_nominal_rms_m, coverage.joint.as_str()))
+        .collect();
+    joints.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let named: Vec<String> = joints
+        .iter()
+        .take(MOST)
+        .map(|(left_m, name)| format!("{name} {} mm", number(left_m * 1e3)))
+        .collect();
+    let others = if joints.len() > MOST { ", the others less" } else { "" };
+    format!("errors (RMS) with one joint left nominal: {}{others}", named.join(", "))
 }
 
 /// How the problem was written, where not as usual, and what follows from that.

@@ -1,8 +1,9 @@
 //! Neighbouring configurations together: whether errors there are alike, and so no noise.
 
 use super::view::View;
+use crate::analysis::residual_variance;
 use crate::linalg;
-use crate::solve::LeastSquares;
+use crate::solve::{LeastSquares, Normal};
 
 /// Standard deviations by which a figure must be beyond what white noise gives, to count.
 pub(super) const SIGNIFICANT: f64 = 3.0;
@@ -11,14 +12,12 @@ const CLUSTERS: usize = 16;
 
 /// `Σ gᵀ N⁻¹ g` over clusters, g being the gradient of a cluster's rows, against what white noise makes of it: the cluster-robust
 /// covariance over the ordinary one, on average over all directions (liang1986, theory.md §9 (41)). `None` if it is no more than chance.
-pub(super) fn inflation(view: &View<'_>) -> Option<f64> {
-    let whole = view.problem(view.rows.to_vec()).normal(view.estimate);
+pub(super) fn inflation(view: &View<'_>, whole: &Normal) -> Option<f64> {
     let n = whole.dim();
-    let freedom = whole.residuals.saturating_sub(n);
-    if freedom < n || n == 0 {
+    if n == 0 || whole.residuals < 2 * n {
         return None;
     }
-    let variance = 2.0 * whole.cost / freedom as f64;
+    let variance = residual_variance(whole);
     let factor = linalg::cholesky(&whole.gram, n, super::prior_information(view.length_m) * variance)?;
     let count = (whole.residuals / n).clamp(2, CLUSTERS);
     let (mut found, mut expected, mut spread) = (0.0, 0.0, 0.0);
@@ -59,7 +58,7 @@ fn share_of(factor: &[f64], part: &[f64], n: usize) -> (f64, f64) {
 }
 
 /// About `count` clusters: rows are halved at the median of the joint that moves most in them.
-fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
+pub(super) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
     let spans = view.spans(view.rows);
     let mut clusters = vec![view.rows.to_vec()];
     while clusters.len() < count {

@@ -4,6 +4,7 @@ use super::folds::CrossValidation;
 use super::view::View;
 use super::{clusters, neighbours};
 use crate::measurement::Noise;
+use crate::solve::Normal;
 
 /// What residuals show beside noise.
 ///
@@ -27,12 +28,16 @@ impl Discrepancy {
     }
 }
 
-/// Judges whether the residuals are more than noise: alike in neighbouring configurations, or clusters of them pulling together. If so, they
+/// Judges by a fit and its normal information whether the residuals are more than noise: alike in neighbouring configurations, or clusters of them pulling together. If so, they
 /// count as error of the model wherever it is used, and the covariance grows to what the clusters show, or to what leaving out blocks
 /// showed (root mean square of their growths: the worse ones count more, since a robot is used where nobody measured).
 #[must_use]
-pub fn discrepancy(view: &View<'_>, cross_validation: Option<&CrossValidation>) -> Discrepancy {
-    let clusters = clusters::inflation(view);
+pub fn discrepancy(
+    view: &View<'_>,
+    normal: &Normal,
+    cross_validation: Option<&CrossValidation>,
+) -> Discrepancy {
+    let clusters = clusters::inflation(view, normal);
     let (position_alike, rotation_alike) = neighbours::alike(view);
     if clusters.is_none() && !position_alike && !rotation_alike {
         return Discrepancy::none();
@@ -51,14 +56,16 @@ pub fn discrepancy(view: &View<'_>, cross_validation: Option<&CrossValidation>) 
 /// Standard deviation of each residual component, stated noise taken off.
 fn beyond_stated_noise(view: &View<'_>) -> Noise {
     let mut sums = [(0.0, 0.0, 0usize); 2];
-    for (&row, (position, turn)) in view.rows.iter().zip(view.residuals(view.rows, view.estimate)) {
+    for (&row, error) in view.rows.iter().zip(view.errors(view.rows, view.estimate)) {
         let observation = &view.data.observations[row as usize];
         let usual = |sigma| if view.noise_is_stated { sigma } else { 0.0 };
         let sigmas = [
             observation.sigma_position_m.unwrap_or(usual(view.noise.position_m)),
             observation.sigma_rotation_rad.unwrap_or(usual(view.noise.rotation_rad)),
         ];
-        for (sum, (part, sigma)) in sums.iter_mut().zip([(Some(position), sigmas[0]), (turn, sigmas[1])]) {
+        for (sum, (part, sigma)) in
+            sums.iter_mut().zip([(Some(error.position_m), sigmas[0]), (error.rotation_rad, sigmas[1])])
+        {
             if let Some(part) = part {
                 sum.0 += part.norm_squared();
                 sum.1 += 3.0 * sigma * sigma;

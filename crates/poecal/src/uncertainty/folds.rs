@@ -7,6 +7,7 @@ use rand_core::SeedableRng;
 
 use super::prediction::position_variance;
 use super::view::View;
+use crate::analysis::residual_variance;
 use crate::estimate::{Estimate, sample_rows};
 use crate::linalg;
 use crate::simulate::random;
@@ -183,8 +184,7 @@ impl<'a> Left<'a> {
         let problem = view.problem(sample.to_vec());
         let normal = problem.normal(view.estimate);
         let n = problem.dim();
-        let freedom = normal.residuals.saturating_sub(n).max(1);
-        let variance = 2.0 * normal.cost / freedom as f64;
+        let variance = residual_variance(&normal);
         let factor = linalg::cholesky(&normal.gram, n, super::prior_information(view.length_m) * variance)?;
         let step = linalg::cholesky_solve(&factor, &normal.gradient);
         Some(Left {
@@ -208,18 +208,18 @@ impl<'a> Left<'a> {
         let without = problem.retract(&self.estimate, &linalg::cholesky_solve(&factor, &gradient));
         let covariance = super::covariance(&rest, n, self.variance, self.view.length_m)?;
         let layout = problem.layout();
-        let expected = position_variance(&self.view, layout, &self.estimate, rows, &covariance)
-            + position_variance(&self.view, layout, &self.estimate, rows, &self.covariance);
+        let both: Vec<f64> = covariance.iter().zip(&self.covariance).map(|(a, b)| a + b).collect();
+        let expected = position_variance(&self.view, layout, &self.estimate, rows, &both);
         let mut sums = Sums { rows: rows.len(), expected, ..Sums::default() };
-        for (position, turn) in self.view.residuals(rows, &without) {
-            sums.position += position.norm_squared();
-            if let Some(turn) = turn {
+        for error in self.view.errors(rows, &without) {
+            sums.position += error.position_m.norm_squared();
+            if let Some(turn) = error.rotation_rad {
                 sums.rotation += turn.norm_squared();
                 sums.turned += 1;
             }
         }
-        let before = self.view.residuals(rows, &self.estimate);
-        sums.before = before.iter().map(|(position, _)| position.norm_squared()).sum();
+        let before = self.view.errors(rows, &self.estimate);
+        sums.before = before.iter().map(|error| error.position_m.norm_squared()).sum();
         Some(sums)
     }
 }

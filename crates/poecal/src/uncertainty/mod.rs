@@ -1,14 +1,18 @@
 //! How far a calibrated robot can be trusted, configuration by configuration (theory.md §9 (39) to (43)).
 
+mod bootstrap;
 mod clusters;
 mod discrepancy;
 mod folds;
 mod neighbours;
+mod pattern;
 mod prediction;
 mod view;
 
+pub use bootstrap::{Bootstrap, bootstrap};
 pub use discrepancy::{Discrepancy, discrepancy};
 pub use folds::{CrossValidation, LeftOut, cross_validate};
+pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::PredictedError;
 pub use view::View;
 
@@ -16,14 +20,11 @@ use prediction::propagated;
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::analysis::PLAUSIBLE;
 use crate::estimate::{Chain, Estimate, Linkage, Packed};
 use crate::linalg;
 use crate::measurement::Noise;
 use crate::problem::Layout;
-
-/// Standard deviation of what is believed of a robot's drawing before anything is measured, as a share of the length that a radian
-/// counts: about 2°, or 10 to 20 mm on an arm of ordinary size. It bounds what the data leave open.
-pub const PRIOR: f64 = 0.03;
 
 /// Covariance of an estimate's unknowns, and what the model does not describe.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,21 +80,30 @@ impl Uncertainty {
     /// The error to expect of predicted targets, one for each row of joint values.
     #[must_use]
     pub fn predictions(&self, packed: &Packed, target: usize) -> Vec<PredictedError> {
+        self.predictions_of((0..packed.rows()).map(|row| (row, target)), packed)
+    }
+
+    /// The error to expect of each `(row of joint values, target)`.
+    #[must_use]
+    pub fn predictions_of(
+        &self,
+        rows: impl Iterator<Item = (usize, usize)>,
+        packed: &Packed,
+    ) -> Vec<PredictedError> {
         let linkage = Linkage::new(&self.estimate);
         let mut chain = Chain::default();
         let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); self.layout.dim()];
-        (0..packed.rows())
-            .map(|row| {
-                chain.evaluate(&linkage, packed, row, target);
-                self.layout.target_twists(&chain, target, &mut twists);
-                let (position, rotation) = propagated(&self.covariance, &twists);
-                let own = |sigma: f64| Matrix3::identity() * (sigma * sigma);
-                PredictedError {
-                    position: position + own(self.discrepancy.position_m),
-                    rotation: rotation + own(self.discrepancy.rotation_rad),
-                }
-            })
-            .collect()
+        let own = |sigma: f64| Matrix3::identity() * (sigma * sigma);
+        rows.map(|(row, target)| {
+            chain.evaluate(&linkage, packed, row, target);
+            self.layout.target_twists(&chain, target, &mut twists);
+            let (position, rotation) = propagated(&self.covariance, &twists);
+            PredictedError {
+                position: position + own(self.discrepancy.position_m),
+                rotation: rotation + own(self.discrepancy.rotation_rad),
+            }
+        })
+        .collect()
     }
 }
 
@@ -110,7 +120,28 @@ fn covariance(gram: &[f64], n: usize, variance: f64, length_m: f64) -> Option<Ve
     covariance.iter().all(|value| value.is_finite()).then_some(covariance)
 }
 
-/// Information of the drawing about each scaled unknown, per square metre.
+/// Mean over rows of `Σ v_k v_lᵀ`, row-major: how much a step of the unknowns moves predicted places, squared.
+fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
+    let problem = view.problem(Vec::new());
+    let layout = problem.layout();
+    let n = layout.dim();
+    let linkage = Linkage::new(view.estimate);
+    let mut chain = Chain::default();
+    let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); n];
+    let mut sum = vec![0.0; n * n];
+    for &row in rows {
+        let target = view.data.observations[row as usize].target;
+        chain.evaluate(&linkage, view.packed, row as usize, target);
+        layout.target_twists(&chain, target, &mut twists);
+        for (out, (a, _)) in sum.chunks_exact_mut(n.max(1)).zip(&twists) {
+            out.iter_mut().zip(&twists).for_each(|(value, (b, _))| *value += a.dot(b));
+        }
+    }
+    sum.iter_mut().for_each(|value| *value /= rows.len().max(1) as f64);
+    sum
+}
+
+/// Information of the drawing about each scaled unknown, per square metre: it bounds what the data leave open.
 fn prior_information(length_m: f64) -> f64 {
-    1.0 / (PRIOR * length_m).powi(2)
+    1.0 / (PLAUSIBLE * length_m).powi(2)
 }

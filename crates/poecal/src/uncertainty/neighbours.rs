@@ -13,7 +13,7 @@ const NEIGHBOURS: usize = 4000;
 /// Whether the residuals of one target in neighbouring configurations are alike beyond chance: of positions, and of rotations.
 pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     let pool = sample_rows(view.rows, NEIGHBOURS);
-    let residuals = view.residuals(&pool, view.estimate);
+    let errors = view.errors(&pool, view.estimate);
     let spans = view.spans(view.rows);
     let target = |row: u32| view.data.observations[row as usize].target;
     let step = pool.len().div_ceil(PROBES).max(1);
@@ -26,8 +26,8 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
         else {
             continue;
         };
-        position.add(&residuals[a].0, &residuals[b].0);
-        if let (Some(a), Some(b)) = (&residuals[a].1, &residuals[b].1) {
+        position.add(&errors[a].position_m, &errors[b].position_m);
+        if let (Some(a), Some(b)) = (&errors[a].rotation_rad, &errors[b].rotation_rad) {
             rotation.add(a, b);
         }
     }

@@ -1,9 +1,7 @@
 //! A finished fit as the judging of it sees it.
 
-use nalgebra::Vector3;
-
-use crate::estimate::{Chain, Estimate, Linkage, Packed};
-use crate::lie::rotation;
+use crate::analysis::ranges;
+use crate::estimate::{Estimate, Packed, RowError, row_errors};
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::Parameter;
 use crate::problem::Problem;
@@ -32,30 +30,15 @@ pub struct View<'a> {
     pub estimate: &'a Estimate,
 }
 
-/// A position residual (metres) and, where orientation was measured, a rotation residual (radians), device axes.
-pub(super) type Residual = (Vector3<f64>, Option<Vector3<f64>>);
-
 impl<'a> View<'a> {
     /// The problem of some of the rows.
     pub(super) fn problem(&self, rows: Vec<u32>) -> Problem<'a> {
         Problem::new(self.data, self.packed, rows, self.free.to_vec(), self.noise, self.length_m)
     }
 
-    /// Residuals of an estimate, not whitened.
-    pub(super) fn residuals(&self, rows: &[u32], estimate: &Estimate) -> Vec<Residual> {
-        let linkage = Linkage::new(estimate);
-        let mut chain = Chain::default();
-        rows.iter()
-            .map(|&row| {
-                let observation = &self.data.observations[row as usize];
-                let model = observation.measurement.residual_model();
-                chain.evaluate(&linkage, self.packed, row as usize, observation.target);
-                let turn = model
-                    .orientation()
-                    .map(|measured| rotation::log(&(measured * chain.target.rotation.transpose())));
-                (model.position() - chain.target.translation, turn)
-            })
-            .collect()
+    /// Errors of an estimate.
+    pub(super) fn errors(&self, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
+        row_errors(self.data, self.packed, rows, estimate)
     }
 
     /// Joint values of a row.
@@ -65,15 +48,8 @@ impl<'a> View<'a> {
 
     /// How far each joint moves in some rows.
     pub(super) fn spans(&self, rows: &[u32]) -> Vec<f64> {
-        let joints = rows.first().map_or(0, |&row| self.values(row).len());
-        (0..joints)
-            .map(|joint| {
-                let values = rows.iter().map(|&row| self.values(row)[joint]);
-                let (least, most) = values
-                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)));
-                most - least
-            })
-            .collect()
+        let ranges = ranges(self.robot.joints.len(), self.packed, rows);
+        ranges.into_iter().map(|(least, most)| most - least).collect()
     }
 
     /// Rows in the order of a joint's value.

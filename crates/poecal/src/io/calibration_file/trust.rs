@@ -12,7 +12,7 @@ use crate::lie::Pose;
 use crate::measurement::Noise;
 use crate::parameters::{Formulation, Parameter, TargetFrame, TargetPlace};
 use crate::problem::Layout;
-use crate::uncertainty::{LeftOut, Uncertainty};
+use crate::uncertainty::{Bootstrap, LeftOut, Uncertainty};
 
 /// Rows left out together, and how the others predict them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,6 +47,17 @@ pub struct ExpectedEntry {
     pub worst_bound95_position_mm: f64,
 }
 
+/// The spread of predictions at the measured configurations, had other rows been measured.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BootstrapEntry {
+    /// How often neighbourhoods of rows were drawn with replacement.
+    pub drawings: usize,
+    /// Root mean square distance as the drawings show it, millimetres.
+    pub sigma_position_mm: f64,
+    /// The same if residuals are white noise, by the covariance, millimetres.
+    pub formal_sigma_position_mm: f64,
+}
+
 /// A part of a joint's range with the error to expect there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RangeEntry {
@@ -75,6 +86,9 @@ pub struct CorrectionEntry {
     pub sigma_shift_mm: Option<f64>,
     /// Root mean square position error if this screw alone stayed nominal, millimetres.
     pub left_nominal_rms_mm: f64,
+    /// What speaks against the joint, in words: a correction beyond those of the others, or errors left that follow its position.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub suspicious: Option<String>,
 }
 
 /// What predictions need to state their error, and what is to be expected.
@@ -90,6 +104,9 @@ pub struct UncertaintyEntry {
     pub measured: ExpectedEntry,
     /// In configurations anywhere within the limits.
     pub range: ExpectedEntry,
+    /// The spread of predictions where it was measured, by drawing rows anew; null if they are too few.
+    #[serde(default)]
+    pub bootstrap: Option<BootstrapEntry>,
     /// By parts of each joint's range.
     pub parts: Vec<RangeEntry>,
     /// Metres that a radian counts in the covariance.
@@ -136,6 +153,16 @@ impl ExpectedEntry {
     }
 }
 
+impl BootstrapEntry {
+    fn of(found: &Bootstrap) -> Self {
+        BootstrapEntry {
+            drawings: found.drawings,
+            sigma_position_mm: found.sigma_m * 1e3,
+            formal_sigma_position_mm: found.formal_sigma_m * 1e3,
+        }
+    }
+}
+
 impl CorrectionEntry {
     pub(super) fn of((coverage, found): (&JointCoverage, &JointCorrection)) -> Self {
         CorrectionEntry {
@@ -145,6 +172,7 @@ impl CorrectionEntry {
             sigma_tilt_deg: found.sigma_tilt_rad.map(f64::to_degrees),
             sigma_shift_mm: found.sigma_shift_m.map(|sigma| sigma * 1e3),
             left_nominal_rms_mm: found.left_nominal_rms_m * 1e3,
+            suspicious: found.suspicious.clone(),
         }
     }
 }
@@ -162,6 +190,7 @@ impl UncertaintyEntry {
             discrepancy_rotation_deg: found.discrepancy.rotation_rad.to_degrees(),
             measured: ExpectedEntry::of(trust.measured.as_ref()?),
             range: ExpectedEntry::of(trust.range.as_ref()?),
+            bootstrap: trust.bootstrap.as_ref().map(BootstrapEntry::of),
             parts: trust
                 .parts
                 .iter()
@@ -181,11 +210,11 @@ impl UncertaintyEntry {
 }
 
 impl CalibrationFile {
-    /// The uncertainty of predictions with the index of the target that stands for the tip, or for a named target.
+    /// The uncertainty of predictions with the index in it of each of some targets; `None` is the tip.
     ///
     /// # Errors
     /// [`ErrorKind::Model`] if the calibration holds none, or has been changed into none.
-    pub fn uncertainty(&self, target: Option<&str>) -> Result<(Uncertainty, usize)> {
+    pub fn uncertainty(&self, targets: &[Option<&str>]) -> Result<(Uncertainty, Vec<usize>)> {
         let bad = |what: &str| {
             let message = format!(
                 "found {what}, expected the uncertainty that `poecal calibrate` writes: calibrate again with this version"
@@ -213,13 +242,16 @@ impl CalibrationFile {
                 Parameter::TargetPlace(TargetPlace { target: index })
             });
         }
-        let wanted = target.unwrap_or_default();
-        let index = entry.targets.iter().position(|(name, _)| name == wanted).unwrap_or_else(|| {
-            // A point fixed to the last link that was not measured itself: as sure as the link.
-            let pose = place(wanted).unwrap_or_else(Pose::identity);
-            estimate.base_from_target.push(robot.home * pose);
-            estimate.base_from_target.len() - 1
-        });
+        let mut index = |wanted: &Option<&str>| {
+            let wanted = wanted.unwrap_or_default();
+            entry.targets.iter().position(|(name, _)| name == wanted).unwrap_or_else(|| {
+                // A point fixed to the last link that was not measured itself: as sure as the link.
+                let pose = place(wanted).unwrap_or_else(Pose::identity);
+                estimate.base_from_target.push(robot.home * pose);
+                estimate.base_from_target.len() - 1
+            })
+        };
+        let indices = targets.iter().map(&mut index).collect();
         let layout = Layout::new(free, entry.length_m);
         let n = layout.dim();
         if entry.covariance_m2.len() != n * (n + 1) / 2 {
@@ -243,6 +275,6 @@ impl CalibrationFile {
             discrepancy,
             length_m: entry.length_m,
         };
-        Ok((uncertainty, index))
+        Ok((uncertainty, indices))
     }
 }

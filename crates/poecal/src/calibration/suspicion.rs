@@ -1,0 +1,87 @@
+//! Which joint is suspicious: its correction stands out, or what the fit leaves follows its position.
+
+use super::trust::JointCorrection;
+use crate::robot::JointKind;
+use crate::solve::Normal;
+use crate::uncertainty::{Pattern, View, strongest_pattern};
+
+/// Multiple of the other joints' median correction from which one stands out, and multiple of its standard deviation.
+const STANDS_OUT: f64 = 5.0;
+const SIGMAS: f64 = 3.0;
+/// Other joints that it takes to speak of a median.
+const FEWEST: usize = 2;
+/// Corrections that are no concern: a tenth of a degree, half a millimetre.
+const LEAST_TILT_RAD: f64 = 2e-3;
+const LEAST_SHIFT_M: f64 = 5e-4;
+
+/// What speaks against each joint, in words (theory.md §9 (44)).
+pub(super) fn suspicions(
+    view: &View<'_>,
+    normal: &Normal,
+    joints: &[JointCorrection],
+) -> Vec<Option<String>> {
+    let kind = |joint: usize| view.robot.joints[joint].kind;
+    let of_joint = |(joint, correction): (usize, &JointCorrection)| {
+        let others = joints.iter().enumerate().filter(|&(other, it)| {
+            other != joint && kind(other) == kind(joint) && it.sigma_tilt_rad.is_some()
+        });
+        stands_out(correction, &others.map(|(_, it)| it).collect::<Vec<_>>())
+    };
+    let mut words: Vec<Vec<String>> = joints.iter().enumerate().map(of_joint).collect();
+    if let Some((joint, pattern)) = strongest_pattern(view, normal) {
+        words[joint].push(pattern_words(&pattern, kind(joint)));
+    }
+    words.into_iter().map(|parts| (!parts.is_empty()).then(|| parts.join("; "))).collect()
+}
+
+/// Whether a joint's axis is farther from the drawing than those of the other joints of its kind.
+fn stands_out(correction: &JointCorrection, others: &[&JointCorrection]) -> Vec<String> {
+    let median = |of: fn(&JointCorrection) -> f64| {
+        let mut values: Vec<f64> = others.iter().map(|it| of(it)).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().filter(|_| values.len() >= FEWEST)
+    };
+    let mut parts = Vec::new();
+    let mut judge = |value: f64, sigma: Option<f64>, least: f64, others: Option<f64>, words: String| {
+        let (Some(sigma), Some(others)) = (sigma, others) else { return };
+        if value > least && value > SIGMAS * sigma && value > STANDS_OUT * others {
+            parts.push(words);
+        }
+    };
+    let tilt = median(|it| it.tilt_rad);
+    judge(
+        correction.tilt_rad,
+        correction.sigma_tilt_rad,
+        LEAST_TILT_RAD,
+        tilt,
+        format!(
+            "its axis is tilted by {:.3} deg from the drawing, the median of the others by {:.3}",
+            correction.tilt_rad.to_degrees(),
+            tilt.unwrap_or_default().to_degrees()
+        ),
+    );
+    let shift = median(|it| it.shift_m);
+    judge(
+        correction.shift_m,
+        correction.sigma_shift_m,
+        LEAST_SHIFT_M,
+        shift,
+        format!(
+            "its axis is {:.2} mm beside the drawing, the median of the others {:.2}",
+            1e3 * correction.shift_m,
+            1e3 * shift.unwrap_or_default()
+        ),
+    );
+    parts
+}
+
+fn pattern_words(pattern: &Pattern, kind: JointKind) -> String {
+    let (size, parts) = match kind {
+        JointKind::Revolute => (format!("{:.3} mrad", 1e3 * pattern.rms), "gear, bearing, encoder or sag"),
+        JointKind::Prismatic => (format!("{:.3} mm", 1e3 * pattern.rms), "scale, spindle or guide"),
+    };
+    format!(
+        "{:.0} % of the squared position errors left follow its position, as an error of {size} (RMS) of the joint: {parts}",
+        100.0 * pattern.share
+    )
+}

@@ -1,0 +1,117 @@
+//! Errors that follow the position of one joint: what its transmission or its load does.
+
+use nalgebra::Vector3;
+
+use super::view::View;
+use crate::analysis::{ranges, residual_variance};
+use crate::estimate::{Chain, Linkage, sample_rows};
+use crate::linalg;
+use crate::robot::JointKind;
+use crate::solve::Normal;
+
+/// Rows on which patterns are looked for, if there are more.
+const SAMPLE: usize = 4000;
+/// Functions of a joint's position that its transmission is tried with.
+const SHAPES: usize = 5;
+/// Share of the squared errors that follow a joint's position, from which it is said.
+const SHARE: f64 = 0.1;
+/// What chance makes of that in units of the variance of the residuals: a χ² of five, exceeded once in 10,000.
+const CHANCE: f64 = 25.7;
+
+/// Errors that follow a joint's position, as errors of that position.
+///
+/// ```
+/// let pattern = poecal::uncertainty::Pattern { share: 0.4, rms: 1e-4 };
+/// assert!(pattern.share > 0.1);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pattern {
+    /// Share of the squared whitened position errors.
+    pub share: f64,
+    /// Root mean square of the joint's error, radians or metres.
+    pub rms: f64,
+}
+
+/// What one joint's shapes explain: information and gradient of their amplitudes.
+#[derive(Clone)]
+struct Sums {
+    gram: [f64; SHAPES * SHAPES],
+    gradient: [f64; SHAPES],
+    /// `Σ f fᵀ` without the lever, for the size.
+    shapes: [f64; SHAPES * SHAPES],
+}
+
+/// The joint (its index) whose position explains most of the errors, if that is no chance: theory.md §9 (44).
+#[must_use]
+pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pattern)> {
+    let rows = sample_rows(view.rows, SAMPLE);
+    let joints = view.robot.joints.len();
+    let ranges = ranges(joints, view.packed, view.rows);
+    let empty =
+        Sums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
+    let mut sums = vec![empty; joints];
+    let mut squares = 0.0;
+    let linkage = Linkage::new(view.estimate);
+    let mut chain = Chain::default();
+    for (&row, error) in rows.iter().zip(view.errors(&rows, view.estimate)) {
+        let observation = &view.data.observations[row as usize];
+        let sigma = observation.noise_or(view.noise).position_m;
+        chain.evaluate(&linkage, view.packed, row as usize, observation.target);
+        let error = error.position_m / sigma;
+        squares += error.norm_squared();
+        for ((sums, joint), &range) in sums.iter_mut().zip(&chain.joints).zip(&ranges) {
+            let motion = match joint.kind {
+                JointKind::Revolute => joint.z.cross(&(chain.target.translation - joint.origin)),
+                JointKind::Prismatic => joint.z,
+            };
+            sums.add(&shapes(joint.kind, joint.value, range), &(motion / sigma), &error);
+        }
+    }
+    let variance = residual_variance(normal);
+    let found = sums.iter().enumerate().filter_map(|(joint, sums)| {
+        let (explained, rms) = sums.explained(rows.len())?;
+        let pattern = Pattern { share: explained / squares, rms };
+        (explained > CHANCE * variance && pattern.share > SHARE).then_some((joint, pattern))
+    });
+    found.max_by(|a, b| a.1.share.total_cmp(&b.1.share))
+}
+
+/// Shapes of a joint's error: a scale, and once and twice a turn; of a sliding joint a scale, a bow and an S.
+fn shapes(kind: JointKind, value: f64, (least, most): (f64, f64)) -> [f64; SHAPES] {
+    let half = (0.5 * (most - least)).max(f64::MIN_POSITIVE);
+    let t = (value - 0.5 * (least + most)) / half;
+    match kind {
+        JointKind::Revolute => {
+            let (sine, cosine) = value.sin_cos();
+            let (sine_2, cosine_2) = (2.0 * value).sin_cos();
+            [t, cosine, sine, cosine_2, sine_2]
+        }
+        JointKind::Prismatic => [t, t * t - 1.0 / 3.0, t * t * t - 0.6 * t, 0.0, 0.0],
+    }
+}
+
+impl Sums {
+    fn add(&mut self, shapes: &[f64; SHAPES], motion: &Vector3<f64>, error: &Vector3<f64>) {
+        let (lever, along) = (motion.norm_squared(), motion.dot(error));
+        for (i, a) in shapes.iter().enumerate() {
+            self.gradient[i] += a * along;
+            for (j, b) in shapes.iter().enumerate() {
+                self.gram[i * SHAPES + j] += a * b * lever;
+                self.shapes[i * SHAPES + j] += a * b;
+            }
+        }
+    }
+
+    /// The squares that the best amplitudes take away, and the root mean square error of the joint that they mean.
+    fn explained(&self, rows: usize) -> Option<(f64, f64)> {
+        let scale = (0..SHAPES).map(|i| self.gram[i * SHAPES + i]).fold(0.0, f64::max);
+        let factor = linalg::cholesky(&self.gram, SHAPES, 1e-9 * scale)?;
+        let amplitudes = linalg::cholesky_solve(&factor, &self.gradient);
+        let explained: f64 = amplitudes.iter().zip(&self.gradient).map(|(a, g)| a * g).sum();
+        let mean_square: f64 = (0..SHAPES * SHAPES)
+            .map(|k| self.shapes[k] * amplitudes[k / SHAPES] * amplitudes[k % SHAPES])
+            .sum::<f64>()
+            / rows.max(1) as f64;
+        Some((explained, mean_square.max(0.0).sqrt()))
+    }
+}
