@@ -53,6 +53,11 @@ impl Console {
         }
     }
 
+    /// A line about the run itself, asked for and so never suppressed.
+    pub(crate) fn note(&self, line: impl Display) {
+        let _ = writeln!(std::io::stderr().lock(), "{line}");
+    }
+
     pub(crate) fn error(&self, message: impl Display) {
         let _ = writeln!(std::io::stderr().lock(), "error: {message}");
     }

@@ -7,6 +7,7 @@ mod args;
 mod commands;
 mod console;
 mod quantity;
+mod timings;
 
 use std::error::Error as _;
 use std::ffi::OsString;

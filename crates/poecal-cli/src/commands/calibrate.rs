@@ -14,8 +14,10 @@ use poecal::{Error, ErrorKind, Result, report, solve};
 use super::files::{refuse_fitted, refuse_repeats};
 use crate::args::{Calibrate, Frame};
 use crate::console::Console;
+use crate::timings::Timings;
 
 pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<ExitCode> {
+    let mut timings = Timings::start();
     output::check_folder(&arguments.out, arguments.force)?;
     let model = Model::read(&arguments.model, &arguments.chain.selection())?;
     let data = read_measurements(arguments, &model, console)?;
@@ -27,11 +29,16 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
             options.pose_residual.word()
         ));
     }
+    timings.end("read");
     let bar = console.progress(Stage::ALL.len() as u64);
     let calibration = calibrate_with_progress(&model.robot, &data, &options, &mut |stage| {
         bar.set_position(Stage::ALL.iter().position(|&other| other == stage).unwrap_or(0) as u64);
         bar.set_message(stage.words());
+        if stage == Stage::Analysis {
+            timings.end("start");
+        }
     });
+    timings.end("analysis");
     bar.finish_and_clear();
     let calibration = calibration?;
     let found = calibration.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
@@ -41,8 +48,12 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
     let inputs = inputs(arguments);
     let written =
         output::write(&arguments.out, arguments.force, &model, &data, &calibration, inputs.clone())?;
+    timings.end("write");
     for note in &written.notes {
         console.warning(note);
+    }
+    if arguments.timings {
+        console.note(timings.line(|| calibration.solve_again(&data, &options)));
     }
     if arguments.json {
         console.data(&CalibrationFile::new(&calibration, &data, inputs).to_text()?)?;

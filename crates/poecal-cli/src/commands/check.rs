@@ -7,7 +7,7 @@ use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::{Result, report};
 
-use crate::args::Check;
+use crate::args::{Check, Frame};
 use crate::console::Console;
 
 pub(crate) fn check(arguments: &Check, console: &Console) -> Result<ExitCode> {
@@ -19,8 +19,9 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<ExitCode> {
         Some(measurements::read(&arguments.measurements, &model.robot, &options)?)
     };
     let found = measurements.as_ref().map_or_else(Vec::new, |file| {
-        let rows: Vec<u32> = (0..u32::try_from(file.data.len()).unwrap_or(u32::MAX)).collect();
-        diagnose(&model.robot, &file.data, &rows, &Options::default())
+        let device_free = arguments.frame == Frame::Unknown;
+        let options = Options { device_free, ..Options::default() };
+        diagnose(&model.robot, &file.data, &file.data.all_rows(), &options)
     });
     let check = report::Check::new(&model, measurements.as_ref(), &found);
     if arguments.json {

@@ -1,0 +1,187 @@
+//! Arguments of `poecal calibrate`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use poecal::calibration::{Level, Loss, Robust};
+use poecal::measurement::PoseResidual;
+use poecal::parameters::Formulation;
+use poecal::solve::Method;
+
+use super::{Chain, Reading};
+use crate::quantity::{share, sigma_m, sigma_rad, whole};
+
+/// What is known of the measuring device's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Frame {
+    /// The device stands anywhere
+    Unknown,
+    /// Measurements are in the robot's base frame
+    Base,
+}
+
+/// How errors of the joints are written as unknowns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FormulationWord {
+    /// Axes move as rigid bodies, without offsets: minimal, unconstrained
+    Adjoint,
+    /// Screws are free numbers, normalised after every step
+    Screw,
+    /// Free screws and joint offsets, 7n + 6 unknowns
+    ScrewOffsets,
+    /// Axes as rigid bodies, and joint offsets
+    AdjointOffsets,
+}
+
+impl From<FormulationWord> for Formulation {
+    fn from(word: FormulationWord) -> Self {
+        match word {
+            FormulationWord::Adjoint => Formulation::Adjoint,
+            FormulationWord::Screw => Formulation::Screw,
+            FormulationWord::ScrewOffsets => Formulation::ScrewOffsets,
+            FormulationWord::AdjointOffsets => Formulation::AdjointOffsets,
+        }
+    }
+}
+
+/// How errors of measured frames are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ResidualWord {
+    /// Position and rotation at the target
+    Tool,
+    /// The twist about the device's origin
+    Spatial,
+}
+
+impl From<ResidualWord> for PoseResidual {
+    fn from(word: ResidualWord) -> Self {
+        match word {
+            ResidualWord::Tool => PoseResidual::Tool,
+            ResidualWord::Spatial => PoseResidual::Spatial,
+        }
+    }
+}
+
+/// What to do about grossly wrong rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RobustWord {
+    /// Least squares, unless outliers are evident: then the tukey loss, and a warning
+    Auto,
+    /// Least squares: every row counts in full
+    Off,
+    /// Far rows pull no more than near ones
+    Huber,
+    /// Far rows pull less the farther they are
+    Cauchy,
+    /// Far rows do not pull
+    Tukey,
+}
+
+impl From<RobustWord> for Robust {
+    fn from(word: RobustWord) -> Self {
+        match word {
+            RobustWord::Auto => Robust::Auto,
+            RobustWord::Off => Robust::Off,
+            RobustWord::Huber => Robust::Loss(Loss::Huber),
+            RobustWord::Cauchy => Robust::Loss(Loss::Cauchy),
+            RobustWord::Tukey => Robust::Loss(Loss::Tukey),
+        }
+    }
+}
+
+/// By which steps to minimise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodWord {
+    /// Damped steps, taken only if they help
+    LevenbergMarquardt,
+    /// Full steps, taken as they are
+    GaussNewton,
+}
+
+impl From<MethodWord> for Method {
+    fn from(word: MethodWord) -> Self {
+        match word {
+            MethodWord::LevenbergMarquardt => Method::LevenbergMarquardt,
+            MethodWord::GaussNewton => Method::GaussNewton,
+        }
+    }
+}
+
+/// Arguments of `poecal calibrate`.
+#[derive(Args, Debug)]
+pub(crate) struct Calibrate {
+    /// Robot model: URDF, TOML or calibration.json
+    pub(crate) model: PathBuf,
+    /// Measurement files (CSV), joined
+    #[arg(required = true)]
+    pub(crate) measurements: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) chain: Chain,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// The measuring device's frame
+    #[arg(long, value_enum, default_value = "unknown")]
+    pub(crate) frame: Frame,
+    /// Standard deviation of each measured position component, like 0.05mm [default: estimated from the data]
+    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]
+    pub(crate) sigma_position: Option<f64>,
+    /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
+    #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
+    pub(crate) sigma_rotation: Option<f64>,
+    /// Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3]
+    #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
+    pub(crate) held_out: Option<f64>,
+    /// Seed of that choice [default: 1]
+    #[arg(long, value_parser = whole::<u64>)]
+    pub(crate) seed: Option<u64>,
+    /// What to do about grossly wrong rows: auto fits by least squares, and by the tukey loss where that shows outliers
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) robust: RobustWord,
+    /// How errors of the joints are written; all but the default are for comparison
+    #[arg(long, value_enum, default_value = "adjoint", help_heading = "Comparison")]
+    pub(crate) formulation: FormulationWord,
+    /// How errors of measured frames are written; the paper's is for comparison. Points have one residual only
+    #[arg(long, value_enum, default_value = "tool", help_heading = "Comparison")]
+    pub(crate) residual: ResidualWord,
+    /// By which steps to minimise; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else
+    /// levenberg-marquardt]
+    #[arg(long, value_enum, help_heading = "Comparison")]
+    pub(crate) method: Option<MethodWord>,
+    /// Measurement file to judge by: all other rows are fitted
+    #[arg(long, value_name = "FILE", conflicts_with = "fit_where")]
+    pub(crate) validate: Vec<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "poecal-out")]
+    pub(crate) out: PathBuf,
+    /// Overwrite results in an existing folder
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// End with code 1 if the verdict is worse than this (results are written all the same)
+    #[arg(long, value_enum, value_name = "VERDICT")]
+    pub(crate) require: Option<RequiredLevel>,
+    /// Print the calibration as JSON instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print where the time went, as a line of JSON on standard error; the solve is repeated for that
+    #[arg(long)]
+    pub(crate) timings: bool,
+}
+
+/// The verdicts that can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RequiredLevel {
+    /// Good to use anywhere within the limits
+    Good,
+    /// Good to use inside the sampled range, or better
+    #[value(name = "inside_sampled_range")]
+    InsideSampledRange,
+}
+
+impl From<RequiredLevel> for Level {
+    fn from(required: RequiredLevel) -> Self {
+        match required {
+            RequiredLevel::Good => Level::Good,
+            RequiredLevel::InsideSampledRange => Level::InsideSampledRange,
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Arguments of `poecal offsets`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use poecal::offsets;
+
+use super::Chain;
+
+/// Whether a frame is the same in both models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum End {
+    /// It is found with the offsets
+    Free,
+    /// It is the same in both
+    Kept,
+}
+
+impl From<End> for offsets::End {
+    fn from(end: End) -> Self {
+        match end {
+            End::Free => offsets::End::Free,
+            End::Kept => offsets::End::Kept,
+        }
+    }
+}
+
+/// Arguments of `poecal offsets`.
+#[derive(Args, Debug)]
+pub(crate) struct Offsets {
+    /// Robot model as delivered: URDF, TOML or calibration.json
+    pub(crate) nominal: PathBuf,
+    /// The robot that is there, with the same joints: URDF, TOML or calibration.json
+    pub(crate) actual: PathBuf,
+    #[command(flatten)]
+    pub(crate) chain: Chain,
+    /// The base frame [default: free for a calibration whose device stood anywhere, else kept]
+    #[arg(long, value_enum)]
+    pub(crate) base: Option<End>,
+    /// The tip frame [default: free for a calibration, else kept]
+    #[arg(long, value_enum)]
+    pub(crate) tip: Option<End>,
+    /// Print JSON instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// File to write, over an old one [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}

@@ -1,0 +1,66 @@
+//! Arguments of `poecal simulate`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use poecal::simulate::Kind;
+
+use super::{Chain, Frame};
+use crate::quantity::LengthAndAngle;
+
+/// What a simulated device sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SimulatedKind {
+    /// Positions and orientations
+    Pose,
+    /// Positions
+    Point,
+    /// Both in turn
+    Mixed,
+}
+
+impl From<SimulatedKind> for Kind {
+    fn from(kind: SimulatedKind) -> Self {
+        match kind {
+            SimulatedKind::Pose => Kind::Pose,
+            SimulatedKind::Point => Kind::Point,
+            SimulatedKind::Mixed => Kind::Mixed,
+        }
+    }
+}
+
+/// Arguments of `poecal simulate`.
+#[derive(Args, Debug)]
+pub(crate) struct Simulate {
+    /// Robot model to deviate from: URDF, TOML or calibration.json
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) chain: Chain,
+    /// Angle and distance by which every axis, and the tip, is off
+    #[arg(long, value_name = "ANGLE,LENGTH", default_value = "1deg,2mm", allow_hyphen_values = true)]
+    pub(crate) errors: LengthAndAngle,
+    /// Standard deviations of each measured component
+    #[arg(long, value_name = "LENGTH,ANGLE", default_value = "0.05mm,0.01deg", allow_hyphen_values = true)]
+    pub(crate) noise: LengthAndAngle,
+    /// Number of measurements
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub(crate) count: u32,
+    /// Seed of everything random
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// What the device sees
+    #[arg(long, value_enum, default_value = "pose")]
+    pub(crate) kind: SimulatedKind,
+    /// Where the device stands: anywhere, or at the robot's base
+    #[arg(long, value_enum, default_value = "unknown")]
+    pub(crate) frame: Frame,
+    /// Number of further measurements, free of noise, to judge a calibration by
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=10_000_000))]
+    pub(crate) held_out_count: u32,
+    /// Folder for the files
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Overwrite files in an existing folder
+    #[arg(long)]
+    pub(crate) force: bool,
+}

@@ -1,0 +1,102 @@
+//! Where the time of a calibration goes.
+
+use std::time::{Duration, Instant};
+
+use cpu_time::ProcessTime;
+use poecal::solve::Summary;
+use serde_json::{Value, json};
+
+/// A solve is repeated for about this long, and at most that often.
+const LONG_ENOUGH: Duration = Duration::from_millis(300);
+const MOST_REPEATS: usize = 2000;
+const FEWEST_REPEATS: usize = 5;
+
+/// CPU time of the process (all threads) and time of the clock.
+#[derive(Clone, Copy, Default)]
+struct Span {
+    cpu: Duration,
+    wall: Duration,
+}
+
+impl Span {
+    fn json(self) -> Value {
+        let ms = |duration: Duration| duration.as_secs_f64() * 1e3;
+        json!({ "cpu_ms": ms(self.cpu), "wall_ms": ms(self.wall) })
+    }
+
+    fn less(self, other: Span) -> Span {
+        Span { cpu: self.cpu.saturating_sub(other.cpu), wall: self.wall.saturating_sub(other.wall) }
+    }
+}
+
+/// A stop watch of both.
+struct Watch {
+    cpu: ProcessTime,
+    wall: Instant,
+}
+
+impl Watch {
+    fn start() -> Self {
+        Watch { cpu: ProcessTime::now(), wall: Instant::now() }
+    }
+
+    fn read(&self) -> Span {
+        Span { cpu: self.cpu.elapsed(), wall: self.wall.elapsed() }
+    }
+}
+
+/// Parts of a calibration, one after the other.
+pub(crate) struct Timings {
+    watch: Watch,
+    parts: Vec<(&'static str, Span)>,
+}
+
+impl Timings {
+    pub(crate) fn start() -> Self {
+        Timings { watch: Watch::start(), parts: Vec::new() }
+    }
+
+    /// Ends a part.
+    pub(crate) fn end(&mut self, part: &'static str) {
+        self.parts.push((part, self.watch.read()));
+        self.watch = Watch::start();
+    }
+
+    /// One line of JSON. `solve` alone is timed here, repeated until it takes long enough to be told, as the median; it is taken off
+    /// `start`, of which it was a part.
+    pub(crate) fn line(&self, solve: impl Fn() -> Summary) -> String {
+        let (solved, repeats, iterations) = repeated(&solve);
+        let mut object = serde_json::Map::new();
+        for &(part, span) in &self.parts {
+            if part == "start" {
+                object.insert(part.to_owned(), span.less(solved).json());
+                let mut entry = solved.json();
+                entry["iterations"] = iterations.into();
+                entry["repeats"] = repeats.into();
+                object.insert("solve".to_owned(), entry);
+            } else {
+                object.insert(part.to_owned(), span.json());
+            }
+        }
+        Value::Object(object).to_string()
+    }
+}
+
+/// Median of repeated solves, how many, and the iterations of each.
+fn repeated(solve: &impl Fn() -> Summary) -> (Span, usize, usize) {
+    let begin = Instant::now();
+    let (mut cpu, mut wall, mut iterations) = (Vec::new(), Vec::new(), 0);
+    while cpu.len() < FEWEST_REPEATS || (begin.elapsed() < LONG_ENOUGH && cpu.len() < MOST_REPEATS) {
+        let watch = Watch::start();
+        iterations = solve().iterations;
+        let span = watch.read();
+        cpu.push(span.cpu);
+        wall.push(span.wall);
+    }
+    let median = |times: &mut Vec<Duration>| {
+        times.sort();
+        times.get(times.len() / 2).copied().unwrap_or_default()
+    };
+    let repeats = cpu.len();
+    (Span { cpu: median(&mut cpu), wall: median(&mut wall) }, repeats, iterations)
+}

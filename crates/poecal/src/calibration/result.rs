@@ -1,0 +1,159 @@
+//! What a calibration comes to.
+
+use super::{
+    Accuracy, CalibrationOptions, DeviceFrameKnowledge, NoiseSource, Robustness, Trust, Verdict, fit_screws,
+    radian_m,
+};
+use crate::analysis::Identifiability;
+use crate::estimate::{Estimate, Packed};
+use crate::forensics::Diagnosis;
+use crate::lie::Pose;
+use crate::measurement::{Dataset, Noise, PoseResidual};
+use crate::parameters::Formulation;
+use crate::robot::Robot;
+use crate::solve;
+
+/// A target as calibrated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedTarget {
+    /// Its name; `None` is the tip itself.
+    pub name: Option<String>,
+    /// Whether its orientation was measured; if not, only the position means something.
+    pub is_frame: bool,
+    /// `tip_from_target` in the calibrated robot.
+    pub tip_from_target: Pose,
+}
+
+/// How the minimisation went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolverReport {
+    /// Iterations of the full fit, re-weighted rounds included.
+    pub iterations: usize,
+    /// Why it ended.
+    pub termination: solve::Termination,
+    /// Further starts that were tried.
+    pub restarts: usize,
+    /// Mean square whitened residual by iteration.
+    pub trace: Vec<f64>,
+    /// What each joint's value is more than its reading says (radians or metres), where the formulation has offsets. They are not
+    /// identifiable beside the screws (lou2009 Proposition 1); the calibrated robot has them in its screws.
+    pub joint_offsets: Option<Vec<f64>>,
+}
+
+/// The three models that every result is stated for, as estimates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Models {
+    /// As delivered: only an unknown device frame is fitted.
+    pub nominal: Estimate,
+    /// Device frame and targets fitted, screws nominal.
+    pub registered: Estimate,
+    /// Screws, targets and device frame fitted.
+    pub calibrated: Estimate,
+}
+
+/// A finished calibration.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let simulation = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
+/// let made = simulation.run(&elbow(), Kind::Pose)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let held_out = calibration.accuracy.held_out.expect("30 % are held out");
+/// assert!(held_out.calibrated.position_mm.max < 1e-6);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// The robot as delivered.
+    pub nominal: Robot,
+    /// The calibrated robot. The single unnamed target is its tip.
+    pub robot: Robot,
+    /// The targets.
+    pub targets: Vec<CalibratedTarget>,
+    /// What was known of the device's frame.
+    pub frame: DeviceFrameKnowledge,
+    /// How the errors of the joints were written.
+    pub formulation: Formulation,
+    /// How the errors of measured frames were written.
+    pub pose_residual: PoseResidual,
+    /// By which steps the fit went.
+    pub method: solve::Method,
+    /// `base_from_device`.
+    pub base_from_device: Pose,
+    /// The three models.
+    pub models: Models,
+    /// Errors of the three models on training and held-out rows.
+    pub accuracy: Accuracy,
+    /// The minimisation.
+    pub solver: SolverReport,
+    /// What the measurements can tell.
+    pub identifiability: Identifiability,
+    /// How far the result can be trusted.
+    pub trust: Trust,
+    /// Whether it is good to use, and where.
+    pub verdict: Verdict,
+    /// Noise by which residuals were whitened where a row stated none.
+    pub noise: Noise,
+    /// Where that noise came from.
+    pub noise_source: NoiseSource,
+    /// What was done about outliers, and what the fit says of each row.
+    pub robustness: Robustness,
+    /// What makes the result doubtful, a sentence each.
+    pub warnings: Vec<String>,
+    /// Mistakes that the measurements show, fitted and held out: named, not corrected.
+    pub diagnosis: Vec<Diagnosis>,
+    /// Rows fitted.
+    pub fit_rows: Vec<u32>,
+    /// Rows held out.
+    pub held_out_rows: Vec<u32>,
+}
+
+impl Calibration {
+    /// Solves the least-squares problem of a finished calibration once more, from the registered model to the optimum: packing of the
+    /// readings and minimisation, with the noise that was found and all fitted rows at their full weight. It is what solvers are compared by.
+    #[must_use]
+    pub fn solve_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
+        let packed = Packed::new(&self.nominal, data.all_readings(), data.reading_names().len());
+        let length_m = radian_m(&self.nominal, &packed);
+        let start = self.models.registered.clone();
+        fit_screws(data, &packed, &self.fit_rows, start, self.noise, length_m, options).2
+    }
+}
+
+/// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (with points alone its
+/// orientation keeps the nominal relation to the last joint); otherwise the tip keeps its whole nominal relation to the last joint.
+pub(super) fn place_tip(
+    robot: &Robot,
+    data: &Dataset,
+    frames: &[bool],
+    estimate: &Estimate,
+) -> (Robot, Vec<CalibratedTarget>) {
+    let mut calibrated = robot.with_screws(&estimate.screws());
+    let last_joint = calibrated.joints.last().map_or_else(Pose::identity, |joint| joint.frame);
+    calibrated.home = last_joint * robot.last_joint_from_tip();
+    for (target, name) in data.targets.iter().enumerate() {
+        if name.is_none() {
+            let seen = estimate.base_from_target[target];
+            let rotation = if frames[target] { seen.rotation } else { calibrated.home.rotation };
+            calibrated.home = Pose::new(rotation, seen.translation);
+        }
+    }
+    let tip_from_base = calibrated.home.inverse();
+    let targets = data
+        .targets
+        .iter()
+        .enumerate()
+        .map(|(target, name)| {
+            let is_frame = frames[target];
+            let tip_from_target = tip_from_base * estimate.base_from_target[target];
+            let rotation = if is_frame { tip_from_target.rotation } else { nalgebra::Matrix3::identity() };
+            CalibratedTarget {
+                name: name.clone(),
+                is_frame,
+                tip_from_target: Pose::new(rotation, tip_from_target.translation),
+            }
+        })
+        .collect();
+    (calibrated, targets)
+}

@@ -1,0 +1,269 @@
+//! The steps of a calibration, each from what the ones before it found.
+
+use super::doubts::doubts;
+use super::fit::{self, Fitted, Task};
+use super::result::place_tip;
+use super::robust::{self, RobustFit};
+use super::trust::{Finished, trust};
+use super::verdict::{Grounds, verdict};
+use super::{
+    Accuracy, Calibration, CalibrationOptions, DeviceFrameKnowledge, Models, NoiseSource, Robustness, Trust,
+    Verdict, delivered, estimate_noise, measurements_words, noise, radian_m, set_accuracy, split_rows,
+};
+use crate::analysis::{Identifiability, Setup, identifiability, residual_variance};
+use crate::error::{Error, ErrorKind, Result};
+use crate::estimate::{Estimate, Packed};
+use crate::forensics::{self, Diagnosis, DiagnosisKind};
+use crate::gauge;
+use crate::measurement::{Dataset, Noise};
+use crate::parameters::Formulation;
+use crate::robot::{JointKind, Robot};
+use crate::start::{Registration, register, register_again};
+use crate::uncertainty::View;
+
+/// Data and rows, ready to be fitted.
+pub(super) struct Prepared<'a> {
+    robot: &'a Robot,
+    data: &'a Dataset,
+    options: &'a CalibrationOptions,
+    packed: Packed,
+    delivered: Estimate,
+    length_m: f64,
+    fit_rows: Vec<u32>,
+    held_out_rows: Vec<u32>,
+}
+
+impl<'a> Prepared<'a> {
+    /// Splits the rows and packs the readings; refuses what cannot be fitted.
+    pub(super) fn new(robot: &'a Robot, data: &'a Dataset, options: &'a CalibrationOptions) -> Result<Self> {
+        let (fit_rows, held_out_rows) = split_rows(data, options)?;
+        check_count(robot, data, &fit_rows)?;
+        let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
+        let (delivered, length_m) = (delivered(robot, data), radian_m(robot, &packed));
+        Ok(Prepared { robot, data, options, packed, delivered, length_m, fit_rows, held_out_rows })
+    }
+
+    fn device_free(&self) -> bool {
+        self.options.frame == DeviceFrameKnowledge::Unknown
+    }
+
+    fn registration<'b>(&'b self, rows: &'b [u32], noise: Noise, targets_free: bool) -> Registration<'b> {
+        Registration {
+            data: self.data,
+            packed: &self.packed,
+            rows,
+            noise,
+            length_m: self.length_m,
+            device_free: self.device_free(),
+            targets_free,
+        }
+    }
+
+    /// Device frame and targets with nominal screws, and the noise that this leaves, if none is stated.
+    pub(super) fn register(&self) -> (Estimate, Noise, NoiseSource) {
+        let (mut noise, source) = noise::first_guess(self.data, self.options);
+        let (mut registered, _) = register(&self.registration(&self.fit_rows, noise, true), &self.delivered);
+        if source == NoiseSource::Estimated
+            && let Some(found) =
+                estimate_noise(self.data, &self.packed, &self.fit_rows, &registered, 6, noise)
+        {
+            noise = noise::stated(self.options, found);
+            registered = register_again(&self.registration(&self.fit_rows, noise, true), &registered);
+        }
+        (registered, noise, source)
+    }
+
+    /// The screws.
+    pub(super) fn fit(&self, registered: &Estimate, noise: Noise, source: NoiseSource) -> Result<RobustFit> {
+        let task = Task {
+            robot: self.robot,
+            data: self.data,
+            packed: &self.packed,
+            rows: &self.fit_rows,
+            weights: None,
+            length_m: self.length_m,
+            options: self.options,
+        };
+        robust::fit(&task, &self.registration(&self.fit_rows, noise, true), registered, source)
+    }
+
+    /// Everything that is said of a fit.
+    pub(super) fn assess(self, registered: Estimate, fit: RobustFit) -> Calibration {
+        let RobustFit { fitted, loss, judged } = fit;
+        let kept = if loss.is_some() {
+            robust::registrable(&judged.rows, &self.fit_rows)
+        } else {
+            self.fit_rows.clone()
+        };
+        let models = self.models(registered, &fitted, &kept, loss.is_some());
+        let accuracy = self.accuracy(&models);
+        let identifiability = self.identifiability(&fitted);
+        let trust = self.trust(&fitted, &models, &kept, loss.is_some());
+        let diagnosis = self.diagnosis(&models.calibrated, loss.is_some().then_some(&kept[..]));
+        let verdict = self.verdict(&fitted, &accuracy, &identifiability, &trust, &diagnosis);
+        let registered_accuracy = &accuracy.training.registered;
+        let mut warnings = doubts(self.data, &self.fit_rows, registered_accuracy, self.options.frame);
+        let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
+            set_accuracy(self.data, &self.packed, rows, &models)
+        });
+        warnings.extend(robustness.warning(&self.fit_rows, &self.held_out_rows));
+        let frames = self.data.frames(&self.fit_rows);
+        let (robot, targets) = place_tip(self.robot, self.data, &frames, &models.calibrated);
+        Calibration {
+            nominal: self.robot.clone(),
+            robot,
+            targets,
+            frame: self.options.frame,
+            formulation: self.options.formulation,
+            pose_residual: self.options.pose_residual,
+            method: self.options.solver.method,
+            base_from_device: models.calibrated.device_from_base.inverse(),
+            models,
+            accuracy,
+            solver: fitted.report,
+            identifiability,
+            trust,
+            verdict,
+            noise: fitted.noise,
+            noise_source: fitted.noise_source,
+            robustness,
+            warnings,
+            diagnosis,
+            fit_rows: self.fit_rows,
+            held_out_rows: self.held_out_rows,
+        }
+    }
+
+    /// The three models, of which the first two are registered by the rows that a robust fit believes; the third keeps the nominal base.
+    fn models(&self, registered: Estimate, fitted: &Fitted, kept: &[u32], is_robust: bool) -> Models {
+        let again =
+            |targets_free| register(&self.registration(kept, fitted.noise, targets_free), &self.delivered).0;
+        let found = fitted.estimate.without_offsets();
+        let calibrated = if self.device_free() {
+            let targets = &self.delivered.base_from_target;
+            let motion = gauge::base_motion(&found, self.robot, targets, self.length_m);
+            found.rebased(&motion)
+        } else {
+            found
+        };
+        Models {
+            nominal: again(false),
+            registered: if is_robust { again(true) } else { registered },
+            calibrated,
+        }
+    }
+
+    fn accuracy(&self, models: &Models) -> Accuracy {
+        let of = |rows: &[u32]| set_accuracy(self.data, &self.packed, rows, models);
+        Accuracy {
+            training: of(&self.fit_rows),
+            held_out: (!self.held_out_rows.is_empty()).then(|| of(&self.held_out_rows)),
+        }
+    }
+
+    fn identifiability(&self, fitted: &Fitted) -> Identifiability {
+        let setup = Setup {
+            robot: self.robot,
+            data: self.data,
+            packed: &self.packed,
+            rows: &self.fit_rows,
+            estimate: &fitted.estimate,
+            layout: &fitted.layout,
+            noise: fitted.noise,
+            length_m: self.length_m,
+            device_free: self.device_free(),
+        };
+        identifiability(&setup, &fitted.normal.gram, residual_variance(&fitted.normal))
+    }
+
+    /// Whatever the unknowns and the loss of the fit were: what is delivered is judged in the minimal basis, by the rows that it believes.
+    fn trust(&self, fitted: &Fitted, models: &Models, kept: &[u32], is_robust: bool) -> Trust {
+        let (layout, normal) = if self.options.formulation == Formulation::Adjoint && !is_robust {
+            (fitted.layout.clone(), fitted.normal.clone())
+        } else {
+            fit::minimal(self.data, &self.packed, kept, &models.calibrated, fitted.noise, self.length_m)
+        };
+        trust(&Finished {
+            view: View {
+                robot: self.robot,
+                data: self.data,
+                packed: &self.packed,
+                rows: kept,
+                free: &layout.parameters().map(|(parameter, _)| *parameter).collect::<Vec<_>>(),
+                noise: fitted.noise,
+                noise_is_stated: matches!(fitted.noise_source, NoiseSource::Given | NoiseSource::Rows),
+                length_m: self.length_m,
+                estimate: &models.calibrated,
+            },
+            layout: &layout,
+            normal: &normal,
+            models,
+            base_free: self.device_free(),
+            seed: self.options.seed,
+        })
+    }
+
+    /// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing. After a robust fit in the rows that
+    /// it believes: what is wrong with single ones is told by that.
+    fn diagnosis(&self, calibrated: &Estimate, believed: Option<&[u32]>) -> Vec<Diagnosis> {
+        if !self.options.diagnose {
+            return Vec::new();
+        }
+        let rows = believed.map_or_else(|| self.data.all_rows(), <[u32]>::to_vec);
+        let options = forensics::Options { device_free: self.device_free(), calibrated: Some(calibrated) };
+        forensics::diagnose(self.robot, self.data, &rows, &options)
+    }
+
+    fn verdict(
+        &self,
+        fitted: &Fitted,
+        accuracy: &Accuracy,
+        identifiability: &Identifiability,
+        trust: &Trust,
+        diagnosis: &[Diagnosis],
+    ) -> Verdict {
+        let grave = diagnosis.iter().filter(|it| it.kind != DiagnosisKind::DuplicateRows);
+        verdict(&Grounds {
+            accuracy,
+            solver: &fitted.report,
+            identifiability,
+            trust,
+            kinds: &fitted.estimate.kinds,
+            residuals: fitted.normal.residuals,
+            reach_m: 3.0 * self.length_m,
+            mistakes: &grave.map(|it| it.statement.clone()).collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// Refuses problems with fewer measured numbers than unknowns that data of this kind could determine.
+fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
+    let screws: usize =
+        robot.joints.iter().map(|joint| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum();
+    for (target, name) in data.targets.iter().enumerate() {
+        if !fit_rows.iter().any(|&row| data.observations[row as usize].target == target) {
+            let name = name.as_deref().unwrap_or("the tip");
+            return Err(Error::new(
+                ErrorKind::Problem,
+                format!(
+                    "found no measurement of target `{name}` to fit, expected at least one of every target: fit some of its rows, or leave its rows out"
+                ),
+            ));
+        }
+    }
+    let targets: usize = data.frames(fit_rows).iter().map(|&is_frame| if is_frame { 6 } else { 3 }).sum();
+    let needed = screws + targets;
+    let given: usize =
+        fit_rows.iter().map(|&row| data.observations[row as usize].measurement.residual_model().dim()).sum();
+    if given < needed {
+        return Err(Error::new(
+            ErrorKind::Problem,
+            format!(
+                "found {} to fit with {given} measured numbers, expected at least {needed} numbers \
+                 ({screws} of the screws, {targets} of the targets): measure more configurations, or hold out fewer",
+                measurements_words(fit_rows.len())
+            ),
+        ));
+    }
+    Ok(())
+}
