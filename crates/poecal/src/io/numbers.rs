@@ -9,6 +9,14 @@ pub(super) fn shortest(number: f64) -> String {
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
+/// Appends the shortest decimal that reads back as the same number; the fast way for tables.
+pub(super) fn push_number(out: &mut String, number: f64) {
+    let mut buffer = ryu::Buffer::new();
+    // Adding zero makes negative zero positive.
+    let text = buffer.format(number + 0.0);
+    out.push_str(text.strip_suffix(".0").unwrap_or(text));
+}
+
 /// Numbers freed of the rounding of products: what is within 1e-15 of a number with twelve decimals becomes that one, as 0.2025
 /// for 0.20249999999999999 and 0 for 6e-17.
 pub(super) fn tidy<const N: usize>(numbers: [f64; N]) -> [f64; N] {
@@ -31,6 +39,9 @@ mod tests {
         );
         for number in [1.0, -0.1, 1e-7, 0.1 + 0.2, f64::MIN_POSITIVE] {
             assert_eq!(shortest(number).parse(), Ok(number));
+            let mut text = String::new();
+            push_number(&mut text, number);
+            assert_eq!(text.parse(), Ok(number));
         }
     }
 }

@@ -1,10 +1,8 @@
 //! Predicted poses as CSV.
 
-use std::fmt::Write as _;
-
 use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
-use super::numbers::shortest;
+use super::numbers::push_number;
 use super::residuals::quoted;
 use crate::analysis::JointCoverage;
 use crate::calibration::inside;
@@ -64,8 +62,10 @@ pub fn predict(
     out.push_str("x[m],y[m],z[m],qx,qy,qz,qw");
     out.push_str(if with_uncertainty { UNCERTAINTY_COLUMNS } else { "" });
     out.push('\n');
-    for (row, readings) in joints.readings.chunks_exact(robot.reading_names().len().max(1)).enumerate() {
-        let pose = frame_from_base * robot.forward_kinematics(readings) * tip_from_target;
+    let configurations = joints.readings.chunks_exact(robot.reading_names().len().max(1));
+    let poses = robot.forward_kinematics_of(configurations.clone());
+    for (row, (readings, base_from_tip)) in configurations.zip(poses).enumerate() {
+        let pose = frame_from_base * base_from_tip * tip_from_target;
         if with_ids {
             out.push_str(&quoted(joints.ids.get(row).map_or("", String::as_str)));
             out.push(',');
@@ -73,9 +73,8 @@ pub fn predict(
         let [x, y, z]: [f64; 3] = pose.translation.into();
         let [qx, qy, qz, qw] = pose.quaternion_xyzw();
         for (column, number) in [x, y, z, qx, qy, qz, qw].into_iter().enumerate() {
-            let separator = if column == 0 { "" } else { "," };
-            // Adding zero makes negative zero positive; writing to a String cannot fail.
-            let _ = write!(out, "{separator}{}", shortest(number + 0.0));
+            out.push_str(if column == 0 { "" } else { "," });
+            push_number(&mut out, number);
         }
         if let Some(doubts) = &doubts {
             doubts.write(row, readings, robot, &mut out);
@@ -116,10 +115,11 @@ impl Doubts {
     fn write(&self, row: usize, readings: &[f64], robot: &Robot, out: &mut String) {
         if let Some(error) = self.errors.get(row) {
             for number in [error.sigma_position_m(), error.sigma_rotation_rad(), error.bound_position_m()] {
-                let _ = write!(out, ",{}", shortest(number));
+                out.push(',');
+                push_number(out, number);
             }
         }
-        let _ = write!(out, ",{}", inside(robot, &self.sampled, readings));
+        out.push_str(if inside(robot, &self.sampled, readings) { ",true" } else { ",false" });
     }
 }
 

@@ -5,7 +5,7 @@ use rand_core::SeedableRng;
 
 use crate::lie::rotation;
 use crate::robot::Robot;
-use crate::simulate::random_configuration;
+use crate::simulate::Configurations;
 
 /// Largest difference of two robots' tip poses.
 ///
@@ -27,9 +27,10 @@ impl Difference {
     pub fn of(robot: &Robot, other: &Robot, count: usize) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(1);
         let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
-        for _ in 0..count {
-            let readings = random_configuration(robot, &mut generator);
-            let (a, b) = (robot.forward_kinematics(&readings), other.forward_kinematics(&readings));
+        let configurations = Configurations::new(robot);
+        let readings: Vec<Vec<f64>> = (0..count).map(|_| configurations.random(&mut generator)).collect();
+        let first = robot.forward_kinematics_of(readings.iter().map(Vec::as_slice));
+        for (a, b) in first.zip(other.forward_kinematics_of(readings.iter().map(Vec::as_slice))) {
             largest.position_m = larger(largest.position_m, (a.translation - b.translation).norm());
             let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
             largest.rotation_rad = larger(largest.rotation_rad, turn);

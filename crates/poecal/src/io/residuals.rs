@@ -7,6 +7,8 @@ use crate::calibration::{Calibration, RowError, RowJudgement, row_errors, row_in
 use crate::estimate::{Estimate, Packed};
 use crate::measurement::Dataset;
 
+use super::numbers::push_number;
+
 /// The text of the file: rows in the order of the data, errors of the three models, and the calibrated model's residual (measured
 /// less predicted) by component in the device's axes; then what the row meant to the fit.
 #[must_use]
@@ -28,27 +30,29 @@ pub fn text(data: &Dataset, calibration: &Calibration) -> String {
          rotation_nominal[deg],rotation_registered[deg],rotation_calibrated[deg],rx[deg],ry[deg],rz[deg],\
          weight,leverage,studentized,suspected\n",
     );
+    let files: Vec<String> =
+        data.files.iter().map(|path| quoted(&path.display().to_string()).into_owned()).collect();
     for (row, observation) in data.observations.iter().enumerate() {
-        let file = data.files.get(observation.source.file as usize);
-        let file = file.map_or_else(String::new, |path| path.display().to_string());
+        let file = files.get(observation.source.file as usize).map_or("", String::as_str);
         let set = if held_out[row] { "held_out" } else { "fit" };
         let id = data.ids.get(row).map_or("", String::as_str);
         let target = data.targets[observation.target].as_deref().unwrap_or("");
         let line = observation.source.line;
         // Writing to a String cannot fail.
-        let _ = write!(out, "{},{line},{},{set},{}", quoted(&file), quoted(id), quoted(target));
+        let _ = write!(out, "{file},{line},{},{set},{}", quoted(id), quoted(target));
         let models = [&nominal[row], &registered[row], &calibrated[row]];
         for error in models {
-            let _ = write!(out, ",{}", error.position_m.norm() * 1e3);
+            cell(&mut out, error.position_m.norm() * 1e3);
         }
         for component in &calibrated[row].position_m {
-            let _ = write!(out, ",{}", component * 1e3);
+            cell(&mut out, component * 1e3);
         }
         write_rotations(&mut out, models, &calibrated[row]);
         if let Some(judged) = calibration.robustness.rows.get(row) {
             let Influence { leverage, studentized } = influences[row];
             let RowJudgement { weight, suspected } = judged;
-            let _ = write!(out, ",{weight},{leverage},{studentized},{}", u8::from(*suspected));
+            [*weight, leverage, studentized].into_iter().for_each(|number| cell(&mut out, number));
+            out.push_str(if *suspected { ",1" } else { ",0" });
         }
         out.push('\n');
     }
@@ -61,11 +65,16 @@ fn write_rotations(out: &mut String, models: [&RowError; 3], calibrated: &RowErr
         return;
     };
     for error in models {
-        let _ = write!(out, ",{}", error.rotation_rad.map_or(f64::NAN, |w| w.norm().to_degrees()));
+        cell(out, error.rotation_rad.map_or(f64::NAN, |w| w.norm().to_degrees()));
     }
     for component in &components {
-        let _ = write!(out, ",{}", component.to_degrees());
+        cell(out, component.to_degrees());
     }
+}
+
+fn cell(out: &mut String, number: f64) {
+    out.push(',');
+    push_number(out, number);
 }
 
 /// A CSV cell, quoted where it must be.

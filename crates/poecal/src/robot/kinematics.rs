@@ -22,6 +22,21 @@ impl Robot {
         self.motion(&self.joint_values(readings)) * self.home
     }
 
+    /// [`Robot::forward_kinematics`] of one configuration after the other.
+    pub fn forward_kinematics_of<'a>(
+        &'a self,
+        configurations: impl Iterator<Item = &'a [f64]>,
+    ) -> impl Iterator<Item = Pose> {
+        let indices = self.reading_indices();
+        let mut values = vec![0.0; self.joints.len()];
+        configurations.map(move |readings| {
+            for ((value, joint), &index) in values.iter_mut().zip(&self.joints).zip(&indices) {
+                *value = joint.reading.value(readings.get(index).copied().unwrap_or(0.0));
+            }
+            self.motion(&values) * self.home
+        })
+    }
+
     /// The rigid motion `T_n = exp(ξ₁θ₁) … exp(ξₙθₙ)` of the last link from its place at zero, for *joint values* θ:
     /// theory.md §2 (6).
     #[must_use]

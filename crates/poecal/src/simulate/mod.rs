@@ -1,9 +1,11 @@
 //! Synthetic robots and measurements with seeded noise: for tests, for learning, and for planning.
 
+mod configuration;
 mod gross;
 pub mod random;
 mod robots;
 
+pub use configuration::{Configurations, random_configuration};
 pub use gross::Gross;
 pub use robots::{elbow, gantry, random_chain, scara, seven_axis};
 
@@ -14,7 +16,7 @@ use rand_core::SeedableRng;
 use crate::error::Result;
 use crate::lie::{Pose, Twist, rotation};
 use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
-use crate::robot::{JointKind, Limits, Robot};
+use crate::robot::Robot;
 
 /// What the simulated device sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,8 +148,9 @@ impl Simulation {
         generator: &mut ChaCha8Rng,
     ) -> Result<Dataset> {
         let mut data = Dataset::new(nominal.reading_names());
+        let configurations = Configurations::new(nominal);
         for row in 0..self.count {
-            let readings = random_configuration(nominal, generator);
+            let readings = configurations.random(generator);
             let seen = *device_from_base * actual.forward_kinematics(&readings);
             let noise = random::normal_vector(generator) * self.noise_position_m;
             let turn = random::normal_vector(generator) * self.noise_rotation_rad;
@@ -186,40 +189,6 @@ impl Simulation {
         actual.name = format!("{}_actual", nominal.name);
         actual
     }
-}
-
-/// Readings of a random configuration in which every joint is within its limits (±π and ±0.5 m where there are none), in steps of
-/// 0.0001° and 0.001 mm, as controllers show them.
-pub fn random_configuration(robot: &Robot, generator: &mut ChaCha8Rng) -> Vec<f64> {
-    robot
-        .reading_names()
-        .iter()
-        .map(|name| {
-            let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
-            let mut kind = JointKind::Revolute;
-            for joint in robot.joints.iter().filter(|joint| joint.reading.name == *name) {
-                kind = joint.kind;
-                if let Some(limits) = joint.limits
-                    && joint.reading.multiplier != 0.0
-                    && (kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M)
-                {
-                    let at = |value: f64| (value - joint.reading.offset) / joint.reading.multiplier;
-                    let (a, b) = (at(limits.lower), at(limits.upper));
-                    lower = lower.max(a.min(b));
-                    upper = upper.min(a.max(b));
-                }
-            }
-            let span = if kind == JointKind::Revolute { std::f64::consts::PI } else { 0.5 };
-            let lower = if lower.is_finite() { lower } else { -span };
-            let upper = if upper.is_finite() { upper } else { span };
-            let value = lower + (upper - lower).max(0.0) * random::uniform(generator);
-            let stepped = match kind {
-                JointKind::Revolute => ((value.to_degrees() * 1e4).round() / 1e4).to_radians(),
-                JointKind::Prismatic => (value * 1e6).round() / 1e3 / 1e3,
-            };
-            if (lower..=upper).contains(&stepped) { stepped } else { value }
-        })
-        .collect()
 }
 
 /// A small random twist: rotation by `angle_rad` and shift by `distance_m` in random directions.

@@ -1,7 +1,7 @@
 //! Files written whole or not at all: beside their place first, then moved.
 
 use std::fs;
-use std::io::{ErrorKind as ErrorKindIo, Write as _};
+use std::io::ErrorKind as ErrorKindIo;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, ErrorKind, Result};
@@ -83,11 +83,7 @@ impl Staging {
 
     pub(super) fn write(&self, name: &str, text: &str) -> Result<()> {
         let path = self.folder.join(name);
-        let result = fs::File::create(&path).and_then(|mut file| {
-            file.write_all(text.as_bytes())?;
-            file.sync_all()
-        });
-        result.map_err(|error| {
+        fs::write(&path, text).map_err(|error| {
             let message = format!(
                 "the file cannot be written ({error}), expected a folder that can be written to: choose another with --out"
             );

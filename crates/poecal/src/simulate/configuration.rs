@@ -1,0 +1,69 @@
+//! Random configurations of a robot.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::random;
+use crate::robot::{JointKind, Limits, Robot};
+
+/// The configurations of a robot: what each reading may be (±π and ±0.5 m where there are no limits).
+///
+/// ```
+/// use poecal::simulate::{Configurations, elbow};
+/// use rand_core::SeedableRng;
+/// let mut generator = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+/// let readings = Configurations::new(&elbow()).random(&mut generator);
+/// assert!(readings.len() == 6 && readings[4].to_degrees() >= -40.0);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Configurations {
+    /// Kind, least and greatest value of each reading.
+    readings: Vec<(JointKind, f64, f64)>,
+}
+
+impl Configurations {
+    /// Of a robot, its readings in the order of [`Robot::reading_names`].
+    #[must_use]
+    pub fn new(robot: &Robot) -> Self {
+        Configurations { readings: robot.reading_names().iter().map(|name| range(robot, name)).collect() }
+    }
+
+    /// One in which every joint is within its limits, in steps of 0.0001° and 0.001 mm, as controllers show them.
+    pub fn random(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
+        let one = |&(kind, lower, upper): &(JointKind, f64, f64)| {
+            let value = lower + (upper - lower).max(0.0) * random::uniform(generator);
+            let stepped = match kind {
+                JointKind::Revolute => ((value.to_degrees() * 1e4).round() / 1e4).to_radians(),
+                JointKind::Prismatic => (value * 1e6).round() / 1e3 / 1e3,
+            };
+            if (lower..=upper).contains(&stepped) { stepped } else { value }
+        };
+        self.readings.iter().map(one).collect()
+    }
+}
+
+/// What a reading may be for every joint that has it.
+fn range(robot: &Robot, name: &str) -> (JointKind, f64, f64) {
+    let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
+    let mut kind = JointKind::Revolute;
+    for joint in robot.joints.iter().filter(|joint| joint.reading.name == name) {
+        kind = joint.kind;
+        if let Some(limits) = joint.limits
+            && joint.reading.multiplier != 0.0
+            && (kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M)
+        {
+            let at = |value: f64| (value - joint.reading.offset) / joint.reading.multiplier;
+            let (a, b) = (at(limits.lower), at(limits.upper));
+            lower = lower.max(a.min(b));
+            upper = upper.min(a.max(b));
+        }
+    }
+    let span = if kind == JointKind::Revolute { std::f64::consts::PI } else { 0.5 };
+    let lower = if lower.is_finite() { lower } else { -span };
+    let upper = if upper.is_finite() { upper } else { span };
+    (kind, lower, upper)
+}
+
+/// Readings of one random configuration: [`Configurations::random`].
+pub fn random_configuration(robot: &Robot, generator: &mut ChaCha8Rng) -> Vec<f64> {
+    Configurations::new(robot).random(generator)
+}
