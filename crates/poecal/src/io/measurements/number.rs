@@ -31,6 +31,13 @@ impl Numbers {
 
     /// A finite number, or what was expected.
     pub(super) fn parse(&mut self, text: &str, line: usize) -> Result<f64, String> {
+        // The usual case; all else, `nan` and `inf` too, takes the long way.
+        if matches!(self.sign, Some((DecimalSign::Point, _)))
+            && let Ok(value) = text.parse::<f64>()
+            && value.is_finite()
+        {
+            return Ok(value);
+        }
         let (mut points, mut commas) = (0, 0);
         for byte in text.bytes() {
             match byte {

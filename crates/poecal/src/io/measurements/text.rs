@@ -63,6 +63,16 @@ impl Separator {
         }
     }
 
+    /// As a byte, unless it is any run of blanks.
+    fn byte(self) -> Option<u8> {
+        match self {
+            Separator::Comma => Some(b','),
+            Separator::Semicolon => Some(b';'),
+            Separator::Tab => Some(b'\t'),
+            Separator::Whitespace => None,
+        }
+    }
+
     /// The first of semicolon, tab and comma that the header has outside quotes, else whitespace.
     pub(super) fn recognised(header: &str) -> Self {
         let unquoted = |separator: &Separator| {
@@ -81,7 +91,8 @@ impl Separator {
 
 /// Lines with their number (from 1) that are neither blank nor a comment (`#`).
 pub(super) struct Lines<'a> {
-    rest: std::str::Split<'a, char>,
+    rest: Option<&'a str>,
+    newline: u8,
     number: usize,
     skip: usize,
 }
@@ -90,8 +101,16 @@ impl<'a> Lines<'a> {
     /// The lines of a text after the first `skip`.
     pub(super) fn new(text: &'a str, skip: usize) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let newline = if text.contains('\n') { '\n' } else { '\r' };
-        Lines { rest: text.split(newline), number: 0, skip }
+        let newline = if memchr::memchr(b'\n', text.as_bytes()).is_some() { b'\n' } else { b'\r' };
+        Lines { rest: Some(text), newline, number: 0, skip }
+    }
+
+    /// The next line, whatever it holds.
+    fn line(&mut self) -> Option<&'a str> {
+        let rest = self.rest?;
+        let end = memchr::memchr(self.newline, rest.as_bytes());
+        self.rest = end.and_then(|end| rest.get(end + 1..));
+        Some(end.and_then(|end| rest.get(..end)).unwrap_or(rest))
     }
 }
 
@@ -100,7 +119,7 @@ impl<'a> Iterator for Lines<'a> {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            let line = self.rest.next()?;
+            let line = self.line()?;
             self.number += 1;
             let line = line.strip_suffix('\r').unwrap_or(line);
             let content = line.trim_start();
@@ -142,6 +161,12 @@ pub(super) fn split<'a>(
     cells: &mut Vec<Cell<'a>>,
 ) -> std::result::Result<(), (usize, &'static str)> {
     cells.clear();
+    if let Some(separator) = separator.byte()
+        && memchr::memchr(b'"', line.as_bytes()).is_none()
+    {
+        split_plainly(line, separator, cells);
+        return Ok(());
+    }
     let mut rest = line;
     loop {
         rest =
@@ -177,6 +202,24 @@ pub(super) fn split<'a>(
                 ));
             }
         }
+    }
+}
+
+/// Splits a line without quotes.
+fn split_plainly<'a>(line: &'a str, separator: u8, cells: &mut Vec<Cell<'a>>) {
+    let mut start = 0;
+    loop {
+        let after = line.get(start..).unwrap_or_default();
+        let end = memchr::memchr(separator, after.as_bytes());
+        let piece = end.and_then(|end| after.get(..end)).unwrap_or(after);
+        let trimmed = match separator {
+            b'\t' => piece.trim_start_matches(' '),
+            _ => piece.trim_start(),
+        };
+        let offset = start + piece.len() - trimmed.len();
+        cells.push(Cell { raw: trimmed.trim_end(), offset, escaped: false });
+        let Some(end) = end else { return };
+        start += end + 1;
     }
 }
 
