@@ -22,9 +22,13 @@ use poecal::io::urdf::ChainSelection;
 
 use crate::quantity::whole;
 
+/// What the program ends with.
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the verdict is worse than --require asks for; \
+                          2 wrong input or usage, nothing was written; 3 the fit did not converge";
+
 /// Finds the robot that is really there: kinematic calibration by the product of exponentials.
 #[derive(Debug, Parser)]
-#[command(name = "poecal", version, arg_required_else_help = true)]
+#[command(name = "poecal", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {
     /// What to do.
     #[command(subcommand)]

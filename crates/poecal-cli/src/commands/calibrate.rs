@@ -60,7 +60,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
     } else {
         console.say(&report::summary(&calibration, &data))?;
         console.say(&format!(
-            "written       {}: {}\n              read back, on 1,000 configurations within {:.1e} m and {:.1e} rad of the fit\n",
+            "written       {}\n              {}\n              read back: within {:.1e} m and {:.1e} rad in 1,000 configurations\n",
             written.folder.display(),
             written.files.join(", "),
             written.largest.position_m,

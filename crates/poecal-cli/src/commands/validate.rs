@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use poecal::calibration::{Judgement, Promise, Subject, judge};
+use poecal::calibration::{Judgement, KeptPart, Promise, Subject, judge};
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::{Result, report};
@@ -71,19 +71,29 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<ExitCo
 fn warn(arguments: &Validate, file: &CalibrationFile, judgement: &Judgement, console: &Console) {
     let own_mm = file.own_position_rms_mm().max(ROUNDING_MM);
     let rms_mm = judgement.calibrated.position_mm.rms;
-    if !arguments.refit_frame && rms_mm > MOVED_DEVICE * own_mm {
+    let kept = judgement.promised.filter(|_| rms_mm > ROUNDING_MM);
+    // Where most errors are as promised, single rows are wrong, and not the device.
+    let mostly = kept.is_some_and(|it| it.position_mm.inside_bound95 > 0.5);
+    if !arguments.refit_frame && !mostly && rms_mm > MOVED_DEVICE * own_mm {
         console.warning(format!(
             "the position error is {:.0} times that of the calibration itself ({rms_mm:.2e} mm, {own_mm:.2e} mm): \
              if the measuring device was moved, find its frame anew with --refit-frame",
             rms_mm / own_mm
         ));
-    } else if let Some(kept) =
-        judgement.promised.filter(|it| it.inside_bound95 < BROKEN && rms_mm > ROUNDING_MM)
-    {
+    } else if mostly && rms_mm > MOVED_DEVICE * own_mm {
         console.warning(format!(
-            "{:.0} % of the errors exceed their 95 % bound: the robot, its tool or the measuring device is not as it was calibrated, \
-             or is used outside the sampled range",
-            100.0 * (1.0 - kept.inside_bound95)
+            "most errors are as promised, the largest is {:.2} mm: some measurements are grossly wrong",
+            judgement.calibrated.position_mm.max
+        ));
+    } else if let Some(kept) = kept.filter(|it| it.least_inside() < BROKEN) {
+        let share = |part: KeptPart| 100.0 * (1.0 - part.inside_bound95);
+        let position = format!("{:.0} % of the position errors", share(kept.position_mm));
+        let rotation =
+            kept.rotation_deg.map(|part| format!(" and {:.0} % of the rotation errors", share(part)));
+        console.warning(format!(
+            "{position}{} exceed their 95 % bound: the robot, its tool or the measuring device is not as it was calibrated, it is used \
+             outside the sampled range, or orientations are written in another form",
+            rotation.unwrap_or_default()
         ));
     }
 }

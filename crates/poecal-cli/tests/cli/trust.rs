@@ -87,14 +87,15 @@ fn validation_says_whether_the_promise_was_kept() {
     assert_eq!(run.code, 0, "{run:?}");
     let found: serde_json::Value = serde_json::from_str(&run.out).unwrap();
     let promised = &found["promised"];
-    let share = promised["inside_bound95"].as_f64().unwrap();
-    let expected = promised["expected_rms_mm"].as_f64().unwrap();
+    let share = promised["position_mm"]["inside_bound95"].as_f64().unwrap();
+    let expected = promised["position_mm"]["expected_rms"].as_f64().unwrap();
+    assert!(promised["rotation_deg"]["inside_bound95"].as_f64().unwrap() > 0.85);
     let rms = found["calibrated"]["position_mm"]["rms"].as_f64().unwrap();
     println!("{:.1} % inside, expected {expected:.4} mm, found {rms:.4} mm", 100.0 * share);
     assert!(share > 0.85 && (0.7..1.4).contains(&(rms / expected)));
     assert!(promised["inside_sampled_range"].as_f64().unwrap() > 0.8);
     let text = folder.done("validate all/calibration.json measurements.csv");
-    assert!(text.contains("of the errors are inside theirs"), "{text}");
+    assert!(text.contains("inside their 95 % bounds"), "{text}");
 
     // A tool that is found anew was promised nothing, and one that was bent breaks the promise.
     let anew = folder.done("validate all/calibration.json measurements.csv --refit-tool --json");
@@ -104,5 +105,5 @@ fn validation_says_whether_the_promise_was_kept() {
     bent["robot"]["base_from_tip_at_zero"]["position_m"][2] = (home + 5e-4).into();
     folder.write("bent.json", bent.to_string());
     let run = folder.run("validate bent.json measurements.csv");
-    assert!(run.err.contains("of the errors exceed their 95 % bound"), "{run:?}");
+    assert!(run.err.contains("exceed their 95 % bound"), "{run:?}");
 }

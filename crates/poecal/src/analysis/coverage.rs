@@ -10,7 +10,7 @@ use crate::robot::{JointKind, Limits, Robot};
 /// ```
 /// use poecal::{analysis::JointCoverage, robot::JointKind};
 /// let joint = "elbow".to_owned();
-/// let half = JointCoverage { joint, sampled_min: 0.0, sampled_max: 1.5, limit_min: Some(-1.5), limit_max: Some(1.5) };
+/// let half = JointCoverage { joint, sampled_min: 0.0, sampled_max: 1.5, stragglers: 0.0, limit_min: Some(-1.5), limit_max: Some(1.5) };
 /// assert_eq!(half.share(JointKind::Revolute), Some(0.5));
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -21,6 +21,10 @@ pub struct JointCoverage {
     pub sampled_min: f64,
     /// Largest value sampled.
     pub sampled_max: f64,
+    /// Share of that range, at its ends, which no more than a fiftieth of the rows reach at each: they do not make it sampled. Counted from
+    /// where it exceeds a tenth.
+    #[serde(default)]
+    pub stragglers: f64,
     /// Smallest value that the model allows; null where it has no limits, or placeholders.
     pub limit_min: Option<f64>,
     /// Largest value that the model allows.
@@ -38,7 +42,8 @@ impl JointCoverage {
             JointKind::Revolute => limits.map_or(turn, |span| span.min(turn)),
             JointKind::Prismatic => limits?,
         };
-        (allowed > 0.0).then(|| ((self.sampled_max - self.sampled_min) / allowed).min(1.0))
+        let sampled = (self.sampled_max - self.sampled_min) * (1.0 - self.stragglers);
+        (allowed > 0.0).then(|| (sampled / allowed).min(1.0))
     }
 
     /// Whether a value lies in the sampled range; of a revolute joint also after whole turns.
@@ -66,7 +71,8 @@ pub fn coverage(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<JointCovera
         .iter()
         .zip(ranges)
         .filter(|(_, (least, most))| least <= most)
-        .map(|(joint, (sampled_min, sampled_max))| {
+        .enumerate()
+        .map(|(index, (joint, (sampled_min, sampled_max)))| {
             let limits = joint.limits.filter(|limits| {
                 joint.kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M
             });
@@ -74,11 +80,26 @@ pub fn coverage(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<JointCovera
                 joint: joint.name.clone(),
                 sampled_min,
                 sampled_max,
+                stragglers: stragglers(packed, rows, index),
                 limit_min: limits.map(|limits| limits.lower),
                 limit_max: limits.map(|limits| limits.upper),
             }
         })
         .collect()
+}
+
+/// The share of a joint's sampled range at its ends that only single rows reach.
+fn stragglers(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
+    const END: usize = 50;
+    const UNIFORM: f64 = 0.1;
+    let mut values: Vec<f64> = rows.iter().map(|&row| packed.joint_values(row as usize)[joint]).collect();
+    values.sort_by(f64::total_cmp);
+    let cut = values.len() / END;
+    let (Some(least), Some(most)) = (values.first(), values.last()) else { return 0.0 };
+    let (Some(low), Some(high)) = (values.get(cut), values.get(values.len() - 1 - cut)) else { return 0.0 };
+    let span = most - least;
+    let share = if span > 0.0 { 1.0 - (high - low) / span } else { 0.0 };
+    if share > UNIFORM { share } else { 0.0 }
 }
 
 /// Smallest and largest value of each joint in some rows.

@@ -244,6 +244,24 @@ pub fn residual_variance(normal: &Normal) -> f64 {
     normal.mean_square() * residuals / (residuals - normal.dim() as f64).max(1.0)
 }
 
+/// How many unknowns some of the residuals tell: `tr N⁻¹ N_part`, theory.md §6 (34).
+#[must_use]
+pub fn unknowns_told(normal: &Normal, part: &Normal) -> f64 {
+    let n = normal.dim();
+    let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
+    let Some(factor) =
+        linalg::cholesky(&normal.gram, n, (ROUNDING * ROUNDING * largest).max(f64::MIN_POSITIVE))
+    else {
+        return 0.0;
+    };
+    (0..n)
+        .map(|j| {
+            let column: Vec<f64> = (0..n).map(|i| part.gram[i.min(j) * n + i.max(j)]).collect();
+            linalg::cholesky_solve(&factor, &column)[j]
+        })
+        .sum()
+}
+
 /// Judges the information (upper triangle of `N`, row-major) of a setup, with residuals of this variance: theory.md §7 (36).
 #[must_use]
 pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identifiability {

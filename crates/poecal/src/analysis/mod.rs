@@ -14,7 +14,7 @@ pub(crate) use coverage::ranges;
 pub use coverage::{JointCoverage, coverage};
 pub(crate) use identifiability::PLAUSIBLE;
 pub use identifiability::{
-    Cause, Direction, Identifiability, Setup, Spectrum, identifiability, residual_variance,
+    Cause, Direction, Identifiability, Setup, Spectrum, identifiability, residual_variance, unknowns_told,
 };
 pub use identify::{ExpectedError, Foresight, Session, identify};
 pub use influence::{Influence, influence};

@@ -1,6 +1,6 @@
 //! Whether the errors of a calibration on other measurements are those that it promised.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
 use super::trust::inside;
@@ -8,7 +8,7 @@ use crate::analysis::JointCoverage;
 use crate::estimate::{Packed, RowError};
 use crate::measurement::{Dataset, Noise};
 use crate::robot::Robot;
-use crate::uncertainty::Uncertainty;
+use crate::uncertainty::{Uncertainty, bound};
 
 /// What a calibration promises of its predictions.
 ///
@@ -39,17 +39,61 @@ pub struct Promise<'a> {
 /// How errors compare with what was promised (theory.md §9 (40)).
 ///
 /// ```
-/// let kept = poecal::calibration::Kept { expected_rms_mm: 0.67, inside_bound95: 0.97, inside_sampled_range: 1.0 };
-/// assert!(kept.inside_bound95 > 0.95);
+/// use poecal::calibration::{Kept, KeptPart};
+/// let position = KeptPart { expected_rms: 0.67, inside_bound95: 0.97 };
+/// let kept = Kept { position_mm: position, rotation_deg: None, inside_sampled_range: 1.0 };
+/// assert!(kept.least_inside() > 0.95);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Kept {
-    /// Root mean square distance to expect between measured and predicted positions, millimetres.
-    pub expected_rms_mm: f64,
-    /// Share of the position errors within their own 95 % bound.
-    pub inside_bound95: f64,
+    /// Of positions, millimetres.
+    pub position_mm: KeptPart,
+    /// Of rotations, degrees, if orientation was measured and the calibration knows it.
+    pub rotation_deg: Option<KeptPart>,
     /// Share of the configurations with every joint inside the range that was sampled.
     pub inside_sampled_range: f64,
+}
+
+/// How errors of one sort compare with what was promised.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct KeptPart {
+    /// Root mean square error to expect between measured and predicted, noise of measuring included.
+    pub expected_rms: f64,
+    /// Share of the errors within their own 95 % bound.
+    pub inside_bound95: f64,
+}
+
+impl Kept {
+    /// The smaller share of errors within their bounds, of positions and rotations.
+    #[must_use]
+    pub fn least_inside(&self) -> f64 {
+        let rotation = self.rotation_deg.map_or(1.0, |part| part.inside_bound95);
+        self.position_mm.inside_bound95.min(rotation)
+    }
+}
+
+/// Sums of one sort of errors.
+#[derive(Default)]
+struct Sums {
+    squares: f64,
+    within: usize,
+    count: usize,
+}
+
+impl Sums {
+    fn add(&mut self, promised: &Matrix3<f64>, error: &Vector3<f64>) {
+        self.squares += promised.trace();
+        self.within += usize::from(error.norm() <= bound(promised));
+        self.count += 1;
+    }
+
+    fn part(&self, unit: f64) -> Option<KeptPart> {
+        let count = self.count as f64;
+        (self.count > 0).then(|| KeptPart {
+            expected_rms: unit * (self.squares / count).sqrt(),
+            inside_bound95: self.within as f64 / count,
+        })
+    }
 }
 
 impl Promise<'_> {
@@ -61,21 +105,29 @@ impl Promise<'_> {
         });
         let promised = self.uncertainty.predictions_of(rows, packed);
         // What the residuals showed holds the noise already, unless it was stated or nothing but noise was found.
-        let noise_beside = self.noise_is_stated || self.uncertainty.discrepancy.position_m == 0.0;
-        let (mut squares, mut within) = (0.0, 0usize);
-        for ((mut promised, error), observation) in promised.into_iter().zip(errors).zip(&data.observations) {
-            let usual = if noise_beside { self.noise.position_m } else { 0.0 };
-            let sigma = observation.sigma_position_m.unwrap_or(usual);
-            promised.position += Matrix3::identity() * (sigma * sigma);
-            squares += promised.position.trace();
-            within += usize::from(error.position_m.norm() <= promised.bound_position_m());
+        let beside = |discrepancy: f64, sigma: f64| {
+            if self.noise_is_stated || discrepancy == 0.0 { sigma } else { 0.0 }
+        };
+        let found = self.uncertainty.discrepancy;
+        let usual_position = beside(found.position_m, self.noise.position_m);
+        let usual_rotation = beside(found.rotation_rad, self.noise.rotation_rad);
+        let (mut position, mut rotation) = (Sums::default(), Sums::default());
+        for ((promised, error), observation) in promised.into_iter().zip(errors).zip(&data.observations) {
+            let own = |sigma: Option<f64>, usual: f64| Matrix3::identity() * sigma.unwrap_or(usual).powi(2);
+            position.add(
+                &(promised.position + own(observation.sigma_position_m, usual_position)),
+                &error.position_m,
+            );
+            if let Some(turn) = error.rotation_rad {
+                rotation
+                    .add(&(promised.rotation + own(observation.sigma_rotation_rad, usual_rotation)), &turn);
+            }
         }
         let sampled = (0..data.len()).filter(|&row| inside(robot, self.coverage, data.readings(row))).count();
-        let count = errors.len().max(1) as f64;
         Kept {
-            expected_rms_mm: 1e3 * (squares / count).sqrt(),
-            inside_bound95: within as f64 / count,
-            inside_sampled_range: sampled as f64 / count,
+            position_mm: position.part(1e3).unwrap_or(KeptPart { expected_rms: 0.0, inside_bound95: 1.0 }),
+            rotation_deg: rotation.part(1f64.to_degrees()),
+            inside_sampled_range: sampled as f64 / data.len().max(1) as f64,
         }
     }
 }

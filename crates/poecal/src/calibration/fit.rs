@@ -8,6 +8,7 @@ use super::{
     CalibrationOptions, DeviceFrameKnowledge, NoiseSource, SolverReport, delivered, estimate_noise,
     row_errors,
 };
+use crate::analysis::unknowns_told;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge;
@@ -160,8 +161,10 @@ impl Task<'_> {
         if source == NoiseSource::Estimated {
             for _ in 0..6 {
                 let unknowns = found.normal.dim();
+                let told = self.told_by_rotations(&found, noise);
+                let (data, packed, rows) = (self.data, self.packed, self.rows);
                 let Some(estimated) =
-                    estimate_noise(self.data, self.packed, self.rows, &found.estimate, unknowns, noise)
+                    estimate_noise(data, packed, rows, &found.estimate, unknowns, told, noise)
                 else {
                     source = NoiseSource::Exact;
                     break;
@@ -179,6 +182,20 @@ impl Task<'_> {
             }
         }
         self.finish(found, noise, source)
+    }
+
+    /// How many unknowns rotations tell rather than positions, where few rows make that matter.
+    fn told_by_rotations(&self, found: &Found, noise: Noise) -> Option<f64> {
+        const FEW: usize = 300;
+        // Positions as good as not measured; what is left is the information of rotations.
+        const UNMEASURED_M: f64 = 1e9;
+        let turns = |row: &u32| self.data.observations[*row as usize].measurement.sees_orientation();
+        if self.rows.len() > FEW || !self.rows.iter().any(turns) {
+            return None;
+        }
+        let rotations = Noise { position_m: UNMEASURED_M, ..noise };
+        let part = self.problem(&found.estimate, rotations).normal(&found.estimate);
+        Some(unknowns_told(&found.normal, &part))
     }
 
     /// What a fit at its optimum comes to.

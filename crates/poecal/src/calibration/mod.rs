@@ -16,7 +16,7 @@ mod trust;
 mod verdict;
 
 pub use accuracy::{Accuracy, ModelAccuracy, SetAccuracy, Statistic, set_accuracy};
-pub use expectation::{Kept, Promise};
+pub use expectation::{Kept, KeptPart, Promise};
 pub use fit::fit_screws;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};

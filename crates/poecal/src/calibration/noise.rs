@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::CalibrationOptions;
 use crate::estimate::{Chain, Estimate, Linkage, Packed};
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{Dataset, Noise, Observation};
 
 /// Where the noise came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -42,7 +42,18 @@ pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
     } else {
         NoiseSource::Estimated
     };
-    (stated(options, Noise { position_m: 1e-3, rotation_rad: 1e-3 }), source)
+    let mut noise = Noise { position_m: 1e-3, rotation_rad: 1e-3 };
+    if source == NoiseSource::Rows {
+        // What stands for rows that state none, of which there are none: the usual one, for people.
+        let usual = |of: fn(&Observation) -> Option<f64>, other: f64| {
+            let stated: Vec<f64> = data.observations.iter().filter_map(of).collect();
+            let squares: f64 = stated.iter().map(|sigma| sigma * sigma).sum();
+            if stated.is_empty() { other } else { (squares / stated.len() as f64).sqrt() }
+        };
+        noise.position_m = usual(|row| row.sigma_position_m, noise.position_m);
+        noise.rotation_rad = usual(|row| row.sigma_rotation_rad, noise.rotation_rad);
+    }
+    (stated(options, noise), source)
 }
 
 /// A noise with the parts that the user has stated put in their place.
@@ -63,6 +74,7 @@ pub fn estimate_noise(
     rows: &[u32],
     estimate: &Estimate,
     unknowns: usize,
+    told_by_rotations: Option<f64>,
     before: Noise,
 ) -> Option<Noise> {
     let linkage = Linkage::new(estimate);
@@ -92,8 +104,12 @@ pub fn estimate_noise(
     let turned = 3 * data.frames(rows).iter().filter(|&&is_frame| is_frame).count();
     let total = (position.count + rotation.count + stated) as f64;
     let others = (unknowns.saturating_sub(turned) as f64 / (total - turned as f64).max(1.0)).min(1.0);
-    let position_m = position.deviation(0, others);
-    let rotation_rad = rotation.deviation(turned, others);
+    let (position_m, rotation_rad) = match told_by_rotations {
+        Some(told) if stated == 0 => {
+            (position.less(unknowns as f64 - told, 0.0), rotation.less(told, turned as f64))
+        }
+        _ => (position.deviation(0, others), rotation.deviation(turned, others)),
+    };
     let mut told = [position_m, rotation_rad].into_iter().flatten().peekable();
     if told.peek().is_some() && told.all(|deviation| deviation < ROUNDING) {
         return None;
@@ -115,6 +131,12 @@ impl Share {
     fn add(&mut self, residuals: &[f64]) {
         self.squares += residuals.iter().map(|e| e * e).sum::<f64>();
         self.count += residuals.len();
+    }
+
+    /// Their standard deviation with so many unknowns taken off; `None` where too little is left beyond `own` to tell.
+    fn less(&self, unknowns: f64, own: f64) -> Option<f64> {
+        let redundancy = (self.count as f64 - unknowns).max(1.0);
+        (self.count as f64 - own >= REDUNDANT).then(|| (self.squares / redundancy).sqrt())
     }
 
     /// Their standard deviation with `own` unknowns and a share `others` of the rest taken off; `None` where too little is left to

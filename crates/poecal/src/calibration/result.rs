@@ -110,6 +110,17 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// Root mean square distance to expect where it was measured if all that the fit leaves were error of the robot and none noise of
+    /// measuring, metres; none where that was settled (noise stated, or found to be no noise, or nothing left). The truth lies between:
+    /// few rows cannot tell.
+    #[must_use]
+    pub fn sigma_if_robot_m(&self) -> Option<f64> {
+        let found = self.trust.uncertainty.as_ref()?;
+        let settled = self.noise_source != NoiseSource::Estimated || found.discrepancy.position_m > 0.0;
+        let measured = self.trust.measured?;
+        (!settled).then(|| (measured.sigma_m.powi(2) + 3.0 * self.noise.position_m.powi(2)).sqrt())
+    }
+
     /// Solves the least-squares problem of a finished calibration once more, from the registered model to the optimum: packing of the
     /// readings and minimisation, with the noise that was found and all fitted rows at their full weight. It is what solvers are compared by.
     #[must_use]

@@ -1,18 +1,18 @@
 //! The steps of a calibration, each from what the ones before it found.
 
-use super::doubts::doubts;
+use super::doubts::{doubts, moved, noise_doubts};
 use super::fit::{self, Fitted, Task};
 use super::result::place_tip;
 use super::robust::{self, RobustFit};
 use super::trust::{Finished, trust};
 use super::verdict::{Grounds, verdict};
 use super::{
-    Accuracy, Calibration, CalibrationOptions, DeviceFrameKnowledge, Models, NoiseSource, Robustness, Trust,
-    Verdict, delivered, estimate_noise, measurements_words, noise, radian_m, set_accuracy, split_rows,
+    Accuracy, Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, Models, NoiseSource, Robustness,
+    Trust, delivered, estimate_noise, measurements_words, noise, radian_m, set_accuracy, split_rows,
 };
 use crate::analysis::{Identifiability, Setup, identifiability, residual_variance};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Estimate, Packed};
+use crate::estimate::{Estimate, Packed, row_errors};
 use crate::forensics::{self, Diagnosis, DiagnosisKind};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
@@ -65,7 +65,7 @@ impl<'a> Prepared<'a> {
         let (mut registered, _) = register(&self.registration(&self.fit_rows, noise, true), &self.delivered);
         if source == NoiseSource::Estimated
             && let Some(found) =
-                estimate_noise(self.data, &self.packed, &self.fit_rows, &registered, 6, noise)
+                estimate_noise(self.data, &self.packed, &self.fit_rows, &registered, 6, None, noise)
         {
             noise = noise::stated(self.options, found);
             registered = register_again(&self.registration(&self.fit_rows, noise, true), &registered);
@@ -98,14 +98,30 @@ impl<'a> Prepared<'a> {
         let models = self.models(registered, &fitted, &kept, loss.is_some());
         let accuracy = self.accuracy(&models);
         let identifiability = self.identifiability(&fitted);
-        let trust = self.trust(&fitted, &models, &kept, loss.is_some());
+        let mut trust = self.trust(&fitted, &models, &kept, loss.is_some());
         let diagnosis = self.diagnosis(&models.calibrated, loss.is_some().then_some(&kept[..]));
-        let verdict = self.verdict(&fitted, &accuracy, &identifiability, &trust, &diagnosis);
-        let registered_accuracy = &accuracy.training.registered;
-        let mut warnings = doubts(self.data, &self.fit_rows, registered_accuracy, self.options.frame);
         let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(self.data, &self.packed, rows, &models)
         });
+        let (mut warnings, moved) = self.doubts(&accuracy, &models.calibrated, &kept);
+        let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
+        let mistakes: Vec<String> = grave.map(|it| it.statement.clone()).chain(moved.clone()).collect();
+        let verdict = verdict(&Grounds {
+            accuracy: &accuracy,
+            solver: &fitted.report,
+            identifiability: &identifiability,
+            trust: &trust,
+            robot: self.robot,
+            robustness: &robustness,
+            rows: self.fit_rows.len(),
+            residuals: fitted.normal.residuals,
+            reach_m: 3.0 * self.length_m,
+            mistakes: &mistakes,
+        });
+        if verdict.level == Level::DoNotUse || diagnosis.iter().any(Diagnosis::is_of_input) {
+            // A joint is not to blame for what is wrong with the input.
+            trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
+        }
         warnings.extend(robustness.warning(&self.fit_rows, &self.held_out_rows));
         let frames = self.data.frames(&self.fit_rows);
         let (robot, targets) = place_tip(self.robot, self.data, &frames, &models.calibrated);
@@ -214,25 +230,20 @@ impl<'a> Prepared<'a> {
         forensics::diagnose(self.robot, self.data, &rows, &options)
     }
 
-    fn verdict(
+    /// What makes the result doubtful, the last of it whether the device was moved.
+    fn doubts(
         &self,
-        fitted: &Fitted,
         accuracy: &Accuracy,
-        identifiability: &Identifiability,
-        trust: &Trust,
-        diagnosis: &[Diagnosis],
-    ) -> Verdict {
-        let grave = diagnosis.iter().filter(|it| it.kind != DiagnosisKind::DuplicateRows);
-        verdict(&Grounds {
-            accuracy,
-            solver: &fitted.report,
-            identifiability,
-            trust,
-            kinds: &fitted.estimate.kinds,
-            residuals: fitted.normal.residuals,
-            reach_m: 3.0 * self.length_m,
-            mistakes: &grave.map(|it| it.statement.clone()).collect::<Vec<_>>(),
-        })
+        calibrated: &Estimate,
+        kept: &[u32],
+    ) -> (Vec<String>, Option<String>) {
+        let errors = row_errors(self.data, &self.packed, kept, calibrated);
+        let moved = moved(self.data, kept, &errors);
+        let registered = &accuracy.training.registered;
+        let mut warnings = doubts(self.data, &self.fit_rows, registered, self.options.frame);
+        warnings.extend(noise_doubts(self.data, kept, &errors, self.options));
+        warnings.extend(moved.clone());
+        (warnings, moved)
     }
 }
 

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::trust::Trust;
-use super::{Accuracy, SolverReport};
-use crate::analysis::Identifiability;
-use crate::robot::JointKind;
+use super::{Accuracy, Robustness, SolverReport};
+use crate::analysis::{Direction, Identifiability};
+use crate::robot::Robot;
 
 /// How far a calibration may be used.
 #[derive(
@@ -64,6 +64,13 @@ const WORTH: f64 = 0.02;
 const TOO_LARGE: f64 = 1e-2;
 /// Residuals for each unknown below which a fit mostly describes itself.
 const REDUNDANCY: f64 = 1.5;
+/// Residuals for each unknown below which nothing independent is left to test a fit by.
+const TESTED: f64 = 3.0;
+/// Share of suspected rows from which a session as a whole is doubtful.
+const SUSPECTED: f64 = 0.2;
+/// Distance of an axis from the drawing, as a share of the length that a radian counts and as an angle, that no robot has. An axis that the
+/// data do not tell may have drifted there.
+const DRIFTED: f64 = 0.1;
 /// Share of its range through which a joint must have moved.
 const COVERED: f64 = 0.5;
 /// Multiple of the random cross-validation's error that the worst block may have.
@@ -77,7 +84,9 @@ pub(super) struct Grounds<'a> {
     pub(super) solver: &'a SolverReport,
     pub(super) identifiability: &'a Identifiability,
     pub(super) trust: &'a Trust,
-    pub(super) kinds: &'a [JointKind],
+    pub(super) robot: &'a Robot,
+    pub(super) robustness: &'a Robustness,
+    pub(super) rows: usize,
     pub(super) residuals: usize,
     pub(super) reach_m: f64,
     /// What was found wrong with the input, a sentence each.
@@ -109,9 +118,11 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
             grounds.residuals
         ));
     }
-    let (set, name) = match &grounds.accuracy.held_out {
-        Some(set) => (set, "held-out"),
-        None => (&grounds.accuracy.training, "fitted"),
+    // Rows that are named as grossly wrong say nothing of the robot.
+    let (accuracy, robustness) = (grounds.accuracy, grounds.robustness);
+    let (set, name) = match &accuracy.held_out {
+        Some(set) => (robustness.held_out_rest.as_ref().unwrap_or(set), "held-out"),
+        None => (robustness.training_rest.as_ref().unwrap_or(&accuracy.training), "fitted"),
     };
     let (registered, calibrated) = (set.registered.position_mm.rms, set.calibrated.position_mm.rms);
     if calibrated > (1.0 - WORTH) * registered {
@@ -124,14 +135,64 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
             "the calibrated model still misses {name} rows by {calibrated:.1} mm, more than 1 % of the robot's reach"
         ));
     }
+    if reasons.is_empty() {
+        reasons = drifted(grounds);
+    }
     reasons
+}
+
+/// Axes that ended where no robot has them, the data not telling where they are.
+fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
+    let length_m = grounds.reach_m / 3.0;
+    let joints = grounds.robot.joints.iter().zip(&grounds.trust.joints);
+    joints
+        .filter(|(_, it)| it.sigma_shift_m.is_none())
+        .filter(|(_, it)| it.shift_m > DRIFTED * length_m || it.tilt_rad > DRIFTED)
+        .map(|(joint, it)| {
+            format!(
+                "the axis of {} ended {:.0} mm and {:.1} deg from the drawing, and the data do not tell it",
+                joint.name,
+                1e3 * it.shift_m,
+                it.tilt_rad.to_degrees()
+            )
+        })
+        .collect()
+}
+
+/// Directions left open, but for those of joints that one reading moves: no configuration can part them, and no prediction does.
+fn open_directions(grounds: &Grounds<'_>) -> usize {
+    let reading = |name: &String| {
+        grounds.robot.joints.iter().find(|joint| joint.name == *name).map(|joint| joint.reading.name.as_str())
+    };
+    let is_one_reading = |direction: &&Direction| {
+        let mut readings = direction.joints.iter().map(reading);
+        let first = readings.next().flatten();
+        direction.joints.len() > 1 && first.is_some() && readings.all(|other| other == first)
+    };
+    let found = grounds.identifiability;
+    let followers: usize = found.unidentifiable.iter().filter(is_one_reading).map(|it| it.directions).sum();
+    (found.parameters - found.rank).saturating_sub(followers)
 }
 
 fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     let trust = grounds.trust;
     let mut reasons = Vec::new();
-    for (coverage, &kind) in trust.coverage.iter().zip(grounds.kinds) {
-        if let Some(share) = coverage.share(kind).filter(|share| *share < COVERED) {
+    let suspects = grounds.robustness.suspects().count();
+    if suspects as f64 > SUSPECTED * grounds.robustness.rows.len() as f64 {
+        reasons.push(format!(
+            "{suspects} of {} rows are suspected to be grossly wrong",
+            grounds.robustness.rows.len()
+        ));
+    }
+    let unknowns = grounds.identifiability.parameters;
+    if trust.cross_validation.is_none() || (grounds.residuals as f64) < TESTED * unknowns as f64 {
+        reasons.push(format!(
+            "{} rows with {} measured numbers for {unknowns} unknowns are too few to test it",
+            grounds.rows, grounds.residuals
+        ));
+    }
+    for (coverage, joint) in trust.coverage.iter().zip(&grounds.robot.joints) {
+        if let Some(share) = coverage.share(joint.kind).filter(|share| *share < COVERED) {
             reasons.push(format!(
                 "{} was moved through {:.0} % of its range only",
                 coverage.joint,
@@ -139,12 +200,9 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
             ));
         }
     }
-    if grounds.identifiability.rank < grounds.identifiability.parameters {
-        let open = grounds.identifiability.parameters - grounds.identifiability.rank;
-        reasons.push(format!(
-            "{open} of {} unknowns are not determined by these configurations",
-            grounds.identifiability.parameters
-        ));
+    let open = open_directions(grounds);
+    if open > 0 {
+        reasons.push(format!("{open} of {unknowns} unknowns are not determined by these configurations"));
     }
     if let Some((found, worst)) = trust.cross_validation.as_ref().and_then(|it| Some((it, it.worst()?)))
         && worst.position_rms_m > BLOCKS * found.random.position_rms_m

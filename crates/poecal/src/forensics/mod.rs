@@ -84,6 +84,14 @@ pub struct Diagnosis {
     pub after_mm: f64,
 }
 
+impl Diagnosis {
+    /// Whether it is about what the numbers mean, and not about rows that stand there twice.
+    #[must_use]
+    pub fn is_of_input(&self) -> bool {
+        self.kind != DiagnosisKind::DuplicateRows
+    }
+}
+
 /// What is known beside the data.
 ///
 /// ```

@@ -102,15 +102,6 @@ fn contradiction_m(session: &Session<'_>, a: &Measurement, b: &Measurement) -> O
 fn pairs(data: &Dataset, pairs: &[(u32, u32)], word: &str) -> String {
     let named = pairs.iter().take(NAMED);
     let named: Vec<String> =
-        named.map(|&(first, row)| format!("{} {word} {}", place(data, row), place(data, first))).collect();
+        named.map(|&(first, row)| format!("{} {word} {}", data.place(row), data.place(first))).collect();
     format!("{}{}", named.join(", "), if pairs.len() > NAMED { ", …" } else { "" })
-}
-
-/// A row as people find it: file and line, or its number from 1.
-pub(super) fn place(data: &Dataset, row: u32) -> String {
-    let source = data.observations.get(row as usize).map(|observation| observation.source);
-    match source.and_then(|source| Some((data.files.get(source.file as usize)?, source.line))) {
-        Some((file, line)) if line > 0 => format!("{}:{line}", file.display()),
-        _ => format!("row {}", row + 1),
-    }
 }

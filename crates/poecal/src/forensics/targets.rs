@@ -1,7 +1,6 @@
 //! Names of two targets exchanged: in all rows, from a row on, or in single rows.
 
 use super::judge::{CALIBRATED_SHARE, short};
-use super::repeats::place;
 use super::session::{SHORT, Score, Session, sampled, taken};
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::{Estimate, row_errors};
@@ -86,10 +85,10 @@ fn where_words(data: &Dataset, rows: &[u32], pair: (usize, usize), concerned: &[
     let own = |row: &u32| [pair.0, pair.1].contains(&data.observations[*row as usize].target);
     let own: Vec<u32> = rows.iter().copied().filter(own).collect();
     match concerned {
-        [first, .., _] if own.ends_with(concerned) => format!("from {} on", place(data, *first)),
-        [_, .., last] if own.starts_with(concerned) => format!("up to {}", place(data, *last)),
+        [first, .., _] if own.ends_with(concerned) => format!("from {} on", data.place(*first)),
+        [_, .., last] if own.starts_with(concerned) => format!("up to {}", data.place(*last)),
         _ => {
-            let named: Vec<String> = concerned.iter().take(NAMED).map(|&row| place(data, row)).collect();
+            let named: Vec<String> = concerned.iter().take(NAMED).map(|&row| data.place(row)).collect();
             format!("in {}{}", named.join(", "), if concerned.len() > NAMED { ", …" } else { "" })
         }
     }

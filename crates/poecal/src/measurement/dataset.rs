@@ -175,6 +175,16 @@ impl Dataset {
         (0..u32::try_from(self.len()).unwrap_or(u32::MAX)).collect()
     }
 
+    /// A row as people find it: file and line, or its number from 1.
+    #[must_use]
+    pub fn place(&self, row: u32) -> String {
+        let source = self.observations.get(row as usize).map(|observation| observation.source);
+        match source.and_then(|source| Some((self.files.get(source.file as usize)?, source.line))) {
+            Some((file, line)) if line > 0 => format!("{}:{line}", file.display()),
+            _ => format!("row {}", row + 1),
+        }
+    }
+
     /// The readings of a row (radians, metres).
     #[must_use]
     pub fn readings(&self, row: usize) -> &[f64] {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::table::{STATISTICS, line, number};
-use crate::calibration::{Judgement, Kept, ModelAccuracy, Refitted, Statistic};
+use crate::calibration::{Judgement, KeptPart, ModelAccuracy, Refitted, Statistic};
 
 /// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
 /// `measurements` name the files.
@@ -21,21 +21,24 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
     }
     if let Some(kept) = &judgement.promised {
         out.push('\n');
-        promise(&mut out, kept, judgement.calibrated.position_mm.rms);
+        promise(&mut out, "position", &kept.position_mm, "mm", judgement.calibrated.position_mm.rms);
+        if let (Some(part), Some(found)) = (&kept.rotation_deg, judgement.calibrated.rotation_deg) {
+            promise(&mut out, "rotation", part, "deg", found.rms);
+        }
+        let sampled = 100.0 * kept.inside_sampled_range;
+        line(&mut out, "sampled range", &format!("{sampled:.1} % of the configurations are inside it"));
     }
     out
 }
 
-fn promise(out: &mut String, kept: &Kept, found_mm: f64) {
-    let expected = number(kept.expected_rms_mm);
-    line(out, "promised", &format!("{expected} mm (RMS, noise included), found {}", number(found_mm)));
-    line(
-        out,
-        "95 % bounds",
-        &format!("{:.1} % of the errors are inside theirs", 100.0 * kept.inside_bound95),
+fn promise(out: &mut String, what: &str, kept: &KeptPart, unit: &str, found: f64) {
+    let words = format!(
+        "{what} {} {unit} (RMS, noise of measuring included), found {}; {:.1} % of the errors are inside their 95 % bounds",
+        number(kept.expected_rms),
+        number(found),
+        100.0 * kept.inside_bound95
     );
-    let sampled = 100.0 * kept.inside_sampled_range;
-    line(out, "sampled range", &format!("{sampled:.1} % of the configurations are inside it"));
+    line(out, "promised", &words);
 }
 
 fn refitted_words(judgement: &Judgement) -> String {

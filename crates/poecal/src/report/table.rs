@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::analysis::{Cause, Identifiability};
-use crate::calibration::{Calibration, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
+use crate::calibration::{Calibration, Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
 use crate::measurement::{Dataset, PoseResidual};
 use crate::parameters::Formulation;
 use crate::robot::{JointKind, Robot};
@@ -39,6 +39,9 @@ pub fn summary(calibration: &Calibration, data: &Dataset) -> String {
     out
 }
 
+/// Directions of a kind that the terminal names.
+const MOST_DIRECTIONS: usize = 6;
+
 /// What measurements determine, leave open, tell hardly, and could not tell.
 pub(super) fn identifiability_lines(out: &mut String, found: &Identifiability) {
     let condition = if found.condition.is_finite() {
@@ -48,7 +51,15 @@ pub(super) fn identifiability_lines(out: &mut String, found: &Identifiability) {
     };
     line(out, "determined", &format!("{} of {} unknowns{condition}", found.rank, found.parameters));
     for (label, directions) in [("open", &found.unidentifiable), ("weak", &found.weak)] {
-        for direction in directions {
+        if found.rank == 0 && found.parameters > 0 {
+            line(out, "", "open: everything, since what the fit leaves is as large as what it describes");
+            break;
+        }
+        for (k, direction) in directions.iter().enumerate() {
+            if k == MOST_DIRECTIONS {
+                line(out, "", &format!("{label}: {} more, in calibration.json", directions.len() - k));
+                break;
+            }
             let count = direction.directions;
             let times = if count > 1 { format!(" ({count} directions)") } else { String::new() };
             line(out, "", &format!("{label}: {}{times}", direction.description));
@@ -153,10 +164,11 @@ fn data_words(calibration: &Calibration, data: &Dataset) -> String {
 
 /// How many poses and points.
 pub(super) fn kinds_words(poses: usize, points: usize) -> String {
+    let words = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
     match (poses, points) {
-        (poses, 0) => format!("{poses} poses"),
-        (0, points) => format!("{points} points"),
-        (poses, points) => format!("{poses} poses and {points} points"),
+        (poses, 0) => words(poses, "pose"),
+        (0, points) => words(points, "point"),
+        (poses, points) => format!("{} and {}", words(poses, "pose"), words(points, "point")),
     }
 }
 
@@ -172,8 +184,11 @@ fn noise_words(calibration: &Calibration, data: &Dataset) -> String {
     } else {
         String::new()
     };
-    let stated = data.observations.iter().any(|row| row.sigma_position_m.is_some());
-    let rows = if stated { "; rows that state theirs keep it" } else { "" };
+    let stated = data.observations.iter().filter(|row| row.sigma_position_m.is_some()).count();
+    if stated == data.len() {
+        return format!("positions as each row states it{rotation} each component, {source}");
+    }
+    let rows = if stated > 0 { "; rows that state theirs keep it" } else { "" };
     format!("{} mm{rotation} each component, {source}{rows}", number(calibration.noise.position_m * 1e3))
 }
 
@@ -195,9 +210,17 @@ fn solver_words(calibration: &Calibration) -> String {
 /// What is to be expected of predictions, what cross-validation shows, and the verdict.
 fn trust_lines(out: &mut String, calibration: &Calibration) {
     let trust = &calibration.trust;
-    if let (Some(measured), Some(range)) = (trust.measured, trust.range) {
+    if calibration.verdict.level != Level::DoNotUse
+        && let (Some(measured), Some(range)) = (trust.measured, trust.range)
+    {
+        let other = calibration.sigma_if_robot_m().map_or(String::new(), |sigma_m| {
+            format!(
+                "; {} mm if what the fit leaves is the robot and no noise of measuring",
+                number(sigma_m * 1e3)
+            )
+        });
         let words = format!(
-            "{} mm (RMS) where it was measured, {} mm anywhere within the limits",
+            "true place within {} mm (RMS) where it was measured, {} mm anywhere within the limits{other}",
             number(measured.sigma_m * 1e3),
             number(range.sigma_m * 1e3)
         );

@@ -78,7 +78,7 @@ pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
     }
     let left = Left::new(view, &sample)?;
     let mut random = Sums::default();
-    for fold in random_folds(&sample, seed) {
+    for fold in random_folds(view, &sample, seed) {
         random.add(&left.sums(&fold.rows)?);
     }
     let name = format!("random, {FOLDS} folds");
@@ -90,11 +90,15 @@ pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
     Some(CrossValidation { random: random.result(name), blocked, sampled })
 }
 
-fn random_folds(sample: &[u32], seed: u64) -> Vec<Fold> {
-    let mut rows = sample.to_vec();
-    random::shuffle(&mut ChaCha8Rng::seed_from_u64(seed ^ 0xf01d), &mut rows);
-    let part = rows.len().div_ceil(FOLDS);
-    rows.chunks(part).map(|rows| Fold { name: String::new(), rows: rows.to_vec() }).collect()
+fn random_folds(view: &View<'_>, sample: &[u32], seed: u64) -> Vec<Fold> {
+    // Rows of one configuration are left out together: a copy would tell the fit what it is asked for.
+    let key = |row: u32| view.values(row).iter().map(|value| value.to_bits());
+    let mut sorted = sample.to_vec();
+    sorted.sort_by(|&a, &b| key(a).cmp(key(b)).then(a.cmp(&b)));
+    let mut configurations: Vec<&[u32]> = sorted.chunk_by(|&a, &b| key(a).eq(key(b))).collect();
+    random::shuffle(&mut ChaCha8Rng::seed_from_u64(seed ^ 0xf01d), &mut configurations);
+    let part = configurations.len().div_ceil(FOLDS);
+    configurations.chunks(part).map(|part| Fold { name: String::new(), rows: part.concat() }).collect()
 }
 
 /// The ends of each joint's range, the rows of each file, and those of each `id` that several rows share.

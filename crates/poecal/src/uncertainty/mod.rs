@@ -13,7 +13,7 @@ pub use bootstrap::{Bootstrap, bootstrap};
 pub use discrepancy::{Discrepancy, discrepancy};
 pub use folds::{CrossValidation, LeftOut, cross_validate};
 pub use pattern::{Pattern, strongest_pattern};
-pub use prediction::PredictedError;
+pub use prediction::{PredictedError, bound};
 pub use view::View;
 
 use prediction::propagated;

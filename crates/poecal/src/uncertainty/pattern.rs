@@ -15,6 +15,8 @@ const SAMPLE: usize = 4000;
 const SHAPES: usize = 5;
 /// Share of the squared errors that follow a joint's position, from which it is said.
 const SHARE: f64 = 0.1;
+/// Errors below this are rounding, metres.
+const ROUNDING_M: f64 = 1e-9;
 /// What chance makes of that in units of the variance of the residuals: a χ² of five, exceeded once in 10,000.
 const CHANCE: f64 = 25.7;
 
@@ -50,10 +52,14 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
     let empty =
         Sums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
     let mut sums = vec![empty; joints];
+    let errors = view.errors(&rows, view.estimate);
+    let rms_m = (errors.iter().map(|error| error.position_m.norm_squared()).sum::<f64>()
+        / errors.len().max(1) as f64)
+        .sqrt();
     let mut squares = 0.0;
     let linkage = Linkage::new(view.estimate);
     let mut chain = Chain::default();
-    for (&row, error) in rows.iter().zip(view.errors(&rows, view.estimate)) {
+    for (&row, error) in rows.iter().zip(errors) {
         let observation = &view.data.observations[row as usize];
         let sigma = observation.noise_or(view.noise).position_m;
         chain.evaluate(&linkage, view.packed, row as usize, observation.target);
@@ -66,6 +72,10 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
             };
             sums.add(&shapes(joint.kind, joint.value, range), &(motion / sigma), &error);
         }
+    }
+    // What exact data leave is rounding, and follows anything.
+    if rms_m < ROUNDING_M {
+        return None;
     }
     let variance = residual_variance(normal);
     let found = sums.iter().enumerate().filter_map(|(joint, sums)| {

@@ -53,7 +53,8 @@ impl PredictedError {
 
 /// The 95 % quantile of the length of a normal vector: its square is taken as a scaled χ² of equal mean and variance (satterthwaite1946),
 /// whose quantile follows wilson1931.
-fn bound(covariance: &Matrix3<f64>) -> f64 {
+#[must_use]
+pub fn bound(covariance: &Matrix3<f64>) -> f64 {
     const Z: f64 = 1.644_853_626_951_472_7;
     let trace = covariance.trace();
     let squares = covariance.norm_squared();

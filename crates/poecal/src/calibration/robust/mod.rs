@@ -217,7 +217,7 @@ impl Reweighted {
                 .collect();
             if source == NoiseSource::Estimated {
                 let before = self.noise;
-                match estimate_noise(task.data, task.packed, &kept, &self.estimate, unknowns, before) {
+                match estimate_noise(task.data, task.packed, &kept, &self.estimate, unknowns, None, before) {
                     Some(noise) => self.noise = stated(task.options, noise),
                     None => source = NoiseSource::Exact,
                 }

@@ -104,6 +104,10 @@ pub struct UncertaintyEntry {
     pub measured: ExpectedEntry,
     /// In configurations anywhere within the limits.
     pub range: ExpectedEntry,
+    /// The root mean square distance to expect where it was measured if all that the fit leaves were error of the robot and none noise of
+    /// measuring, millimetres; null where that is settled.
+    #[serde(default)]
+    pub sigma_position_if_robot_mm: Option<f64>,
     /// The spread of predictions where it was measured, by drawing rows anew; null if they are too few.
     #[serde(default)]
     pub bootstrap: Option<BootstrapEntry>,
@@ -190,6 +194,7 @@ impl UncertaintyEntry {
             discrepancy_rotation_deg: found.discrepancy.rotation_rad.to_degrees(),
             measured: ExpectedEntry::of(trust.measured.as_ref()?),
             range: ExpectedEntry::of(trust.range.as_ref()?),
+            sigma_position_if_robot_mm: calibration.sigma_if_robot_m().map(|sigma_m| sigma_m * 1e3),
             bootstrap: trust.bootstrap.as_ref().map(BootstrapEntry::of),
             parts: trust
                 .parts
@@ -221,7 +226,11 @@ impl CalibrationFile {
             );
             Error::new(ErrorKind::Model, message)
         };
-        let entry = self.uncertainty.as_ref().ok_or_else(|| bad("a calibration without uncertainty"))?;
+        let entry = self.uncertainty.as_ref().ok_or_else(|| {
+            let message = "found a calibration without uncertainty, expected more measurements than unknowns to estimate it from: \
+                           calibrate with more configurations, or hold out fewer";
+            Error::new(ErrorKind::Model, message)
+        })?;
         let robot = self.robot()?;
         let axes = entry.axes.iter().map(PoseEntry::pose).collect::<Result<Vec<_>>>()?;
         if axes.len() != robot.joints.len() {
