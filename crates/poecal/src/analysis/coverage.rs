@@ -21,8 +21,8 @@ pub struct JointCoverage {
     pub sampled_min: f64,
     /// Largest value sampled.
     pub sampled_max: f64,
-    /// Share of that range, at its ends, which no more than a fiftieth of the rows reach at each: they do not make it sampled. Counted from
-    /// where it exceeds a tenth.
+    /// Share of that range, at its ends, that at most a fiftieth of the rows reach at each, beyond a gap of more than 15 % of the range: they
+    /// do not make it sampled.
     #[serde(default)]
     pub stragglers: f64,
     /// Smallest value that the model allows; null where it has no limits, or placeholders.
@@ -88,18 +88,21 @@ pub fn coverage(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<JointCovera
         .collect()
 }
 
-/// The share of a joint's sampled range at its ends that only single rows reach.
+/// The share of a joint's sampled range at its ends that only single rows reach: at most a fiftieth of them, beyond a gap.
 fn stragglers(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
-    const END: usize = 50;
-    const UNIFORM: f64 = 0.1;
+    const FEW: usize = 50;
+    const GAP: f64 = 0.15;
     let mut values: Vec<f64> = rows.iter().map(|&row| packed.joint_values(row as usize)[joint]).collect();
     values.sort_by(f64::total_cmp);
-    let cut = values.len() / END;
     let (Some(least), Some(most)) = (values.first(), values.last()) else { return 0.0 };
-    let (Some(low), Some(high)) = (values.get(cut), values.get(values.len() - 1 - cut)) else { return 0.0 };
-    let span = most - least;
-    let share = if span > 0.0 { 1.0 - (high - low) / span } else { 0.0 };
-    if share > UNIFORM { share } else { 0.0 }
+    let (span, few) = (most - least, values.len() / FEW);
+    if span <= 0.0 || values.len() < FEW {
+        return 0.0;
+    }
+    let is_gap = |pair: &&[f64]| pair[1] - pair[0] > GAP * span;
+    let low = values.windows(2).take(few).rfind(is_gap).map_or(*least, |pair| pair[1]);
+    let high = values.windows(2).rev().take(few).rfind(is_gap).map_or(*most, |pair| pair[0]);
+    1.0 - (high - low).max(0.0) / span
 }
 
 /// Smallest and largest value of each joint in some rows.

@@ -86,10 +86,12 @@ fn noise_doubt(what: &str, ratio: f64) -> Option<String> {
 }
 
 /// A place in the order of the rows from which on all lie beside those before: a device or a target that was moved. It is the change of
-/// mean that explains most of the squared errors, if it is more than twice what is left of each component, and no chance.
+/// mean that explains most of the squared errors, if it is more than three times what is left of each component, and no chance.
 pub(super) fn moved(data: &Dataset, rows: &[u32], errors: &[RowError]) -> Option<String> {
+    // Single regions of the workspace, measured one after the other, may err by twice what is usual.
+    const LEAST_SHARE: f64 = 0.1;
     const LEAST_ROWS: usize = 4;
-    const SIGMAS: f64 = 2.0;
+    const SIGMAS: f64 = 3.0;
     const CHANCE: f64 = 40.0;
     let m = errors.len();
     let total: Vector3<f64> = errors.iter().map(|error| error.position_m).sum();
@@ -99,7 +101,7 @@ pub(super) fn moved(data: &Dataset, rows: &[u32], errors: &[RowError]) -> Option
     for (k, error) in errors.iter().enumerate() {
         before += error.position_m;
         let (count, rest) = (k + 1, m - k - 1);
-        if count < LEAST_ROWS || rest < LEAST_ROWS {
+        if count.min(rest) < LEAST_ROWS || (count.min(rest) as f64) < LEAST_SHARE * m as f64 {
             continue;
         }
         let shift = (total - before) / rest as f64 - before / count as f64;
