@@ -19,6 +19,7 @@ use crate::robot::{JointKind, Robot};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packed {
     joints: usize,
+    kinds: Vec<JointKind>,
     values: Vec<(f64, f64)>,
     angles: Vec<f64>,
 }
@@ -43,7 +44,7 @@ impl Packed {
                 });
             }
         }
-        Packed { joints: robot.joints.len(), values, angles }
+        Packed { joints: robot.joints.len(), kinds: kinds(robot), values, angles }
     }
 
     /// Packs joint values (radians, metres), one a joint and row.
@@ -57,7 +58,17 @@ impl Packed {
             }
             JointKind::Prismatic => (value, 0.0),
         };
-        Packed { joints, values: values.iter().enumerate().map(pack).collect(), angles: values.to_vec() }
+        Packed {
+            joints,
+            kinds: kinds(robot),
+            values: values.iter().enumerate().map(pack).collect(),
+            angles: values.to_vec(),
+        }
+    }
+
+    /// Revolute or prismatic, a joint.
+    pub(crate) fn kinds(&self) -> &[JointKind] {
+        &self.kinds
     }
 
     /// Number of rows.
@@ -83,6 +94,10 @@ impl Packed {
     pub fn row(&self, row: usize) -> &[(f64, f64)] {
         &self.values[row * self.joints..(row + 1) * self.joints]
     }
+}
+
+fn kinds(robot: &Robot) -> Vec<JointKind> {
+    robot.joints.iter().map(|joint| joint.kind).collect()
 }
 
 /// At most about `count` of some rows, spread evenly but not periodically: data often repeat targets or grid lines in a fixed

@@ -1,7 +1,9 @@
 //! Rows × columns: measurements and parameters meet here and nowhere else. Assembly only, no algorithms.
 
+mod fast;
 mod layout;
 
+pub use crate::lanes::{Level, levels};
 pub use layout::Layout;
 
 use crate::estimate::{Chain, Estimate, Linkage, Packed};
@@ -9,8 +11,10 @@ use crate::lie::TargetTwist;
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::{Parameter, Wrench};
 use crate::solve::{LeastSquares, Normal};
+use fast::Fast;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use std::sync::OnceLock;
 
 /// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
 const CHUNK: usize = 1024;
@@ -51,6 +55,10 @@ pub struct Problem<'a> {
     noise: Noise,
     weights: Option<&'a [f64]>,
     rounding_m: f64,
+    /// By which instructions the hot path runs.
+    level: Level,
+    /// The rows packed for the hot path; `None` inside where it does not serve.
+    fast: OnceLock<Option<Fast>>,
 }
 
 impl<'a> Problem<'a> {
@@ -68,7 +76,26 @@ impl<'a> Problem<'a> {
         let farthest =
             rows.iter().map(|&row| data.observations[row as usize].measurement.pose().translation.amax());
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
-        Problem { data, packed, rows, layout: Layout::new(free, length_m), noise, weights: None, rounding_m }
+        Problem {
+            data,
+            packed,
+            rows,
+            layout: Layout::new(free, length_m),
+            noise,
+            weights: None,
+            rounding_m,
+            level: Level::best(),
+            fast: OnceLock::new(),
+        }
+    }
+
+    /// The same problem, its sums computed by other instructions: for tests and comparisons. Those that the machine lacks are replaced
+    /// by the baseline.
+    #[must_use]
+    pub fn with_level(mut self, level: Level) -> Self {
+        self.level = level;
+        self.fast = OnceLock::new();
+        self
     }
 
     /// The same problem with a weight for every row of the data: its noise is divided by the weight's square root, and a weight of
@@ -77,6 +104,7 @@ impl<'a> Problem<'a> {
     pub fn with_weights(mut self, weights: &'a [f64]) -> Self {
         self.rows.retain(|&row| weights.get(row as usize).is_none_or(|&weight| weight > 0.0));
         self.weights = Some(weights);
+        self.fast = OnceLock::new();
         self
     }
 
@@ -190,14 +218,16 @@ impl Block {
     }
 }
 
-impl LeastSquares for Problem<'_> {
-    type State = Estimate;
-
-    fn dim(&self) -> usize {
-        self.layout.dim()
+impl Problem<'_> {
+    /// The hot path, if it serves this problem in this state.
+    fn fast(&self, state: &Estimate) -> Option<&Fast> {
+        let has_offsets = state.joint_offset.iter().any(|&offset| offset != 0.0);
+        self.fast.get_or_init(|| Fast::new(self, self.level)).as_ref().filter(|_| !has_offsets)
     }
 
-    fn normal(&self, state: &Estimate) -> Normal {
+    /// [`LeastSquares::normal`] by the general path, which serves every problem: row after row, as measurements and parameters write it.
+    #[must_use]
+    pub fn normal_row_by_row(&self, state: &Estimate) -> Normal {
         let linkage = Linkage::new(state);
         self.sum_chunks(|rows| {
             let mut normal = Normal::new(self.layout.dim());
@@ -212,6 +242,26 @@ impl LeastSquares for Problem<'_> {
             );
             normal
         })
+    }
+
+}
+
+impl LeastSquares for Problem<'_> {
+    type State = Estimate;
+
+    fn dim(&self) -> usize {
+        self.layout.dim()
+    }
+
+    fn normal(&self, state: &Estimate) -> Normal {
+        match self.fast(state) {
+            Some(fast) => fast.normal(self, state, true),
+            None => self.normal_row_by_row(state),
+        }
+    }
+
+    fn gradient(&self, state: &Estimate) -> Option<Normal> {
+        self.fast(state).map(|fast| fast.normal(self, state, false))
     }
 
     fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {

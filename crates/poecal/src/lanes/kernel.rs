@@ -1,0 +1,374 @@
+//! One pass over rows: the chain, its columns in local axis frames, residuals, and their products (theory.md §5, §6 (28)).
+//!
+//! One source for every width of vector: `L` rows are computed at a time, in blocks of [`WIDTH`].
+
+use super::gram::{TILE, add_products, sums_len};
+use super::plan::{Plan, Step};
+use super::turn::Turn;
+use super::vector::{Vector, Vectors, WIDTH, Wide};
+
+/// Memory of columns that are waiting for their products, in wide numbers: with the sums it stays in the first cache.
+const WAITING: usize = 384;
+/// Most blocks waiting.
+const MOST_WAITING: usize = 8;
+
+/// Sums of one pass over some rows.
+pub(crate) struct Totals {
+    /// Products of position columns, tile after tile: see [`product`].
+    pub(crate) products: Vec<f64>,
+    /// What rotation rows add to products of turns, likewise.
+    pub(crate) turned: Vec<f64>,
+    /// `Jᵀe` of shifts, then of turns.
+    pub(crate) gradient: Vec<f64>,
+    /// `½ Σ e²`.
+    pub(crate) cost: f64,
+}
+
+impl Totals {
+    /// Adds those of other rows.
+    pub(crate) fn add(&mut self, other: &Totals) {
+        let pairs = [
+            (&mut self.products, &other.products),
+            (&mut self.turned, &other.turned),
+            (&mut self.gradient, &other.gradient),
+        ];
+        for (own, others) in pairs {
+            own.iter_mut().zip(others).for_each(|(own, other)| *own += other);
+        }
+        self.cost += other.cost;
+    }
+}
+
+/// Where the product of two of `columns` columns is in a sum of tiles, for `a ≤ b`.
+pub(crate) fn product(columns: usize, a: usize, b: usize) -> usize {
+    let tiles = columns.div_ceil(TILE);
+    let (row, column) = (a / TILE, b / TILE);
+    let before = row * tiles - row * row.saturating_sub(1) / 2;
+    (before + column - row) * TILE * TILE + a % TILE * TILE + b % TILE
+}
+
+/// Columns and sums under way.
+struct Work {
+    /// Position rows of each column, block after block.
+    jacobian: Vec<[Wide; 3]>,
+    /// What rotation adds for each turn, likewise: two or three rows a block.
+    turned: Vec<Wide>,
+    /// Origins of the axes in the rows under way.
+    origins: Vec<[Wide; 3]>,
+    products: Vec<Wide>,
+    turned_products: Vec<Wide>,
+    shift_gradient: Vec<Wide>,
+    turn_gradient: Vec<Wide>,
+    square: Wide,
+    /// Blocks that wait at a time.
+    waiting: usize,
+}
+
+impl Work {
+    fn new(plan: &Plan, lanes: usize, full: bool, blocks: usize) -> Self {
+        let columns = plan.columns().next_multiple_of(TILE);
+        let turns = plan.turns.len().next_multiple_of(TILE);
+        let rows = plan.turned_rows();
+        let waiting = (WAITING / (3 * columns).max(1)).clamp(1, MOST_WAITING).min(blocks.max(1));
+        let waiting = if full { waiting } else { 1 };
+        let of_full = |len: usize| vec![Wide::ZERO; if full { len } else { 0 }];
+        Work {
+            jacobian: vec![[Wide::ZERO; 3]; waiting * if full { columns } else { plan.shifts }],
+            turned: of_full(rows * waiting * turns),
+            origins: vec![[Wide::ZERO; 3]; plan.joints.len()],
+            products: of_full(sums_len(columns, lanes)),
+            turned_products: of_full(if rows > 0 { sums_len(turns, lanes) } else { 0 }),
+            shift_gradient: vec![Wide::ZERO; plan.shifts],
+            turn_gradient: vec![Wide::ZERO; plan.turns.len()],
+            square: Wide::ZERO,
+            waiting,
+        }
+    }
+}
+
+/// Sums over all rows of `blocks`; products of columns only if `FULL`.
+#[inline(always)]
+pub(super) fn sum<V: Vector, const FULL: bool>(
+    plan: &Plan,
+    steps: &[Step],
+    end: &Step,
+    blocks: &[Wide],
+) -> Totals {
+    let len = plan.block_len();
+    let mut work = Work::new(plan, V::LANES, FULL, blocks.len() / len);
+    for blocks in blocks.chunks(len * work.waiting) {
+        for (filled, block) in blocks.chunks_exact(len).enumerate() {
+            for part in 0..WIDTH / V::LANES {
+                add_rows::<V, FULL>(plan, (steps, end), block, &mut work, filled, part);
+            }
+        }
+        if FULL {
+            multiply::<V>(plan, &mut work, blocks.len() / len);
+        }
+    }
+    let gradient = work.shift_gradient.iter().chain(&work.turn_gradient);
+    Totals {
+        products: add_up(V::LANES, &work.products),
+        turned: add_up(V::LANES, &work.turned_products),
+        gradient: gradient.map(total).collect(),
+        cost: 0.5 * total(&work.square),
+    }
+}
+
+/// The products of the columns that wait.
+#[inline(always)]
+fn multiply<V: Vector>(plan: &Plan, work: &mut Work, filled: usize) {
+    let columns = plan.columns().next_multiple_of(TILE);
+    let stride = 3 * work.waiting;
+    add_products::<V>(work.jacobian.as_flattened(), stride, 3 * filled, columns, &mut work.products);
+    let rows = plan.turned_rows();
+    if rows > 0 {
+        let turns = plan.turns.len().next_multiple_of(TILE);
+        let (stride, used) = (rows * work.waiting, rows * filled);
+        add_products::<V>(&work.turned, stride, used, turns, &mut work.turned_products);
+    }
+}
+
+/// Sums over groups of `lanes` numbers, in a fixed order.
+fn add_up(lanes: usize, sums: &[Wide]) -> Vec<f64> {
+    let mut out = Vec::with_capacity(sums.len() * (WIDTH / lanes));
+    for mut wide in sums.iter().copied() {
+        for group in wide.0.chunks_exact_mut(lanes) {
+            let mut width = lanes;
+            while width > 1 {
+                width /= 2;
+                for lane in 0..width {
+                    group[lane] += group[lane + width];
+                }
+            }
+            out.push(group[0]);
+        }
+    }
+    out
+}
+
+/// The sum over all lanes.
+fn total(sum: &Wide) -> f64 {
+    let [a, b, c, d, e, f, g, h] = sum.0;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
+}
+
+/// A frame in the device's axes.
+#[derive(Clone, Copy)]
+struct Frame<V> {
+    columns: [Vectors<V>; 3],
+    origin: Vectors<V>,
+}
+
+impl<V: Vector> Frame<V> {
+    #[inline(always)]
+    fn identity() -> Self {
+        let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        Frame::fixed(&Step { columns, translation: [0.0; 3] })
+    }
+
+    #[inline(always)]
+    fn fixed(step: &Step) -> Self {
+        let [a, b, c] = &step.columns;
+        Frame {
+            columns: [Vectors::splat(a), Vectors::splat(b), Vectors::splat(c)],
+            origin: Vectors::splat(&step.translation),
+        }
+    }
+
+    /// `R v` for a fixed vector.
+    #[inline(always)]
+    fn turn(&self, v: &[f64; 3]) -> Vectors<V> {
+        let [x, y, z] = self.columns;
+        x.times_plus(V::splat(v[0]), y.times_plus(V::splat(v[1]), z.scale(V::splat(v[2]))))
+    }
+
+    /// The frame after a fixed motion.
+    #[inline(always)]
+    fn then(&self, step: &Step) -> Self {
+        let [a, b, c] = &step.columns;
+        let [x, y, z] = self.columns;
+        let [p, q, r] = step.translation;
+        let origin = x.times_plus(V::splat(p), y.times_plus(V::splat(q), z.times_plus(V::splat(r), self.origin)));
+        Frame { columns: [self.turn(a), self.turn(b), self.turn(c)], origin }
+    }
+}
+
+/// One vector of rows under way: part `part` of a block.
+struct Batch<'a> {
+    plan: &'a Plan,
+    part: usize,
+    /// The block's columns, each `stride` after the one before.
+    columns: &'a mut [[Wide; 3]],
+    stride: usize,
+    origins: &'a mut [[Wide; 3]],
+    shift_gradient: &'a mut [Wide],
+    turn_gradient: &'a mut [Wide],
+}
+
+/// What a row sees of the target.
+#[derive(Clone, Copy)]
+struct Seen<V> {
+    weight: V,
+    per_length: V,
+    /// Whitened position error.
+    force: Vectors<V>,
+    /// Whitened rotation error, as a turn's gradient needs it.
+    torque: Vectors<V>,
+}
+
+/// Columns, residuals and gradient of part `part` of a block.
+#[inline(always)]
+fn add_rows<V: Vector, const FULL: bool>(
+    plan: &Plan,
+    (steps, end): (&[Step], &Step),
+    block: &[Wide],
+    work: &mut Work,
+    filled: usize,
+    part: usize,
+) {
+    let Work { jacobian, turned, origins, shift_gradient, turn_gradient, square, waiting, .. } = work;
+    let Some((noise, rest)) = block.split_first_chunk::<2>() else { return };
+    let Some((position, rest)) = rest.split_first_chunk::<3>() else { return };
+    let (measured, joints) = rest.split_at(if plan.framed { 9 } else { 0 });
+    let (weight, per_length) = (V::load(&noise[0], part), V::splat(1.0 / plan.length_m));
+    let (columns, stride) = (&mut jacobian[filled..], *waiting);
+    let mut batch = Batch { plan, part, columns, stride, origins, shift_gradient, turn_gradient };
+
+    let target = batch.chain(steps, joints.as_chunks::<2>().0, weight, per_length).then(end);
+    let force = (Vectors::load(position, part) - target.origin).scale(weight);
+    let mut squares = force.dot(force);
+    let mut seen = Seen { weight, per_length, force, torque: Vectors([V::splat(0.0); 3]) };
+    let mut turn = None;
+    if let [x, y, z] = measured.as_chunks::<3>().0 {
+        let measured = [Vectors::load(x, part), Vectors::load(y, part), Vectors::load(z, part)];
+        let found = Turn::new(&measured, &target.columns);
+        let ratio = V::load(&noise[1], part);
+        let whitened = found.r.scale(weight * ratio);
+        squares = squares + whitened.dot(whitened);
+        seen.torque = whitened.scale(ratio * per_length);
+        turn = Some((found, ratio * per_length));
+    }
+    squares.add_to(square, part);
+    batch.add_device::<V, FULL>(&target, &seen);
+    batch.add_axes::<V, FULL>(&target, &seen);
+    batch.add_place(&target, &seen);
+    if let (true, Some((turn, ratio))) = (FULL, turn) {
+        let rows = plan.turned_rows();
+        batch.add_turned(&turn, ratio, &mut turned[filled * rows..], rows);
+    }
+}
+
+impl Batch<'_> {
+    /// The chain from the device to the last joint's moved frame; writes the axes' shift columns: theory.md §5 (20) and (22).
+    #[inline(always)]
+    fn chain<V: Vector>(&mut self, steps: &[Step], values: &[[Wide; 2]], weight: V, per_length: V) -> Frame<V> {
+        let part = self.part;
+        let mut moved = Frame::identity();
+        for (index, ((joint, step), [cosine, sine])) in self.plan.joints.iter().zip(steps).zip(values).enumerate() {
+            let frame = if index == 0 { Frame::fixed(step) } else { moved.then(step) };
+            let (cosine, sine) = (V::load(cosine, part), V::load(sine, part));
+            let [x, y, z] = frame.columns;
+            moved = frame;
+            if joint.turns {
+                moved.columns[0] = x.times_plus(cosine, y.scale(sine));
+                moved.columns[1] = x.times_from(sine, y.scale(cosine));
+            } else {
+                moved.origin = z.times_plus(cosine, frame.origin);
+            }
+            let Some((shift, _)) = joint.columns else { continue };
+            let (a, b) = if joint.turns {
+                let (sine, versine) = (weight * sine, weight - weight * cosine);
+                (y.times_from(sine, x.scale(versine)), x.times_plus(sine, y.scale(versine)))
+            } else {
+                let slide = weight * cosine * per_length;
+                (y.scale(-slide), x.scale(slide))
+            };
+            a.store(&mut self.columns[shift * self.stride], part);
+            b.store(&mut self.columns[(shift + 1) * self.stride], part);
+            frame.origin.store(&mut self.origins[index], part);
+        }
+        moved
+    }
+
+    /// Columns of the device's frame: theory.md §5 (25).
+    #[inline(always)]
+    fn add_device<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+        let Some(about) = &self.plan.device else { return };
+        let part = self.part;
+        let arm = (target.origin - Vectors::splat(about)).scale(seen.per_length);
+        let moment = arm.cross(seen.force) + seen.torque;
+        for k in 0..3 {
+            let mut axis = Vectors([V::splat(0.0); 3]);
+            axis.0[k] = seen.weight;
+            (seen.weight * seen.force.0[k]).add_to(&mut self.shift_gradient[k], part);
+            (seen.weight * moment.0[k]).add_to(&mut self.turn_gradient[k], part);
+            axis.store(&mut self.columns[k * self.stride], part);
+            if FULL {
+                axis.cross(arm).store(&mut self.columns[(self.plan.shifts + k) * self.stride], part);
+            }
+        }
+    }
+
+    /// Columns of the axes' tilts, theory.md §5 (21), and the gradient of all their unknowns.
+    #[inline(always)]
+    fn add_axes<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+        let (part, stride) = (self.part, self.stride);
+        for (joint, origin) in self.plan.joints.iter().zip(&*self.origins) {
+            let Some((shift, tilt)) = joint.columns else { continue };
+            let a = Vectors::load(&self.columns[shift * stride], part);
+            let b = Vectors::load(&self.columns[(shift + 1) * stride], part);
+            a.dot(seen.force).add_to(&mut self.shift_gradient[shift], part);
+            b.dot(seen.force).add_to(&mut self.shift_gradient[shift + 1], part);
+            if !joint.turns {
+                continue;
+            }
+            let arm = (target.origin - Vectors::load(origin, part)).scale(seen.per_length);
+            let moment = arm.cross(seen.force) + seen.torque;
+            a.dot(moment).add_to(&mut self.turn_gradient[tilt], part);
+            b.dot(moment).add_to(&mut self.turn_gradient[tilt + 1], part);
+            if FULL {
+                let column = (self.plan.shifts + tilt) * stride;
+                a.cross(arm).store(&mut self.columns[column], part);
+                b.cross(arm).store(&mut self.columns[column + stride], part);
+            }
+        }
+    }
+
+    /// Columns of the target's place and frame: theory.md §5 (23) and (24).
+    #[inline(always)]
+    fn add_place<V: Vector>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+        let Some(place) = self.plan.place else { return };
+        let part = self.part;
+        for k in 0..3 {
+            let axis = target.columns[k].scale(seen.weight);
+            axis.dot(seen.force).add_to(&mut self.shift_gradient[place + k], part);
+            if let Some(frame) = self.plan.frame {
+                axis.dot(seen.torque).add_to(&mut self.turn_gradient[frame + k], part);
+            }
+            axis.store(&mut self.columns[(place + k) * self.stride], part);
+        }
+    }
+
+    /// Rows of what rotation adds to the products of turns; `ratio` is that of one turn to its shift.
+    #[inline(always)]
+    fn add_turned<V: Vector>(&self, turn: &Turn<V>, ratio: V, out: &mut [Wide], rows: usize) {
+        let columns = self.plan.turns.iter().map(|&shift| &self.columns[shift * self.stride]);
+        let outs = out.chunks_mut((rows * self.stride).max(1));
+        if self.plan.ratio.is_some() {
+            let [first, second] = turn.excess();
+            for (column, out) in columns.zip(outs) {
+                let w = Vectors::load(column, self.part);
+                first.dot(w).store(&mut out[0], self.part);
+                second.dot(w).store(&mut out[1], self.part);
+            }
+        } else {
+            for (column, out) in columns.zip(outs) {
+                let moved = turn.apply(Vectors::load(column, self.part).scale(ratio));
+                for (out, number) in out.iter_mut().zip(moved.0) {
+                    number.store(out, self.part);
+                }
+            }
+        }
+    }
+}
