@@ -46,53 +46,75 @@ pub(crate) fn add_gradient(gradient: &mut [f64], rows: &[f64], residuals: &[f64]
     }
 }
 
-/// Cholesky factor `L` (row-major, lower) of the symmetric matrix given by its upper triangle plus `damping` on the diagonal;
-/// `None` if that is not positive definite.
+/// Cholesky factor of the symmetric matrix given by its upper triangle plus `damping` on the diagonal: `R` (row-major, upper; what is
+/// below means nothing) with `RᵀR` the matrix. `None` if that is not positive definite.
 pub(crate) fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Vec<f64>> {
-    let mut factor = vec![0.0; n * n];
+    let mut factor = upper.to_vec();
     for i in 0..n {
-        for j in 0..=i {
-            let (above, row_i) = factor.split_at(i * n);
-            let row_i = &row_i[..n];
-            let row_j = if j == i { row_i } else { &above[j * n..(j + 1) * n] };
-            let dot: f64 = row_i[..j].iter().zip(&row_j[..j]).map(|(a, b)| a * b).sum();
-            let value = upper[j * n + i] - dot;
-            if i == j {
-                let pivot = value + damping;
-                if pivot.is_nan() || pivot <= 0.0 {
-                    return None;
-                }
-                factor[i * n + i] = pivot.sqrt();
-            } else {
-                factor[i * n + j] = value / factor[j * n + j];
+        let (above, rest) = factor.split_at_mut(i * n);
+        let row = &mut rest[i..n];
+        // Four rows above at a time: each number of this row is loaded and stored a quarter as often.
+        let mut quads = above.chunks_exact(4 * n);
+        for quad in &mut quads {
+            let (a, b, c, d) = (&quad[i..n], &quad[n + i..2 * n], &quad[2 * n + i..3 * n], &quad[3 * n + i..]);
+            let (ai, bi, ci, di) = (a[0], b[0], c[0], d[0]);
+            for ((((value, a), b), c), d) in row.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+                *value -= (ai * a + bi * b) + (ci * c + di * d);
             }
         }
+        for other in quads.remainder().chunks_exact(n) {
+            let factor = other[i];
+            for (value, other) in row.iter_mut().zip(&other[i..]) {
+                *value -= factor * other;
+            }
+        }
+        let pivot = row[0] + damping;
+        if pivot.is_nan() || pivot <= 0.0 {
+            return None;
+        }
+        let root = pivot.sqrt();
+        row[0] = root;
+        let inverse = 1.0 / root;
+        row[1..].iter_mut().for_each(|value| *value *= inverse);
     }
     Some(factor)
 }
 
-/// Solves `L x = b` in place.
+/// Solves `Rᵀ x = b` in place.
 pub(crate) fn lower_solve(factor: &[f64], x: &mut [f64]) {
     let n = x.len();
-    for i in 0..n {
-        let dot: f64 = factor[i * n..i * n + i].iter().zip(&x[..i]).map(|(a, b)| a * b).sum();
-        x[i] = (x[i] - dot) / factor[i * n + i];
+    for (i, row) in factor.chunks_exact(n.max(1)).enumerate() {
+        let (xi, rest) = (x[i] / row[i], &row[i + 1..]);
+        x[i] = xi;
+        for (value, r) in x[i + 1..].iter_mut().zip(rest) {
+            *value -= r * xi;
+        }
     }
 }
 
-/// Solves `L Lᵀ x = b`.
+/// Solves `RᵀR x = b`.
 pub(crate) fn cholesky_solve(factor: &[f64], b: &[f64]) -> Vec<f64> {
     let n = b.len();
     let mut x = b.to_vec();
     lower_solve(factor, &mut x);
     for i in (0..n).rev() {
-        x[i] /= factor[i * n + i];
-        let xi = x[i];
-        for (value, l) in x[..i].iter_mut().zip(&factor[i * n..i * n + i]) {
-            *value -= l * xi;
-        }
+        let row = &factor[i * n..(i + 1) * n];
+        x[i] = (x[i] - dot(&row[i + 1..], &x[i + 1..])) / row[i];
     }
     x
+}
+
+/// `aᵀb`, by four sums side by side.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let ((fours_a, rest_a), (fours_b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (a, b) in fours_a.iter().zip(fours_b) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
+    }
+    let rest: f64 = rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum();
+    (sums[0] + sums[2]) + (sums[1] + sums[3]) + rest
 }
 
 /// Eigenvalues (ascending) and eigenvectors (columns) of the symmetric matrix given by its upper triangle.

@@ -2,13 +2,15 @@
 //!
 //! One source for every width of vector: `L` rows are computed at a time, in blocks of [`WIDTH`].
 
+use std::cell::RefCell;
+
 use super::gram::{TILE, add_products, sums_len};
 use super::plan::{Plan, Step};
 use super::turn::Turn;
 use super::vector::{Vector, Vectors, WIDTH, Wide};
 
 /// Memory of columns that are waiting for their products, in wide numbers: with the sums it stays in the first cache.
-const WAITING: usize = 384;
+const WAITING: usize = 570;
 /// Most blocks waiting.
 const MOST_WAITING: usize = 8;
 
@@ -64,26 +66,54 @@ struct Work {
     waiting: usize,
 }
 
+impl Default for Work {
+    fn default() -> Self {
+        Work::EMPTY
+    }
+}
+
 impl Work {
-    fn new(plan: &Plan, lanes: usize, full: bool, blocks: usize) -> Self {
+    const EMPTY: Work = Work {
+        jacobian: Vec::new(),
+        turned: Vec::new(),
+        origins: Vec::new(),
+        products: Vec::new(),
+        turned_products: Vec::new(),
+        shift_gradient: Vec::new(),
+        turn_gradient: Vec::new(),
+        square: Wide::ZERO,
+        waiting: 1,
+    };
+
+    /// Makes room for a plan, with all sums at zero.
+    fn begin(&mut self, plan: &Plan, lanes: usize, full: bool) {
         let columns = plan.columns().next_multiple_of(TILE);
         let turns = plan.turns.len().next_multiple_of(TILE);
         let rows = plan.turned_rows();
-        let waiting = (WAITING / (3 * columns).max(1)).clamp(1, MOST_WAITING).min(blocks.max(1));
-        let waiting = if full { waiting } else { 1 };
-        let of_full = |len: usize| vec![Wide::ZERO; if full { len } else { 0 }];
-        Work {
-            jacobian: vec![[Wide::ZERO; 3]; waiting * if full { columns } else { plan.shifts }],
-            turned: of_full(rows * waiting * turns),
-            origins: vec![[Wide::ZERO; 3]; plan.joints.len()],
-            products: of_full(sums_len(columns, lanes)),
-            turned_products: of_full(if rows > 0 { sums_len(turns, lanes) } else { 0 }),
-            shift_gradient: vec![Wide::ZERO; plan.shifts],
-            turn_gradient: vec![Wide::ZERO; plan.turns.len()],
-            square: Wide::ZERO,
-            waiting,
-        }
+        let sums = |columns: usize| if full { sums_len(columns, lanes) } else { 0 };
+        self.waiting = if full { (WAITING / (3 * columns).max(1)).clamp(1, MOST_WAITING) } else { 1 };
+        restart(&mut self.products, sums(columns));
+        restart(&mut self.turned_products, sums(if rows > 0 { turns } else { 0 }));
+        restart(&mut self.shift_gradient, plan.shifts);
+        restart(&mut self.turn_gradient, plan.turns.len());
+        self.square = Wide::ZERO;
+        // Columns are written before they are read, but for those that fill up the last tile.
+        self.origins.resize(plan.joints.len(), [Wide::ZERO; 3]);
+        self.jacobian.resize(self.waiting * columns, [Wide::ZERO; 3]);
+        self.jacobian[self.waiting * plan.columns()..].fill([Wide::ZERO; 3]);
+        self.turned.resize(rows * self.waiting * turns, Wide::ZERO);
+        self.turned[rows * self.waiting * plan.turns.len()..].fill(Wide::ZERO);
     }
+}
+
+fn restart(sums: &mut Vec<Wide>, len: usize) {
+    sums.clear();
+    sums.resize(len, Wide::ZERO);
+}
+
+thread_local! {
+    /// Room for one pass, kept from one to the next.
+    static WORK: RefCell<Work> = const { RefCell::new(Work::EMPTY) };
 }
 
 /// Sums over all rows of `blocks`; products of columns only if `FULL`.
@@ -94,25 +124,30 @@ pub(super) fn sum<V: Vector, const FULL: bool>(
     end: &Step,
     blocks: &[Wide],
 ) -> Totals {
+    // A pass does not call another, so the room is free; if it were not, there would be another.
+    let mut own = WORK.take();
+    let work = &mut own;
+    work.begin(plan, V::LANES, FULL);
     let len = plan.block_len();
-    let mut work = Work::new(plan, V::LANES, FULL, blocks.len() / len);
     for blocks in blocks.chunks(len * work.waiting) {
         for (filled, block) in blocks.chunks_exact(len).enumerate() {
             for part in 0..WIDTH / V::LANES {
-                add_rows::<V, FULL>(plan, (steps, end), block, &mut work, filled, part);
+                add_rows::<V, FULL>(plan, (steps, end), block, work, filled, part);
             }
         }
         if FULL {
-            multiply::<V>(plan, &mut work, blocks.len() / len);
+            multiply::<V>(plan, work, blocks.len() / len);
         }
     }
     let gradient = work.shift_gradient.iter().chain(&work.turn_gradient);
-    Totals {
-        products: add_up(V::LANES, &work.products),
-        turned: add_up(V::LANES, &work.turned_products),
+    let totals = Totals {
+        products: add_up::<V>(&work.products),
+        turned: add_up::<V>(&work.turned_products),
         gradient: gradient.map(total).collect(),
         cost: 0.5 * total(&work.square),
-    }
+    };
+    WORK.set(own);
+    totals
 }
 
 /// The products of the columns that wait.
@@ -129,19 +164,13 @@ fn multiply<V: Vector>(plan: &Plan, work: &mut Work, filled: usize) {
     }
 }
 
-/// Sums over groups of `lanes` numbers, in a fixed order.
-fn add_up(lanes: usize, sums: &[Wide]) -> Vec<f64> {
-    let mut out = Vec::with_capacity(sums.len() * (WIDTH / lanes));
-    for mut wide in sums.iter().copied() {
-        for group in wide.0.chunks_exact_mut(lanes) {
-            let mut width = lanes;
-            while width > 1 {
-                width /= 2;
-                for lane in 0..width {
-                    group[lane] += group[lane + width];
-                }
-            }
-            out.push(group[0]);
+/// Sums over the lanes of each vector.
+#[inline(always)]
+fn add_up<V: Vector>(sums: &[Wide]) -> Vec<f64> {
+    let mut out = Vec::with_capacity(sums.len() * (WIDTH / V::LANES));
+    for wide in sums {
+        for part in 0..WIDTH / V::LANES {
+            out.push(V::load(wide, part).sum());
         }
     }
     out

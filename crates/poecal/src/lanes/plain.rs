@@ -91,6 +91,11 @@ impl Vector for Two {
     }
 
     #[inline(always)]
+    fn sum(self) -> f64 {
+        self.0[0] + self.0[1]
+    }
+
+    #[inline(always)]
     fn are_below(self, bound: f64) -> bool {
         self.0[0] < bound && self.0[1] < bound
     }
@@ -143,6 +148,11 @@ impl<V: Vector> Vector for Pair<V> {
     #[inline(always)]
     fn over(self, other: Self, otherwise: f64) -> Self {
         Pair([self.0[0].over(other.0[0], otherwise), self.0[1].over(other.0[1], otherwise)])
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        (self.0[0] + self.0[1]).sum()
     }
 
     #[inline(always)]

@@ -38,6 +38,9 @@ pub(super) trait Vector:
     /// `self / other`, or `otherwise` where `other` is not positive.
     fn over(self, other: Self, otherwise: f64) -> Self;
 
+    /// The sum of all, in a fixed order.
+    fn sum(self) -> f64;
+
     /// Whether all are below a bound.
     fn are_below(self, bound: f64) -> bool;
 

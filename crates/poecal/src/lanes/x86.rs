@@ -109,6 +109,15 @@ impl Vector for Four {
     }
 
     #[inline(always)]
+    fn sum(self) -> f64 {
+        // SAFETY: the machine has the instructions (see above).
+        unsafe {
+            let half = _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
+            _mm_cvtsd_f64(_mm_add_sd(half, _mm_unpackhi_pd(half, half)))
+        }
+    }
+
+    #[inline(always)]
     fn are_below(self, bound: f64) -> bool {
         // SAFETY: the machine has the instructions (see above).
         let below = unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, _mm256_set1_pd(bound))) };
@@ -162,6 +171,12 @@ impl Vector for Eight {
             let positive = _mm512_cmp_pd_mask::<_CMP_GT_OQ>(other.0, _mm512_setzero_pd());
             _mm512_mask_blend_pd(positive, _mm512_set1_pd(otherwise), _mm512_div_pd(self.0, other.0))
         })
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        // SAFETY: the machine has the instructions (see above).
+        unsafe { _mm512_reduce_add_pd(self.0) }
     }
 
     #[inline(always)]

@@ -15,7 +15,16 @@ const ROUNDING_STEP: f64 = 1e-9;
 /// Share of the largest diagonal element that rounding makes of the normal equations' small eigenvalues.
 pub(super) const ROUNDING: f64 = 1e-13;
 
+/// A step that promises less than this share of what the one before promised shows fast convergence.
+const FAST: f64 = 1e-2;
+
+/// A step that promises less than this share of the cost starts close to the optimum, as far as the residuals can tell.
+const NEAR: f64 = 5e-2;
+
 /// Minimises from `start`; gives the state reached, its normal information and a summary.
+///
+/// Residuals and gradient are those of the state reached. `JᵀJ` may be that of an earlier state close by, since the last steps do not
+/// need it anew: who needs it at the optimum asks for [`LeastSquares::normal`] there (theory.md §6, *Many rows*).
 pub fn minimize<P: LeastSquares>(
     problem: &P,
     start: P::State,
@@ -34,7 +43,9 @@ struct Search<'a, P: LeastSquares> {
     problem: &'a P,
     options: Options,
     state: P::State,
+    /// Of this state; while `is_old`, with the `JᵀJ` of an earlier one close by.
     normal: Normal,
+    is_old: bool,
     /// Upper triangle of what steps are solved with: `JᵀJ`, or the full Hessian where that is known and convex.
     hessian: Vec<f64>,
     /// Damping as a multiple of the mean squared residual.
@@ -43,6 +54,8 @@ struct Search<'a, P: LeastSquares> {
     increase: f64,
     /// Whether a step has shown a poor quadratic model: from then on steps follow curvature, and damping falls with care.
     nonlinear: bool,
+    /// What the step before promised.
+    promised: f64,
     iterations: usize,
     trace: Vec<f64>,
 }
@@ -57,9 +70,11 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             hessian: normal.gram.clone(),
             trace: vec![normal.mean_square()],
             normal,
+            is_old: false,
             damping: 1.0 / (options.trust * options.trust),
             increase: 2.0,
             nonlinear: false,
+            promised: f64::INFINITY,
             iterations: 0,
         }
     }
@@ -69,13 +84,17 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             return Termination::NotFinite;
         }
         loop {
-            if let Some(termination) = self.converged() {
+            let damping = (self.damping * self.normal.mean_square()).max(0.1 * ROUNDING * self.scale());
+            let trial = self.damped_step(damping);
+            if !trial.as_ref().is_some_and(|trial| self.is_open(trial, damping))
+                && let Some(termination) = self.converged()
+            {
                 return termination;
             }
             if self.iterations >= self.options.iterations {
                 return Termination::IterationLimit;
             }
-            if !self.iterate() {
+            if !self.iterate(trial) {
                 return Termination::NoProgress;
             }
         }
@@ -101,6 +120,24 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
     }
 
+    /// Replaces a `JᵀJ` of an earlier state.
+    fn renew_normal(&mut self) {
+        if self.is_old {
+            self.is_old = false;
+            self.normal = self.problem.normal(&self.state);
+            self.renew_hessian();
+        }
+    }
+
+    /// Whether a damped step already shows that the undamped one, which is longer and promises more, is not the last.
+    fn is_open(&self, trial: &Trial, damping: f64) -> bool {
+        trial.factor.is_some()
+            && damping >= ROUNDING * self.scale()
+            && 0.5 * dot(&trial.step, &self.normal.gradient) >= self.options.decrement * self.normal.mean_square()
+            && norm(&trial.step) >= self.options.step
+            && self.normal.mean_square() >= self.problem.rounding()
+    }
+
     /// Judges the undamped step (damped only by rounding).
     fn converged(&self) -> Option<Termination> {
         let n = self.problem.dim();
@@ -123,10 +160,9 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     }
 
     /// One trial step; `false` when steps have become too small to matter without having helped.
-    fn iterate(&mut self) -> bool {
+    fn iterate(&mut self, trial: Option<Trial>) -> bool {
         self.iterations += 1;
-        let damping = (self.damping * self.normal.mean_square()).max(0.1 * ROUNDING * self.scale());
-        let Some(trial) = self.trial_step(damping) else {
+        let Some(trial) = trial.map(|trial| self.bent(trial)) else {
             self.trace.push(self.normal.mean_square());
             self.damping *= 10.0;
             return self.damping.is_finite();
@@ -137,10 +173,20 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             return norm(&trial.step) > ROUNDING_STEP && self.damping.is_finite();
         }
         let state = self.problem.retract(&self.state, &trial.step);
-        let normal = self.problem.normal(&state);
+        let old = self.gradient_only(&state, trial.predicted);
+        let is_old = old.is_some();
+        let normal = old.unwrap_or_else(|| self.problem.normal(&state));
         let gain = (self.normal.cost - normal.cost) / trial.predicted;
         if normal.cost.is_finite() && gain > 1e-3 {
+            self.promised = trial.predicted;
+            self.is_old = is_old;
             self.accept(state, normal, if trial.shortened { gain.min(0.5) } else { gain });
+            return true;
+        }
+        if self.is_old {
+            // The step may have failed by its old `JᵀJ`.
+            self.trace.push(self.normal.mean_square());
+            self.renew_normal();
             return true;
         }
         let before = self.nonlinear;
@@ -154,29 +200,49 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             && self.damping.is_finite()
     }
 
-    /// The damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature, with t below one
-    /// where the acceleration `a` would overtake `v`.
-    fn trial_step(&self, damping: f64) -> Option<Trial> {
+    /// Residuals and gradient at a new state beside the `JᵀJ` of the old one, where that will do for a further step: the last one
+    /// converged fast, or the model already fits but for a little, so that this step moves far less than `JᵀJ` would notice.
+    fn gradient_only(&self, state: &P::State, predicted: f64) -> Option<Normal> {
+        let falls = predicted < FAST * self.promised;
+        let is_near = !self.is_old && predicted < NEAR * self.normal.cost;
+        if self.nonlinear || !(falls || is_near) {
+            return None;
+        }
+        let mut normal = self.problem.gradient(state)?;
+        normal.gram.copy_from_slice(&self.normal.gram);
+        Some(normal)
+    }
+
+    /// The damped step as it stands, with the factor that gave it.
+    fn damped_step(&self, damping: f64) -> Option<Trial> {
         let n = self.problem.dim();
         let factor = linalg::cholesky(&self.hessian, n, damping)?;
         let velocity = linalg::cholesky_solve(&factor, &self.normal.gradient);
         let kept = kept(self.problem, &velocity);
         if kept != velocity {
             let predicted = quadratic(&self.hessian, &self.normal.gradient, &kept);
-            return Some(Trial { step: velocity, predicted, shortened: false });
+            return Some(Trial { step: velocity, predicted, shortened: false, damped: 0.0, factor: None });
         }
-        let descent = dot(&velocity, &self.normal.gradient);
         let damped = damping * dot(&velocity, &velocity);
-        // Along the parabola the model promises t gᵀv - t² vᵀHv / 2, and vᵀHv is gᵀv less what the damping takes.
-        let promise = |t: f64| t * descent - 0.5 * t * t * (descent - damped);
+        let descent = dot(&velocity, &self.normal.gradient);
+        let predicted = promise(1.0, descent, damped);
+        Some(Trial { step: velocity, predicted, shortened: false, damped, factor: Some(factor) })
+    }
+
+    /// The damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature, with t below one
+    /// where the acceleration `a` would overtake `v`.
+    fn bent(&self, trial: Trial) -> Trial {
         if !(self.options.acceleration && self.nonlinear) {
-            return Some(Trial { step: velocity, predicted: promise(1.0), shortened: false });
+            return trial;
         }
-        let second = self.problem.second_order(&self.state, &velocity);
-        let acceleration = linalg::cholesky_solve(&factor, &second);
-        let t = (LARGEST_ACCELERATION * norm(&velocity) / norm(&acceleration)).min(1.0);
+        let Some(factor) = &trial.factor else { return trial };
+        let velocity = &trial.step;
+        let second = self.problem.second_order(&self.state, velocity);
+        let acceleration = linalg::cholesky_solve(factor, &second);
+        let t = (LARGEST_ACCELERATION * norm(velocity) / norm(&acceleration)).min(1.0);
         let step = velocity.iter().zip(&acceleration).map(|(v, a)| t * v + 0.5 * t * t * a).collect();
-        Some(Trial { step, predicted: promise(t), shortened: t < 1.0 })
+        let predicted = promise(t, dot(velocity, &self.normal.gradient), trial.damped);
+        Trial { step, predicted, shortened: t < 1.0, ..trial }
     }
 
     fn accept(&mut self, state: P::State, normal: Normal, gain: f64) {
@@ -192,7 +258,11 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         self.state = state;
         self.normal = normal;
         self.trace.push(self.normal.mean_square());
-        self.renew_hessian();
+        if self.is_old && self.nonlinear {
+            self.renew_normal();
+        } else if !self.is_old {
+            self.renew_hessian();
+        }
     }
 
     fn reject(&mut self) {
@@ -208,6 +278,15 @@ struct Trial {
     step: Vec<f64>,
     predicted: f64,
     shortened: bool,
+    /// `λ |v|²` of the damped step.
+    damped: f64,
+    /// Of the damped Hessian; none if the retraction drops something of the step.
+    factor: Option<Vec<f64>>,
+}
+
+/// What the model promises along the parabola: `t gᵀv - t² vᵀHv / 2`, and vᵀHv is gᵀv less what the damping takes.
+fn promise(t: f64, descent: f64, damped: f64) -> f64 {
+    t * descent - 0.5 * t * t * (descent - damped)
 }
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
