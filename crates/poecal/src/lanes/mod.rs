@@ -4,6 +4,7 @@ mod kernel;
 mod plain;
 mod plan;
 mod simd;
+mod sincos;
 mod turn;
 mod vector;
 #[cfg(target_arch = "x86_64")]
@@ -11,5 +12,5 @@ mod x86;
 
 pub(crate) use kernel::{Totals, product};
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
-pub(crate) use simd::sum;
+pub(crate) use simd::{cosines_and_sines, sum};
 pub use simd::{Level, levels};

@@ -5,6 +5,7 @@ use super::kernel::{self, Totals};
 use super::plain::Pair;
 use super::plain::Two;
 use super::plan::{Plan, Step};
+use super::sincos;
 use super::vector::{Vector, Wide};
 #[cfg(target_arch = "x86_64")]
 use super::x86::{Eight, Four};
@@ -91,6 +92,34 @@ fn run_avx2_wide(task: Task<'_>, full: bool) -> Totals {
 #[target_feature(enable = "avx512f,avx2,fma")]
 fn run_avx512(task: Task<'_>, full: bool) -> Totals {
     run::<Eight>(task, full)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn cosines_and_sines_avx2(angles: &[f64], out: &mut [(f64, f64)]) {
+    sincos::cosines_and_sines(angles, out);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx2,fma")]
+fn cosines_and_sines_avx512(angles: &[f64], out: &mut [(f64, f64)]) {
+    sincos::cosines_and_sines(angles, out);
+}
+
+/// Writes `(cos, sin)` of each angle, with the same bits at every level.
+#[allow(unsafe_code, reason = "functions compiled for further instructions may only be called where the machine has them")]
+pub(crate) fn cosines_and_sines(level: Level, angles: &[f64], out: &mut [(f64, f64)]) {
+    let level = if level.is_here() { level } else { Level::Baseline };
+    match level {
+        // SAFETY: `is_here` has found AVX2 and FMA, which is all that the function asks for.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 | Level::Avx2Wide => unsafe { cosines_and_sines_avx2(angles, out) },
+        // SAFETY: `is_here` has found AVX-512F, AVX2 and FMA, which is all that the function asks for.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => unsafe { cosines_and_sines_avx512(angles, out) },
+        _ => sincos::cosines_and_sines(angles, out),
+    }
+    sincos::mend(angles, out);
 }
 
 /// Sums over rows, with products of columns if `full`.
