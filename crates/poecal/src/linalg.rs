@@ -1,6 +1,8 @@
 //! Dense linear algebra of the normal equations: accumulation, Cholesky, symmetric eigenvalues. The only file that names nalgebra's
 //! decompositions: `symmetric_eigen` and singular values alone, since its SVD with vectors errs on repeated columns.
 
+use crate::lanes::{self, Level};
+pub(crate) use crate::lanes::Factor;
 use nalgebra::{DMatrix, Matrix4, Vector3, Vector4};
 
 /// Adds `Σ rows rᵀ r` to the upper triangle of a row-major `n × n` Gram matrix. `rows` holds rows of `n` numbers, of which those
@@ -46,75 +48,22 @@ pub(crate) fn add_gradient(gradient: &mut [f64], rows: &[f64], residuals: &[f64]
     }
 }
 
-/// Cholesky factor of the symmetric matrix given by its upper triangle plus `damping` on the diagonal: `R` (row-major, upper; what is
-/// below means nothing) with `RᵀR` the matrix. `None` if that is not positive definite.
-pub(crate) fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Vec<f64>> {
-    let mut factor = upper.to_vec();
-    for i in 0..n {
-        let (above, rest) = factor.split_at_mut(i * n);
-        let row = &mut rest[i..n];
-        // Four rows above at a time: each number of this row is loaded and stored a quarter as often.
-        let mut quads = above.chunks_exact(4 * n);
-        for quad in &mut quads {
-            let (a, b, c, d) = (&quad[i..n], &quad[n + i..2 * n], &quad[2 * n + i..3 * n], &quad[3 * n + i..]);
-            let (ai, bi, ci, di) = (a[0], b[0], c[0], d[0]);
-            for ((((value, a), b), c), d) in row.iter_mut().zip(a).zip(b).zip(c).zip(d) {
-                *value -= (ai * a + bi * b) + (ci * c + di * d);
-            }
-        }
-        for other in quads.remainder().chunks_exact(n) {
-            let factor = other[i];
-            for (value, other) in row.iter_mut().zip(&other[i..]) {
-                *value -= factor * other;
-            }
-        }
-        let pivot = row[0] + damping;
-        if pivot.is_nan() || pivot <= 0.0 {
-            return None;
-        }
-        let root = pivot.sqrt();
-        row[0] = root;
-        let inverse = 1.0 / root;
-        row[1..].iter_mut().for_each(|value| *value *= inverse);
-    }
-    Some(factor)
+/// Cholesky factor of the symmetric matrix given by its upper triangle plus `damping` on the diagonal; `None` if that is not positive
+/// definite.
+pub(crate) fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
+    lanes::cholesky(Level::best(), upper, n, damping)
 }
 
-/// Solves `Rᵀ x = b` in place.
-pub(crate) fn lower_solve(factor: &[f64], x: &mut [f64]) {
-    let n = x.len();
-    for (i, row) in factor.chunks_exact(n.max(1)).enumerate() {
-        let (xi, rest) = (x[i] / row[i], &row[i + 1..]);
-        x[i] = xi;
-        for (value, r) in x[i + 1..].iter_mut().zip(rest) {
-            *value -= r * xi;
-        }
-    }
+/// Solves `L x = b` in place, with `L Lᵀ` the matrix that was factorised.
+pub(crate) fn lower_solve(factor: &Factor, x: &mut [f64]) {
+    lanes::lower_solve(Level::best(), factor, x);
 }
 
-/// Solves `RᵀR x = b`.
-pub(crate) fn cholesky_solve(factor: &[f64], b: &[f64]) -> Vec<f64> {
-    let n = b.len();
+/// Solves `L Lᵀ x = b`.
+pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
-    lower_solve(factor, &mut x);
-    for i in (0..n).rev() {
-        let row = &factor[i * n..(i + 1) * n];
-        x[i] = (x[i] - dot(&row[i + 1..], &x[i + 1..])) / row[i];
-    }
+    lanes::solve(Level::best(), factor, &mut x);
     x
-}
-
-/// `aᵀb`, by four sums side by side.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let ((fours_a, rest_a), (fours_b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-    let mut sums = [0.0; 4];
-    for (a, b) in fours_a.iter().zip(fours_b) {
-        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
-            *sum += a * b;
-        }
-    }
-    let rest: f64 = rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum();
-    (sums[0] + sums[2]) + (sums[1] + sums[3]) + rest
 }
 
 /// Eigenvalues (ascending) and eigenvectors (columns) of the symmetric matrix given by its upper triangle.

@@ -116,14 +116,30 @@ thread_local! {
     static WORK: RefCell<Work> = const { RefCell::new(Work::EMPTY) };
 }
 
+/// An arm as it stands: what is unknown of it, its frames at zero, and the way from the last one to the target.
+#[derive(Clone, Copy)]
+pub(crate) struct Arm<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) steps: &'a [Step],
+    pub(crate) end: &'a Step,
+}
+
+/// Sums over all rows of `blocks`.
+#[inline(always)]
+pub(super) fn sum_products<V: Vector>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    sum::<V, true>(arm, blocks)
+}
+
+/// The same without products of columns.
+#[inline(always)]
+pub(super) fn sum_gradient<V: Vector>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    sum::<V, false>(arm, blocks)
+}
+
 /// Sums over all rows of `blocks`; products of columns only if `FULL`.
 #[inline(always)]
-pub(super) fn sum<V: Vector, const FULL: bool>(
-    plan: &Plan,
-    steps: &[Step],
-    end: &Step,
-    blocks: &[Wide],
-) -> Totals {
+fn sum<V: Vector, const FULL: bool>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    let plan = arm.plan;
     // A pass does not call another, so the room is free; if it were not, there would be another.
     let mut own = WORK.take();
     let work = &mut own;
@@ -132,7 +148,7 @@ pub(super) fn sum<V: Vector, const FULL: bool>(
     for blocks in blocks.chunks(len * work.waiting) {
         for (filled, block) in blocks.chunks_exact(len).enumerate() {
             for part in 0..WIDTH / V::LANES {
-                add_rows::<V, FULL>(plan, (steps, end), block, work, filled, part);
+                add_rows::<V, FULL>(arm, block, work, filled, part);
             }
         }
         if FULL {
@@ -249,13 +265,13 @@ struct Seen<V> {
 /// Columns, residuals and gradient of part `part` of a block.
 #[inline(always)]
 fn add_rows<V: Vector, const FULL: bool>(
-    plan: &Plan,
-    (steps, end): (&[Step], &Step),
+    arm: &Arm<'_>,
     block: &[Wide],
     work: &mut Work,
     filled: usize,
     part: usize,
 ) {
+    let Arm { plan, steps, end } = *arm;
     let Work { jacobian, turned, origins, shift_gradient, turn_gradient, square, waiting, .. } = work;
     let Some((noise, rest)) = block.split_first_chunk::<2>() else { return };
     let Some((position, rest)) = rest.split_first_chunk::<3>() else { return };

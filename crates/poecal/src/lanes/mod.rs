@@ -1,4 +1,5 @@
 //! The hot path of a fit: several rows at a time, by vector instructions.
+mod dense;
 mod gram;
 mod kernel;
 mod plain;
@@ -10,7 +11,8 @@ mod vector;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-pub(crate) use kernel::{Totals, product};
+pub(crate) use dense::Factor;
+pub(crate) use kernel::{Arm, Totals, product};
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
-pub(crate) use simd::{cosines_and_sines, sum};
+pub(crate) use simd::{cholesky, cosines_and_sines, lower_solve, solve, sum_gradient, sum_products};
 pub use simd::{Level, levels};

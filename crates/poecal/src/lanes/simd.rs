@@ -1,12 +1,12 @@
 //! Run-time dispatch: the same source compiled for each set of vector instructions. The only unsafe code of the library.
 
-use super::kernel::{self, Totals};
+use super::dense::{self, Factor};
+use super::kernel::{self, Arm, Totals};
 #[cfg(target_arch = "x86_64")]
 use super::plain::Pair;
 use super::plain::Two;
-use super::plan::{Plan, Step};
 use super::sincos;
-use super::vector::{Vector, Wide};
+use super::vector::Wide;
 #[cfg(target_arch = "x86_64")]
 use super::x86::{Eight, Four};
 
@@ -64,78 +64,65 @@ pub fn levels() -> Vec<Level> {
     all.into_iter().filter(|level| level.is_here()).collect()
 }
 
-/// Level, arm, steps and end, rows.
-type Task<'a> = (&'a Plan, &'a [Step], &'a Step, &'a [Wide]);
-
-#[inline(always)]
-fn run<V: Vector>((plan, steps, end, blocks): Task<'_>, full: bool) -> Totals {
-    if full {
-        kernel::sum::<V, true>(plan, steps, end, blocks)
-    } else {
-        kernel::sum::<V, false>(plan, steps, end, blocks)
-    }
+/// A function that calls what is written for any vector, compiled for the instructions of a level.
+macro_rules! dispatch {
+    ($(#[$doc:meta])* $module:ident :: $name:ident ($($argument:ident: $type:ty),*) $(-> $result:ty)?) => {
+        $(#[$doc])*
+        #[allow(unsafe_code, reason = "functions compiled for further instructions may only be called where the machine has them")]
+        pub(crate) fn $name(level: Level, $($argument: $type),*) $(-> $result)? {
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,fma")]
+            fn avx2($($argument: $type),*) $(-> $result)? {
+                $module::$name::<Four>($($argument),*)
+            }
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,fma")]
+            fn avx2_wide($($argument: $type),*) $(-> $result)? {
+                $module::$name::<Pair<Four>>($($argument),*)
+            }
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx512f,avx2,fma")]
+            fn avx512($($argument: $type),*) $(-> $result)? {
+                $module::$name::<Eight>($($argument),*)
+            }
+            match if level.is_here() { level } else { Level::Baseline } {
+                // SAFETY: `is_here` has found AVX2 and FMA, which is all that the function asks for.
+                #[cfg(target_arch = "x86_64")]
+                Level::Avx2 => unsafe { avx2($($argument),*) },
+                // SAFETY: as above.
+                #[cfg(target_arch = "x86_64")]
+                Level::Avx2Wide => unsafe { avx2_wide($($argument),*) },
+                // SAFETY: `is_here` has found AVX-512F, AVX2 and FMA, which is all that the function asks for.
+                #[cfg(target_arch = "x86_64")]
+                Level::Avx512 => unsafe { avx512($($argument),*) },
+                _ => $module::$name::<Two>($($argument),*),
+            }
+        }
+    };
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn run_avx2(task: Task<'_>, full: bool) -> Totals {
-    run::<Four>(task, full)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn run_avx2_wide(task: Task<'_>, full: bool) -> Totals {
-    run::<Pair<Four>>(task, full)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx2,fma")]
-fn run_avx512(task: Task<'_>, full: bool) -> Totals {
-    run::<Eight>(task, full)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn cosines_and_sines_avx2(angles: &[f64], out: &mut [(f64, f64)]) {
-    sincos::cosines_and_sines(angles, out);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx2,fma")]
-fn cosines_and_sines_avx512(angles: &[f64], out: &mut [(f64, f64)]) {
-    sincos::cosines_and_sines(angles, out);
-}
-
-/// Writes `(cos, sin)` of each angle, with the same bits at every level.
-#[allow(unsafe_code, reason = "functions compiled for further instructions may only be called where the machine has them")]
-pub(crate) fn cosines_and_sines(level: Level, angles: &[f64], out: &mut [(f64, f64)]) {
-    let level = if level.is_here() { level } else { Level::Baseline };
-    match level {
-        // SAFETY: `is_here` has found AVX2 and FMA, which is all that the function asks for.
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx2 | Level::Avx2Wide => unsafe { cosines_and_sines_avx2(angles, out) },
-        // SAFETY: `is_here` has found AVX-512F, AVX2 and FMA, which is all that the function asks for.
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx512 => unsafe { cosines_and_sines_avx512(angles, out) },
-        _ => sincos::cosines_and_sines(angles, out),
-    }
-    sincos::mend(angles, out);
-}
-
-/// Sums over rows, with products of columns if `full`.
-#[allow(unsafe_code, reason = "functions compiled for further instructions may only be called where the machine has them")]
-pub(crate) fn sum(level: Level, task: Task<'_>, full: bool) -> Totals {
-    let level = if level.is_here() { level } else { Level::Baseline };
-    match level {
-        // SAFETY: `is_here` has found AVX2 and FMA, which is all that the function asks for.
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx2 => unsafe { run_avx2(task, full) },
-        // SAFETY: as above.
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx2Wide => unsafe { run_avx2_wide(task, full) },
-        // SAFETY: `is_here` has found AVX-512F, AVX2 and FMA, which is all that the function asks for.
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx512 => unsafe { run_avx512(task, full) },
-        _ => run::<Two>(task, full),
-    }
-}
+dispatch!(
+    /// Sums over rows, with products of columns.
+    kernel::sum_products(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+);
+dispatch!(
+    /// Sums over rows, without products of columns.
+    kernel::sum_gradient(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+);
+dispatch!(
+    /// Writes `(cos, sin)` of each angle, with the same bits at every level.
+    sincos::cosines_and_sines(angles: &[f64], out: &mut [(f64, f64)])
+);
+dispatch!(
+    /// Factor of the symmetric matrix given by its upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that
+    /// is not positive definite.
+    dense::cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor>
+);
+dispatch!(
+    /// Solves `Rᵀ x = b` in place.
+    dense::lower_solve(factor: &Factor, x: &mut [f64])
+);
+dispatch!(
+    /// Solves `RᵀR x = b` in place.
+    dense::solve(factor: &Factor, x: &mut [f64])
+);

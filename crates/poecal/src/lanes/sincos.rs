@@ -1,6 +1,7 @@
 //! Sines and cosines of many angles: one loop without branches, of which the compiler makes vectors. No product is fused with a sum, so
 //! that the bits are the same by all instructions.
 
+use super::vector::Vector;
 use std::f64::consts::FRAC_2_PI;
 
 /// π/2 in three parts of 33 bits, so that their products with a number of quarter turns below 2²⁰ are exact.
@@ -28,16 +29,17 @@ const COSINE: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// Writes `(cos, sin)` of each angle, to within about a unit in the last place.
+/// Writes `(cos, sin)` of each angle, to within about a unit in the last place. `V` only names the instructions.
 #[inline(always)]
-pub(super) fn cosines_and_sines(angles: &[f64], out: &mut [(f64, f64)]) {
+pub(super) fn cosines_and_sines<V: Vector>(angles: &[f64], out: &mut [(f64, f64)]) {
     for (out, &angle) in out.iter_mut().zip(angles) {
         *out = cosine_and_sine(angle);
     }
+    mend(angles, out);
 }
 
 /// Replaces what the loop cannot do.
-pub(super) fn mend(angles: &[f64], out: &mut [(f64, f64)]) {
+fn mend(angles: &[f64], out: &mut [(f64, f64)]) {
     for (out, &angle) in out.iter_mut().zip(angles) {
         if angle.abs() > LARGE {
             *out = (angle.cos(), angle.sin());

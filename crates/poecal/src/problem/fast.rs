@@ -5,7 +5,7 @@
 
 use super::{Layout, Problem};
 use crate::estimate::{Estimate, Linkage};
-use crate::lanes::{self, JointPlan, Level, Plan, RowData, Rows, Step, Totals, product};
+use crate::lanes::{self, Arm, JointPlan, Level, Plan, RowData, Rows, Step, Totals, product};
 use crate::lie::Pose;
 use crate::measurement::Measurement;
 use crate::parameters::Parameter;
@@ -182,12 +182,13 @@ impl Group {
 
     /// Sums over all rows of the group, in the order of its chunks whatever the number of threads.
     fn sum(&self, problem: &Problem<'_>, level: Level, steps: &[Step], end: &Step, full: bool) -> Totals {
+        let arm = Arm { plan: &self.plan, steps, end };
+        let sum = if full { lanes::sum_products } else { lanes::sum_gradient };
         let chunk = |index: usize| match self.packed.get(index) {
-            Some(rows) => lanes::sum(level, (&self.plan, steps, end, &rows.blocks), full),
+            Some(rows) => sum(level, &arm, &rows.blocks),
             None => {
                 let last = self.rows.len().min((index + 1) * CHUNK);
-                let rows = self.pack(problem, &self.rows[index * CHUNK..last]);
-                lanes::sum(level, (&self.plan, steps, end, &rows.blocks), full)
+                sum(level, &arm, &self.pack(problem, &self.rows[index * CHUNK..last]).blocks)
             }
         };
         let mut total = chunk(0);

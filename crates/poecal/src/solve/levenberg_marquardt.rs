@@ -4,7 +4,7 @@
 use super::gauss_newton::{gauss_newton, kept};
 use super::normal::quadratic;
 use super::{LeastSquares, Method, Normal, Options, Summary, Termination};
-use crate::linalg;
+use crate::linalg::{self, Factor};
 
 /// Most a geodesic correction may be of the step that it corrects (transtrum2012).
 const LARGEST_ACCELERATION: f64 = 0.75;
@@ -15,11 +15,15 @@ const ROUNDING_STEP: f64 = 1e-9;
 /// Share of the largest diagonal element that rounding makes of the normal equations' small eigenvalues.
 pub(super) const ROUNDING: f64 = 1e-13;
 
-/// A step that promises less than this share of what the one before promised shows fast convergence.
-const FAST: f64 = 1e-2;
+/// Gain ratios of a problem that is as good as quadratic.
+const STRAIGHT: std::ops::Range<f64> = 0.8..1.25;
 
-/// A step that promises less than this share of the cost starts close to the optimum, as far as the residuals can tell.
+/// A step that promises less than this share of the cost starts close to the optimum, as far as the residuals can tell: it moves far
+/// less than `JᵀJ` would notice.
 const NEAR: f64 = 5e-2;
+
+/// Steps with an old `JᵀJ` converge fast if each promises less than this share of what the one before promised.
+const FAST: f64 = 1e-2;
 
 /// Minimises from `start`; gives the state reached, its normal information and a summary.
 ///
@@ -84,9 +88,8 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             return Termination::NotFinite;
         }
         loop {
-            let damping = (self.damping * self.normal.mean_square()).max(0.1 * ROUNDING * self.scale());
-            let trial = self.damped_step(damping);
-            if !trial.as_ref().is_some_and(|trial| self.is_open(trial, damping))
+            let trial = self.damped_step();
+            if !trial.as_ref().is_some_and(|trial| self.is_open(trial))
                 && let Some(termination) = self.converged()
             {
                 return termination;
@@ -120,19 +123,17 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
     }
 
-    /// Replaces a `JᵀJ` of an earlier state.
+    /// Replaces the `JᵀJ` of an earlier state.
     fn renew_normal(&mut self) {
-        if self.is_old {
-            self.is_old = false;
-            self.normal = self.problem.normal(&self.state);
-            self.renew_hessian();
-        }
+        self.is_old = false;
+        self.normal = self.problem.normal(&self.state);
+        self.renew_hessian();
     }
 
     /// Whether a damped step already shows that the undamped one, which is longer and promises more, is not the last.
-    fn is_open(&self, trial: &Trial, damping: f64) -> bool {
-        trial.factor.is_some()
-            && damping >= ROUNDING * self.scale()
+    fn is_open(&self, trial: &Trial) -> bool {
+        !trial.is_cut
+            && trial.damping >= ROUNDING * self.scale()
             && 0.5 * dot(&trial.step, &self.normal.gradient) >= self.options.decrement * self.normal.mean_square()
             && norm(&trial.step) >= self.options.step
             && self.normal.mean_square() >= self.problem.rounding()
@@ -178,8 +179,11 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         let normal = old.unwrap_or_else(|| self.problem.normal(&state));
         let gain = (self.normal.cost - normal.cost) / trial.predicted;
         if normal.cost.is_finite() && gain > 1e-3 {
+            // With an old `JᵀJ` the model is not the problem's own, and says nothing of how curved that is.
+            let is_fair = !self.is_old;
             self.promised = trial.predicted;
             self.is_old = is_old;
+            self.nonlinear |= is_fair && !STRAIGHT.contains(&gain);
             self.accept(state, normal, if trial.shortened { gain.min(0.5) } else { gain });
             return true;
         }
@@ -200,12 +204,12 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             && self.damping.is_finite()
     }
 
-    /// Residuals and gradient at a new state beside the `JᵀJ` of the old one, where that will do for a further step: the last one
-    /// converged fast, or the model already fits but for a little, so that this step moves far less than `JᵀJ` would notice.
+    /// Residuals and gradient at a new state beside the `JᵀJ` of the old one, where that will do for a further step: where the model
+    /// already fits but for a little, so that this step is short, and as long as such steps converge fast.
     fn gradient_only(&self, state: &P::State, predicted: f64) -> Option<Normal> {
-        let falls = predicted < FAST * self.promised;
-        let is_near = !self.is_old && predicted < NEAR * self.normal.cost;
-        if self.nonlinear || !(falls || is_near) {
+        let is_near = predicted < NEAR * self.normal.cost;
+        let falls = !self.is_old || predicted < FAST * self.promised;
+        if self.nonlinear || !is_near || !falls {
             return None;
         }
         let mut normal = self.problem.gradient(state)?;
@@ -213,40 +217,39 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         Some(normal)
     }
 
-    /// The damped step as it stands, with the factor that gave it.
-    fn damped_step(&self, damping: f64) -> Option<Trial> {
+    /// The damped step as it stands.
+    fn damped_step(&self) -> Option<Trial> {
         let n = self.problem.dim();
+        let damping = (self.damping * self.normal.mean_square()).max(0.1 * ROUNDING * self.scale());
         let factor = linalg::cholesky(&self.hessian, n, damping)?;
         let velocity = linalg::cholesky_solve(&factor, &self.normal.gradient);
         let kept = kept(self.problem, &velocity);
-        if kept != velocity {
-            let predicted = quadratic(&self.hessian, &self.normal.gradient, &kept);
-            return Some(Trial { step: velocity, predicted, shortened: false, damped: 0.0, factor: None });
-        }
+        let is_cut = kept != velocity;
         let damped = damping * dot(&velocity, &velocity);
-        let descent = dot(&velocity, &self.normal.gradient);
-        let predicted = promise(1.0, descent, damped);
-        Some(Trial { step: velocity, predicted, shortened: false, damped, factor: Some(factor) })
+        let predicted = if is_cut {
+            quadratic(&self.hessian, &self.normal.gradient, &kept)
+        } else {
+            promise(1.0, dot(&velocity, &self.normal.gradient), damped)
+        };
+        Some(Trial { step: velocity, predicted, shortened: false, factor, damping, is_cut })
     }
 
     /// The damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature, with t below one
     /// where the acceleration `a` would overtake `v`.
     fn bent(&self, trial: Trial) -> Trial {
-        if !(self.options.acceleration && self.nonlinear) {
+        if !(self.options.acceleration && self.nonlinear) || trial.is_cut {
             return trial;
         }
-        let Some(factor) = &trial.factor else { return trial };
         let velocity = &trial.step;
         let second = self.problem.second_order(&self.state, velocity);
-        let acceleration = linalg::cholesky_solve(factor, &second);
+        let acceleration = linalg::cholesky_solve(&trial.factor, &second);
         let t = (LARGEST_ACCELERATION * norm(velocity) / norm(&acceleration)).min(1.0);
         let step = velocity.iter().zip(&acceleration).map(|(v, a)| t * v + 0.5 * t * t * a).collect();
-        let predicted = promise(t, dot(velocity, &self.normal.gradient), trial.damped);
+        let predicted = promise(t, dot(velocity, &self.normal.gradient), trial.damping * dot(velocity, velocity));
         Trial { step, predicted, shortened: t < 1.0, ..trial }
     }
 
     fn accept(&mut self, state: P::State, normal: Normal, gain: f64) {
-        self.nonlinear |= !(0.8..1.25).contains(&gain);
         self.damping *= if gain <= 0.5 {
             (1.0 - (2.0 * gain - 1.0).powi(3)).min(2.0)
         } else if self.nonlinear {
@@ -278,10 +281,11 @@ struct Trial {
     step: Vec<f64>,
     predicted: f64,
     shortened: bool,
-    /// `λ |v|²` of the damped step.
-    damped: f64,
-    /// Of the damped Hessian; none if the retraction drops something of the step.
-    factor: Option<Vec<f64>>,
+    /// Of the damped Hessian.
+    factor: Factor,
+    damping: f64,
+    /// Whether the retraction drops something of the step.
+    is_cut: bool,
 }
 
 /// What the model promises along the parabola: `t gᵀv - t² vᵀHv / 2`, and vᵀHv is gᵀv less what the damping takes.
