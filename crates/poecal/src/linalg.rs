@@ -66,6 +66,11 @@ pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     x
 }
 
+/// `aᵀb`.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 /// Eigenvalues (ascending) and eigenvectors (columns) of the symmetric matrix given by its upper triangle.
 pub(crate) fn symmetric_eigen(upper: &[f64], n: usize) -> (Vec<f64>, DMatrix<f64>) {
     let matrix = DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)]);

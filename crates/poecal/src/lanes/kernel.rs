@@ -198,45 +198,51 @@ fn total(sum: &Wide) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
-/// A frame in the device's axes.
+/// A frame in the device's axes: for each of these, its part of the directions x, y, z and of the origin. So ordered, a product needs
+/// few registers.
 #[derive(Clone, Copy)]
-struct Frame<V> {
-    columns: [Vectors<V>; 3],
-    origin: Vectors<V>,
-}
+struct Frame<V>([[V; 4]; 3]);
 
 impl<V: Vector> Frame<V> {
     #[inline(always)]
-    fn identity() -> Self {
-        let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        Frame::fixed(&Step { columns, translation: [0.0; 3] })
-    }
-
-    #[inline(always)]
     fn fixed(step: &Step) -> Self {
-        let [a, b, c] = &step.columns;
-        Frame {
-            columns: [Vectors::splat(a), Vectors::splat(b), Vectors::splat(c)],
-            origin: Vectors::splat(&step.translation),
+        let [x, y, z] = &step.columns;
+        let mut rows = [[V::splat(0.0); 4]; 3];
+        for (k, row) in rows.iter_mut().enumerate() {
+            *row = [V::splat(x[k]), V::splat(y[k]), V::splat(z[k]), V::splat(step.translation[k])];
         }
-    }
-
-    /// `R v` for a fixed vector.
-    #[inline(always)]
-    fn turn(&self, v: &[f64; 3]) -> Vectors<V> {
-        let [x, y, z] = self.columns;
-        x.times_plus(V::splat(v[0]), y.times_plus(V::splat(v[1]), z.scale(V::splat(v[2]))))
+        Frame(rows)
     }
 
     /// The frame after a fixed motion.
     #[inline(always)]
-    fn then(&self, step: &Step) -> Self {
-        let [a, b, c] = &step.columns;
-        let [x, y, z] = self.columns;
-        let [p, q, r] = step.translation;
-        let origin = x.times_plus(V::splat(p), y.times_plus(V::splat(q), z.times_plus(V::splat(r), self.origin)));
-        Frame { columns: [self.turn(a), self.turn(b), self.turn(c)], origin }
+    fn then(mut self, step: &Step) -> Self {
+        for row in &mut self.0 {
+            *row = turned(*row, step);
+        }
+        self
     }
+
+    #[inline(always)]
+    fn column(&self, k: usize) -> Vectors<V> {
+        let [a, b, c] = &self.0;
+        Vectors([a[k], b[k], c[k]])
+    }
+
+    #[inline(always)]
+    fn origin(&self) -> Vectors<V> {
+        self.column(3)
+    }
+}
+
+/// A row of a frame after a fixed motion.
+#[inline(always)]
+fn turned<V: Vector>([x, y, z, origin]: [V; 4], step: &Step) -> [V; 4] {
+    let [a, b, c] = &step.columns;
+    let along = |v: &[f64; 3]| x.times_plus(V::splat(v[0]), y.times_plus(V::splat(v[1]), z * V::splat(v[2])));
+    let [p, q, r] = step.translation;
+    let origin = x.times_plus(V::splat(p), y.times_plus(V::splat(q), z.times_plus(V::splat(r), origin)));
+    [along(a), along(b), along(c), origin]
 }
 
 /// One vector of rows under way: part `part` of a block.
@@ -280,14 +286,15 @@ fn add_rows<V: Vector, const FULL: bool>(
     let (columns, stride) = (&mut jacobian[filled..], *waiting);
     let mut batch = Batch { plan, part, columns, stride, origins, shift_gradient, turn_gradient };
 
-    let target = batch.chain(steps, joints.as_chunks::<2>().0, weight, per_length).then(end);
-    let force = (Vectors::load(position, part) - target.origin).scale(weight);
+    let last = batch.chain(steps, joints.as_chunks::<2>().0, weight, per_length);
+    let target = if plan.joints.is_empty() { Frame::fixed(end) } else { last.then(end) };
+    let force = (Vectors::load(position, part) - target.origin()).scale(weight);
     let mut squares = force.dot(force);
     let mut seen = Seen { weight, per_length, force, torque: Vectors([V::splat(0.0); 3]) };
     let mut turn = None;
     if let [x, y, z] = measured.as_chunks::<3>().0 {
         let measured = [Vectors::load(x, part), Vectors::load(y, part), Vectors::load(z, part)];
-        let found = Turn::new(&measured, &target.columns);
+        let found = Turn::new(&measured, &[target.column(0), target.column(1), target.column(2)]);
         let ratio = V::load(&noise[1], part);
         let whitened = found.r.scale(weight * ratio);
         squares = squares + whitened.dot(whitened);
@@ -309,29 +316,29 @@ impl Batch<'_> {
     #[inline(always)]
     fn chain<V: Vector>(&mut self, steps: &[Step], values: &[[Wide; 2]], weight: V, per_length: V) -> Frame<V> {
         let part = self.part;
-        let mut moved = Frame::identity();
+        let mut moved = Frame([[V::splat(0.0); 4]; 3]);
         for (index, ((joint, step), [cosine, sine])) in self.plan.joints.iter().zip(steps).zip(values).enumerate() {
-            let frame = if index == 0 { Frame::fixed(step) } else { moved.then(step) };
-            let (cosine, sine) = (V::load(cosine, part), V::load(sine, part));
-            let [x, y, z] = frame.columns;
-            moved = frame;
-            if joint.turns {
-                moved.columns[0] = x.times_plus(cosine, y.scale(sine));
-                moved.columns[1] = x.times_from(sine, y.scale(cosine));
-            } else {
-                moved.origin = z.times_plus(cosine, frame.origin);
+            if index == 0 {
+                moved = Frame::fixed(step);
             }
-            let Some((shift, _)) = joint.columns else { continue };
-            let (a, b) = if joint.turns {
-                let (sine, versine) = (weight * sine, weight - weight * cosine);
-                (y.times_from(sine, x.scale(versine)), x.times_plus(sine, y.scale(versine)))
-            } else {
-                let slide = weight * cosine * per_length;
-                (y.scale(-slide), x.scale(slide))
-            };
-            a.store(&mut self.columns[shift * self.stride], part);
-            b.store(&mut self.columns[(shift + 1) * self.stride], part);
-            frame.origin.store(&mut self.origins[index], part);
+            let (cosine, sine) = (V::load(cosine, part), V::load(sine, part));
+            let (slide, own_sine) = (weight * cosine * per_length, weight * sine);
+            let versine = weight - weight * cosine;
+            for (k, row) in moved.0.iter_mut().enumerate() {
+                let [x, y, z, origin] = if index == 0 { *row } else { turned(*row, step) };
+                let (a, b) = if joint.turns {
+                    *row = [x.times_plus(cosine, y * sine), x.times_from(sine, y * cosine), z, origin];
+                    (y.times_from(own_sine, x * versine), x.times_plus(own_sine, y * versine))
+                } else {
+                    *row = [x, y, z, z.times_plus(cosine, origin)];
+                    (-(y * slide), x * slide)
+                };
+                if let Some((shift, _)) = joint.columns {
+                    a.store(&mut self.columns[shift * self.stride][k], part);
+                    b.store(&mut self.columns[(shift + 1) * self.stride][k], part);
+                    origin.store(&mut self.origins[index][k], part);
+                }
+            }
         }
         moved
     }
@@ -341,7 +348,7 @@ impl Batch<'_> {
     fn add_device<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
         let Some(about) = &self.plan.device else { return };
         let part = self.part;
-        let arm = (target.origin - Vectors::splat(about)).scale(seen.per_length);
+        let arm = (target.origin() - Vectors::splat(about)).scale(seen.per_length);
         let moment = arm.cross(seen.force) + seen.torque;
         for k in 0..3 {
             let mut axis = Vectors([V::splat(0.0); 3]);
@@ -368,7 +375,7 @@ impl Batch<'_> {
             if !joint.turns {
                 continue;
             }
-            let arm = (target.origin - Vectors::load(origin, part)).scale(seen.per_length);
+            let arm = (target.origin() - Vectors::load(origin, part)).scale(seen.per_length);
             let moment = arm.cross(seen.force) + seen.torque;
             a.dot(moment).add_to(&mut self.turn_gradient[tilt], part);
             b.dot(moment).add_to(&mut self.turn_gradient[tilt + 1], part);
@@ -386,7 +393,7 @@ impl Batch<'_> {
         let Some(place) = self.plan.place else { return };
         let part = self.part;
         for k in 0..3 {
-            let axis = target.columns[k].scale(seen.weight);
+            let axis = target.column(k).scale(seen.weight);
             axis.dot(seen.force).add_to(&mut self.shift_gradient[place + k], part);
             if let Some(frame) = self.plan.frame {
                 axis.dot(seen.torque).add_to(&mut self.turn_gradient[frame + k], part);

@@ -45,7 +45,7 @@ impl Fast {
         let mut groups: Vec<Group> = Vec::new();
         for &row in &problem.rows {
             let observation = &problem.data.observations[row as usize];
-            let framed = match observation.measurement {
+            let framed = match problem.measurement(row as usize) {
                 Measurement::Point(_) => false,
                 Measurement::Pose(_) => true,
                 Measurement::SpatialPose(_) => return None,
@@ -66,12 +66,22 @@ impl Fast {
                 groups.push(group);
             }
         }
-        if problem.rows.len() <= KEPT {
-            for group in &mut groups {
-                group.packed = group.rows.chunks(CHUNK).map(|rows| group.pack(problem, rows)).collect();
+        let mut fast = Fast { groups, level };
+        fast.pack(problem);
+        Some(fast)
+    }
+
+    /// Packs what is kept packed.
+    pub(super) fn pack(&mut self, problem: &Problem<'_>) {
+        if problem.rows.len() > KEPT {
+            return;
+        }
+        for Group { plan, rows, packed, .. } in &mut self.groups {
+            packed.resize_with(rows.len().div_ceil(CHUNK), Rows::default);
+            for (rows, packed) in rows.chunks(CHUNK).zip(packed) {
+                pack(problem, plan, rows, packed);
             }
         }
-        Some(Fast { groups, level })
     }
 
     /// Normal information of all rows; with `full` false its `JᵀJ` is left zero.
@@ -174,12 +184,6 @@ impl Group {
         Some(())
     }
 
-    fn pack(&self, problem: &Problem<'_>, rows: &[u32]) -> Rows {
-        let mut packed = Rows::default();
-        packed.pack(&self.plan, rows.len(), |at| row_data(problem, rows[at] as usize, self.plan.framed));
-        packed
-    }
-
     /// Sums over all rows of the group, in the order of its chunks whatever the number of threads.
     fn sum(&self, problem: &Problem<'_>, level: Level, steps: &[Step], end: &Step, full: bool) -> Totals {
         let arm = Arm { plan: &self.plan, steps, end };
@@ -188,7 +192,9 @@ impl Group {
             Some(rows) => sum(level, &arm, &rows.blocks),
             None => {
                 let last = self.rows.len().min((index + 1) * CHUNK);
-                sum(level, &arm, &self.pack(problem, &self.rows[index * CHUNK..last]).blocks)
+                let mut packed = Rows::default();
+                pack(problem, &self.plan, &self.rows[index * CHUNK..last], &mut packed);
+                sum(level, &arm, &packed.blocks)
             }
         };
         let mut total = chunk(0);
@@ -253,11 +259,16 @@ fn plan_without_unknowns(problem: &Problem<'_>, framed: bool) -> Plan {
     }
 }
 
+/// Sets rows side by side.
+fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut Rows) {
+    packed.pack(plan, rows.len(), |at| row_data(problem, rows[at] as usize, plan.framed));
+}
+
 fn row_data<'a>(problem: &'a Problem<'_>, row: usize, framed: bool) -> RowData<'a> {
     let observation = &problem.data.observations[row];
     let noise = observation.noise_or(problem.noise);
     let root = problem.weights.and_then(|weights| weights.get(row)).map_or(1.0, |weight| weight.sqrt());
-    let (position, orientation) = match &observation.measurement {
+    let (position, orientation) = match problem.measurement(row) {
         Measurement::Point(point) => (point.position, None),
         Measurement::Pose(seen) => (seen.pose.translation, Some(seen.pose.rotation)),
         Measurement::SpatialPose(seen) => (seen.pose.translation, Some(seen.pose.rotation)),

@@ -2,18 +2,21 @@
 
 mod fast;
 mod layout;
+mod refit;
 
 pub use crate::lanes::{Level, levels};
 pub use layout::Layout;
+pub use refit::Refit;
 
 use crate::estimate::{Chain, Estimate, Linkage, Packed};
 use crate::lie::TargetTwist;
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{Dataset, Measurement, Noise};
 use crate::parameters::{Parameter, Wrench};
 use crate::solve::{LeastSquares, Normal};
 use fast::Fast;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use std::mem::discriminant;
 use std::sync::OnceLock;
 
 /// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
@@ -54,6 +57,8 @@ pub struct Problem<'a> {
     layout: Layout,
     noise: Noise,
     weights: Option<&'a [f64]>,
+    /// What is taken for measured instead of the data, one a row of the data.
+    measured: Option<Vec<Measurement>>,
     rounding_m: f64,
     /// By which instructions the hot path runs.
     level: Level,
@@ -83,6 +88,7 @@ impl<'a> Problem<'a> {
             layout: Layout::new(free, length_m),
             noise,
             weights: None,
+            measured: None,
             rounding_m,
             level: Level::best(),
             fast: OnceLock::new(),
@@ -129,6 +135,28 @@ impl<'a> Problem<'a> {
         Noise { position_m: noise.position_m / root, rotation_rad: noise.rotation_rad / root }
     }
 
+    /// What was measured in a row.
+    fn measurement(&self, row: usize) -> &Measurement {
+        let instead = self.measured.as_ref().and_then(|measured| measured.get(row));
+        instead.unwrap_or(&self.data.observations[row].measurement)
+    }
+
+    /// Takes these measurements, one a row of the data, for measured in the same configurations.
+    fn set_measurements(&mut self, measured: &[Measurement]) {
+        let before: Vec<_> = self.rows.iter().map(|&row| discriminant(self.measurement(row as usize))).collect();
+        let own = self.measured.get_or_insert_default();
+        own.clear();
+        own.extend_from_slice(measured);
+        let kind = |row: u32| discriminant(self.measurement(row as usize));
+        let is_alike = self.rows.iter().zip(&before).all(|(&row, before)| kind(row) == *before);
+        if let Some(Some(mut fast)) = self.fast.take()
+            && is_alike
+        {
+            fast.pack(self);
+            self.fast = OnceLock::from(Some(fast));
+        }
+    }
+
     /// Gives the whitened Jacobian of the prediction (row-major) and residual of each of some rows of the data, in turn.
     pub fn for_rows(&self, state: &Estimate, rows: &[u32], mut each: impl FnMut(u32, &[f64], &[f64])) {
         let n = self.layout.dim();
@@ -139,7 +167,7 @@ impl<'a> Problem<'a> {
         let mut residual = [0.0; 6];
         for &row in rows {
             let observation = &self.data.observations[row as usize];
-            let measurement = observation.measurement.residual_model();
+            let measurement = self.measurement(row as usize).residual_model();
             let (noise, dim) = (self.noise(row as usize), measurement.dim());
             chain.evaluate(&linkage, self.packed, row as usize, observation.target);
             self.layout.target_twists(&chain, observation.target, &mut columns);
@@ -180,7 +208,7 @@ impl<'a> Problem<'a> {
         for (count, &row) in rows.iter().enumerate() {
             let row = row as usize;
             let observation = &self.data.observations[row];
-            let measurement = observation.measurement.residual_model();
+            let measurement = self.measurement(row).residual_model();
             chain.evaluate(linkage, self.packed, row, observation.target);
             self.layout.target_twists(&chain, observation.target, &mut columns);
             let (dim, split) = (measurement.dim(), measurement.rotation_row());
@@ -235,7 +263,7 @@ impl Problem<'_> {
                 &linkage,
                 rows,
                 |chain, row, out| {
-                    let measurement = self.data.observations[row].measurement.residual_model();
+                    let measurement = self.measurement(row).residual_model();
                     measurement.residual(&chain.target, &self.noise(row), out);
                 },
                 &mut normal,
@@ -283,7 +311,7 @@ impl LeastSquares for Problem<'_> {
                 rows,
                 |here, row, out| {
                     let observation = &self.data.observations[row];
-                    let measurement = observation.measurement.residual_model();
+                    let measurement = self.measurement(row).residual_model();
                     let noise = self.noise(row);
                     chain.evaluate(&ahead, self.packed, row, observation.target);
                     measurement.residual(&chain.target, &noise, &mut e_ahead);
@@ -313,7 +341,7 @@ impl LeastSquares for Problem<'_> {
                 let row = row as usize;
                 let observation = &self.data.observations[row];
                 chain.evaluate(&linkage, self.packed, row, observation.target);
-                let measurement = observation.measurement.residual_model();
+                let measurement = self.measurement(row).residual_model();
                 let Some((force, torque)) = measurement.wrench(&chain.target, &self.noise(row)) else {
                     return normal;
                 };

@@ -4,6 +4,7 @@
 use super::gauss_newton::{gauss_newton, kept};
 use super::normal::quadratic;
 use super::{LeastSquares, Method, Normal, Options, Summary, Termination};
+pub(super) use crate::linalg::dot;
 use crate::linalg::{self, Factor};
 
 /// Most a geodesic correction may be of the step that it corrects (transtrum2012).
@@ -23,7 +24,7 @@ const STRAIGHT: std::ops::Range<f64> = 0.8..1.25;
 const NEAR: f64 = 5e-2;
 
 /// Steps with an old `JᵀJ` converge fast if each promises less than this share of what the one before promised.
-const FAST: f64 = 1e-2;
+pub(super) const FAST: f64 = 1e-2;
 
 /// Minimises from `start`; gives the state reached, its normal information and a summary.
 ///
@@ -293,9 +294,7 @@ fn promise(t: f64, descent: f64, damped: f64) -> f64 {
     t * descent - 0.5 * t * t * (descent - damped)
 }
 
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
+
 
 pub(super) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()

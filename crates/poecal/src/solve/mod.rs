@@ -2,11 +2,13 @@
 
 mod gauss_newton;
 mod levenberg_marquardt;
+mod near;
 mod normal;
 mod options;
 mod termination;
 
 pub use levenberg_marquardt::minimize;
+pub use near::{Near, minimize_near};
 pub use normal::Normal;
 pub use options::{Method, Options, Summary};
 pub use termination::Termination;
