@@ -1,8 +1,8 @@
 //! Dense linear algebra of the normal equations: accumulation, Cholesky, symmetric eigenvalues. The only file that names nalgebra's
 //! decompositions: `symmetric_eigen` and singular values alone, since its SVD with vectors errs on repeated columns.
 
-use crate::lanes::{self, Level};
 pub(crate) use crate::lanes::Factor;
+use crate::lanes::{self, Level};
 use nalgebra::{DMatrix, Matrix4, Vector3, Vector4};
 
 /// Adds `Σ rows rᵀ r` to the upper triangle of a row-major `n × n` Gram matrix. `rows` holds rows of `n` numbers, of which those

@@ -4,14 +4,17 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::Vector3;
-use poecal::estimate::{Estimate, Packed};
+use poecal::calibration::{CalibrationOptions, fit_screws};
+use poecal::estimate::{Estimate, Packed, delivered, row_errors};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise};
 use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace};
-use poecal::problem::{Level, Problem, levels};
+use poecal::problem::{Level, Problem, Refit, levels};
 use poecal::robot::Robot;
-use poecal::simulate::{Kind, Simulation, elbow, gantry, random_chain, scara, seven_axis};
-use poecal::solve::{LeastSquares, Normal};
+use poecal::simulate::{Kind, Simulation, elbow, gantry, random, random_chain, scara, seven_axis};
+use poecal::solve::{LeastSquares, Normal, Options, minimize};
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
 
 const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 5e-4 };
 const LENGTH_M: f64 = 0.4;
@@ -44,6 +47,9 @@ struct Case {
     any_ratio: bool,
     /// Only every second axis is unknown.
     some_axes: bool,
+    /// Nothing is unknown but the place of the first target, or not even that.
+    place_only: bool,
+    nothing: bool,
     /// The last rows are turned by this much, radians.
     turned_rad: f64,
 }
@@ -58,6 +64,8 @@ fn cases() -> Vec<Case> {
         Case { rows: 50, weights: true, stated: true, ..plain },
         Case { rows: 50, weights: true, stated: true, any_ratio: true, targets: 2, ..plain },
         Case { rows: 40, some_axes: true, device: true, ..plain },
+        Case { rows: 40, targets: 2, place_only: true, ..plain },
+        Case { rows: 40, nothing: true, ..plain },
         Case { rows: 40, turned_rad: 0.2, ..plain },
         Case { rows: 40, turned_rad: 3.1, any_ratio: true, stated: true, ..plain },
         Case { rows: 2100, targets: 2, ..plain },
@@ -102,13 +110,20 @@ impl Session {
 
     fn problem(&self, case: &Case, level: Level) -> Problem<'_> {
         let rows = (0..self.data.len() as u32).collect();
-        let problem = Problem::new(&self.data, &self.packed, rows, self.free.clone(), NOISE, LENGTH_M).with_level(level);
+        let problem = Problem::new(&self.data, &self.packed, rows, self.free.clone(), NOISE, LENGTH_M)
+            .with_level(level);
         if case.weights { problem.with_weights(&self.weights) } else { problem }
     }
 }
 
 fn parameters(robot: &Robot, data: &Dataset, case: &Case) -> Vec<Parameter> {
     let mut free = Vec::new();
+    if case.place_only {
+        free.push(Parameter::TargetPlace(TargetPlace { target: 0 }));
+    }
+    if case.place_only || case.nothing {
+        return free;
+    }
     if case.device {
         free.push(Parameter::DeviceFrame(DeviceFrame { about: Vector3::new(0.3, -0.2, 0.5) }));
     }
@@ -182,4 +197,109 @@ fn sums_do_not_depend_on_threads() {
         pool.install(|| problem.normal(&session.estimate))
     };
     assert!((2..5).all(|threads| of(threads) == of(1)));
+}
+
+/// Fits of many rows begin on a sample and end by gradients alone; here is what one plain minimisation over all rows finds.
+#[test]
+fn many_rows_have_the_same_optimum() {
+    for (kind, largest_m) in [(Kind::Pose, 1e-9), (Kind::Point, 1e-9)] {
+        let made = Simulation { count: 6000, ..Simulation::default() }.run(&elbow(), kind).unwrap();
+        let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
+        let rows: Vec<u32> = (0..6000).collect();
+        let mut start = delivered(&made.nominal, &made.data);
+        start.device_from_base = made.device_from_base;
+        let options = CalibrationOptions::default();
+        let (quick, _, summary) =
+            fit_screws(&made.data, &packed, &rows, start.clone(), NOISE, LENGTH_M, &options);
+        let free = parameters(&made.nominal, &made.data, &Case::default());
+        let problem = Problem::new(&made.data, &packed, rows.clone(), free, NOISE, LENGTH_M);
+        let strict = Options { decrement: 1e-12, ..Options::default() };
+        let (plain, normal, _) = minimize(&Plain(&problem), start, &strict);
+        // What a prediction gains by going on from the quick optimum, against what noise leaves open.
+        let rest = problem.normal(&quick);
+        let apart = farthest(&made.data, &packed, &rows, &quick, &plain);
+        let excess = (rest.cost - normal.cost) / normal.mean_square();
+        println!(
+            "{kind:?}: {} iterations, predictions apart by {apart:.1e} m, cost above by {excess:.1e}",
+            summary.iterations
+        );
+        assert!(apart < largest_m);
+        assert!(excess < 1e-6);
+    }
+}
+
+/// Other measurements in the same configurations: shared packing and factor, and the same optimum as a fit of its own.
+#[test]
+fn refits_have_the_same_optimum() {
+    for kind in [Kind::Pose, Kind::Point] {
+        let simulation = Simulation { device_anywhere: false, ..Simulation::default() };
+        let made = simulation.run(&elbow(), kind).unwrap();
+        let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
+        let rows: Vec<u32> = (0..made.data.len() as u32).collect();
+        let free = parameters(&made.nominal, &made.data, &Case::default());
+        let problem = |data| Problem::new(data, &packed, rows.clone(), free.clone(), NOISE, LENGTH_M);
+        let start = delivered(&made.nominal, &made.data);
+        let strict = Options { decrement: 1e-12, ..Options::default() };
+        let (optimum, _, _) = minimize(&problem(&made.data), start.clone(), &strict);
+        let mut refit = Refit::new(problem(&made.data), optimum.clone(), strict);
+        let (mut worst, mut iterations): (f64, usize) = (0.0, 0);
+        let mut generator = ChaCha8Rng::seed_from_u64(7);
+        for trial in 0..40 {
+            // One in four is far off, so that shared steps do not serve.
+            let scale = if trial % 4 == 3 { 300.0 } else { 1.0 };
+            let mut data = made.data.clone();
+            for observation in &mut data.observations {
+                let shift = random::normal_vector(&mut generator) * (scale * NOISE.position_m);
+                match &mut observation.measurement {
+                    Measurement::Point(seen) => seen.position += shift,
+                    Measurement::Pose(seen) => seen.pose.translation += shift,
+                    Measurement::SpatialPose(_) => {}
+                }
+            }
+            let measured: Vec<Measurement> = data.observations.iter().map(|seen| seen.measurement).collect();
+            let (quick, _, summary) = refit.fit(&measured);
+            let (plain, _, _) = minimize(&Plain(&problem(&data)), optimum.clone(), &strict);
+            worst = worst.max(farthest(&data, &packed, &rows, &quick, &plain) / scale);
+            iterations += summary.iterations;
+        }
+        println!("{kind:?}: {:.1} iterations, predictions apart by {worst:.1e} m", iterations as f64 / 40.0);
+        assert!(worst < 1e-9);
+    }
+}
+
+/// A problem row by row, whose every step has a `JᵀJ` of its own.
+struct Plain<'a>(&'a Problem<'a>);
+
+impl LeastSquares for Plain<'_> {
+    type State = Estimate;
+
+    fn dim(&self) -> usize {
+        self.0.dim()
+    }
+
+    fn normal(&self, state: &Estimate) -> Normal {
+        self.0.normal_row_by_row(state)
+    }
+
+    fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {
+        self.0.second_order(state, step)
+    }
+
+    fn curvature(&self, state: &Estimate) -> Option<Vec<f64>> {
+        self.0.curvature(state)
+    }
+
+    fn rounding(&self) -> f64 {
+        self.0.rounding()
+    }
+
+    fn retract(&self, state: &Estimate, step: &[f64]) -> Estimate {
+        self.0.retract(state, step)
+    }
+}
+
+/// Largest distance between the places that two estimates predict, metres.
+fn farthest(data: &Dataset, packed: &Packed, rows: &[u32], a: &Estimate, b: &Estimate) -> f64 {
+    let errors = |estimate| row_errors(data, packed, rows, estimate);
+    errors(a).iter().zip(errors(b)).map(|(a, b)| (a.position_m - b.position_m).norm()).fold(0.0, f64::max)
 }

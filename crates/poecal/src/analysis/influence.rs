@@ -62,7 +62,12 @@ pub fn influence(
 }
 
 /// Of one row: `H = J N⁻¹ Jᵀ`, and `t² = eᵀ (I - wH)⁻¹ (I + (1 - w)H)⁻¹ e`.
-fn row_influence(factor: Option<&linalg::Factor>, jacobian: &[f64], residual: &[f64], weight: f64) -> Influence {
+fn row_influence(
+    factor: Option<&linalg::Factor>,
+    jacobian: &[f64],
+    residual: &[f64],
+    weight: f64,
+) -> Influence {
     let dim = residual.len();
     let n = jacobian.len() / dim.max(1);
     let mut hat = vec![0.0; dim * dim];

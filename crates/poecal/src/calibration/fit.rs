@@ -19,10 +19,11 @@ use crate::simulate::random;
 use crate::solve::{LeastSquares, Normal, Options, Summary, minimize};
 use crate::start::target_parameters;
 
-/// Rows of the sample on which a fit of many rows begins.
+/// Rows of the sample on which a fit of many rows begins: for each unknown, and at least.
+const SAMPLE_PER_UNKNOWN: usize = 10;
 const SAMPLE: usize = 512;
 /// Times as many rows as are in a sample, beyond which a fit begins on one.
-const MANY: usize = 4;
+const MANY: usize = 3;
 /// The optimum of a sample is an estimate: closer than a tenth of its own standard deviation need not be gone.
 const SAMPLE_DECREMENT: f64 = 1e-2;
 /// Rows on which further starts are compared.
@@ -97,8 +98,10 @@ pub fn fit_screws(
     let problem = |rows: Vec<u32>| Problem::new(data, packed, rows, free.clone(), noise, length_m);
     let mut start = start;
     let mut before = None;
-    if rows.len() > MANY * SAMPLE {
-        let sample = sample_rows(rows, SAMPLE);
+    let unknowns: usize = free.iter().map(|parameter| parameter.model().columns().len()).sum();
+    let enough = SAMPLE.max(SAMPLE_PER_UNKNOWN * unknowns);
+    if rows.len() > MANY * enough {
+        let sample = sample_rows(rows, enough);
         let decrement = SAMPLE_DECREMENT.max(options.solver.decrement);
         let near = Options { decrement, ..options.solver };
         let (estimate, _, summary) = minimize(&problem(sample), start, &near);

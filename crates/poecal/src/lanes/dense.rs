@@ -30,7 +30,11 @@ pub(super) fn cholesky<V: Vector>(upper: &[f64], n: usize, damping: f64) -> Opti
             let ((a, b), (c, d)) = (a.split_at(stride), b.split_at(stride));
             let lane = i % WIDTH;
             let factors = [a[first].0[lane], b[first].0[lane], c[first].0[lane], d[first].0[lane]];
-            subtract::<V, 4>(&mut row[first..], [&a[first..], &b[first..], &c[first..], &d[first..]], factors);
+            subtract::<V, 4>(
+                &mut row[first..],
+                [&a[first..], &b[first..], &c[first..], &d[first..]],
+                factors,
+            );
         }
         for other in fours.remainder().chunks_exact(stride) {
             subtract::<V, 1>(&mut row[first..], [&other[first..]], [other[first].0[i % WIDTH]]);

@@ -35,12 +35,7 @@ pub(super) fn add_products<V: Vector>(
 
 /// The nine products of two groups of three columns.
 #[inline(always)]
-fn tile<V: Vector>(
-    left: &[Wide],
-    right: &[Wide],
-    stride: usize,
-    used: usize,
-) -> [V; TILE * TILE] {
+fn tile<V: Vector>(left: &[Wide], right: &[Wide], stride: usize, used: usize) -> [V; TILE * TILE] {
     let (a, b, c) = (&left[..used], &left[stride..stride + used], &left[2 * stride..2 * stride + used]);
     let (d, e, f) = (&right[..used], &right[stride..stride + used], &right[2 * stride..2 * stride + used]);
     let mut sums = [V::splat(0.0); TILE * TILE];

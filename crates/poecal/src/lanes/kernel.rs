@@ -9,10 +9,10 @@ use super::plan::{Plan, Step};
 use super::turn::Turn;
 use super::vector::{Vector, Vectors, WIDTH, Wide};
 
-/// Memory of columns that are waiting for their products, in wide numbers: with the sums it stays in the first cache.
+/// Memory of columns that are waiting for their products, in wide numbers: with the sums it just fits the first cache.
 const WAITING: usize = 570;
-/// Most blocks waiting.
-const MOST_WAITING: usize = 8;
+/// Fewest and most blocks that wait: with few, the tiles' sums are loaded and stored too often, even if columns fill the second cache.
+const BLOCKS_WAITING: (usize, usize) = (6, 8);
 
 /// Sums of one pass over some rows.
 pub(crate) struct Totals {
@@ -49,14 +49,26 @@ pub(crate) fn product(columns: usize, a: usize, b: usize) -> usize {
     (before + column - row) * TILE * TILE + a % TILE * TILE + b % TILE
 }
 
+/// What is kept of a joint: its two shift columns and its origin in the rows under way, and the gradient of shifts and tilts.
+#[derive(Clone, Copy)]
+struct Axis {
+    shifts: [[Wide; 3]; 2],
+    origin: [Wide; 3],
+    gradient: [Wide; 4],
+}
+
+impl Axis {
+    const ZERO: Axis =
+        Axis { shifts: [[Wide::ZERO; 3]; 2], origin: [Wide::ZERO; 3], gradient: [Wide::ZERO; 4] };
+}
+
 /// Columns and sums under way.
 struct Work {
     /// Position rows of each column, block after block.
     jacobian: Vec<[Wide; 3]>,
     /// What rotation adds for each turn, likewise: two or three rows a block.
     turned: Vec<Wide>,
-    /// Origins of the axes in the rows under way.
-    origins: Vec<[Wide; 3]>,
+    axes: Vec<Axis>,
     products: Vec<Wide>,
     turned_products: Vec<Wide>,
     shift_gradient: Vec<Wide>,
@@ -76,7 +88,7 @@ impl Work {
     const EMPTY: Work = Work {
         jacobian: Vec::new(),
         turned: Vec::new(),
-        origins: Vec::new(),
+        axes: Vec::new(),
         products: Vec::new(),
         turned_products: Vec::new(),
         shift_gradient: Vec::new(),
@@ -91,18 +103,22 @@ impl Work {
         let turns = plan.turns.len().next_multiple_of(TILE);
         let rows = plan.turned_rows();
         let sums = |columns: usize| if full { sums_len(columns, lanes) } else { 0 };
-        self.waiting = if full { (WAITING / (3 * columns).max(1)).clamp(1, MOST_WAITING) } else { 1 };
+        self.waiting =
+            if full { (WAITING / (3 * columns).max(1)).clamp(BLOCKS_WAITING.0, BLOCKS_WAITING.1) } else { 1 };
         restart(&mut self.products, sums(columns));
         restart(&mut self.turned_products, sums(if rows > 0 { turns } else { 0 }));
         restart(&mut self.shift_gradient, plan.shifts);
         restart(&mut self.turn_gradient, plan.turns.len());
         self.square = Wide::ZERO;
+        self.axes.clear();
+        self.axes.resize(plan.joints.len(), Axis::ZERO);
         // Columns are written before they are read, but for those that fill up the last tile.
-        self.origins.resize(plan.joints.len(), [Wide::ZERO; 3]);
-        self.jacobian.resize(self.waiting * columns, [Wide::ZERO; 3]);
-        self.jacobian[self.waiting * plan.columns()..].fill([Wide::ZERO; 3]);
-        self.turned.resize(rows * self.waiting * turns, Wide::ZERO);
-        self.turned[rows * self.waiting * plan.turns.len()..].fill(Wide::ZERO);
+        if full {
+            self.jacobian.resize(self.waiting * columns, [Wide::ZERO; 3]);
+            self.jacobian[self.waiting * plan.columns()..].fill([Wide::ZERO; 3]);
+            self.turned.resize(rows * self.waiting * turns, Wide::ZERO);
+            self.turned[rows * self.waiting * plan.turns.len()..].fill(Wide::ZERO);
+        }
     }
 }
 
@@ -153,6 +169,13 @@ fn sum<V: Vector, const FULL: bool>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
         }
         if FULL {
             multiply::<V>(plan, work, blocks.len() / len);
+        }
+    }
+    for (joint, axis) in plan.joints.iter().zip(&work.axes) {
+        let (Some((shift, tilt)), [a, b, c, d]) = (joint.columns, axis.gradient) else { continue };
+        work.shift_gradient[shift..shift + 2].copy_from_slice(&[a, b]);
+        if joint.turns {
+            work.turn_gradient[tilt..tilt + 2].copy_from_slice(&[c, d]);
         }
     }
     let gradient = work.shift_gradient.iter().chain(&work.turn_gradient);
@@ -252,7 +275,7 @@ struct Batch<'a> {
     /// The block's columns, each `stride` after the one before.
     columns: &'a mut [[Wide; 3]],
     stride: usize,
-    origins: &'a mut [[Wide; 3]],
+    axes: &'a mut [Axis],
     shift_gradient: &'a mut [Wide],
     turn_gradient: &'a mut [Wide],
 }
@@ -278,13 +301,15 @@ fn add_rows<V: Vector, const FULL: bool>(
     part: usize,
 ) {
     let Arm { plan, steps, end } = *arm;
-    let Work { jacobian, turned, origins, shift_gradient, turn_gradient, square, waiting, .. } = work;
+    let Work { jacobian, turned, axes, shift_gradient, turn_gradient, square, waiting, .. } = work;
     let Some((noise, rest)) = block.split_first_chunk::<2>() else { return };
     let Some((position, rest)) = rest.split_first_chunk::<3>() else { return };
     let (measured, joints) = rest.split_at(if plan.framed { 9 } else { 0 });
     let (weight, per_length) = (V::load(&noise[0], part), V::splat(1.0 / plan.length_m));
-    let (columns, stride) = (&mut jacobian[filled..], *waiting);
-    let mut batch = Batch { plan, part, columns, stride, origins, shift_gradient, turn_gradient };
+    // Empty without unknowns.
+    let columns = jacobian.get_mut(filled..).unwrap_or_default();
+    let stride = *waiting;
+    let mut batch = Batch { plan, part, columns, stride, axes, shift_gradient, turn_gradient };
 
     let last = batch.chain(steps, joints.as_chunks::<2>().0, weight, per_length);
     let target = if plan.joints.is_empty() { Frame::fixed(end) } else { last.then(end) };
@@ -304,20 +329,27 @@ fn add_rows<V: Vector, const FULL: bool>(
     squares.add_to(square, part);
     batch.add_device::<V, FULL>(&target, &seen);
     batch.add_axes::<V, FULL>(&target, &seen);
-    batch.add_place(&target, &seen);
+    batch.add_place::<V, FULL>(&target, &seen);
     if let (true, Some((turn, ratio))) = (FULL, turn) {
         let rows = plan.turned_rows();
-        batch.add_turned(&turn, ratio, &mut turned[filled * rows..], rows);
+        batch.add_turned(&turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
     }
 }
 
 impl Batch<'_> {
     /// The chain from the device to the last joint's moved frame; writes the axes' shift columns: theory.md §5 (20) and (22).
     #[inline(always)]
-    fn chain<V: Vector>(&mut self, steps: &[Step], values: &[[Wide; 2]], weight: V, per_length: V) -> Frame<V> {
+    fn chain<V: Vector>(
+        &mut self,
+        steps: &[Step],
+        values: &[[Wide; 2]],
+        weight: V,
+        per_length: V,
+    ) -> Frame<V> {
         let part = self.part;
         let mut moved = Frame([[V::splat(0.0); 4]; 3]);
-        for (index, ((joint, step), [cosine, sine])) in self.plan.joints.iter().zip(steps).zip(values).enumerate() {
+        let joints = self.plan.joints.iter().zip(steps).zip(values).zip(&mut *self.axes);
+        for (index, (((joint, step), [cosine, sine]), axis)) in joints.enumerate() {
             if index == 0 {
                 moved = Frame::fixed(step);
             }
@@ -333,11 +365,9 @@ impl Batch<'_> {
                     *row = [x, y, z, z.times_plus(cosine, origin)];
                     (-(y * slide), x * slide)
                 };
-                if let Some((shift, _)) = joint.columns {
-                    a.store(&mut self.columns[shift * self.stride][k], part);
-                    b.store(&mut self.columns[(shift + 1) * self.stride][k], part);
-                    origin.store(&mut self.origins[index][k], part);
-                }
+                a.store(&mut axis.shifts[0][k], part);
+                b.store(&mut axis.shifts[1][k], part);
+                origin.store(&mut axis.origin[k], part);
             }
         }
         moved
@@ -355,8 +385,8 @@ impl Batch<'_> {
             axis.0[k] = seen.weight;
             (seen.weight * seen.force.0[k]).add_to(&mut self.shift_gradient[k], part);
             (seen.weight * moment.0[k]).add_to(&mut self.turn_gradient[k], part);
-            axis.store(&mut self.columns[k * self.stride], part);
             if FULL {
+                axis.store(&mut self.columns[k * self.stride], part);
                 axis.cross(arm).store(&mut self.columns[(self.plan.shifts + k) * self.stride], part);
             }
         }
@@ -366,19 +396,22 @@ impl Batch<'_> {
     #[inline(always)]
     fn add_axes<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
         let (part, stride) = (self.part, self.stride);
-        for (joint, origin) in self.plan.joints.iter().zip(&*self.origins) {
+        for (joint, axis) in self.plan.joints.iter().zip(&mut *self.axes) {
             let Some((shift, tilt)) = joint.columns else { continue };
-            let a = Vectors::load(&self.columns[shift * stride], part);
-            let b = Vectors::load(&self.columns[(shift + 1) * stride], part);
-            a.dot(seen.force).add_to(&mut self.shift_gradient[shift], part);
-            b.dot(seen.force).add_to(&mut self.shift_gradient[shift + 1], part);
+            let (a, b) = (Vectors::load(&axis.shifts[0], part), Vectors::load(&axis.shifts[1], part));
+            a.dot(seen.force).add_to(&mut axis.gradient[0], part);
+            b.dot(seen.force).add_to(&mut axis.gradient[1], part);
+            if FULL {
+                a.store(&mut self.columns[shift * stride], part);
+                b.store(&mut self.columns[(shift + 1) * stride], part);
+            }
             if !joint.turns {
                 continue;
             }
-            let arm = (target.origin() - Vectors::load(origin, part)).scale(seen.per_length);
+            let arm = (target.origin() - Vectors::load(&axis.origin, part)).scale(seen.per_length);
             let moment = arm.cross(seen.force) + seen.torque;
-            a.dot(moment).add_to(&mut self.turn_gradient[tilt], part);
-            b.dot(moment).add_to(&mut self.turn_gradient[tilt + 1], part);
+            a.dot(moment).add_to(&mut axis.gradient[2], part);
+            b.dot(moment).add_to(&mut axis.gradient[3], part);
             if FULL {
                 let column = (self.plan.shifts + tilt) * stride;
                 a.cross(arm).store(&mut self.columns[column], part);
@@ -389,7 +422,7 @@ impl Batch<'_> {
 
     /// Columns of the target's place and frame: theory.md §5 (23) and (24).
     #[inline(always)]
-    fn add_place<V: Vector>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+    fn add_place<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
         let Some(place) = self.plan.place else { return };
         let part = self.part;
         for k in 0..3 {
@@ -398,7 +431,9 @@ impl Batch<'_> {
             if let Some(frame) = self.plan.frame {
                 axis.dot(seen.torque).add_to(&mut self.turn_gradient[frame + k], part);
             }
-            axis.store(&mut self.columns[(place + k) * self.stride], part);
+            if FULL {
+                axis.store(&mut self.columns[(place + k) * self.stride], part);
+            }
         }
     }
 

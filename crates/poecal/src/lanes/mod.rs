@@ -14,5 +14,5 @@ mod x86;
 pub(crate) use dense::Factor;
 pub(crate) use kernel::{Arm, Totals, product};
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
-pub(crate) use simd::{cholesky, cosines_and_sines, lower_solve, solve, sum_gradient, sum_products};
 pub use simd::{Level, levels};
+pub(crate) use simd::{cholesky, cosines_and_sines, lower_solve, solve, sum_gradient, sum_products};

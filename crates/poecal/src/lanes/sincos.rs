@@ -84,7 +84,9 @@ mod tests {
             cosines_and_sines(level, &angles, &mut found);
             let mut worst: f64 = 0.0;
             for (angle, (cosine, sine)) in angles.iter().zip(&found) {
-                let ulp = |value: f64, exact: f64| (value - exact).abs() / (exact.abs() * f64::EPSILON).max(f64::MIN_POSITIVE);
+                let ulp = |value: f64, exact: f64| {
+                    (value - exact).abs() / (exact.abs() * f64::EPSILON).max(f64::MIN_POSITIVE)
+                };
                 worst = worst.max(ulp(*cosine, angle.cos())).max(ulp(*sine, angle.sin()));
             }
             println!("{level:?}: {worst:.2} ε");

@@ -72,9 +72,8 @@ impl<V: Vector> Turn<V> {
         let (measured, predicted) = (apart(measured), apart(predicted));
         let mut out = [Wide::ZERO; 4];
         for lane in 0..V::LANES {
-            let matrix = |columns: &[[Wide; 3]; 3]| {
-                Matrix3::from_fn(|row, column| columns[column][row].0[lane])
-            };
+            let matrix =
+                |columns: &[[Wide; 3]; 3]| Matrix3::from_fn(|row, column| columns[column][row].0[lane]);
             let r = rotation::log(&(matrix(&measured) * matrix(&predicted).transpose()));
             for (wide, value) in out.iter_mut().zip([r.x, r.y, r.z, series::cotc(r.norm_squared())]) {
                 wide.0[lane] = value;
@@ -91,7 +90,7 @@ impl<V: Vector> Turn<V> {
         self.r.cross(moved).times_plus(self.k, moved.times_plus(V::splat(0.5), w))
     }
 
-    /// Two rows `A` with `I + AᵀA = J_r(r)⁻ᵀ J_r(r)⁻¹`, which is `I - q r̂²` with `q = ¼ - 2k + k²|r|²` (theory.md §6 (28b)).
+    /// Two rows `A` with `I + AᵀA = J_r(r)⁻ᵀ J_r(r)⁻¹`, which is `I - q r̂²` with `q = ¼ - 2k + k²|r|²` (theory.md §6 (28a)).
     #[inline(always)]
     pub(super) fn excess(&self) -> [Vectors<V>; 2] {
         let [a, b, c] = self.r.0;

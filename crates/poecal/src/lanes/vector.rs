@@ -97,13 +97,6 @@ impl<V: Vector> Vectors<V> {
         Vectors([x.times_plus(factor, a), y.times_plus(factor, b), z.times_plus(factor, c)])
     }
 
-    /// `term - self * factor`.
-    #[inline(always)]
-    pub(super) fn times_from(self, factor: V, term: Self) -> Self {
-        let ([x, y, z], [a, b, c]) = (self.0, term.0);
-        Vectors([x.times_from(factor, a), y.times_from(factor, b), z.times_from(factor, c)])
-    }
-
     #[inline(always)]
     pub(super) fn dot(self, other: Self) -> V {
         let ([x, y, z], [a, b, c]) = (self.0, other.0);

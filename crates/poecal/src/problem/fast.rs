@@ -233,7 +233,9 @@ impl Group {
         let turns = self.turn_places.len();
         let shared = self.plan.ratio.map(|ratio| (ratio / self.plan.length_m).powi(2));
         for (a, (&place, &shift)) in self.turn_places.iter().zip(&self.plan.turns).enumerate() {
-            for (b, (&other, &other_shift)) in self.turn_places.iter().zip(&self.plan.turns).enumerate().skip(a) {
+            for (b, (&other, &other_shift)) in
+                self.turn_places.iter().zip(&self.plan.turns).enumerate().skip(a)
+            {
                 let own = totals.turned[product(turns, a, b)];
                 let (first, second) = (shift.min(other_shift), shift.max(other_shift));
                 let of_shifts = totals.products[product(columns, first, second)];

@@ -78,8 +78,8 @@ impl<'a> Problem<'a> {
         length_m: f64,
     ) -> Self {
         // A few roundings of the largest number in sight: the distance from the device.
-        let farthest =
-            rows.iter().map(|&row| data.observations[row as usize].measurement.pose().translation.amax());
+        let position = |&row: &u32| data.observations[row as usize].measurement.residual_model().position();
+        let farthest = rows.iter().map(|row| position(row).amax());
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
         Problem {
             data,
@@ -143,7 +143,8 @@ impl<'a> Problem<'a> {
 
     /// Takes these measurements, one a row of the data, for measured in the same configurations.
     fn set_measurements(&mut self, measured: &[Measurement]) {
-        let before: Vec<_> = self.rows.iter().map(|&row| discriminant(self.measurement(row as usize))).collect();
+        let before: Vec<_> =
+            self.rows.iter().map(|&row| discriminant(self.measurement(row as usize))).collect();
         let own = self.measured.get_or_insert_default();
         own.clear();
         own.extend_from_slice(measured);
@@ -271,7 +272,6 @@ impl Problem<'_> {
             normal
         })
     }
-
 }
 
 impl LeastSquares for Problem<'_> {

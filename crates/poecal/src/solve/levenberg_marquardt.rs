@@ -135,7 +135,8 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     fn is_open(&self, trial: &Trial) -> bool {
         !trial.is_cut
             && trial.damping >= ROUNDING * self.scale()
-            && 0.5 * dot(&trial.step, &self.normal.gradient) >= self.options.decrement * self.normal.mean_square()
+            && 0.5 * dot(&trial.step, &self.normal.gradient)
+                >= self.options.decrement * self.normal.mean_square()
             && norm(&trial.step) >= self.options.step
             && self.normal.mean_square() >= self.problem.rounding()
     }
@@ -246,7 +247,8 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         let acceleration = linalg::cholesky_solve(&trial.factor, &second);
         let t = (LARGEST_ACCELERATION * norm(velocity) / norm(&acceleration)).min(1.0);
         let step = velocity.iter().zip(&acceleration).map(|(v, a)| t * v + 0.5 * t * t * a).collect();
-        let predicted = promise(t, dot(velocity, &self.normal.gradient), trial.damping * dot(velocity, velocity));
+        let predicted =
+            promise(t, dot(velocity, &self.normal.gradient), trial.damping * dot(velocity, velocity));
         Trial { step, predicted, shortened: t < 1.0, ..trial }
     }
 
@@ -293,8 +295,6 @@ struct Trial {
 fn promise(t: f64, descent: f64, damped: f64) -> f64 {
     t * descent - 0.5 * t * t * (descent - damped)
 }
-
-
 
 pub(super) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()

@@ -62,7 +62,8 @@ pub fn minimize_near<P: LeastSquares>(
             return (state, normal, summary);
         }
         let next = problem.retract(&state, &step);
-        let after = problem.gradient(&next).filter(|after| after.cost < normal.cost && promise < FAST * promised);
+        let after =
+            problem.gradient(&next).filter(|after| after.cost < normal.cost && promise < FAST * promised);
         let Some(after) = after else { break };
         promised = promise;
         (state, normal) = (next, after);
