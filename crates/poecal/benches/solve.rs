@@ -1,4 +1,5 @@
-//! `cargo bench -p poecal`: the solve of the paper's elbow from its nominal screws, and the whole calibration, by number of rows.
+//! `cargo bench -p poecal`: the solve of the paper's elbow from its nominal screws, and the whole calibration, by number of rows;
+//! an arm of thirty joints; 1,000 fits of a Monte Carlo.
 //!
 //! The workload: each axis of the elbow moved by 1° and 2 mm, random configurations within its limits, noise 0.05 mm and
 //! 0.0005 rad, measurements in the base frame.
@@ -8,8 +9,15 @@
 use divan::{Bencher, black_box};
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered, fit_screws};
 use poecal::estimate::Packed;
-use poecal::measurement::Noise;
-use poecal::simulate::{Kind, Simulated, Simulation, elbow};
+use poecal::lie::{Pose, rotation};
+use poecal::measurement::{Dataset, Measurement, Noise, PoseMeasurement};
+use poecal::parameters::{Formulation, Parameter, TargetFrame};
+use poecal::problem::{Problem, Refit};
+use poecal::simulate::{Kind, Simulated, Simulation, elbow, random, random_chain};
+use poecal::solve::{Options, minimize};
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+use rayon::prelude::*;
 
 fn main() {
     divan::main();
@@ -18,7 +26,7 @@ fn main() {
 const ROWS: [usize; 4] = [50, 500, 5_000, 50_000];
 const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 5e-4 };
 
-fn session(count: usize, kind: Kind) -> Simulated {
+fn simulation(count: usize) -> Simulation {
     Simulation {
         count,
         noise_position_m: NOISE.position_m,
@@ -26,18 +34,23 @@ fn session(count: usize, kind: Kind) -> Simulated {
         device_anywhere: false,
         ..Simulation::default()
     }
-    .run(&elbow(), kind)
-    .expect("a simulation of a finite robot")
+}
+
+fn session(count: usize, kind: Kind) -> Simulated {
+    simulation(count).run(&elbow(), kind).expect("a simulation of a finite robot")
 }
 
 /// Packing and Levenberg-Marquardt to convergence from nominal screws, device at the base, noise known.
 fn solve(bencher: Bencher<'_, '_>, rows: usize, kind: Kind) {
-    let made = session(rows, kind);
+    solve_session(bencher, &session(rows, kind));
+}
+
+fn solve_session(bencher: Bencher<'_, '_>, made: &Simulated) {
     let start = delivered(&made.nominal, &made.data);
-    let all: Vec<u32> = (0..rows as u32).collect();
+    let all: Vec<u32> = (0..made.data.len() as u32).collect();
     let options = CalibrationOptions::default();
     bencher.bench_local(|| {
-        let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
+        let packed = Packed::new(&made.nominal, made.data.all_readings(), made.data.reading_names().len());
         let length_m = made.nominal.reach_m() / 3.0;
         black_box(fit_screws(&made.data, &packed, &all, start.clone(), NOISE, length_m, &options))
     });
@@ -51,6 +64,58 @@ fn solve_poses(bencher: Bencher<'_, '_>, rows: usize) {
 #[divan::bench(args = ROWS)]
 fn solve_points(bencher: Bencher<'_, '_>, rows: usize) {
     solve(bencher, rows, Kind::Point);
+}
+
+/// The same for an arm of thirty joints, one in four of which slides.
+fn solve_thirty_joints(bencher: Bencher<'_, '_>, kind: Kind) {
+    let made = simulation(5_000).run(&random_chain(30, 1), kind).expect("a simulation of a finite robot");
+    solve_session(bencher, &made);
+}
+
+#[divan::bench]
+fn solve_thirty_joints_poses(bencher: Bencher<'_, '_>) {
+    solve_thirty_joints(bencher, Kind::Pose);
+}
+
+#[divan::bench]
+fn solve_thirty_joints_points(bencher: Bencher<'_, '_>) {
+    solve_thirty_joints(bencher, Kind::Point);
+}
+
+/// 1,000 fits of 50 poses each: the same configurations, other noise. Packing, the first fit and the sharing of its factor included.
+#[divan::bench]
+fn monte_carlo(bencher: Bencher<'_, '_>) {
+    let made = session(50, Kind::Pose);
+    let start = delivered(&made.nominal, &made.data);
+    let rows: Vec<u32> = (0..50).collect();
+    let mut free = Formulation::Adjoint.joint_parameters(&start.kinds);
+    free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
+    let mut generator = ChaCha8Rng::seed_from_u64(1);
+    let trials: Vec<Vec<Measurement>> = (0..1_000).map(|_| disturbed(&made.data, &mut generator)).collect();
+    let length_m = made.nominal.reach_m() / 3.0;
+    bencher.bench_local(|| {
+        let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
+        let problem = Problem::new(&made.data, &packed, rows.clone(), free.clone(), NOISE, length_m);
+        let (optimum, _, _) = minimize(&problem, start.clone(), &Options::default());
+        let refit = Refit::new(problem, optimum, Options::default());
+        trials
+            .par_iter()
+            .with_min_len(50)
+            .map_init(|| refit.clone(), |refit, measured| refit.fit(measured).1.cost)
+            .sum::<f64>()
+    });
+}
+
+/// Measurements with further noise.
+fn disturbed(data: &Dataset, generator: &mut ChaCha8Rng) -> Vec<Measurement> {
+    let mut disturb = |seen: &Measurement| {
+        let shift = random::normal_vector(generator) * NOISE.position_m;
+        let turn = random::normal_vector(generator) * NOISE.rotation_rad;
+        let seen = seen.pose();
+        let pose = Pose::new(rotation::exp(&turn) * seen.rotation, seen.translation + shift);
+        Measurement::Pose(PoseMeasurement { pose })
+    };
+    data.observations.iter().map(|observation| disturb(&observation.measurement)).collect()
 }
 
 /// Everything `calibrate` does: starts, noise estimation, fit, gauge, rank, accuracy; device frame unknown, nothing held out.

@@ -69,6 +69,7 @@ pub mod estimate;
 pub mod forensics;
 pub mod gauge;
 pub mod io;
+mod lanes;
 pub mod lie;
 mod linalg;
 pub mod measurement;

@@ -1,6 +1,8 @@
 //! Dense linear algebra of the normal equations: accumulation, Cholesky, symmetric eigenvalues. The only file that names nalgebra's
 //! decompositions: `symmetric_eigen` and singular values alone, since its SVD with vectors errs on repeated columns.
 
+pub(crate) use crate::lanes::Factor;
+use crate::lanes::{self, Level};
 use nalgebra::{DMatrix, Matrix4, Vector3, Vector4};
 
 /// Adds `Σ rows rᵀ r` to the upper triangle of a row-major `n × n` Gram matrix. `rows` holds rows of `n` numbers, of which those
@@ -46,53 +48,27 @@ pub(crate) fn add_gradient(gradient: &mut [f64], rows: &[f64], residuals: &[f64]
     }
 }
 
-/// Cholesky factor `L` (row-major, lower) of the symmetric matrix given by its upper triangle plus `damping` on the diagonal;
-/// `None` if that is not positive definite.
-pub(crate) fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Vec<f64>> {
-    let mut factor = vec![0.0; n * n];
-    for i in 0..n {
-        for j in 0..=i {
-            let (above, row_i) = factor.split_at(i * n);
-            let row_i = &row_i[..n];
-            let row_j = if j == i { row_i } else { &above[j * n..(j + 1) * n] };
-            let dot: f64 = row_i[..j].iter().zip(&row_j[..j]).map(|(a, b)| a * b).sum();
-            let value = upper[j * n + i] - dot;
-            if i == j {
-                let pivot = value + damping;
-                if pivot.is_nan() || pivot <= 0.0 {
-                    return None;
-                }
-                factor[i * n + i] = pivot.sqrt();
-            } else {
-                factor[i * n + j] = value / factor[j * n + j];
-            }
-        }
-    }
-    Some(factor)
+/// Cholesky factor of the symmetric matrix given by its upper triangle plus `damping` on the diagonal; `None` if that is not positive
+/// definite.
+pub(crate) fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
+    lanes::cholesky(Level::best(), upper, n, damping)
 }
 
-/// Solves `L x = b` in place.
-pub(crate) fn lower_solve(factor: &[f64], x: &mut [f64]) {
-    let n = x.len();
-    for i in 0..n {
-        let dot: f64 = factor[i * n..i * n + i].iter().zip(&x[..i]).map(|(a, b)| a * b).sum();
-        x[i] = (x[i] - dot) / factor[i * n + i];
-    }
+/// Solves `L x = b` in place, with `L Lᵀ` the matrix that was factorised.
+pub(crate) fn lower_solve(factor: &Factor, x: &mut [f64]) {
+    lanes::lower_solve(Level::best(), factor, x);
 }
 
 /// Solves `L Lᵀ x = b`.
-pub(crate) fn cholesky_solve(factor: &[f64], b: &[f64]) -> Vec<f64> {
-    let n = b.len();
+pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
-    lower_solve(factor, &mut x);
-    for i in (0..n).rev() {
-        x[i] /= factor[i * n + i];
-        let xi = x[i];
-        for (value, l) in x[..i].iter_mut().zip(&factor[i * n..i * n + i]) {
-            *value -= l * xi;
-        }
-    }
+    lanes::solve(Level::best(), factor, &mut x);
     x
+}
+
+/// `aᵀb`.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Eigenvalues (ascending) and eigenvectors (columns) of the symmetric matrix given by its upper triangle.

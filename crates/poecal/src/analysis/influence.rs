@@ -53,7 +53,7 @@ pub fn influence(
             problem.for_rows(estimate, rows, |row, jacobian, residual| {
                 let weight = weights.next().copied().unwrap_or(1.0);
                 let scaled: Vec<f64> = residual.iter().enumerate().map(|(k, e)| e / scale(row, k)).collect();
-                found.push(row_influence(factor.as_deref(), jacobian, &scaled, weight));
+                found.push(row_influence(factor.as_ref(), jacobian, &scaled, weight));
             });
             found
         })
@@ -62,7 +62,12 @@ pub fn influence(
 }
 
 /// Of one row: `H = J N⁻¹ Jᵀ`, and `t² = eᵀ (I - wH)⁻¹ (I + (1 - w)H)⁻¹ e`.
-fn row_influence(factor: Option<&[f64]>, jacobian: &[f64], residual: &[f64], weight: f64) -> Influence {
+fn row_influence(
+    factor: Option<&linalg::Factor>,
+    jacobian: &[f64],
+    residual: &[f64],
+    weight: f64,
+) -> Influence {
     let dim = residual.len();
     let n = jacobian.len() / dim.max(1);
     let mut hat = vec![0.0; dim * dim];

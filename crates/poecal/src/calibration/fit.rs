@@ -20,8 +20,13 @@ use crate::simulate::random;
 use crate::solve::{LeastSquares, Normal, Options, Summary, minimize};
 use crate::start::target_parameters;
 
-/// Rows beyond which a fit begins on a sample of this many.
-const SAMPLE: usize = 1000;
+/// Rows of the sample on which a fit of many rows begins: for each unknown, and at least.
+const SAMPLE_PER_UNKNOWN: usize = 10;
+const SAMPLE: usize = 512;
+/// Times as many rows as are in a sample, beyond which a fit begins on one.
+const MANY: usize = 3;
+/// The optimum of a sample is an estimate: closer than a tenth of its own standard deviation need not be gone.
+const SAMPLE_DECREMENT: f64 = 1e-2;
 /// Rows on which further starts are compared.
 const RESTART_SAMPLE: usize = 200;
 /// Root mean square position error, as a share of the arm's reach, above which a fit may have ended beside the optimum: real robots,
@@ -80,7 +85,7 @@ pub(super) fn free_parameters(
 }
 
 /// One fit of all screws and targets from a start, the device's frame staying where it is: by the formulation and the solver that
-/// the options state, begun on a sample if the rows are many.
+/// the options state, begun on a sample if the rows are many. As [`minimize`] says, `JᵀJ` may be that of a state close by.
 pub fn fit_screws(
     data: &Dataset,
     packed: &Packed,
@@ -94,9 +99,13 @@ pub fn fit_screws(
     let problem = |rows: Vec<u32>| Problem::new(data, packed, rows, free.clone(), noise, length_m);
     let mut start = start;
     let mut before = None;
-    if rows.len() > 4 * SAMPLE {
-        let sample = sample_rows(rows, SAMPLE);
-        let (estimate, _, summary) = minimize(&problem(sample), start, &options.solver);
+    let unknowns: usize = free.iter().map(|parameter| parameter.model().columns().len()).sum();
+    let enough = SAMPLE.max(SAMPLE_PER_UNKNOWN * unknowns);
+    if rows.len() > MANY * enough {
+        let sample = sample_rows(rows, enough);
+        let decrement = SAMPLE_DECREMENT.max(options.solver.decrement);
+        let near = Options { decrement, ..options.solver };
+        let (estimate, _, summary) = minimize(&problem(sample), start, &near);
         start = estimate;
         before = Some(summary);
     }
@@ -200,7 +209,8 @@ impl Task<'_> {
 
     /// What a fit at its optimum comes to.
     pub(super) fn finish(&self, found: Found, noise: Noise, source: NoiseSource) -> Result<Fitted> {
-        let Found { mut estimate, mut normal, mut report } = found;
+        let Found { mut estimate, mut report, .. } = found;
+        let mut normal = self.problem(&estimate, noise).normal(&estimate);
         if !normal.cost.is_finite() {
             return Err(Error::new(
                 ErrorKind::Solver,
@@ -316,8 +326,9 @@ impl Task<'_> {
                 break;
             };
             let length = step.iter().map(|s| s * s).sum::<f64>().sqrt();
-            let (moved, moved_normal, summary) =
+            let (moved, _, summary) =
                 minimize(&problem, problem.retract(&estimate, &step), &self.options.solver);
+            let moved_normal = problem.normal(&moved);
             if length < 1e-10 || moved_normal.cost > normal.cost * (1.0 + 1e-6) + 1e-12 {
                 break;
             }

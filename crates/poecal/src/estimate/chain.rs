@@ -51,6 +51,16 @@ impl Linkage {
         Linkage { kinds: estimate.kinds.clone(), steps, ends, offsets }
     }
 
+    /// `device_from_axis_1`, then `axis_(i-1)_from_axis_i`, at zero joint values.
+    pub(crate) fn steps(&self) -> &[Pose] {
+        &self.steps
+    }
+
+    /// `axis_n_from_target`.
+    pub(crate) fn end(&self, target: usize) -> &Pose {
+        &self.ends[target]
+    }
+
     /// `(θ, cos θ or θ, sin θ or 0)` of a joint with its offset put in.
     fn joint_value(&self, joint: usize, value: f64, packed: (f64, f64)) -> (f64, f64, f64) {
         let Some(&(offset, cosine, sine)) = self.offsets.get(joint) else {

@@ -1,5 +1,6 @@
 //! Joint values of every row with their sines and cosines, computed once: no trigonometry inside the iterations.
 
+use crate::lanes::{self, Level};
 use crate::robot::{JointKind, Robot};
 
 /// Joint values of all rows, flat: `n` joints a row. For a revolute joint `(cos θ, sin θ)`, for a prismatic one `(θ, 0)`; and θ
@@ -19,6 +20,7 @@ use crate::robot::{JointKind, Robot};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packed {
     joints: usize,
+    kinds: Vec<JointKind>,
     values: Vec<(f64, f64)>,
     angles: Vec<f64>,
 }
@@ -29,35 +31,38 @@ impl Packed {
     pub fn new(robot: &Robot, readings: &[f64], width: usize) -> Self {
         let indices = robot.reading_indices();
         let mut values = Vec::with_capacity(readings.len() / width.max(1) * robot.joints.len());
-        let mut angles = Vec::with_capacity(values.capacity());
         for row in readings.chunks_exact(width.max(1)) {
             for (joint, &index) in robot.joints.iter().zip(&indices) {
-                let value = joint.reading.value(row[index]);
-                angles.push(value);
-                values.push(match joint.kind {
-                    JointKind::Revolute => {
-                        let (sine, cosine) = value.sin_cos();
-                        (cosine, sine)
-                    }
-                    JointKind::Prismatic => (value, 0.0),
-                });
+                values.push(joint.reading.value(row[index]));
             }
         }
-        Packed { joints: robot.joints.len(), values, angles }
+        Packed::pack(robot, values)
     }
 
     /// Packs joint values (radians, metres), one a joint and row.
     #[must_use]
     pub fn of_values(robot: &Robot, values: &[f64]) -> Self {
+        Packed::pack(robot, values.to_vec())
+    }
+
+    fn pack(robot: &Robot, angles: Vec<f64>) -> Self {
         let joints = robot.joints.len();
-        let pack = |(index, &value): (usize, &f64)| match robot.joints[index % joints.max(1)].kind {
-            JointKind::Revolute => {
-                let (sine, cosine) = value.sin_cos();
-                (cosine, sine)
+        let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
+        let mut values = vec![(0.0, 0.0); angles.len()];
+        lanes::cosines_and_sines(Level::best(), &angles, &mut values);
+        if kinds.contains(&JointKind::Prismatic) {
+            for (index, (packed, &value)) in values.iter_mut().zip(&angles).enumerate() {
+                if kinds[index % joints] == JointKind::Prismatic {
+                    *packed = (value, 0.0);
+                }
             }
-            JointKind::Prismatic => (value, 0.0),
-        };
-        Packed { joints, values: values.iter().enumerate().map(pack).collect(), angles: values.to_vec() }
+        }
+        Packed { joints, kinds, values, angles }
+    }
+
+    /// Revolute or prismatic, a joint.
+    pub(crate) fn kinds(&self) -> &[JointKind] {
+        &self.kinds
     }
 
     /// Number of rows.

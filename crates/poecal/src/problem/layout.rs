@@ -19,6 +19,7 @@ pub struct Layout {
     /// For each unknown in the order of the parameters: its place in the step, and step units per its own unit.
     places: Vec<(usize, f64)>,
     shifts: usize,
+    length_m: f64,
 }
 
 impl Layout {
@@ -40,7 +41,7 @@ impl Layout {
                 (*next - 1, scale)
             })
             .collect();
-        Layout { parameters, places, shifts }
+        Layout { parameters, places, shifts, length_m }
     }
 
     /// Number of unknowns.
@@ -53,6 +54,11 @@ impl Layout {
     #[must_use]
     pub fn shifts(&self) -> usize {
         self.shifts
+    }
+
+    /// How many metres one radian counts.
+    pub(crate) fn length_m(&self) -> f64 {
+        self.length_m
     }
 
     /// The free parameters with the places of their unknowns in a step.

@@ -1,16 +1,23 @@
 //! Rows × columns: measurements and parameters meet here and nowhere else. Assembly only, no algorithms.
 
+mod fast;
 mod layout;
+mod refit;
 
+pub use crate::lanes::{Level, levels};
 pub use layout::Layout;
+pub use refit::Refit;
 
 use crate::estimate::{Chain, Estimate, Linkage, Packed};
 use crate::lie::TargetTwist;
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{Dataset, Measurement, Noise};
 use crate::parameters::{Parameter, Wrench};
 use crate::solve::{LeastSquares, Normal};
+use fast::Fast;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use std::mem::discriminant;
+use std::sync::OnceLock;
 
 /// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
 const CHUNK: usize = 1024;
@@ -50,7 +57,13 @@ pub struct Problem<'a> {
     layout: Layout,
     noise: Noise,
     weights: Option<&'a [f64]>,
+    /// What is taken for measured instead of the data, one a row of the data.
+    measured: Option<Vec<Measurement>>,
     rounding_m: f64,
+    /// By which instructions the hot path runs.
+    level: Level,
+    /// The rows packed for the hot path; `None` inside where it does not serve.
+    fast: OnceLock<Option<Fast>>,
 }
 
 impl<'a> Problem<'a> {
@@ -65,10 +78,30 @@ impl<'a> Problem<'a> {
         length_m: f64,
     ) -> Self {
         // A few roundings of the largest number in sight: the distance from the device.
-        let farthest =
-            rows.iter().map(|&row| data.observations[row as usize].measurement.pose().translation.amax());
+        let position = |&row: &u32| data.observations[row as usize].measurement.residual_model().position();
+        let farthest = rows.iter().map(|row| position(row).amax());
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
-        Problem { data, packed, rows, layout: Layout::new(free, length_m), noise, weights: None, rounding_m }
+        Problem {
+            data,
+            packed,
+            rows,
+            layout: Layout::new(free, length_m),
+            noise,
+            weights: None,
+            measured: None,
+            rounding_m,
+            level: Level::best(),
+            fast: OnceLock::new(),
+        }
+    }
+
+    /// The same problem, its sums computed by other instructions: for tests and comparisons. Those that the machine lacks are replaced
+    /// by the baseline.
+    #[must_use]
+    pub fn with_level(mut self, level: Level) -> Self {
+        self.level = level;
+        self.fast = OnceLock::new();
+        self
     }
 
     /// The same problem with a weight for every row of the data: its noise is divided by the weight's square root, and a weight of
@@ -77,6 +110,7 @@ impl<'a> Problem<'a> {
     pub fn with_weights(mut self, weights: &'a [f64]) -> Self {
         self.rows.retain(|&row| weights.get(row as usize).is_none_or(|&weight| weight > 0.0));
         self.weights = Some(weights);
+        self.fast = OnceLock::new();
         self
     }
 
@@ -101,6 +135,29 @@ impl<'a> Problem<'a> {
         Noise { position_m: noise.position_m / root, rotation_rad: noise.rotation_rad / root }
     }
 
+    /// What was measured in a row.
+    fn measurement(&self, row: usize) -> &Measurement {
+        let instead = self.measured.as_ref().and_then(|measured| measured.get(row));
+        instead.unwrap_or(&self.data.observations[row].measurement)
+    }
+
+    /// Takes these measurements, one a row of the data, for measured in the same configurations.
+    fn set_measurements(&mut self, measured: &[Measurement]) {
+        let before: Vec<_> =
+            self.rows.iter().map(|&row| discriminant(self.measurement(row as usize))).collect();
+        let own = self.measured.get_or_insert_default();
+        own.clear();
+        own.extend_from_slice(measured);
+        let kind = |row: u32| discriminant(self.measurement(row as usize));
+        let is_alike = self.rows.iter().zip(&before).all(|(&row, before)| kind(row) == *before);
+        if let Some(Some(mut fast)) = self.fast.take()
+            && is_alike
+        {
+            fast.pack(self);
+            self.fast = OnceLock::from(Some(fast));
+        }
+    }
+
     /// Gives the whitened Jacobian of the prediction (row-major) and residual of each of some rows of the data, in turn.
     pub fn for_rows(&self, state: &Estimate, rows: &[u32], mut each: impl FnMut(u32, &[f64], &[f64])) {
         let n = self.layout.dim();
@@ -111,7 +168,7 @@ impl<'a> Problem<'a> {
         let mut residual = [0.0; 6];
         for &row in rows {
             let observation = &self.data.observations[row as usize];
-            let measurement = observation.measurement.residual_model();
+            let measurement = self.measurement(row as usize).residual_model();
             let (noise, dim) = (self.noise(row as usize), measurement.dim());
             chain.evaluate(&linkage, self.packed, row as usize, observation.target);
             self.layout.target_twists(&chain, observation.target, &mut columns);
@@ -152,7 +209,7 @@ impl<'a> Problem<'a> {
         for (count, &row) in rows.iter().enumerate() {
             let row = row as usize;
             let observation = &self.data.observations[row];
-            let measurement = observation.measurement.residual_model();
+            let measurement = self.measurement(row).residual_model();
             chain.evaluate(linkage, self.packed, row, observation.target);
             self.layout.target_twists(&chain, observation.target, &mut columns);
             let (dim, split) = (measurement.dim(), measurement.rotation_row());
@@ -190,6 +247,33 @@ impl Block {
     }
 }
 
+impl Problem<'_> {
+    /// The hot path, if it serves this problem in this state.
+    fn fast(&self, state: &Estimate) -> Option<&Fast> {
+        let has_offsets = state.joint_offset.iter().any(|&offset| offset != 0.0);
+        self.fast.get_or_init(|| Fast::new(self, self.level)).as_ref().filter(|_| !has_offsets)
+    }
+
+    /// [`LeastSquares::normal`] by the general path, which serves every problem: row after row, as measurements and parameters write it.
+    #[must_use]
+    pub fn normal_row_by_row(&self, state: &Estimate) -> Normal {
+        let linkage = Linkage::new(state);
+        self.sum_chunks(|rows| {
+            let mut normal = Normal::new(self.layout.dim());
+            self.for_blocks(
+                &linkage,
+                rows,
+                |chain, row, out| {
+                    let measurement = self.measurement(row).residual_model();
+                    measurement.residual(&chain.target, &self.noise(row), out);
+                },
+                &mut normal,
+            );
+            normal
+        })
+    }
+}
+
 impl LeastSquares for Problem<'_> {
     type State = Estimate;
 
@@ -198,20 +282,14 @@ impl LeastSquares for Problem<'_> {
     }
 
     fn normal(&self, state: &Estimate) -> Normal {
-        let linkage = Linkage::new(state);
-        self.sum_chunks(|rows| {
-            let mut normal = Normal::new(self.layout.dim());
-            self.for_blocks(
-                &linkage,
-                rows,
-                |chain, row, out| {
-                    let measurement = self.data.observations[row].measurement.residual_model();
-                    measurement.residual(&chain.target, &self.noise(row), out);
-                },
-                &mut normal,
-            );
-            normal
-        })
+        match self.fast(state) {
+            Some(fast) => fast.normal(self, state, true),
+            None => self.normal_row_by_row(state),
+        }
+    }
+
+    fn gradient(&self, state: &Estimate) -> Option<Normal> {
+        self.fast(state).map(|fast| fast.normal(self, state, false))
     }
 
     fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {
@@ -233,7 +311,7 @@ impl LeastSquares for Problem<'_> {
                 rows,
                 |here, row, out| {
                     let observation = &self.data.observations[row];
-                    let measurement = observation.measurement.residual_model();
+                    let measurement = self.measurement(row).residual_model();
                     let noise = self.noise(row);
                     chain.evaluate(&ahead, self.packed, row, observation.target);
                     measurement.residual(&chain.target, &noise, &mut e_ahead);
@@ -263,7 +341,7 @@ impl LeastSquares for Problem<'_> {
                 let row = row as usize;
                 let observation = &self.data.observations[row];
                 chain.evaluate(&linkage, self.packed, row, observation.target);
-                let measurement = observation.measurement.residual_model();
+                let measurement = self.measurement(row).residual_model();
                 let Some((force, torque)) = measurement.wrench(&chain.target, &self.noise(row)) else {
                     return normal;
                 };

@@ -4,7 +4,8 @@
 use super::gauss_newton::{gauss_newton, kept};
 use super::normal::quadratic;
 use super::{LeastSquares, Method, Normal, Options, Summary, Termination};
-use crate::linalg;
+pub(super) use crate::linalg::dot;
+use crate::linalg::{self, Factor};
 
 /// Most a geodesic correction may be of the step that it corrects (transtrum2012).
 const LARGEST_ACCELERATION: f64 = 0.75;
@@ -15,7 +16,20 @@ const ROUNDING_STEP: f64 = 1e-9;
 /// Share of the largest diagonal element that rounding makes of the normal equations' small eigenvalues.
 pub(super) const ROUNDING: f64 = 1e-13;
 
+/// Gain ratios of a problem that is as good as quadratic.
+const STRAIGHT: std::ops::Range<f64> = 0.8..1.25;
+
+/// A step that promises less than this share of the cost starts close to the optimum, as far as the residuals can tell: it moves far
+/// less than `JᵀJ` would notice.
+const NEAR: f64 = 5e-2;
+
+/// Steps with an old `JᵀJ` converge fast if each promises less than this share of what the one before promised.
+pub(super) const FAST: f64 = 1e-2;
+
 /// Minimises from `start`; gives the state reached, its normal information and a summary.
+///
+/// Residuals and gradient are those of the state reached. `JᵀJ` may be that of an earlier state close by, since the last steps do not
+/// need it anew: who needs it at the optimum asks for [`LeastSquares::normal`] there (theory.md §6, *Many rows*).
 pub fn minimize<P: LeastSquares>(
     problem: &P,
     start: P::State,
@@ -34,7 +48,9 @@ struct Search<'a, P: LeastSquares> {
     problem: &'a P,
     options: Options,
     state: P::State,
+    /// Of this state; while `is_old`, with the `JᵀJ` of an earlier one close by.
     normal: Normal,
+    is_old: bool,
     /// Upper triangle of what steps are solved with: `JᵀJ`, or the full Hessian where that is known and convex.
     hessian: Vec<f64>,
     /// Damping as a multiple of the mean squared residual.
@@ -43,6 +59,8 @@ struct Search<'a, P: LeastSquares> {
     increase: f64,
     /// Whether a step has shown a poor quadratic model: from then on steps follow curvature, and damping falls with care.
     nonlinear: bool,
+    /// What the step before promised.
+    promised: f64,
     iterations: usize,
     trace: Vec<f64>,
 }
@@ -57,9 +75,11 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             hessian: normal.gram.clone(),
             trace: vec![normal.mean_square()],
             normal,
+            is_old: false,
             damping: 1.0 / (options.trust * options.trust),
             increase: 2.0,
             nonlinear: false,
+            promised: f64::INFINITY,
             iterations: 0,
         }
     }
@@ -69,13 +89,16 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             return Termination::NotFinite;
         }
         loop {
-            if let Some(termination) = self.converged() {
+            let trial = self.damped_step();
+            if !trial.as_ref().is_some_and(|trial| self.is_open(trial))
+                && let Some(termination) = self.converged()
+            {
                 return termination;
             }
             if self.iterations >= self.options.iterations {
                 return Termination::IterationLimit;
             }
-            if !self.iterate() {
+            if !self.iterate(trial) {
                 return Termination::NoProgress;
             }
         }
@@ -101,6 +124,23 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
     }
 
+    /// Replaces the `JᵀJ` of an earlier state.
+    fn renew_normal(&mut self) {
+        self.is_old = false;
+        self.normal = self.problem.normal(&self.state);
+        self.renew_hessian();
+    }
+
+    /// Whether a damped step already shows that the undamped one, which is longer and promises more, is not the last.
+    fn is_open(&self, trial: &Trial) -> bool {
+        !trial.is_cut
+            && trial.damping >= ROUNDING * self.scale()
+            && 0.5 * dot(&trial.step, &self.normal.gradient)
+                >= self.options.decrement * self.normal.mean_square()
+            && norm(&trial.step) >= self.options.step
+            && self.normal.mean_square() >= self.problem.rounding()
+    }
+
     /// Judges the undamped step (damped only by rounding).
     fn converged(&self) -> Option<Termination> {
         let n = self.problem.dim();
@@ -123,10 +163,9 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     }
 
     /// One trial step; `false` when steps have become too small to matter without having helped.
-    fn iterate(&mut self) -> bool {
+    fn iterate(&mut self, trial: Option<Trial>) -> bool {
         self.iterations += 1;
-        let damping = (self.damping * self.normal.mean_square()).max(0.1 * ROUNDING * self.scale());
-        let Some(trial) = self.trial_step(damping) else {
+        let Some(trial) = trial.map(|trial| self.bent(trial)) else {
             self.trace.push(self.normal.mean_square());
             self.damping *= 10.0;
             return self.damping.is_finite();
@@ -137,10 +176,23 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             return norm(&trial.step) > ROUNDING_STEP && self.damping.is_finite();
         }
         let state = self.problem.retract(&self.state, &trial.step);
-        let normal = self.problem.normal(&state);
+        let old = self.gradient_only(&state, trial.predicted);
+        let is_old = old.is_some();
+        let normal = old.unwrap_or_else(|| self.problem.normal(&state));
         let gain = (self.normal.cost - normal.cost) / trial.predicted;
         if normal.cost.is_finite() && gain > 1e-3 {
+            // With an old `JᵀJ` the model is not the problem's own, and says nothing of how curved that is.
+            let is_fair = !self.is_old;
+            self.promised = trial.predicted;
+            self.is_old = is_old;
+            self.nonlinear |= is_fair && !STRAIGHT.contains(&gain);
             self.accept(state, normal, if trial.shortened { gain.min(0.5) } else { gain });
+            return true;
+        }
+        if self.is_old {
+            // The step may have failed by its old `JᵀJ`.
+            self.trace.push(self.normal.mean_square());
+            self.renew_normal();
             return true;
         }
         let before = self.nonlinear;
@@ -154,33 +206,53 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             && self.damping.is_finite()
     }
 
-    /// The damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature, with t below one
-    /// where the acceleration `a` would overtake `v`.
-    fn trial_step(&self, damping: f64) -> Option<Trial> {
+    /// Residuals and gradient at a new state beside the `JᵀJ` of the old one, where that will do for a further step: where the model
+    /// already fits but for a little, so that this step is short, and as long as such steps converge fast.
+    fn gradient_only(&self, state: &P::State, predicted: f64) -> Option<Normal> {
+        let is_near = predicted < NEAR * self.normal.cost;
+        let falls = !self.is_old || predicted < FAST * self.promised;
+        if self.nonlinear || !is_near || !falls {
+            return None;
+        }
+        let mut normal = self.problem.gradient(state)?;
+        normal.gram.copy_from_slice(&self.normal.gram);
+        Some(normal)
+    }
+
+    /// The damped step as it stands.
+    fn damped_step(&self) -> Option<Trial> {
         let n = self.problem.dim();
+        let damping = (self.damping * self.normal.mean_square()).max(0.1 * ROUNDING * self.scale());
         let factor = linalg::cholesky(&self.hessian, n, damping)?;
         let velocity = linalg::cholesky_solve(&factor, &self.normal.gradient);
         let kept = kept(self.problem, &velocity);
-        if kept != velocity {
-            let predicted = quadratic(&self.hessian, &self.normal.gradient, &kept);
-            return Some(Trial { step: velocity, predicted, shortened: false });
-        }
-        let descent = dot(&velocity, &self.normal.gradient);
+        let is_cut = kept != velocity;
         let damped = damping * dot(&velocity, &velocity);
-        // Along the parabola the model promises t gᵀv - t² vᵀHv / 2, and vᵀHv is gᵀv less what the damping takes.
-        let promise = |t: f64| t * descent - 0.5 * t * t * (descent - damped);
-        if !(self.options.acceleration && self.nonlinear) {
-            return Some(Trial { step: velocity, predicted: promise(1.0), shortened: false });
+        let predicted = if is_cut {
+            quadratic(&self.hessian, &self.normal.gradient, &kept)
+        } else {
+            promise(1.0, dot(&velocity, &self.normal.gradient), damped)
+        };
+        Some(Trial { step: velocity, predicted, shortened: false, factor, damping, is_cut })
+    }
+
+    /// The damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature, with t below one
+    /// where the acceleration `a` would overtake `v`.
+    fn bent(&self, trial: Trial) -> Trial {
+        if !(self.options.acceleration && self.nonlinear) || trial.is_cut {
+            return trial;
         }
-        let second = self.problem.second_order(&self.state, &velocity);
-        let acceleration = linalg::cholesky_solve(&factor, &second);
-        let t = (LARGEST_ACCELERATION * norm(&velocity) / norm(&acceleration)).min(1.0);
+        let velocity = &trial.step;
+        let second = self.problem.second_order(&self.state, velocity);
+        let acceleration = linalg::cholesky_solve(&trial.factor, &second);
+        let t = (LARGEST_ACCELERATION * norm(velocity) / norm(&acceleration)).min(1.0);
         let step = velocity.iter().zip(&acceleration).map(|(v, a)| t * v + 0.5 * t * t * a).collect();
-        Some(Trial { step, predicted: promise(t), shortened: t < 1.0 })
+        let predicted =
+            promise(t, dot(velocity, &self.normal.gradient), trial.damping * dot(velocity, velocity));
+        Trial { step, predicted, shortened: t < 1.0, ..trial }
     }
 
     fn accept(&mut self, state: P::State, normal: Normal, gain: f64) {
-        self.nonlinear |= !(0.8..1.25).contains(&gain);
         self.damping *= if gain <= 0.5 {
             (1.0 - (2.0 * gain - 1.0).powi(3)).min(2.0)
         } else if self.nonlinear {
@@ -192,7 +264,11 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         self.state = state;
         self.normal = normal;
         self.trace.push(self.normal.mean_square());
-        self.renew_hessian();
+        if self.is_old && self.nonlinear {
+            self.renew_normal();
+        } else if !self.is_old {
+            self.renew_hessian();
+        }
     }
 
     fn reject(&mut self) {
@@ -208,10 +284,16 @@ struct Trial {
     step: Vec<f64>,
     predicted: f64,
     shortened: bool,
+    /// Of the damped Hessian.
+    factor: Factor,
+    damping: f64,
+    /// Whether the retraction drops something of the step.
+    is_cut: bool,
 }
 
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// What the model promises along the parabola: `t gᵀv - t² vᵀHv / 2`, and vᵀHv is gᵀv less what the damping takes.
+fn promise(t: f64, descent: f64, damped: f64) -> f64 {
+    t * descent - 0.5 * t * t * (descent - damped)
 }
 
 pub(super) fn norm(a: &[f64]) -> f64 {

@@ -2,11 +2,13 @@
 
 mod gauss_newton;
 mod levenberg_marquardt;
+mod near;
 mod normal;
 mod options;
 mod termination;
 
 pub use levenberg_marquardt::minimize;
+pub use near::{Near, minimize_near};
 pub use normal::Normal;
 pub use options::{Method, Options, Summary};
 pub use termination::Termination;
@@ -21,6 +23,11 @@ pub trait LeastSquares {
 
     /// Residuals and their derivatives, as normal information.
     fn normal(&self, state: &Self::State) -> Normal;
+
+    /// The same without `JᵀJ`, which is left zero: for steps with an older one. `None` where that would save nothing.
+    fn gradient(&self, _state: &Self::State) -> Option<Normal> {
+        None
+    }
 
     /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected (theory.md §6 (31)).
     fn second_order(&self, state: &Self::State, step: &[f64]) -> Vec<f64>;

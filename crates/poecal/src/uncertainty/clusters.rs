@@ -35,7 +35,7 @@ pub(super) fn inflation(view: &View<'_>, whole: &Normal) -> Option<f64> {
 
 /// `tr(D)` and `tr(D²)` of `D = H - H²`, `H = N⁻¹ P`, from the Cholesky factor of N and the upper triangle of P: mean and half the variance
 /// of `gᵀ N⁻¹ g` for a cluster with information P, in white noise of variance 1.
-fn share_of(factor: &[f64], part: &[f64], n: usize) -> (f64, f64) {
+fn share_of(factor: &linalg::Factor, part: &[f64], n: usize) -> (f64, f64) {
     let mut h = vec![0.0; n * n];
     for j in 0..n {
         let column: Vec<f64> = (0..n).map(|i| part[i.min(j) * n + i.max(j)]).collect();

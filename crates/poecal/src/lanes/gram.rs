@@ -1,0 +1,55 @@
+//! Sums of products of columns in register tiles: where most of the time of a fit goes.
+
+use super::vector::{Vector, WIDTH, Wide};
+
+/// Columns a side of a tile: nine sums in registers hide the latency of their additions, and six loads feed nine products.
+pub(super) const TILE: usize = 3;
+
+/// Numbers that the sums of all tiles of so many columns take, in wide ones, for `L` lanes.
+pub(super) fn sums_len(columns: usize, lanes: usize) -> usize {
+    let tiles = columns / TILE;
+    (tiles * (tiles + 1) / 2 * TILE * TILE * lanes).div_ceil(WIDTH)
+}
+
+/// Adds the products of each pair of columns, summed over rows but not over lanes. A column is `stride` wide numbers long, of which
+/// the first `used` count; `columns` is a multiple of [`TILE`].
+#[inline(always)]
+pub(super) fn add_products<V: Vector>(
+    jacobian: &[Wide],
+    stride: usize,
+    used: usize,
+    columns: usize,
+    sums: &mut [Wide],
+) {
+    let mut at = 0;
+    for i in (0..columns).step_by(TILE) {
+        for j in (i..columns).step_by(TILE) {
+            let tile = tile::<V>(&jacobian[i * stride..], &jacobian[j * stride..], stride, used);
+            for sum in tile {
+                sum.add_to(&mut sums[at * V::LANES / WIDTH], at % (WIDTH / V::LANES));
+                at += 1;
+            }
+        }
+    }
+}
+
+/// The nine products of two groups of three columns.
+#[inline(always)]
+fn tile<V: Vector>(left: &[Wide], right: &[Wide], stride: usize, used: usize) -> [V; TILE * TILE] {
+    let (a, b, c) = (&left[..used], &left[stride..stride + used], &left[2 * stride..2 * stride + used]);
+    let (d, e, f) = (&right[..used], &right[stride..stride + used], &right[2 * stride..2 * stride + used]);
+    let mut sums = [V::splat(0.0); TILE * TILE];
+    for k in 0..used {
+        for part in 0..WIDTH / V::LANES {
+            let left = [V::load(&a[k], part), V::load(&b[k], part), V::load(&c[k], part)];
+            let right = [V::load(&d[k], part), V::load(&e[k], part), V::load(&f[k], part)];
+            for row in 0..TILE {
+                for column in 0..TILE {
+                    let sum = &mut sums[row * TILE + column];
+                    *sum = left[row].times_plus(right[column], *sum);
+                }
+            }
+        }
+    }
+    sums
+}

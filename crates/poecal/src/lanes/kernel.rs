@@ -1,0 +1,461 @@
+//! One pass over rows: the chain, its columns in local axis frames, residuals, and their products (theory.md §5, §6 (28)).
+//!
+//! One source for every width of vector: `L` rows are computed at a time, in blocks of [`WIDTH`].
+
+use std::cell::RefCell;
+
+use super::gram::{TILE, add_products, sums_len};
+use super::plan::{Plan, Step};
+use super::turn::Turn;
+use super::vector::{Vector, Vectors, WIDTH, Wide};
+
+/// Memory of columns that are waiting for their products, in wide numbers: with the sums it just fits the first cache.
+const WAITING: usize = 570;
+/// Fewest and most blocks that wait: with few, the tiles' sums are loaded and stored too often, even if columns fill the second cache.
+const BLOCKS_WAITING: (usize, usize) = (6, 8);
+
+/// Sums of one pass over some rows.
+pub(crate) struct Totals {
+    /// Products of position columns, tile after tile: see [`product`].
+    pub(crate) products: Vec<f64>,
+    /// What rotation rows add to products of turns, likewise.
+    pub(crate) turned: Vec<f64>,
+    /// `Jᵀe` of shifts, then of turns.
+    pub(crate) gradient: Vec<f64>,
+    /// `½ Σ e²`.
+    pub(crate) cost: f64,
+}
+
+impl Totals {
+    /// Adds those of other rows.
+    pub(crate) fn add(&mut self, other: &Totals) {
+        let pairs = [
+            (&mut self.products, &other.products),
+            (&mut self.turned, &other.turned),
+            (&mut self.gradient, &other.gradient),
+        ];
+        for (own, others) in pairs {
+            own.iter_mut().zip(others).for_each(|(own, other)| *own += other);
+        }
+        self.cost += other.cost;
+    }
+}
+
+/// Where the product of two of `columns` columns is in a sum of tiles, for `a ≤ b`.
+pub(crate) fn product(columns: usize, a: usize, b: usize) -> usize {
+    let tiles = columns.div_ceil(TILE);
+    let (row, column) = (a / TILE, b / TILE);
+    let before = row * tiles - row * row.saturating_sub(1) / 2;
+    (before + column - row) * TILE * TILE + a % TILE * TILE + b % TILE
+}
+
+/// What is kept of a joint: its two shift columns and its origin in the rows under way, and the gradient of shifts and tilts.
+#[derive(Clone, Copy)]
+struct Axis {
+    shifts: [[Wide; 3]; 2],
+    origin: [Wide; 3],
+    gradient: [Wide; 4],
+}
+
+impl Axis {
+    const ZERO: Axis =
+        Axis { shifts: [[Wide::ZERO; 3]; 2], origin: [Wide::ZERO; 3], gradient: [Wide::ZERO; 4] };
+}
+
+/// Columns and sums under way.
+struct Work {
+    /// Position rows of each column, block after block.
+    jacobian: Vec<[Wide; 3]>,
+    /// What rotation adds for each turn, likewise: two or three rows a block.
+    turned: Vec<Wide>,
+    axes: Vec<Axis>,
+    products: Vec<Wide>,
+    turned_products: Vec<Wide>,
+    shift_gradient: Vec<Wide>,
+    turn_gradient: Vec<Wide>,
+    square: Wide,
+    /// Blocks that wait at a time.
+    waiting: usize,
+}
+
+impl Default for Work {
+    fn default() -> Self {
+        Work::EMPTY
+    }
+}
+
+impl Work {
+    const EMPTY: Work = Work {
+        jacobian: Vec::new(),
+        turned: Vec::new(),
+        axes: Vec::new(),
+        products: Vec::new(),
+        turned_products: Vec::new(),
+        shift_gradient: Vec::new(),
+        turn_gradient: Vec::new(),
+        square: Wide::ZERO,
+        waiting: 1,
+    };
+
+    /// Makes room for a plan, with all sums at zero.
+    fn begin(&mut self, plan: &Plan, lanes: usize, full: bool) {
+        let columns = plan.columns().next_multiple_of(TILE);
+        let turns = plan.turns.len().next_multiple_of(TILE);
+        let rows = plan.turned_rows();
+        let sums = |columns: usize| if full { sums_len(columns, lanes) } else { 0 };
+        self.waiting =
+            if full { (WAITING / (3 * columns).max(1)).clamp(BLOCKS_WAITING.0, BLOCKS_WAITING.1) } else { 1 };
+        restart(&mut self.products, sums(columns));
+        restart(&mut self.turned_products, sums(if rows > 0 { turns } else { 0 }));
+        restart(&mut self.shift_gradient, plan.shifts);
+        restart(&mut self.turn_gradient, plan.turns.len());
+        self.square = Wide::ZERO;
+        self.axes.clear();
+        self.axes.resize(plan.joints.len(), Axis::ZERO);
+        // Columns are written before they are read, but for those that fill up the last tile.
+        if full {
+            self.jacobian.resize(self.waiting * columns, [Wide::ZERO; 3]);
+            self.jacobian[self.waiting * plan.columns()..].fill([Wide::ZERO; 3]);
+            self.turned.resize(rows * self.waiting * turns, Wide::ZERO);
+            self.turned[rows * self.waiting * plan.turns.len()..].fill(Wide::ZERO);
+        }
+    }
+}
+
+fn restart(sums: &mut Vec<Wide>, len: usize) {
+    sums.clear();
+    sums.resize(len, Wide::ZERO);
+}
+
+thread_local! {
+    /// Room for one pass, kept from one to the next.
+    static WORK: RefCell<Work> = const { RefCell::new(Work::EMPTY) };
+}
+
+/// An arm as it stands: what is unknown of it, its frames at zero, and the way from the last one to the target.
+#[derive(Clone, Copy)]
+pub(crate) struct Arm<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) steps: &'a [Step],
+    pub(crate) end: &'a Step,
+}
+
+/// Sums over all rows of `blocks`.
+#[inline(always)]
+pub(super) fn sum_products<V: Vector>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    sum::<V, true>(arm, blocks)
+}
+
+/// The same without products of columns.
+#[inline(always)]
+pub(super) fn sum_gradient<V: Vector>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    sum::<V, false>(arm, blocks)
+}
+
+/// Sums over all rows of `blocks`; products of columns only if `FULL`.
+#[inline(always)]
+fn sum<V: Vector, const FULL: bool>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    let plan = arm.plan;
+    // A pass does not call another, so the room is free; if it were not, there would be another.
+    let mut own = WORK.take();
+    let work = &mut own;
+    work.begin(plan, V::LANES, FULL);
+    let len = plan.block_len();
+    for blocks in blocks.chunks(len * work.waiting) {
+        for (filled, block) in blocks.chunks_exact(len).enumerate() {
+            for part in 0..WIDTH / V::LANES {
+                add_rows::<V, FULL>(arm, block, work, filled, part);
+            }
+        }
+        if FULL {
+            multiply::<V>(plan, work, blocks.len() / len);
+        }
+    }
+    for (joint, axis) in plan.joints.iter().zip(&work.axes) {
+        let (Some((shift, tilt)), [a, b, c, d]) = (joint.columns, axis.gradient) else { continue };
+        work.shift_gradient[shift..shift + 2].copy_from_slice(&[a, b]);
+        if joint.turns {
+            work.turn_gradient[tilt..tilt + 2].copy_from_slice(&[c, d]);
+        }
+    }
+    let gradient = work.shift_gradient.iter().chain(&work.turn_gradient);
+    let totals = Totals {
+        products: add_up::<V>(&work.products),
+        turned: add_up::<V>(&work.turned_products),
+        gradient: gradient.map(total).collect(),
+        cost: 0.5 * total(&work.square),
+    };
+    WORK.set(own);
+    totals
+}
+
+/// The products of the columns that wait.
+#[inline(always)]
+fn multiply<V: Vector>(plan: &Plan, work: &mut Work, filled: usize) {
+    let columns = plan.columns().next_multiple_of(TILE);
+    let stride = 3 * work.waiting;
+    add_products::<V>(work.jacobian.as_flattened(), stride, 3 * filled, columns, &mut work.products);
+    let rows = plan.turned_rows();
+    if rows > 0 {
+        let turns = plan.turns.len().next_multiple_of(TILE);
+        let (stride, used) = (rows * work.waiting, rows * filled);
+        add_products::<V>(&work.turned, stride, used, turns, &mut work.turned_products);
+    }
+}
+
+/// Sums over the lanes of each vector.
+#[inline(always)]
+fn add_up<V: Vector>(sums: &[Wide]) -> Vec<f64> {
+    let mut out = Vec::with_capacity(sums.len() * (WIDTH / V::LANES));
+    for wide in sums {
+        for part in 0..WIDTH / V::LANES {
+            out.push(V::load(wide, part).sum());
+        }
+    }
+    out
+}
+
+/// The sum over all lanes.
+fn total(sum: &Wide) -> f64 {
+    let [a, b, c, d, e, f, g, h] = sum.0;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
+}
+
+/// A frame in the device's axes: for each of these, its part of the directions x, y, z and of the origin. So ordered, a product needs
+/// few registers.
+#[derive(Clone, Copy)]
+struct Frame<V>([[V; 4]; 3]);
+
+impl<V: Vector> Frame<V> {
+    #[inline(always)]
+    fn fixed(step: &Step) -> Self {
+        let [x, y, z] = &step.columns;
+        let mut rows = [[V::splat(0.0); 4]; 3];
+        for (k, row) in rows.iter_mut().enumerate() {
+            *row = [V::splat(x[k]), V::splat(y[k]), V::splat(z[k]), V::splat(step.translation[k])];
+        }
+        Frame(rows)
+    }
+
+    /// The frame after a fixed motion.
+    #[inline(always)]
+    fn then(mut self, step: &Step) -> Self {
+        for row in &mut self.0 {
+            *row = turned(*row, step);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn column(&self, k: usize) -> Vectors<V> {
+        let [a, b, c] = &self.0;
+        Vectors([a[k], b[k], c[k]])
+    }
+
+    #[inline(always)]
+    fn origin(&self) -> Vectors<V> {
+        self.column(3)
+    }
+}
+
+/// A row of a frame after a fixed motion.
+#[inline(always)]
+fn turned<V: Vector>([x, y, z, origin]: [V; 4], step: &Step) -> [V; 4] {
+    let [a, b, c] = &step.columns;
+    let along = |v: &[f64; 3]| x.times_plus(V::splat(v[0]), y.times_plus(V::splat(v[1]), z * V::splat(v[2])));
+    let [p, q, r] = step.translation;
+    let origin = x.times_plus(V::splat(p), y.times_plus(V::splat(q), z.times_plus(V::splat(r), origin)));
+    [along(a), along(b), along(c), origin]
+}
+
+/// One vector of rows under way: part `part` of a block.
+struct Batch<'a> {
+    plan: &'a Plan,
+    part: usize,
+    /// The block's columns, each `stride` after the one before.
+    columns: &'a mut [[Wide; 3]],
+    stride: usize,
+    axes: &'a mut [Axis],
+    shift_gradient: &'a mut [Wide],
+    turn_gradient: &'a mut [Wide],
+}
+
+/// What a row sees of the target.
+#[derive(Clone, Copy)]
+struct Seen<V> {
+    weight: V,
+    per_length: V,
+    /// Whitened position error.
+    force: Vectors<V>,
+    /// Whitened rotation error, as a turn's gradient needs it.
+    torque: Vectors<V>,
+}
+
+/// Columns, residuals and gradient of part `part` of a block.
+#[inline(always)]
+fn add_rows<V: Vector, const FULL: bool>(
+    arm: &Arm<'_>,
+    block: &[Wide],
+    work: &mut Work,
+    filled: usize,
+    part: usize,
+) {
+    let Arm { plan, steps, end } = *arm;
+    let Work { jacobian, turned, axes, shift_gradient, turn_gradient, square, waiting, .. } = work;
+    let Some((noise, rest)) = block.split_first_chunk::<2>() else { return };
+    let Some((position, rest)) = rest.split_first_chunk::<3>() else { return };
+    let (measured, joints) = rest.split_at(if plan.framed { 9 } else { 0 });
+    let (weight, per_length) = (V::load(&noise[0], part), V::splat(1.0 / plan.length_m));
+    // Empty without unknowns.
+    let columns = jacobian.get_mut(filled..).unwrap_or_default();
+    let stride = *waiting;
+    let mut batch = Batch { plan, part, columns, stride, axes, shift_gradient, turn_gradient };
+
+    let last = batch.chain(steps, joints.as_chunks::<2>().0, weight, per_length);
+    let target = if plan.joints.is_empty() { Frame::fixed(end) } else { last.then(end) };
+    let force = (Vectors::load(position, part) - target.origin()).scale(weight);
+    let mut squares = force.dot(force);
+    let mut seen = Seen { weight, per_length, force, torque: Vectors([V::splat(0.0); 3]) };
+    let mut turn = None;
+    if let [x, y, z] = measured.as_chunks::<3>().0 {
+        let measured = [Vectors::load(x, part), Vectors::load(y, part), Vectors::load(z, part)];
+        let found = Turn::new(&measured, &[target.column(0), target.column(1), target.column(2)]);
+        let ratio = V::load(&noise[1], part);
+        let whitened = found.r.scale(weight * ratio);
+        squares = squares + whitened.dot(whitened);
+        seen.torque = whitened.scale(ratio * per_length);
+        turn = Some((found, ratio * per_length));
+    }
+    squares.add_to(square, part);
+    batch.add_device::<V, FULL>(&target, &seen);
+    batch.add_axes::<V, FULL>(&target, &seen);
+    batch.add_place::<V, FULL>(&target, &seen);
+    if let (true, Some((turn, ratio))) = (FULL, turn) {
+        let rows = plan.turned_rows();
+        batch.add_turned(&turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
+    }
+}
+
+impl Batch<'_> {
+    /// The chain from the device to the last joint's moved frame; writes the axes' shift columns: theory.md §5 (20) and (22).
+    #[inline(always)]
+    fn chain<V: Vector>(
+        &mut self,
+        steps: &[Step],
+        values: &[[Wide; 2]],
+        weight: V,
+        per_length: V,
+    ) -> Frame<V> {
+        let part = self.part;
+        let mut moved = Frame([[V::splat(0.0); 4]; 3]);
+        let joints = self.plan.joints.iter().zip(steps).zip(values).zip(&mut *self.axes);
+        for (index, (((joint, step), [cosine, sine]), axis)) in joints.enumerate() {
+            if index == 0 {
+                moved = Frame::fixed(step);
+            }
+            let (cosine, sine) = (V::load(cosine, part), V::load(sine, part));
+            let (slide, own_sine) = (weight * cosine * per_length, weight * sine);
+            let versine = weight - weight * cosine;
+            for (k, row) in moved.0.iter_mut().enumerate() {
+                let [x, y, z, origin] = if index == 0 { *row } else { turned(*row, step) };
+                let (a, b) = if joint.turns {
+                    *row = [x.times_plus(cosine, y * sine), x.times_from(sine, y * cosine), z, origin];
+                    (y.times_from(own_sine, x * versine), x.times_plus(own_sine, y * versine))
+                } else {
+                    *row = [x, y, z, z.times_plus(cosine, origin)];
+                    (-(y * slide), x * slide)
+                };
+                a.store(&mut axis.shifts[0][k], part);
+                b.store(&mut axis.shifts[1][k], part);
+                origin.store(&mut axis.origin[k], part);
+            }
+        }
+        moved
+    }
+
+    /// Columns of the device's frame: theory.md §5 (25).
+    #[inline(always)]
+    fn add_device<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+        let Some(about) = &self.plan.device else { return };
+        let part = self.part;
+        let arm = (target.origin() - Vectors::splat(about)).scale(seen.per_length);
+        let moment = arm.cross(seen.force) + seen.torque;
+        for k in 0..3 {
+            let mut axis = Vectors([V::splat(0.0); 3]);
+            axis.0[k] = seen.weight;
+            (seen.weight * seen.force.0[k]).add_to(&mut self.shift_gradient[k], part);
+            (seen.weight * moment.0[k]).add_to(&mut self.turn_gradient[k], part);
+            if FULL {
+                axis.store(&mut self.columns[k * self.stride], part);
+                axis.cross(arm).store(&mut self.columns[(self.plan.shifts + k) * self.stride], part);
+            }
+        }
+    }
+
+    /// Columns of the axes' tilts, theory.md §5 (21), and the gradient of all their unknowns.
+    #[inline(always)]
+    fn add_axes<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+        let (part, stride) = (self.part, self.stride);
+        for (joint, axis) in self.plan.joints.iter().zip(&mut *self.axes) {
+            let Some((shift, tilt)) = joint.columns else { continue };
+            let (a, b) = (Vectors::load(&axis.shifts[0], part), Vectors::load(&axis.shifts[1], part));
+            a.dot(seen.force).add_to(&mut axis.gradient[0], part);
+            b.dot(seen.force).add_to(&mut axis.gradient[1], part);
+            if FULL {
+                a.store(&mut self.columns[shift * stride], part);
+                b.store(&mut self.columns[(shift + 1) * stride], part);
+            }
+            if !joint.turns {
+                continue;
+            }
+            let arm = (target.origin() - Vectors::load(&axis.origin, part)).scale(seen.per_length);
+            let moment = arm.cross(seen.force) + seen.torque;
+            a.dot(moment).add_to(&mut axis.gradient[2], part);
+            b.dot(moment).add_to(&mut axis.gradient[3], part);
+            if FULL {
+                let column = (self.plan.shifts + tilt) * stride;
+                a.cross(arm).store(&mut self.columns[column], part);
+                b.cross(arm).store(&mut self.columns[column + stride], part);
+            }
+        }
+    }
+
+    /// Columns of the target's place and frame: theory.md §5 (23) and (24).
+    #[inline(always)]
+    fn add_place<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+        let Some(place) = self.plan.place else { return };
+        let part = self.part;
+        for k in 0..3 {
+            let axis = target.column(k).scale(seen.weight);
+            axis.dot(seen.force).add_to(&mut self.shift_gradient[place + k], part);
+            if let Some(frame) = self.plan.frame {
+                axis.dot(seen.torque).add_to(&mut self.turn_gradient[frame + k], part);
+            }
+            if FULL {
+                axis.store(&mut self.columns[(place + k) * self.stride], part);
+            }
+        }
+    }
+
+    /// Rows of what rotation adds to the products of turns; `ratio` is that of one turn to its shift.
+    #[inline(always)]
+    fn add_turned<V: Vector>(&self, turn: &Turn<V>, ratio: V, out: &mut [Wide], rows: usize) {
+        let columns = self.plan.turns.iter().map(|&shift| &self.columns[shift * self.stride]);
+        let outs = out.chunks_mut((rows * self.stride).max(1));
+        if self.plan.ratio.is_some() {
+            let [first, second] = turn.excess();
+            for (column, out) in columns.zip(outs) {
+                let w = Vectors::load(column, self.part);
+                first.dot(w).store(&mut out[0], self.part);
+                second.dot(w).store(&mut out[1], self.part);
+            }
+        } else {
+            for (column, out) in columns.zip(outs) {
+                let moved = turn.apply(Vectors::load(column, self.part).scale(ratio));
+                for (out, number) in out.iter_mut().zip(moved.0) {
+                    number.store(out, self.part);
+                }
+            }
+        }
+    }
+}

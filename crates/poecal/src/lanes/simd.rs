@@ -1,0 +1,128 @@
+//! Run-time dispatch: the same source compiled for each set of vector instructions. The only unsafe code of the library.
+
+use super::dense::{self, Factor};
+use super::kernel::{self, Arm, Totals};
+#[cfg(target_arch = "x86_64")]
+use super::plain::Pair;
+use super::plain::Two;
+use super::sincos;
+use super::vector::Wide;
+#[cfg(target_arch = "x86_64")]
+use super::x86::{Eight, Four};
+
+/// By which instructions the kernels run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// Those that every machine of the target has: two numbers at a time.
+    Baseline,
+    /// AVX2 with FMA: four numbers at a time.
+    Avx2,
+    /// AVX2 with FMA, written for eight numbers at a time: slower, and there so that this width can be tested without AVX-512.
+    Avx2Wide,
+    /// AVX-512: eight numbers at a time.
+    Avx512,
+}
+
+impl Level {
+    /// The best level of this machine.
+    #[must_use]
+    pub fn best() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if Level::Avx512.is_here() {
+                return Level::Avx512;
+            }
+            if Level::Avx2.is_here() {
+                return Level::Avx2;
+            }
+        }
+        Level::Baseline
+    }
+
+    /// Whether this machine has the instructions.
+    fn is_here(self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let avx2 = || is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+            match self {
+                Level::Baseline => true,
+                Level::Avx2 | Level::Avx2Wide => avx2(),
+                Level::Avx512 => is_x86_feature_detected!("avx512f") && avx2(),
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            self == Level::Baseline
+        }
+    }
+}
+
+/// Levels that this machine has, the best first.
+#[must_use]
+pub fn levels() -> Vec<Level> {
+    let all = [Level::Avx512, Level::Avx2, Level::Avx2Wide, Level::Baseline];
+    all.into_iter().filter(|level| level.is_here()).collect()
+}
+
+/// A function that calls what is written for any vector, compiled for the instructions of a level.
+macro_rules! dispatch {
+    ($(#[$doc:meta])* $module:ident :: $name:ident ($($argument:ident: $type:ty),*) $(-> $result:ty)?) => {
+        $(#[$doc])*
+        #[allow(unsafe_code, reason = "functions compiled for further instructions may only be called where the machine has them")]
+        pub(crate) fn $name(level: Level, $($argument: $type),*) $(-> $result)? {
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,fma")]
+            fn avx2($($argument: $type),*) $(-> $result)? {
+                $module::$name::<Four>($($argument),*)
+            }
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2,fma")]
+            fn avx2_wide($($argument: $type),*) $(-> $result)? {
+                $module::$name::<Pair<Four>>($($argument),*)
+            }
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx512f,avx2,fma")]
+            fn avx512($($argument: $type),*) $(-> $result)? {
+                $module::$name::<Eight>($($argument),*)
+            }
+            match if level.is_here() { level } else { Level::Baseline } {
+                // SAFETY: `is_here` has found AVX2 and FMA, which is all that the function asks for.
+                #[cfg(target_arch = "x86_64")]
+                Level::Avx2 => unsafe { avx2($($argument),*) },
+                // SAFETY: as above.
+                #[cfg(target_arch = "x86_64")]
+                Level::Avx2Wide => unsafe { avx2_wide($($argument),*) },
+                // SAFETY: `is_here` has found AVX-512F, AVX2 and FMA, which is all that the function asks for.
+                #[cfg(target_arch = "x86_64")]
+                Level::Avx512 => unsafe { avx512($($argument),*) },
+                _ => $module::$name::<Two>($($argument),*),
+            }
+        }
+    };
+}
+
+dispatch!(
+    /// Sums over rows, with products of columns.
+    kernel::sum_products(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+);
+dispatch!(
+    /// Sums over rows, without products of columns.
+    kernel::sum_gradient(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+);
+dispatch!(
+    /// Writes `(cos, sin)` of each angle, with the same bits at every level.
+    sincos::cosines_and_sines(angles: &[f64], out: &mut [(f64, f64)])
+);
+dispatch!(
+    /// Factor of the symmetric matrix given by its upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that
+    /// is not positive definite.
+    dense::cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor>
+);
+dispatch!(
+    /// Solves `Rᵀ x = b` in place.
+    dense::lower_solve(factor: &Factor, x: &mut [f64])
+);
+dispatch!(
+    /// Solves `RᵀR x = b` in place.
+    dense::solve(factor: &Factor, x: &mut [f64])
+);

@@ -1,0 +1,111 @@
+//! Rotations of several rows: the logarithm, and what its derivative adds to the products of columns.
+
+use nalgebra::Matrix3;
+
+use super::vector::{Vector, Vectors, Wide};
+use crate::lie::{rotation, series};
+
+/// Squared sine below which the logarithm is a polynomial: residual rotations up to 14°.
+const SMALL: f64 = 1.0 / 16.0;
+
+/// `asin(s) / s` of `s²`, exact to rounding below [`SMALL`]: the first omitted term is 2e-17.
+const ARCSINE: [f64; 12] = arcsine();
+
+const fn arcsine() -> [f64; 12] {
+    let mut out = [1.0; 12];
+    let (mut k, mut factor) = (1, 1.0);
+    while k < out.len() {
+        factor *= (2 * k - 1) as f64 / (2 * k) as f64;
+        out[k] = factor / (2 * k + 1) as f64;
+        k += 1;
+    }
+    out
+}
+
+/// [`series::cotc`] of the squared angle, up to that of [`SMALL`]: the first omitted term is 1e-17 of the value.
+const COTC: [f64; 6] = [
+    1.0 / 12.0,
+    1.0 / 720.0,
+    1.0 / 30_240.0,
+    1.0 / 1_209_600.0,
+    1.0 / 47_900_160.0,
+    691.0 / 1_307_674_368_000.0,
+];
+
+/// Residual rotations `r = log(Y Rᵀ)` with the coefficient `k` of `J_r(r)⁻¹ = I + r̂/2 + k r̂²` (theory.md §4 (16)).
+pub(super) struct Turn<V: Vector> {
+    pub(super) r: Vectors<V>,
+    k: V,
+}
+
+impl<V: Vector> Turn<V> {
+    /// Of measured and predicted rotations, given by columns.
+    #[inline(always)]
+    pub(super) fn new(measured: &[Vectors<V>; 3], predicted: &[Vectors<V>; 3]) -> Self {
+        let mut doubled = predicted[0].cross(measured[0]);
+        let mut trace = predicted[0].dot(measured[0]);
+        for k in 1..3 {
+            doubled = doubled + predicted[k].cross(measured[k]);
+            trace = trace + predicted[k].dot(measured[k]);
+        }
+        let sine = doubled.scale(V::splat(0.5));
+        let sine_squared = sine.dot(sine);
+        // A trace above one is an angle below a right one.
+        if !(sine_squared.are_below(SMALL) && (-trace).are_below(-1.0)) {
+            return Self::large(measured, predicted);
+        }
+        let r = sine.scale(sine_squared.polynomial(ARCSINE));
+        Turn { r, k: r.dot(r).polynomial(COTC) }
+    }
+
+    /// One row after the other, for rotations of any size.
+    #[cold]
+    #[inline(never)]
+    fn large(measured: &[Vectors<V>; 3], predicted: &[Vectors<V>; 3]) -> Self {
+        let apart = |columns: &[Vectors<V>; 3]| {
+            let mut wide = [[Wide::ZERO; 3]; 3];
+            for (wide, column) in wide.iter_mut().zip(columns) {
+                column.store(wide, 0);
+            }
+            wide
+        };
+        let (measured, predicted) = (apart(measured), apart(predicted));
+        let mut out = [Wide::ZERO; 4];
+        for lane in 0..V::LANES {
+            let matrix =
+                |columns: &[[Wide; 3]; 3]| Matrix3::from_fn(|row, column| columns[column][row].0[lane]);
+            let r = rotation::log(&(matrix(&measured) * matrix(&predicted).transpose()));
+            for (wide, value) in out.iter_mut().zip([r.x, r.y, r.z, series::cotc(r.norm_squared())]) {
+                wide.0[lane] = value;
+            }
+        }
+        let [x, y, z, k] = out;
+        Turn { r: Vectors::load(&[x, y, z], 0), k: V::load(&k, 0) }
+    }
+
+    /// `J_r(r)⁻¹ w`.
+    #[inline(always)]
+    pub(super) fn apply(&self, w: Vectors<V>) -> Vectors<V> {
+        let moved = self.r.cross(w);
+        self.r.cross(moved).times_plus(self.k, moved.times_plus(V::splat(0.5), w))
+    }
+
+    /// Two rows `A` with `I + AᵀA = J_r(r)⁻ᵀ J_r(r)⁻¹`, which is `I - q r̂²` with `q = ¼ - 2k + k²|r|²` (theory.md §6 (28a)).
+    #[inline(always)]
+    pub(super) fn excess(&self) -> [Vectors<V>; 2] {
+        let [a, b, c] = self.r.0;
+        let length_squared = self.r.dot(self.r);
+        let k = self.k;
+        let q = k.times_plus(V::splat(-2.0), (k * k).times_plus(length_squared, V::splat(0.25)));
+        let (root, length) = (q.sqrt(), length_squared.sqrt());
+        let aside = b.times_plus(b, c * c).sqrt();
+        let unit_b = b.over(aside, 1.0);
+        let unit_c = c.over(aside, 0.0);
+        let along = root * length;
+        let across = -(root * a);
+        [
+            Vectors([root * aside, across * unit_b, across * unit_c]),
+            Vectors([V::splat(0.0), along * unit_c, -(along * unit_b)]),
+        ]
+    }
+}

@@ -1,0 +1,60 @@
+//! Many fits of one problem: other measurements in the same configurations.
+
+use super::Problem;
+use crate::estimate::Estimate;
+use crate::measurement::Measurement;
+use crate::solve::{LeastSquares, Near, Normal, Options, Summary, minimize_near};
+
+/// A problem at its optimum, to be fitted again and again to other measurements in the same configurations (Monte Carlo, bootstrap).
+/// All fits share what is packed and the factorised `JᵀJ` of the first optimum, so that most of them need residuals and gradients
+/// alone; where that does not converge fast, a fit goes the ordinary way, to the same optimum (theory.md §6, *Many rows*).
+///
+/// ```
+/// # use nalgebra::Vector3;
+/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot}, measurement::*};
+/// use poecal::{estimate::{Estimate, Packed}, parameters::*, problem::{Problem, Refit}, solve::Options};
+/// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
+/// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
+/// let place = Vector3::new(0.01, 0.0, 0.0);
+/// let seen = |reading, place| {
+///     let position = robot.forward_kinematics(&[reading]).act(&place);
+///     Measurement::Point(PointMeasurement { position })
+/// };
+/// let mut data = Dataset::new(robot.reading_names());
+/// for reading in [0.0, 1.0, 2.0] {
+///     data.push(&[reading], None, seen(reading, place))?;
+/// }
+/// let packed = Packed::new(&robot, data.all_readings(), 1);
+/// let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
+/// let noise = Noise { position_m: 1e-4, rotation_rad: 1e-4 };
+/// let problem = Problem::new(&data, &packed, vec![0, 1, 2], free, noise, 1.0);
+/// let start = Estimate::new(&robot, vec![robot.home], Pose::identity());
+///
+/// let mut refit = Refit::new(problem, start, Options::default());
+/// let others = [0.0, 1.0, 2.0].map(|reading| seen(reading, 2.0 * place));
+/// let (found, _, _) = refit.fit(&others);
+/// assert!((found.base_from_target[0].translation.x - 0.32).abs() < 1e-12);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Refit<'a> {
+    problem: Problem<'a>,
+    near: Near<Estimate>,
+    options: Options,
+}
+
+impl<'a> Refit<'a> {
+    /// Prepares fits of a problem, from its optimum or a state close by.
+    #[must_use]
+    pub fn new(problem: Problem<'a>, optimum: Estimate, options: Options) -> Self {
+        let normal = problem.normal(&optimum);
+        Refit { problem, near: Near::new(optimum, normal), options }
+    }
+
+    /// Fits other measurements, one a row of the data and of the same kind as there. As [`crate::solve::minimize`] says, `JᵀJ` may
+    /// be that of a state close by.
+    pub fn fit(&mut self, measured: &[Measurement]) -> (Estimate, Normal, Summary) {
+        self.problem.set_measurements(measured);
+        minimize_near(&self.problem, &self.near, &self.options)
+    }
+}
