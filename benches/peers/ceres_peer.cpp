@@ -66,14 +66,13 @@ struct Shared : ceres::EvaluationCallback {
   }
 };
 
-// Sine and cosine of a row's readings: they stay the same throughout a fit.
-struct Turns {
-  double sine[kMostJoints], versine[kMostJoints];
-  Turns() = default;
-  Turns(const double* readings, size_t joints) {
-    for (size_t i = 0; i < joints; ++i) sine[i] = std::sin(readings[i]), versine[i] = 1 - std::cos(readings[i]);
-  }
-};
+// Sine and 1 - cosine of readings, one after the other: they stay the same throughout a fit.
+std::vector<double> turns_of(const std::vector<double>& readings) {
+  std::vector<double> turns;
+  turns.reserve(2 * readings.size());
+  for (double reading : readings) turns.push_back(std::sin(reading)), turns.push_back(1 - std::cos(reading));
+  return turns;
+}
 
 // The chain of a row: the rotation before each joint and after the last, and where each axis' point is.
 struct Chain {
@@ -81,7 +80,7 @@ struct Chain {
   Vector3d point[kMostJoints];
   Vector3d position;
 
-  Chain(const Candidate& robot, const Turns& turns) {
+  Chain(const Candidate& robot, const double* turns) {
     const size_t joints = robot.joints.size();
     Matrix3d rotation = Matrix3d::Identity();
     Vector3d origin = Vector3d::Zero();
@@ -90,7 +89,7 @@ struct Chain {
       const Matrix3d across = skew(joint.direction);
       before[i] = rotation;
       point[i] = origin + rotation * joint.point;
-      rotation = rotation + rotation * (turns.sine[i] * across + turns.versine[i] * (across * across));
+      rotation = rotation + rotation * (turns[2 * i] * across + turns[2 * i + 1] * (across * across));
       origin = point[i] - rotation * joint.point;
     }
     before[joints] = rotation;
@@ -101,8 +100,8 @@ struct Chain {
 // A measured pose or point, whitened.
 class Row : public ceres::CostFunction {
  public:
-  Row(const Robot& robot, const Shared& shared, const double* readings, const Pose& measured)
-      : robot_(robot), shared_(shared), turns_(readings, robot.axes.size()), measured_(measured) {
+  Row(const Robot& robot, const Shared& shared, const double* turns, const Pose& measured)
+      : robot_(robot), shared_(shared), turns_(turns), measured_(measured) {
     set_num_residuals(shared.poses ? 6 : 3);
     mutable_parameter_block_sizes()->push_back(unknowns(robot, shared.poses));
   }
@@ -160,8 +159,8 @@ class Row : public ceres::CostFunction {
 
   const Robot& robot_;
   const Shared& shared_;
-  Turns turns_;
-  Pose measured_;
+  const double* turns_;
+  const Pose& measured_;
 };
 
 struct Fit {
@@ -172,13 +171,14 @@ struct Fit {
 // Builds the problem and solves it from the nominal robot.
 Fit fit(const Robot& robot, const Measurements& data, bool poses, ceres::LinearSolverType solver) {
   Fit fit{std::vector<double>(unknowns(robot, poses), 0.0), 0};
+  const std::vector<double> turns = turns_of(data.readings);
+  const size_t joints = robot.axes.size();
   Shared shared(robot, fit.x, poses);
   ceres::Problem::Options problem_options;
   problem_options.evaluation_callback = &shared;
   ceres::Problem problem(problem_options);
-  const size_t joints = robot.axes.size();
   for (size_t row = 0; row < data.rows(); ++row)
-    problem.AddResidualBlock(new Row(robot, shared, &data.readings[row * joints], data.poses[row]), nullptr, fit.x.data());
+    problem.AddResidualBlock(new Row(robot, shared, &turns[row * 2 * joints], data.poses[row]), nullptr, fit.x.data());
   ceres::Solver::Options options;
   options.linear_solver_type = solver;
   options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = kTolerance;
@@ -194,10 +194,11 @@ Fit fit(const Robot& robot, const Measurements& data, bool poses, ceres::LinearS
 // Mean square distance of predicted and true position.
 double mean_square_m2(const Robot& robot, const Fit& fit, const Measurements& held_out, bool poses) {
   const Candidate now = candidate(robot, fit.x.data(), poses);
+  const std::vector<double> turns = turns_of(held_out.readings);
   const size_t joints = robot.axes.size();
   double sum = 0;
   for (size_t row = 0; row < held_out.rows(); ++row) {
-    const Chain chain(now, Turns(&held_out.readings[row * joints], joints));
+    const Chain chain(now, &turns[row * 2 * joints]);
     sum += (chain.position - held_out.poses[row].position).squaredNorm();
   }
   return sum / held_out.rows();
