@@ -121,13 +121,17 @@ impl Calibration {
         (!settled).then(|| (measured.sigma_m.powi(2) + 3.0 * self.noise.position_m.powi(2)).sqrt())
     }
 
-    /// Solves the least-squares problem of a finished calibration once more, from the registered model to the optimum: packing of the
-    /// readings and minimisation, with the noise that was found and all fitted rows at their full weight. It is what solvers are compared by.
+    /// Solves the least-squares problem of a finished calibration once more, from the nominal model to the optimum (where the device stands
+    /// anywhere, from the registered one): packing of the readings and minimisation, with the noise that was found and all fitted rows at
+    /// their full weight. It is what solvers are compared by.
     #[must_use]
     pub fn solve_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
         let packed = Packed::new(&self.nominal, data.all_readings(), data.reading_names().len());
         let length_m = radian_m(&self.nominal, &packed);
-        let start = self.models.registered.clone();
+        let start = match self.frame {
+            DeviceFrameKnowledge::Base => self.models.nominal.clone(),
+            DeviceFrameKnowledge::Unknown => self.models.registered.clone(),
+        };
         fit_screws(data, &packed, &self.fit_rows, start, self.noise, length_m, options).2
     }
 }
