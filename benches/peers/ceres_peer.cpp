@@ -1,8 +1,9 @@
 // The calibration by Ceres, with a Jacobian written by hand and a dense solver.
 //
-//   ceres_peer FOLDER pose|point cholesky|qr            one fit, repeated for its time
-//   ceres_peer FOLDER monte_carlo cholesky|qr FITS      FITS fits of poses of exact.txt, each with new noise
+//   ceres_peer FOLDER pose|point SOLVER             one fit, repeated for its time
+//   ceres_peer FOLDER monte_carlo SOLVER FITS       FITS fits of poses of exact.txt, each with new noise
 //
+// SOLVER is `cholesky` or `qr`, or `tuned`: cholesky with hardly any damping at the start, which these problems do not need.
 // Prints a line of JSON. Unknowns: four numbers a joint (its axis shifted along and tilted about the two directions across it),
 // then the tool's shift, and with poses its rotation. The measured rotation is compared by the logarithm; the derivative of that
 // is taken as -1, which leaves the gradient exact (docs/theory.md, section 4).
@@ -15,6 +16,7 @@
 
 constexpr size_t kMostJoints = 64;
 constexpr double kTolerance = 1e-10;
+constexpr double kTunedRadius = 1e8;  // of the first trust region; 1e4 if nothing is said
 constexpr double kLongEnough = 0.3, kTooLong = 2.0;  // seconds for which a fit is repeated
 constexpr size_t kFewestRepeats = 3;
 
@@ -169,7 +171,7 @@ struct Fit {
 };
 
 // Builds the problem and solves it from the nominal robot.
-Fit fit(const Robot& robot, const Measurements& data, bool poses, ceres::LinearSolverType solver) {
+Fit fit(const Robot& robot, const Measurements& data, bool poses, const std::string& solver) {
   Fit fit{std::vector<double>(unknowns(robot, poses), 0.0), 0};
   const std::vector<double> turns = turns_of(data.readings);
   const size_t joints = robot.axes.size();
@@ -180,7 +182,8 @@ Fit fit(const Robot& robot, const Measurements& data, bool poses, ceres::LinearS
   for (size_t row = 0; row < data.rows(); ++row)
     problem.AddResidualBlock(new Row(robot, shared, &turns[row * 2 * joints], data.poses[row]), nullptr, fit.x.data());
   ceres::Solver::Options options;
-  options.linear_solver_type = solver;
+  options.linear_solver_type = solver == "qr" ? ceres::DENSE_QR : ceres::DENSE_NORMAL_CHOLESKY;
+  if (solver == "tuned") options.initial_trust_region_radius = kTunedRadius;
   options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = kTolerance;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
@@ -210,7 +213,7 @@ void print(double cpu_ms, double iterations, double held_out_mm) {
 }
 
 void one_fit(const Robot& robot, const Measurements& data, const Measurements& held_out, bool poses,
-             ceres::LinearSolverType solver) {
+             const std::string& solver) {
   Fit last;
   std::vector<double> times;
   double total = 0;
@@ -225,7 +228,7 @@ void one_fit(const Robot& robot, const Measurements& data, const Measurements& h
 }
 
 void monte_carlo(const Robot& robot, const Measurements& exact, const Measurements& held_out,
-                 ceres::LinearSolverType solver, size_t fits) {
+                 const std::string& solver, size_t fits) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   auto draw = [&](double sigma) { return Vector3d(sigma * normal(random), sigma * normal(random), sigma * normal(random)); };
@@ -247,13 +250,13 @@ void monte_carlo(const Robot& robot, const Measurements& exact, const Measuremen
 
 int main(int count, char** words) {
   const std::vector<std::string> arguments(words + 1, words + count);
-  if (arguments.size() < 3) fail("usage: ceres_peer FOLDER pose|point|monte_carlo cholesky|qr [FITS]");
+  if (arguments.size() < 3) fail("usage: ceres_peer FOLDER pose|point|monte_carlo cholesky|qr|tuned [FITS]");
   const std::string folder = arguments[0] + "/";
   const bool monte = arguments[1] == "monte_carlo", poses = arguments[1] != "point";
   const Robot robot = read_robot(folder + "robot.txt");
   const size_t joints = robot.axes.size();
   if (joints > kMostJoints) fail("the robot has more than " + std::to_string(kMostJoints) + " joints");
-  const auto solver = arguments[2] == "qr" ? ceres::DENSE_QR : ceres::DENSE_NORMAL_CHOLESKY;
+  const std::string& solver = arguments[2];
   const Measurements held_out = read_measurements(folder + "held_out.txt", joints, poses);
   const Measurements data = read_measurements(folder + (monte ? "exact.txt" : "measurements.txt"), joints, poses);
   if (monte)

@@ -125,7 +125,7 @@ def ceres_peers() -> tuple[list[Peer], str | None]:
 
         return Peer(f"ceres-{solver}", ("pose", "point", "monte_carlo"), solve)
 
-    return [peer("cholesky"), peer("qr")], None
+    return [peer("cholesky"), peer("qr"), peer("tuned")], None
 
 
 def python_peers(python: str) -> tuple[list[Peer], list[str]]:
