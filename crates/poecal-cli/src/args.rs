@@ -1,8 +1,10 @@
 //! The command line.
 
 mod identify;
+mod report;
 
 pub(crate) use identify::Identify;
+pub(crate) use report::{Report, ReportPlace};
 
 use std::path::PathBuf;
 
@@ -42,6 +44,8 @@ pub(crate) enum Command {
     Calibrate(Calibrate),
     /// Simulate a robot with errors and its measurements, for tests and for learning
     Simulate(Simulate),
+    /// Write the report of a calibration again
+    Report(Report),
     /// Judge a calibration by other measurements
     Validate(Validate),
     /// Predict poses from joint readings
@@ -254,6 +258,9 @@ pub(crate) struct Calibrate {
     /// Overwrite results in an existing folder
     #[arg(long)]
     pub(crate) force: bool,
+    /// File for the report, or `none` [default: report.html among the results]
+    #[arg(long, value_name = "FILE|none")]
+    pub(crate) report: Option<ReportPlace>,
     /// End with code 1 if the verdict is worse than this (results are written all the same)
     #[arg(long, value_enum, value_name = "VERDICT")]
     pub(crate) require: Option<RequiredLevel>,

@@ -5,6 +5,7 @@ mod doubts;
 mod fit;
 mod judge;
 mod noise;
+mod repeatability;
 mod robust;
 mod split;
 mod trust;
@@ -14,6 +15,7 @@ pub use accuracy::{Accuracy, ModelAccuracy, SetAccuracy, Statistic, set_accuracy
 pub use fit::fit_screws;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
+pub use repeatability::{RepeatedPose, repeatability};
 pub use robust::{Loss, Robust, Robustness, RowJudgement, row_influence};
 pub use split::split_rows;
 pub(crate) use trust::inside;
