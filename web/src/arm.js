@@ -16,7 +16,7 @@ export function showArm(place, data) {
   const stage = element("div", "stage");
   const frame = element("div", "scene");
   frame.append(scene.canvas);
-  stage.append(frame, scaleLine(scene));
+  stage.append(frame, colourLine(), scaleLine(scene));
   const panel = element("div", "panel");
   place.append(stage, panel);
   scene.follow(frame);
@@ -24,7 +24,10 @@ export function showArm(place, data) {
   const view = { data, scene, state, listeners: [] };
   panel.append(measurementControls(view), jointControls(view), sizeControls(view), shownControls(view), viewControls(view), stateText(view));
   scene.onChoice((row) => choose(view, row));
-  onColours(() => scene.recolour());
+  onColours(() => {
+    scene.recolour();
+    scene.renderNow();
+  });
   choose(view, 0);
 }
 
@@ -194,7 +197,7 @@ function shownControls(view) {
   };
   add("nominal arm", "nominal", true);
   add("residual arrows", "arrows", true);
-  add("places within the limits that were not sampled", "reach", true);
+  add("where it could reach but was not measured", "reach", true);
   return set;
 }
 
@@ -222,12 +225,24 @@ function stateText(view) {
   return text;
 }
 
+function colourLine() {
+  const line = element("ul", "keys");
+  for (const [text, name] of [["calibrated", "s0"], ["nominal", "soft"], ["axes of the joints", "s2"], ["chosen measurement", "alarm"]]) {
+    const item = element("li");
+    const sign = element("i");
+    sign.style.setProperty("--key", `var(--${name})`);
+    item.append(sign, text);
+    line.append(item);
+  }
+  return line;
+}
+
 function scaleLine(scene) {
   const line = element("p", "scale");
   const { least, most, square } = scene.legend;
   const ramp = element("span", "ramp");
   ramp.style.setProperty("--from", "var(--arrow-least)");
   ramp.style.setProperty("--to", "var(--arrow-most)");
-  line.append(`Arrows: ${shown(least)}`, ramp, `${shown(most)} mm and more. Grid: ${square} mm. Drag to turn, wheel to come nearer.`);
+  line.append(`Arrows: ${least}`, ramp, `${shown(most)} mm and more. Grid: ${square} mm. Drag to turn, wheel to come nearer.`);
   return line;
 }

@@ -123,23 +123,38 @@ function joints(place, data) {
   for (const [text] of offered) select.append(new Option(text));
   choice.append("Residual", select);
   place.append(choice);
-  const shownSeries = bySet(data, inOrder(data), data.rows.error_mm, 5).series;
-  keys(place, [...shownSeries, line("smoothed", "ink")]);
+  const believed = inOrder(data, (row) => !data.rows.suspected[row]);
+  keys(place, [...bySet(data, believed, data.rows.error_mm, 5).series, line("smoothed", "ink")]);
   const grid = gridIn(place);
   const draw = () => {
     grid.replaceChildren();
     const [text, valuesOf, unit = "mm"] = offered[select.selectedIndex];
-    data.readings.forEach((reading, k) => joint(cellIn(grid, reading.name), data, { reading, k, text, values: valuesOf(k), unit }));
+    const range = commonRange(data.readings.flatMap((_, k) => believed.map((row) => valuesOf(k)[row])));
+    data.readings.forEach((reading, k) => {
+      joint(cellIn(grid, reading.name), data, { believed, reading, k, text, values: valuesOf(k), unit, range });
+    });
   };
   select.addEventListener("change", draw);
   draw();
 }
 
-function joint(cell, data, { reading, k, text, values, unit }) {
+/** One range for all joints, so that they compare: a few rows far off are left out of sight. */
+function commonRange(values) {
+  const sizes = values.filter((value) => value !== null).map(Math.abs);
+  sizes.sort((a, b) => a - b);
+  const most = 1.3 * quantile(sizes, 0.995) || 1;
+  return values.some((value) => value < 0) ? [-most, most] : [0, most];
+}
+
+function joint(cell, data, { believed, reading, k, text, values, unit, range }) {
   const column = data.rows.values[k];
-  const order = inOrder(data).sort((a, b) => column[a] - column[b]);
+  const order = believed.filter((row) => values[row] !== null).sort((a, b) => column[a] - column[b]);
+  if (!order.length) {
+    cell.append("What was measured lies on this joint's axis, and does not move with it.");
+    return;
+  }
   const { series, columns } = bySet(data, order, values, sized(data) - 1);
-  const even = order.filter((row) => data.rows.even[row] && !data.rows.suspected[row]);
+  const even = order.filter((row) => data.rows.even[row]);
   const curve = smooth(even.map((row) => column[row]), even.map((row) => values[row]));
   if (curve) {
     series.push(line("smoothed", "ink"));
@@ -150,7 +165,8 @@ function joint(cell, data, { reading, k, text, values, unit }) {
   plot(cell, {
     x: `${reading.name}, ${reading.unit}`,
     y: `residual, ${unit}`,
-    height: 200,
+    height: 190,
+    range: () => range,
     series,
     values: [order.map((row) => column[row]), ...columns],
     spoken: `Residual ${text} over ${reading.name}; the smoothed curve swings by ${withUnit(swing, unit)}.`,
@@ -191,6 +207,7 @@ function histogram(place, data) {
     x: beyond ? `position error, mm (${beyond} rows beyond are not drawn)` : "position error, mm",
     y: "share of the rows, %",
     height: 240,
+    wide: true,
     series,
     values: [Array.from({ length: count + 1 }, (_, k) => k * width), ...columns],
     range: (_, __, highest) => [0, highest * 1.08],

@@ -8,10 +8,10 @@ const FONT = '12px system-ui, "Segoe UI", Roboto, "Liberation Sans", Arial, sans
 function axis(label, size) {
   return {
     label,
-    labelSize: 18,
-    labelGap: 2,
+    labelSize: 16,
+    labelGap: 0,
     size,
-    gap: 4,
+    gap: 3,
     font: FONT,
     labelFont: FONT,
     stroke: () => colour("soft"),
@@ -25,27 +25,51 @@ function axis(label, size) {
 function ticked(value, splits) {
   if (value === null) return "";
   const step = splits.length > 1 ? Math.abs(splits[1] - splits[0]) : 1;
-  if (step < 1e-4 || Math.abs(value) >= 1e6) return value === 0 ? "0" : value.toExponential(0).replace("-", "−");
-  const text = value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
-  return text.replace("-", "−");
+  if (step < 1e-5 || Math.abs(value) >= 1e6) return value === 0 ? "0" : value.toExponential(0).replaceAll("-", "−");
+  let decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  // Steps of 2.5 need one more.
+  if (Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6) decimals += 1;
+  return value.toFixed(decimals).replace("-", "−");
 }
 
-/** Series of dots that follow the colour of `name`. */
+function padded(_, least, most) {
+  const room = 0.02 * (most - least) || 0.5;
+  return [least - room, most + room];
+}
+
+/** Series of dots that follow the colour of `name`: discs, or rings around what is suspected. */
 export function dots(label, name, options = {}) {
   const { size = 5, ring = false } = options;
-  return {
-    label,
-    key: name,
-    ring,
-    paths: () => null,
-    points: {
-      show: true,
-      size,
-      width: ring ? 2 : 0,
-      stroke: () => colour(name),
-      fill: () => (ring ? "transparent" : `color-mix(in srgb, ${colour(name)} 75%, transparent)`),
-    },
-  };
+  return { label, key: name, ring, size, paths: () => null, points: { show: false } };
+}
+
+/** Draws a series of dots. Small ones are squares, which thousands of take no time. */
+function drawDots(chart, index) {
+  const { key, ring, size } = chart.series[index];
+  if (!size) return;
+  const { ctx, bbox } = chart;
+  const [xs, ys] = [chart.data[0], chart.data[index]];
+  const side = size * devicePixelRatio;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  ctx.fillStyle = ctx.strokeStyle = colour(key);
+  ctx.globalAlpha = ring ? 1 : 0.75;
+  ctx.lineWidth = 2 * devicePixelRatio;
+  ys.forEach((value, k) => {
+    if (value === null || value === undefined) return;
+    const [x, y] = [chart.valToPos(xs[k], "x", true), chart.valToPos(value, "y", true)];
+    if (!ring && size < 4) {
+      ctx.fillRect(x - side / 2, y - side / 2, side, side);
+      return;
+    }
+    ctx.beginPath();
+    ctx.arc(x, y, side / 2, 0, 2 * Math.PI);
+    if (ring) ctx.stroke();
+    else ctx.fill();
+  });
+  ctx.restore();
 }
 
 /** A line that follows the colour of `name`. */
@@ -76,7 +100,7 @@ export function steps(label, name) {
  * Draws a chart into `place`. `spoken` is what a screen reader says instead of the picture, `tell(index)` what stands below when the
  * cursor is near a point.
  */
-export function plot(place, { x, y, series, values, height = 260, range, spoken, readout, tell, logX = false }) {
+export function plot(place, { x, y, series, values, height = 260, range, spoken, readout, tell, wide = false }) {
   const target = document.createElement("div");
   place.append(target);
   const width = () => Math.max(target.clientWidth, 120);
@@ -86,10 +110,11 @@ export function plot(place, { x, y, series, values, height = 260, range, spoken,
       height,
       legend: { show: false },
       cursor: { drag: { x: true, y: true, uni: 20 }, points: { show: false }, focus: { prox: 30 } },
-      scales: { x: { time: false, distr: logX ? 3 : 1 }, y: range ? { range } : {} },
-      axes: [axis(x, 38), axis(y, 62)],
+      // Dots at the ends lie whole on the plot.
+      scales: { x: { time: false, range: wide ? undefined : padded }, y: range ? { range } : {} },
+      axes: [axis(x, 22), axis(y, 52)],
       series: [{}, ...series],
-      hooks: readout ? { setCursor: [(it) => say(it, readout, tell)] } : {},
+      hooks: { drawSeries: [drawDots], setCursor: readout ? [(it) => say(it, readout, tell)] : [] },
     },
     values,
     target,

@@ -1,11 +1,12 @@
 // What is drawn of the arm: axes, links, arrows, and where it could reach.
 import {
-  AmbientLight, BufferGeometry, CanvasTexture, Color, ConeGeometry, CylinderGeometry, DirectionalLight, Float32BufferAttribute, GridHelper, Group,
-  InstancedMesh, Matrix4, Mesh, MeshLambertMaterial, PerspectiveCamera, Points, PointsMaterial, Quaternion, Scene as World, SphereGeometry, Vector3,
-  WebGLRenderer,
+  BufferGeometry, Color, ColorManagement, ConeGeometry, CylinderGeometry, Float32BufferAttribute, Group, InstancedMesh, LinearSRGBColorSpace,
+  LineSegments, Matrix4, Mesh, PerspectiveCamera, Points, Quaternion, Scene as World, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { readingsOf } from "./data.js";
 import { add, chain, scale, subtract } from "./kinematics.js";
+import { dot, flat, solid } from "./materials.js";
 import { quantile } from "./statistics.js";
 import { colour } from "./theme.js";
 
@@ -13,11 +14,16 @@ const REACH_POINTS = 2500;
 const ASPECT = 0.72;
 const UP = new Vector3(0, 1, 0);
 
+// Colours are those of the style sheet, as they are.
+ColorManagement.enabled = false;
+
 /** The picture: knows data and readings, not controls. */
 export class Scene {
   constructor(data) {
     this.data = data;
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
+    this.renderer.debug.checkShaderErrors = false;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.canvas = this.renderer.domElement;
     this.canvas.setAttribute("role", "img");
@@ -31,19 +37,28 @@ export class Scene {
     this.controls.enablePan = false;
     this.controls.addEventListener("change", () => this.render());
     this.look("oblique");
+    // Shaders compile while the page goes on.
+    this.renderer.compileAsync(this.world, this.camera).then(() => {
+      this.compiled = true;
+      this.renderNow();
+      this.canvas.dataset.drawn = "true";
+    });
   }
 
   /** Sizes that everything else follows. */
   measure() {
-    const { rows, count } = this.data;
+    const { rows } = this.data;
+    const { count } = rows;
     const errors = rows.error_mm.slice().sort((a, b) => a - b);
-    const ends = [[0, 0, 0], ...rows.predicted];
+    const ends = [[0, 0, 0], ...rows.predicted, ...elbows(this.data)];
     const bounds = [0, 1, 2].map((k) => ends.reduce(([a, b], it) => [Math.min(a, it[k]), Math.max(b, it[k])], [0, 0]));
     this.size = Math.max(Math.hypot(...bounds.map(([a, b]) => b - a)) * 0.6, 0.1);
     this.centre = bounds.map(([a, b]) => (a + b) / 2);
-    this.legend = { least: 0, most: quantile(errors, 0.95) || 1e-9, square: 0, count };
+    this.legend = { least: 0, most: quantile(errors, 0.95) || 1e-9, square: 0 };
     this.legend.square = 1e3 * [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01].find((it) => it <= this.size / 3 || it === 0.01);
-    this.arrowScale = round((0.09 * this.size) / (this.legend.most * 1e-3));
+    // Many arrows are shorter, so that they stay apart.
+    const length = 0.09 * this.size * Math.min(1, Math.sqrt(300 / count));
+    this.arrowScale = round(length / (this.legend.most * 1e-3));
     this.axisScale = round((0.05 * this.size) / this.deviation());
   }
 
@@ -59,16 +74,11 @@ export class Scene {
   }
 
   build() {
-    this.world.add(new AmbientLight(0xffffff, 1.9));
-    const light = new DirectionalLight(0xffffff, 1.6);
-    light.position.set(2, -3, 5);
-    this.world.add(light);
-    this.materials = Object.fromEntries(["calibrated", "nominal", "axis", "nominalAxis", "arrow", "chosen"].map((it) => [it, new MeshLambertMaterial()]));
-    this.materials.nominal.transparent = this.materials.nominalAxis.transparent = true;
-    this.materials.nominal.opacity = this.materials.nominalAxis.opacity = 0.55;
+    this.materials = { calibrated: solid(), nominal: solid(0.55), axis: solid(), chosen: solid(), arrow: solid(), grid: flat(), reach: dot(this.size * 0.012) };
     this.parts = { calibrated: new Group(), nominal: new Group() };
     this.buildArrows();
     this.buildReach();
+    this.buildGrid();
     this.chosen = new Mesh(new SphereGeometry(this.size * 0.013, 16, 12), this.materials.chosen);
     this.world.add(this.parts.calibrated, this.parts.nominal, this.chosen);
     this.recolour();
@@ -79,9 +89,8 @@ export class Scene {
     const width = this.size * (rows.count > 800 ? 0.0016 : 0.003);
     const shaft = new CylinderGeometry(width, width, 1, 5);
     const head = new ConeGeometry(width * 3, 1, 8);
-    const material = new MeshLambertMaterial();
-    this.shafts = new InstancedMesh(shaft, material, rows.count);
-    this.heads = new InstancedMesh(head, material, rows.count);
+    this.shafts = new InstancedMesh(shaft, this.materials.arrow, rows.count);
+    this.heads = new InstancedMesh(head, this.materials.arrow, rows.count);
     this.parts.arrows = new Group();
     this.parts.arrows.add(this.shafts, this.heads);
     this.headLength = width * 8;
@@ -113,20 +122,15 @@ export class Scene {
     const places = unsampled(this.data, this.size);
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(places.flat(), 3));
-    this.reachMaterial = new PointsMaterial({ size: this.size * 0.016, map: disc(), transparent: true, opacity: 0.5, depthWrite: false, alphaTest: 0.05 });
-    this.parts.reach = new Points(geometry, this.reachMaterial);
+    this.parts.reach = new Points(geometry, this.materials.reach);
     this.world.add(this.parts.reach);
   }
 
   recolour() {
     const of = (name) => new Color(colour(name));
     this.renderer.setClearColor(of("card"));
-    const { calibrated, nominal, axis, nominalAxis, chosen } = this.materials;
-    calibrated.color = of("s0");
-    axis.color = of("s2");
-    nominal.color = nominalAxis.color = of("soft");
-    chosen.color = of("alarm");
-    this.reachMaterial.color = of("soft");
+    const colours = { calibrated: "s0", nominal: "soft", axis: "s2", chosen: "alarm", grid: "rule", reach: "soft" };
+    for (const [material, name] of Object.entries(colours)) this.materials[material].uniforms.tint.value = of(name);
     // One hue, from near the page's colour to full: the larger the residual, the stronger.
     const [least, most] = [of("s1").lerp(of("card"), 0.7), of("s1").lerp(of("ink"), 0.15)];
     const root = document.documentElement.style;
@@ -138,17 +142,17 @@ export class Scene {
       this.heads.setColorAt(row, shade);
     });
     this.shafts.instanceColor.needsUpdate = this.heads.instanceColor.needsUpdate = true;
-    this.rebuildGrid();
     this.render();
   }
 
-  rebuildGrid() {
-    if (this.grid) this.world.remove(this.grid);
+  buildGrid() {
     const square = this.legend.square / 1e3;
-    const count = 2 * Math.max(3, Math.ceil((0.8 * this.size) / square));
-    this.grid = new GridHelper(count * square, count, new Color(colour("rule")), new Color(colour("rule")));
-    this.grid.rotation.x = Math.PI / 2;
-    this.world.add(this.grid);
+    const half = Math.max(3, Math.ceil((0.8 * this.size) / square)) * square;
+    const places = [];
+    for (let at = -half; at < half + square / 2; at += square) places.push(at, -half, 0, at, half, 0, -half, at, 0, half, at, 0);
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new Float32BufferAttribute(places, 3));
+    this.world.add(new LineSegments(geometry, this.materials.grid));
   }
 
   /** Shows both arms at these readings (radians, metres), and the measurement that was chosen. */
@@ -161,10 +165,12 @@ export class Scene {
       const direction = new Vector3(...apart(axis.direction, nominal.axes[k].direction)).normalize().toArray();
       return { point: apart(axis.point, nominal.axes[k].point), direction };
     });
-    const tip = apart(calibrated.tip, nominal.tip);
-    const ends = target ? [tip, add(tip, subtract(calibrated.target, calibrated.tip))] : [tip];
+    // The tool is no error of the arm: it stands at the last axis as it is.
+    const last = axes.length - 1;
+    const shift = subtract(axes[last].point, calibrated.axes[last].point);
+    const ends = [calibrated.tip, ...(target ? [calibrated.target] : [])].map((place) => add(place, shift));
     this.fill(this.parts.calibrated, axes, ends, this.materials.calibrated, this.materials.axis);
-    this.fill(this.parts.nominal, nominal.axes, [nominal.tip], this.materials.nominal, this.materials.nominalAxis);
+    this.fill(this.parts.nominal, nominal.axes, [nominal.tip], this.materials.nominal, this.materials.nominal);
     this.chosen.visible = row !== null;
     if (row !== null) this.chosen.position.set(...this.data.rows.predicted[row]);
     if (this.placedScale !== this.arrowScale) this.placeArrows();
@@ -177,8 +183,8 @@ export class Scene {
     group.clear();
     const places = [[0, 0, 0], ...axes.map((axis) => axis.point), ...ends];
     for (let k = 1; k < places.length; k++) {
-      rod(group, places[k - 1], places[k], this.size * 0.006, linkMaterial);
-      const joint = new Mesh(new SphereGeometry(this.size * 0.009, 12, 8), linkMaterial);
+      rod(group, places[k - 1], places[k], this.size * 0.009, linkMaterial);
+      const joint = new Mesh(new SphereGeometry(this.size * 0.0125, 12, 8), linkMaterial);
       joint.position.set(...places[k]);
       group.add(joint);
     }
@@ -196,7 +202,7 @@ export class Scene {
   look(name) {
     const directions = { oblique: [1, -1.25, 0.75], front: [0, -1.7, 0.02], side: [1.7, 0, 0.02], top: [0.001, -0.02, 1.7] };
     const centre = new Vector3(...this.centre);
-    this.camera.position.copy(centre).addScaledVector(new Vector3(...directions[name]).normalize(), 2.9 * this.size);
+    this.camera.position.copy(centre).addScaledVector(new Vector3(...directions[name]).normalize(), 2.35 * this.size);
     this.controls.target.copy(centre);
     this.controls.update();
     this.render();
@@ -213,8 +219,10 @@ export class Scene {
     const fit = () => {
       const width = Math.max(place.clientWidth, 120);
       this.renderer.setSize(width, Math.round(width * ASPECT), false);
+      this.materials.reach.uniforms.height.value = this.canvas.height;
       this.canvas.style.aspectRatio = `1 / ${ASPECT}`;
-      this.render();
+      // Resizing empties the picture, which must not be seen.
+      this.renderNow();
     };
     new ResizeObserver(fit).observe(place);
     fit();
@@ -239,9 +247,27 @@ export class Scene {
     });
   }
 
+  /** Draws once, however many changes there are before the next frame. */
   render() {
-    if (this.controls) this.renderer.render(this.world, this.camera);
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.renderNow();
+    });
   }
+
+  /** Draws at once. */
+  renderNow() {
+    if (this.compiled) this.renderer.render(this.world, this.camera);
+  }
+}
+
+/** Where the joints are in some of the rows. */
+function elbows(data) {
+  const step = Math.ceil(data.rows.count / 60);
+  const rows = data.rows.number.map((_, row) => row).filter((row) => row % step === 0);
+  return rows.flatMap((row) => chain(data, readingsOf(data, row), "screw").axes.map((axis) => axis.point));
 }
 
 function rod(group, from, to, radius, material) {
@@ -258,17 +284,6 @@ function rod(group, from, to, radius, material) {
 function round(value) {
   const power = 10 ** Math.floor(Math.log10(Math.max(value, 1)));
   return Math.max(1, Math.min(Math.round((value / power) * 2) / 2, 10) * power);
-}
-
-/** A round dot for points. */
-function disc() {
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = 32;
-  const context = canvas.getContext("2d");
-  context.fillStyle = "#ffffff";
-  context.arc(16, 16, 14, 0, 2 * Math.PI);
-  context.fill();
-  return new CanvasTexture(canvas);
 }
 
 /** Numbers from 0 to 1 that are the same each time the page is opened (mulberry32). */

@@ -42,13 +42,13 @@ pub(super) fn screen(page: &mut Html, file: &CalibrationFile, residuals: &Residu
         "<b>Nominal</b>: the model as delivered. <b>Registered</b>: tool and measuring device found too. <b>Calibrated</b>: the joints' \
          axes found too. What calibrating this robot gained is calibrated against registered.",
     );
+    facts(page, file, residuals);
     page.raw("</div>");
     page.plots(
         &[figures::distributions(residuals, held_out.is_some())],
         &format!("{} {of}.", count(set.count, &format!("{key}.count"))),
     );
     page.raw("</div>");
-    facts(page, file, residuals);
     contents(page, file);
 }
 

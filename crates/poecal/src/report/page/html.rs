@@ -24,9 +24,21 @@ pub(super) fn count(value: usize, key: &str) -> String {
     format!("<span data-key=\"{}\">{value}</span>", escape(key))
 }
 
-/// Text from `calibration.json`, as it stands there.
+/// Text from `calibration.json`, as it stands there; words between backticks are code.
 pub(super) fn quoted(text: &str, key: &str) -> String {
-    format!("<span data-key=\"{}\">{}</span>", escape(key), escape(text))
+    let pieces = text.split('`').map(escape).enumerate();
+    let pieces: String =
+        pieces.map(|(k, piece)| if k % 2 == 1 { format!("<code>{piece}</code>") } else { piece }).collect();
+    format!("<span data-key=\"{}\">{pieces}</span>", escape(key))
+}
+
+/// A value with decimals and a true minus; what rounds to zero has none.
+pub(super) fn decimal(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    if text.trim_matches(['-', '0', '.']).is_empty() {
+        return text.trim_start_matches('-').to_owned();
+    }
+    text.replace('-', "−")
 }
 
 /// A table. Cells are HTML.
@@ -50,7 +62,7 @@ impl Table {
         let mut out = format!(
             "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{caption}\"><table>\n<caption>{caption}</caption>\n<thead><tr>"
         );
-        let class = |k: usize| if k < self.words { "" } else { " class=\"number\"" };
+        let class = |k: usize| if k < self.words { " class=\"word\"" } else { " class=\"number\"" };
         // Writing to a String cannot fail.
         for (k, name) in self.head.iter().enumerate() {
             let _ = write!(out, "<th scope=\"col\"{}>{name}</th>", class(k));

@@ -1,7 +1,7 @@
 //! The robot: its axes in three dimensions, and what was corrected at each joint.
 
 use super::figures;
-use super::html::{Html, Table, figure, quoted, scaled};
+use super::html::{Html, Table, decimal, figure, quoted, scaled};
 use crate::io::calibration_file::{CalibrationFile, KindWord};
 
 pub(super) fn sections(page: &mut Html, file: &CalibrationFile) {
@@ -36,7 +36,9 @@ fn view(page: &mut Html, file: &CalibrationFile) {
             ];
             cells.extend((0..3).map(|i| figure(direction[i], &format!("{key}.{part}.{i}"))));
             let point = turns.then(|| cross(screw.w, screw.v_m));
-            cells.extend((0..3).map(|i| point.map_or_else(|| "–".to_owned(), |point| shown(1e3 * point[i]))));
+            cells.extend(
+                (0..3).map(|i| point.map_or_else(|| "–".to_owned(), |point| decimal(1e3 * point[i], 3))),
+            );
             table.rows.push(cells);
         }
     }
@@ -54,14 +56,6 @@ fn kind_words(kind: KindWord) -> &'static str {
 /// The point of an axis nearest to the origin, from its direction and its linear part.
 fn cross(w: [f64; 3], v: [f64; 3]) -> [f64; 3] {
     [w[1] * v[2] - w[2] * v[1], w[2] * v[0] - w[0] * v[2], w[0] * v[1] - w[1] * v[0]]
-}
-
-/// Three decimals, without a sign where nothing is left.
-fn shown(value: f64) -> String {
-    let text = format!("{value:.3}");
-    let text =
-        if text.trim_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-') } else { &text };
-    text.replace('-', "−")
 }
 
 fn corrections(page: &mut Html, file: &CalibrationFile) {

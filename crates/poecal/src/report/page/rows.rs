@@ -2,7 +2,7 @@
 
 use super::data::{MOST_ROWS, drawn};
 use super::first::{position_table, rotation_table};
-use super::html::{Html, Table, count, figure, quoted};
+use super::html::{Html, Table, count, decimal, figure};
 use super::{figures, readings_of};
 use crate::calibration::Statistic;
 use crate::io::calibration_file::{CalibrationFile, OutlierSet};
@@ -18,8 +18,8 @@ const PARTS: usize = 6;
 
 pub(super) fn sections(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
     errors(page, file, residuals);
-    suspects(page, file);
-    repeatability(page, file);
+    suspects(page, file, residuals);
+    repeatability(page, file, residuals);
 }
 
 fn errors(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
@@ -60,11 +60,14 @@ fn errors(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
          bend away are wrong rows or errors that the model does not describe.",
     );
     page.raw("</div>");
+    page.heading("Fitted against held-out rows");
+    page.raw("<div class=\"pair\">");
     page.plots(
         &[figures::sets(residuals)],
         "Fitted rows are always predicted a little better than others; only held-out ones are a promise.",
     );
     set_tables(page, file);
+    page.raw("</div>");
     page.chart(
         "leverage",
         "Leverage",
@@ -161,7 +164,7 @@ fn joint_table(residuals: &Residuals) -> Table {
             }
         }
         for (part, (rows, sum)) in sums.iter().enumerate() {
-            let end = |part: usize| format!("{:.1} {unit}", least + width * part as f64).replace('-', "−");
+            let end = |part: usize| format!("{} {unit}", decimal(least + width * part as f64, 1));
             let rms = if *rows > 0 { number((sum / *rows as f64).sqrt()) } else { "–".to_owned() };
             table.rows.push(vec![escape(name), end(part), end(part + 1), rows.to_string(), rms]);
         }
@@ -174,8 +177,16 @@ pub(super) fn place(residuals: &Residuals, index: usize) -> String {
     let Some(row) = residuals.rows.get(index) else { return String::new() };
     match residuals.file(row) {
         "" => format!("row {}", index + 1),
-        file => format!("{file}:{}", row.line),
+        file => format!("{}:{}", short(&residuals.files, file), row.line),
     }
+}
+
+/// A file's name without its folders, if no other file has that name.
+fn short<'a>(files: &[String], file: &'a str) -> &'a str {
+    let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+    let own = name(file);
+    let same = files.iter().filter(|other| name(other) == own).count();
+    if same == 1 { &file[file.len() - own.len()..] } else { file }
 }
 
 fn leverage_table(residuals: &Residuals) -> Option<Table> {
@@ -201,7 +212,7 @@ fn leverage_table(residuals: &Residuals) -> Option<Table> {
     (!judged.is_empty()).then_some(table)
 }
 
-fn suspects(page: &mut Html, file: &CalibrationFile) {
+fn suspects(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
     page.section("suspects", "Suspected rows");
     let robust = &file.robust;
     let fit = match robust.loss {
@@ -216,14 +227,15 @@ fn suspects(page: &mut Html, file: &CalibrationFile) {
         return;
     }
     page.text(&format!(
-        "{} fitted and {} held-out rows are too far off to be noise. {fit} Look whether a mirror was knocked, or a target mistaken.",
+        "{} fitted and {} held-out rows are too far off to be noise. {fit} <b>Studentised</b> is the length of the residual in units of its own standard deviation, \
+         <b>weight</b> what the row counted in the fit (or would have). Look whether a mirror was knocked, or a target mistaken.",
         count(robust.suspected_fit, "robust.suspected_fit"),
         count(robust.suspected_held_out, "robust.suspected_held_out")
     ));
     let turned = file.outliers.iter().any(|it| it.residual_deg.is_some());
     let mut head = vec!["row", "set", "off by, mm"];
     head.extend(turned.then_some("off by, °"));
-    head.extend(["in its own standard deviations", "weight in the fit"]);
+    head.extend(["studentised", "weight"]);
     let mut table = Table::new("Rows that are suspected to be grossly wrong, the worst first", 2, &head);
     for (k, found) in file.outliers.iter().take(LISTED).enumerate() {
         let key = |name: &str| format!("outliers.{k}.{name}");
@@ -231,8 +243,11 @@ fn suspects(page: &mut Html, file: &CalibrationFile) {
             OutlierSet::Fit => "fitted",
             OutlierSet::HeldOut => "held out",
         };
-        let place =
-            format!("{}:{}", quoted(&found.file, &key("file")), count(found.row as usize, &key("row")));
+        let place = format!(
+            "{}:{}",
+            escape(short(&residuals.files, &found.file)),
+            count(found.row as usize, &key("row"))
+        );
         let mut cells = vec![place, set.to_owned(), figure(found.residual_mm, &key("residual_mm"))];
         if turned {
             cells.push(
@@ -249,7 +264,7 @@ fn suspects(page: &mut Html, file: &CalibrationFile) {
     page.end_section();
 }
 
-fn repeatability(page: &mut Html, file: &CalibrationFile) {
+fn repeatability(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
     let Some(found) = &file.repeatability else { return };
     page.section("repeatability", "Repeatability");
     page.text(&format!(
@@ -274,7 +289,11 @@ fn repeatability(page: &mut Html, file: &CalibrationFile) {
     for (k, pose) in found.listed.iter().take(LISTED).enumerate() {
         let key = |name: &str| format!("repeatability.listed.{k}.{name}");
         table.rows.push(vec![
-            format!("{}:{}", quoted(&pose.file, &key("file")), count(pose.row as usize, &key("row"))),
+            format!(
+                "{}:{}",
+                escape(short(&residuals.files, &pose.file)),
+                count(pose.row as usize, &key("row"))
+            ),
             count(pose.rows, &key("rows")),
             figure(pose.accuracy_nominal_mm, &key("accuracy_nominal_mm")),
             figure(pose.accuracy_registered_mm, &key("accuracy_registered_mm")),

@@ -1,9 +1,7 @@
 //! How far the result can be trusted, and what the data tell.
 
-use std::fmt::Write as _;
-
 use super::figures;
-use super::html::{Html, Table, count, figure, quoted, scaled};
+use super::html::{Html, Table, count, decimal, figure, quoted, scaled};
 use crate::analysis::Direction;
 use crate::io::calibration_file::{CalibrationFile, KindWord, LeftOutEntry, RangeEntry, UncertaintyEntry};
 use crate::report::plot::escape;
@@ -151,16 +149,9 @@ fn parts(page: &mut Html, file: &CalibrationFile, found: &UncertaintyEntry) {
 fn map_cell(k: usize, part: &RangeEntry, (least, worst): (f64, f64), (factor, unit): (f64, &str)) -> String {
     let span = worst - least;
     let level = if span > 0.0 { (10.0 * (part.sigma_position_mm - least) / span).round() } else { 0.0 };
-    let mut cell = format!("<td class=\"heat h{level:.0}\">");
-    // Writing to a String cannot fail.
-    let _ = write!(
-        cell,
-        "{}<small>{:.0} to {:.0}{unit}</small></td>",
-        figure(part.sigma_position_mm, &format!("uncertainty.parts.{k}.sigma_position_mm")),
-        part.from * factor,
-        part.to * factor
-    );
-    cell.replace('-', "−").replace("data−", "data-")
+    let sigma = figure(part.sigma_position_mm, &format!("uncertainty.parts.{k}.sigma_position_mm"));
+    let [from, to] = [part.from, part.to].map(|end| decimal(end * factor, 0));
+    format!("<td class=\"heat h{level:.0}\">{sigma}<small>{from} to {to}{unit}</small></td>")
 }
 
 fn told(page: &mut Html, file: &CalibrationFile) {
