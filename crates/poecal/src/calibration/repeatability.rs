@@ -8,6 +8,8 @@ use crate::measurement::Dataset;
 
 /// Rows of one configuration from which on its scatter is stated; ISO 9283 asks for 30.
 const ROWS: usize = 3;
+/// Readings (radians, metres) that differ by no more are of one configuration: what encoders of a robot that came back differ by.
+const SAME: f64 = 1e-4;
 /// Standard deviations that are added to the mean distance, as in ISO 9283.
 const DEVIATIONS: f64 = 3.0;
 
@@ -22,13 +24,15 @@ const DEVIATIONS: f64 = 3.0;
 pub struct RepeatedPose {
     /// Its rows.
     pub rows: Vec<u32>,
-    /// Distance from where the nominal, registered and calibrated model say to the mean of the measured positions, metres.
+    /// Length of the mean of what was measured less what the nominal, registered and calibrated model predict, metres.
     pub accuracy_m: [f64; 3],
-    /// Mean distance of the measured positions from their mean, and three standard deviations of it, metres.
+    /// Mean distance of the measured positions from their mean, and three standard deviations of it, metres; by the calibrated model's
+    /// predictions, where readings differ.
     pub repeatability_m: f64,
 }
 
-/// Every configuration and target with three rows or more whose joint readings are equal to the last digit, in the order measured.
+/// Every configuration and target with three rows or more, in the order measured. Readings that differ by less than 0.0001 rad or 0.1 mm are
+/// of one configuration; what they differ by is allowed for, since errors are taken from each row's own prediction.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate, repeatability};
@@ -56,20 +60,43 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
     poses.collect()
 }
 
-/// Rows of equal readings and target, at least [`ROWS`] each.
+/// Rows of one target whose readings are those of the group's first row, at least [`ROWS`] each.
 fn groups(data: &Dataset) -> Vec<Vec<u32>> {
-    let key = |row: u32| data.readings(row as usize).iter().map(|value| value.to_bits());
     let target = |row: u32| data.observations[row as usize].target;
-    let mut order = data.all_rows();
-    order.sort_by(|&a, &b| target(a).cmp(&target(b)).then_with(|| key(a).cmp(key(b))).then(a.cmp(&b)));
-    let same = |a: &u32, b: &u32| target(*a) == target(*b) && key(*a).eq(key(*b));
-    let mut groups: Vec<Vec<u32>> =
-        order.chunk_by(same).filter(|group| group.len() >= ROWS).map(<[u32]>::to_vec).collect();
+    let readings = |row: u32| data.readings(row as usize);
+    // Rows of equal readings lie together by any sum of their readings; by this one, others seldom do.
+    let weight = |k: usize| 1.0 + 0.618_033_988_749_895 * (k as f64).sqrt();
+    let key = |row: u32| readings(row).iter().enumerate().map(|(k, value)| weight(k) * value).sum::<f64>();
+    let window = SAME * (0..data.reading_names().len()).map(weight).sum::<f64>();
+    let mut order: Vec<(usize, f64, u32)> =
+        data.all_rows().into_iter().map(|row| (target(row), key(row), row)).collect();
+    order.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+    let same = |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= SAME);
+    let mut taken = vec![false; order.len()];
+    let mut groups = Vec::new();
+    for first in 0..order.len() {
+        if taken[first] {
+            continue;
+        }
+        let (target, key, row) = order[first];
+        let near = order[first..].iter().take_while(|it| it.0 == target && it.1 - key <= window);
+        let members: Vec<usize> = (first..)
+            .zip(near)
+            .filter(|&(place, &(_, _, other))| !taken[place] && same(row, other))
+            .map(|(place, _)| place)
+            .collect();
+        if members.len() >= ROWS {
+            members.iter().for_each(|&place| taken[place] = true);
+            let mut rows: Vec<u32> = members.iter().map(|&place| order[place].2).collect();
+            rows.sort_unstable();
+            groups.push(rows);
+        }
+    }
     groups.sort_by_key(|group| group.first().copied());
     groups
 }
 
-/// The mean of the errors: all of them are seen from the same prediction.
+/// The mean of the errors.
 fn mean(errors: &[RowError]) -> Vector3<f64> {
     errors.iter().map(|error| error.position_m).sum::<Vector3<f64>>() / errors.len().max(1) as f64
 }
@@ -87,6 +114,25 @@ fn scatter(errors: &[RowError]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measurement::{Measurement, PointMeasurement};
+
+    #[test]
+    fn rows_of_one_configuration_are_found_whatever_their_order() {
+        let mut data = Dataset::new(vec!["a".to_owned(), "b".to_owned()]);
+        let rows = [
+            ([0.0, 1.0], "p"),
+            ([0.5, 0.5], "p"),
+            ([5e-5, 1.0], "p"),
+            ([0.0, 1.0], "q"),
+            ([0.0, 1.0], "p"),
+            ([2e-4, 1.0], "p"),
+        ];
+        for (readings, target) in rows {
+            let seen = Measurement::Point(PointMeasurement { position: Vector3::zeros() });
+            data.push(&readings, Some(target), seen).unwrap();
+        }
+        assert_eq!(groups(&data), [vec![0, 2, 4]]);
+    }
 
     #[test]
     fn scatter_is_the_mean_distance_and_three_deviations() {

@@ -24,3 +24,18 @@ pub(super) fn sha256(path: &Path) -> Result<String> {
     }
     Ok(digits)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::sha256;
+
+    #[test]
+    fn the_digest_of_abc_is_that_of_the_standard() {
+        let path = std::env::temp_dir().join(format!("poecal_hash_{}", std::process::id()));
+        std::fs::write(&path, "abc").unwrap();
+        let digest = sha256(&path);
+        std::fs::remove_file(&path).unwrap();
+        // FIPS 180-2, appendix B.1.
+        assert_eq!(digest.unwrap(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+}

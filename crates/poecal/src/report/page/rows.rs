@@ -28,8 +28,8 @@ fn errors(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
     let shown = drawn(residuals).len();
     if shown < residuals.rows.len() {
         page.note(&format!(
-            "Charts draw {shown} of {} rows: the suspected ones, those furthest off, and of the others as many at equal distances as make \
-             {MOST_ROWS}. Histogram, normal plot and curves are of the evenly chosen ones alone. Tables count every row.",
+            "Charts draw {shown} of {} rows: the suspected ones, those furthest off, and others at equal distances, {MOST_ROWS} at most. Histogram, \
+             normal plot and smoothed curves are of the evenly chosen ones alone. Tables count every row.",
             residuals.rows.len()
         ));
     }
