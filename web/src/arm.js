@@ -15,7 +15,7 @@ export function showArm(place, data) {
   }
   const stage = element("div", "stage");
   const frame = element("div", "scene");
-  frame.append(scene.canvas);
+  frame.append(scene.canvas, scene.paper);
   stage.append(frame, colourLine(), scaleLine(scene));
   const panel = element("div", "panel");
   place.append(stage, panel);

@@ -5,13 +5,13 @@ import { colour, onColours } from "./theme.js";
 
 const FONT = '12px system-ui, "Segoe UI", Roboto, "Liberation Sans", Arial, sans-serif';
 
-function axis(label, size) {
+function axis(label, size, gap) {
   return {
     label,
     labelSize: 16,
     labelGap: 0,
     size,
-    gap: 3,
+    gap,
     font: FONT,
     labelFont: FONT,
     stroke: () => colour("soft"),
@@ -112,7 +112,7 @@ export function plot(place, { x, y, series, values, height = 260, range, spoken,
       cursor: { drag: { x: true, y: true, uni: 20 }, points: { show: false }, focus: { prox: 30 } },
       // Dots at the ends lie whole on the plot.
       scales: { x: { time: false, range: wide ? undefined : padded }, y: range ? { range } : {} },
-      axes: [axis(x, 22), axis(y, 52)],
+      axes: [axis(x, 27, 8), axis(y, 52, 4)],
       series: [{}, ...series],
       hooks: { drawSeries: [drawDots], setCursor: readout ? [(it) => say(it, readout, tell)] : [] },
     },

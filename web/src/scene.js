@@ -28,6 +28,11 @@ export class Scene {
     this.canvas = this.renderer.domElement;
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", "The arm in three dimensions, nominal and calibrated, with residual arrows. The text beside says where its tip is.");
+    // What is printed: paper takes the last picture that was on the screen, which may be in other colours.
+    this.paper = document.createElement("canvas");
+    this.paper.className = "paper";
+    this.paper.setAttribute("aria-hidden", "true");
+    addEventListener("beforeprint", () => this.copyForPrint());
     this.world = new World();
     this.camera = new PerspectiveCamera(35, 1 / ASPECT, 0.01, 100);
     this.camera.up.set(0, 0, 1);
@@ -37,9 +42,9 @@ export class Scene {
     this.controls.enablePan = false;
     this.controls.addEventListener("change", () => this.render());
     this.look("oblique");
-    // Shaders compile while the page goes on.
-    this.renderer.compileAsync(this.world, this.camera).then(() => {
-      this.compiled = true;
+    // The text and the charts come first: shaders take their time where a processor has to draw.
+    setTimeout(() => {
+      this.begun = true;
       this.renderNow();
       this.canvas.dataset.drawn = "true";
     });
@@ -54,6 +59,7 @@ export class Scene {
     const bounds = [0, 1, 2].map((k) => ends.reduce(([a, b], it) => [Math.min(a, it[k]), Math.max(b, it[k])], [0, 0]));
     this.size = Math.max(Math.hypot(...bounds.map(([a, b]) => b - a)) * 0.6, 0.1);
     this.centre = bounds.map(([a, b]) => (a + b) / 2);
+    this.bounds = bounds;
     this.legend = { least: 0, most: quantile(errors, 0.95) || 1e-9, square: 0 };
     this.legend.square = 1e3 * [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01].find((it) => it <= this.size / 3 || it === 0.01);
     // Many arrows are shorter, so that they stay apart.
@@ -202,10 +208,22 @@ export class Scene {
   look(name) {
     const directions = { oblique: [1, -1.25, 0.75], front: [0, -1.7, 0.02], side: [1.7, 0, 0.02], top: [0.001, -0.02, 1.7] };
     const centre = new Vector3(...this.centre);
-    this.camera.position.copy(centre).addScaledVector(new Vector3(...directions[name]).normalize(), 2.35 * this.size);
+    const direction = new Vector3(...directions[name]).normalize();
+    this.camera.position.copy(centre).addScaledVector(direction, this.distance(direction));
     this.controls.target.copy(centre);
     this.controls.update();
     this.render();
+  }
+
+  /** How far away everything is seen from a direction. */
+  distance(direction) {
+    const right = new Vector3(0, 0, 1).cross(direction).normalize();
+    const up = direction.clone().cross(right);
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const [xs, ys, zs] = this.bounds;
+    const corners = xs.flatMap((x) => ys.flatMap((y) => zs.map((z) => new Vector3(...subtract([x, y, z], this.centre)))));
+    const needed = corners.map((corner) => corner.dot(direction) + Math.max(Math.abs(corner.dot(up)) / half, (Math.abs(corner.dot(right)) * ASPECT) / half));
+    return 1.02 * Math.max(...needed);
   }
 
   zoom(factor) {
@@ -257,9 +275,16 @@ export class Scene {
     });
   }
 
+  copyForPrint() {
+    this.recolour();
+    this.renderNow();
+    [this.paper.width, this.paper.height] = [this.canvas.width, this.canvas.height];
+    this.paper.getContext("2d").drawImage(this.canvas, 0, 0);
+  }
+
   /** Draws at once. */
   renderNow() {
-    if (this.compiled) this.renderer.render(this.world, this.camera);
+    if (this.begun) this.renderer.render(this.world, this.camera);
   }
 }
 

@@ -23,7 +23,7 @@ after(() => browser?.close());
 
 /** The share of each canvas' pixels that differ from its corner. */
 function drawnShares() {
-  return [...document.querySelectorAll("canvas")].map((canvas) => {
+  return [...document.querySelectorAll("canvas:not(.paper)")].map((canvas) => {
     const copy = document.createElement("canvas");
     [copy.width, copy.height] = [canvas.width, canvas.height];
     const context = copy.getContext("2d");

@@ -46,8 +46,8 @@ fn the_report_made_again_is_the_same() {
         assert!(folder.read(&format!("{out}/report.html")) == page, "{out}");
     }
     let words = "report poecal-out/calibration.json --residuals targets/residuals.csv -o third.html";
-    // As many rows of the same readings: that they are of another calibration cannot be seen.
-    folder.done(words);
+    let run = folder.run(words);
+    assert!(run.code == 2 && run.err.contains("targets/residuals.csv: found residuals of"), "{}", run.err);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The first screen: robot, data, verdict, errors on rows that were not fitted, one picture.
 
 use super::figures;
-use super::html::{Html, Table, count, figure, quoted};
+use super::html::{Html, Table, count, figure, path, quoted};
 use crate::calibration::{Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
 use crate::io::calibration_file::{CalibrationFile, KindWord};
 use crate::io::residuals::Residuals;
@@ -130,8 +130,7 @@ fn error_table(
 
 fn facts(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
     let files = file.inputs.measurements.iter().enumerate();
-    let files: Vec<String> =
-        files.map(|(k, name)| quoted(name, &format!("inputs.measurements.{k}"))).collect();
+    let files: Vec<String> = files.map(|(k, name)| path(name, &format!("inputs.measurements.{k}"))).collect();
     let orientations = residuals.rows.iter().filter(|row| row.rotation_deg.is_some()).count();
     let kinds = match (orientations, residuals.rows.len() - orientations) {
         (poses, 0) => format!("{poses} poses"),
@@ -146,7 +145,7 @@ fn facts(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
         String::new()
     };
     let mut facts = vec![
-        ("Model", quoted(&file.inputs.model, "inputs.model")),
+        ("Model", path(&file.inputs.model, "inputs.model")),
         ("Measurements", files.join("<br>")),
         (
             "Rows",

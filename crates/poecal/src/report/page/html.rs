@@ -32,6 +32,12 @@ pub(super) fn quoted(text: &str, key: &str) -> String {
     format!("<span data-key=\"{}\">{pieces}</span>", escape(key))
 }
 
+/// A path from `calibration.json`, which may be broken after its folders.
+pub(super) fn path(text: &str, key: &str) -> String {
+    let pieces: Vec<String> = text.split_inclusive(['/', '\\']).map(escape).collect();
+    format!("<span data-key=\"{}\">{}</span>", escape(key), pieces.join("<wbr>"))
+}
+
 /// A value with decimals and a true minus; what rounds to zero has none.
 pub(super) fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");

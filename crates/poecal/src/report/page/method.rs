@@ -1,7 +1,7 @@
 //! How the calibration was made, of which files, and how to make it again.
 
 use super::figures;
-use super::html::{Html, Table, count, figure, quoted};
+use super::html::{Html, Table, count, figure, path, quoted};
 use crate::io::calibration_file::{CalibrationFile, FrameWord};
 use crate::measurement::PoseResidual;
 use crate::report::plot::escape;
@@ -108,7 +108,7 @@ fn inputs(page: &mut Html, file: &CalibrationFile) {
     );
     for (name, what, key) in named {
         let hash = inputs.sha256.get(name).map_or("not recorded", String::as_str);
-        let shown = if key.is_empty() { escape(name) } else { quoted(name, &key) };
+        let shown = if key.is_empty() { escape(name) } else { path(name, &key) };
         table.rows.push(vec![
             shown,
             what.to_owned(),

@@ -9,6 +9,7 @@ mod method;
 mod rows;
 mod trust;
 
+use crate::calibration::Statistic;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
@@ -19,6 +20,8 @@ use html::Html;
 /// Style and script, built from `web/` by `npm run build`.
 const STYLE: &str = include_str!("assets/report.css");
 const SCRIPT: &str = include_str!("assets/report.js");
+/// By which share sums of the same rows may differ: rounding.
+const SAME: f64 = 1e-9;
 /// What a browser may do with the page: nothing is loaded from anywhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
 
@@ -87,6 +90,16 @@ fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
             );
             return Err(Error::new(ErrorKind::Problem, message));
         }
+    }
+    let fitted = residuals.rows.iter().filter(|row| !row.held_out);
+    let found = Statistic::of(fitted.map(|row| row.position_mm.models[2]).collect()).map_or(0.0, |it| it.rms);
+    let expected = accuracy.training.calibrated.position_mm.rms;
+    if (found - expected).abs() > SAME * expected {
+        let message = format!(
+            "found residuals of {found:.6} mm (RMS) on the fitted rows, expected {expected:.6} mm as in the calibration: name the \
+             residuals.csv that was written with it"
+        );
+        return Err(Error::new(ErrorKind::Problem, message));
     }
     Ok(())
 }
