@@ -146,11 +146,21 @@ function commonRange(values) {
   return values.some((value) => value < 0) ? [-most, most] : [0, most];
 }
 
+/** The curve at sorted places, broken where nothing was measured for a twentieth of its range. */
+function curveAt(curve, xs) {
+  const [first, last] = [curve.places[0], curve.places[curve.places.length - 1]];
+  const apart = (k) => k > 0 && xs[k] - xs[k - 1] > (last - first) / 20;
+  return xs.map((x, k) => (x < first || x > last || apart(k) ? null : interpolate(curve, x)));
+}
+
 function joint(cell, data, { believed, reading, k, text, values, unit, range }) {
   const column = data.rows.values[k];
   const order = believed.filter((row) => values[row] !== null).sort((a, b) => column[a] - column[b]);
   if (!order.length) {
-    cell.append("What was measured lies on this joint's axis, and does not move with it.");
+    const text = document.createElement("p");
+    text.className = "note";
+    text.textContent = "What was measured lies on this joint's axis, and does not move with it.";
+    cell.append(text);
     return;
   }
   const { series, columns } = bySet(data, order, values, sized(data) - 1);
@@ -158,8 +168,7 @@ function joint(cell, data, { believed, reading, k, text, values, unit, range }) 
   const curve = smooth(even.map((row) => column[row]), even.map((row) => values[row]));
   if (curve) {
     series.push(line("smoothed", "ink"));
-    const [first, last] = [curve.places[0], curve.places[curve.places.length - 1]];
-    columns.push(order.map((row) => (column[row] >= first && column[row] <= last ? interpolate(curve, column[row]) : null)));
+    columns.push(curveAt(curve, order.map((row) => column[row])));
   }
   const swing = curve ? Math.max(...curve.values) - Math.min(...curve.values) : NaN;
   plot(cell, {

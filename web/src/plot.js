@@ -75,7 +75,7 @@ function drawDots(chart, index) {
 /** A line that follows the colour of `name`. */
 export function line(label, name, options = {}) {
   const { width = 2, dash, paths } = options;
-  return { label, key: name, isLine: true, stroke: () => colour(name), width, dash, paths, points: { show: false }, spanGaps: true };
+  return { label, key: name, isLine: true, stroke: () => colour(name), width, dash, paths, points: { show: false } };
 }
 
 /** Bars that follow the colour of `name`. */

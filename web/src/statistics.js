@@ -26,13 +26,14 @@ export function normalQuantile(p) {
 
 /**
  * A smooth curve through points sorted by x: straight lines fitted locally, the nearer points counting more (cleveland1979), at `count`
- * places from the first x to the last.
+ * places from the first x to the last. About thirty points make each value, at most a quarter of the range wide.
  */
-export function smooth(xs, ys, count = 60, share = 0.25) {
+export function smooth(xs, ys, count = 150) {
   const points = xs.map((x, k) => [x, ys[k]]).filter(([, y]) => y !== null);
   if (points.length < 8) return null;
   const [first, last] = [points[0][0], points[points.length - 1][0]];
   if (!(last > first)) return null;
+  const share = Math.min(0.25, Math.max(0.05, 30 / points.length));
   // Wide enough for a share of the range, and for at least eight points.
   const places = Array.from({ length: count }, (_, k) => first + ((last - first) * k) / (count - 1));
   const values = places.map((place) => {

@@ -17,7 +17,10 @@ export async function launch() {
   return chromium.launch({ executablePath: CHROMIUM, args: ARGUMENTS });
 }
 
-/** Opens a report; `page.complaints` are errors on the console, and requests for anything but the report itself. */
+/**
+ * Opens a report; `page.complaints` are errors on the console, and requests for anything but the report itself;
+ * `page.processorTime()` the seconds that its main thread worked, whatever else the machine does.
+ */
 export async function open(browser, path, { width = 1300, colours = "light" } = {}) {
   const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme: colours });
   const address = pathToFileURL(path).href;
@@ -29,6 +32,12 @@ export async function open(browser, path, { width = 1300, colours = "light" } = 
   page.on("request", (request) => {
     if (request.url() !== address) page.complaints.push(`request: ${request.url().slice(0, 100)}`);
   });
+  const session = await page.context().newCDPSession(page);
+  await session.send("Performance.enable", { timeDomain: "threadTicks" });
+  page.processorTime = async () => {
+    const { metrics } = await session.send("Performance.getMetrics");
+    return metrics.find((metric) => metric.name === "TaskDuration").value;
+  };
   await page.goto(address);
   await page.waitForSelector(":root[data-ready]", { state: "attached" });
   await page.waitForSelector(".scene canvas[data-drawn]", { state: "attached" });

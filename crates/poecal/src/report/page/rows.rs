@@ -43,7 +43,7 @@ fn errors(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
     page.chart(
         "joints",
         "By joint",
-        "Residuals over each joint's value, with a smoothed curve. A curve that swings once or twice a turn is an error of a gear or an \
+        "Residuals over each joint's value, with a smoothed curve. A curve that swings, once or twice a turn or as a gear repeats, is an error of a gear or an \
          encoder that the model does not describe; one that bends with the load is a link that gives.",
     );
     page.folded_table("Errors by parts of each joint's values", &joint_table(residuals));
