@@ -78,5 +78,5 @@ if (existsSync(datasets)) {
     CASES.push([name, () => calibrate(name.replace(/\W+/g, "-"), join(datasets, model), join(datasets, measurements), ...words)]);
   }
 } else {
-  console.log(`# real robots skipped: no folder of data sets at ${datasets}; set POECAL_DATASETS`);
+  console.log(`real robots skipped: no folder of data sets at ${datasets}; set POECAL_DATASETS`);
 }

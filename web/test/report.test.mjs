@@ -112,7 +112,7 @@ for (const [name, make] of CASES) {
       const plots = await page.$$eval("svg.plot", (all) => all.map((it) => [it.querySelectorAll("circle, rect, polyline").length, it.clientWidth]));
       for (const [marks, width] of plots) assert.ok(marks > 2 && width > 100, `a plot has ${marks} marks, ${width} px wide`);
       assert.deepEqual(page.complaints, []);
-      console.log(`# ${name}: ${count} figures, ${shares.length} canvases, ${plots.length} plots, ${readFileSync(report).length} bytes`);
+      console.log(`${name}: ${count} figures, ${shares.length} canvases, ${plots.length} plots, ${readFileSync(report).length} bytes`);
       await page.close();
     });
 
@@ -194,7 +194,7 @@ describe("the page", { skip }, () => {
       await page.close();
     }
     const seconds = Math.min(...worked);
-    console.log(`# 50,000 rows: ${readFileSync(path).length} bytes, opened in ${times.join(", ")} s, ${seconds.toFixed(1)} s of them at work`);
+    console.log(`50,000 rows: ${readFileSync(path).length} bytes, opened in ${times.join(", ")} s, ${seconds.toFixed(1)} s of them at work`);
     // Of work, since a busy machine takes longer by the clock.
     assert.ok(seconds < 3, `${worked} s`);
   });
