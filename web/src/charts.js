@@ -146,10 +146,11 @@ function commonRange(values) {
   return values.some((value) => value < 0) ? [-most, most] : [0, most];
 }
 
-/** The curve at sorted places, broken where nothing was measured for a twentieth of its range. */
+/** The curve at sorted places, broken where nothing was measured for a good part of its range. */
 function curveAt(curve, xs) {
   const [first, last] = [curve.places[0], curve.places[curve.places.length - 1]];
-  const apart = (k) => k > 0 && xs[k] - xs[k - 1] > (last - first) / 20;
+  const gap = (last - first) * Math.max(1 / 20, 8 / xs.length);
+  const apart = (k) => k > 0 && xs[k] - xs[k - 1] > gap;
   return xs.map((x, k) => (x < first || x > last || apart(k) ? null : interpolate(curve, x)));
 }
 

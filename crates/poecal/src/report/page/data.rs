@@ -8,9 +8,10 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::{CalibrationFile, KindWord, PoseEntry, ScrewEntry};
 use crate::io::residuals::{ModelErrors, ResidualRow, Residuals};
 
-/// Rows that charts draw at most, and how many of them are chosen for being far off.
+/// Rows that charts draw at most; how many of them are chosen for being suspected, and for being far off.
 pub(super) const MOST_ROWS: usize = 4000;
-const WORST: usize = 500;
+const SUSPECTED: usize = 400;
+const WORST: usize = 100;
 /// Digits of numbers that are drawn.
 const DIGITS: usize = 6;
 
@@ -111,18 +112,16 @@ pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
     if count <= MOST_ROWS {
         return (0..count).map(|row| (row, true)).collect();
     }
-    let mut worst: Vec<usize> = (0..count).collect();
-    let key = |row: &usize| {
-        let found = residuals.rows.get(*row);
-        let suspected = found.and_then(|row| row.judged).is_some_and(|judged| judged.suspected);
-        (suspected, found.map_or(0.0, |row| row.position_mm.models[2]))
-    };
-    worst.sort_by(|a, b| {
-        let (a, b) = (key(a), key(b));
-        b.0.cmp(&a.0).then(b.1.total_cmp(&a.1))
-    });
-    worst.truncate(WORST);
-    let evenly = MOST_ROWS - WORST;
+    let suspected = |row: usize| residuals.rows.get(row)?.judged.map(|judged| judged.suspected);
+    let error = |row: usize| residuals.rows.get(row).map_or(0.0, |row| row.position_mm.models[2]);
+    let (mut worst, mut others): (Vec<usize>, Vec<usize>) =
+        (0..count).partition(|&row| suspected(row) == Some(true));
+    for (rows, most) in [(&mut worst, SUSPECTED), (&mut others, WORST)] {
+        rows.sort_by(|&a, &b| error(b).total_cmp(&error(a)));
+        rows.truncate(most);
+    }
+    worst.extend(others);
+    let evenly = MOST_ROWS - SUSPECTED - WORST;
     let mut rows: Vec<(usize, bool)> = (0..evenly).map(|k| (k * count / evenly, true)).collect();
     rows.extend(worst.into_iter().map(|row| (row, false)));
     // A row that is both counts as evenly chosen.

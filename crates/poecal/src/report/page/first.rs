@@ -8,8 +8,10 @@ use crate::io::residuals::Residuals;
 use crate::report::plot::escape;
 use crate::report::table::STATISTICS;
 
-/// The three models: their words, and how to take them from a set.
-pub(super) const MODELS: [(&str, fn(&SetAccuracy) -> &ModelAccuracy); 3] = [
+/// A model: its word, and how to take it from a set.
+type Model = (&'static str, fn(&SetAccuracy) -> &ModelAccuracy);
+
+const MODELS: [Model; 3] = [
     ("nominal", |set| &set.nominal),
     ("registered", |set| &set.registered),
     ("calibrated", |set| &set.calibrated),

@@ -110,7 +110,7 @@ fn reading_index(residuals: &Residuals, name: &str) -> Option<usize> {
 }
 
 /// The joint readings: index among the columns of the residuals, name and unit.
-fn readings_of<'a>(residuals: &'a Residuals) -> impl Iterator<Item = (usize, &'a str, &'static str)> {
+fn readings_of(residuals: &Residuals) -> impl Iterator<Item = (usize, &str, &'static str)> {
     residuals.readings.iter().enumerate().map(|(index, (name, kind))| (index, name.as_str(), unit(*kind)))
 }
 
