@@ -1,5 +1,7 @@
 //! The report page: its figures are those of the calibration file, names in it are no markup, and it stays small.
 
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
 use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, calibrate};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
@@ -46,7 +48,7 @@ fn repeated() -> Dataset {
     let mut made = Simulation { count: 50, ..Simulation::default() }.run(&elbow(), Kind::Point).unwrap();
     for row in (0..5).cycle().take(20) {
         let readings = made.data.readings(row).to_vec();
-        let mut observation = made.data.observations[row].clone();
+        let mut observation = made.data.observations[row];
         if let Measurement::Point(point) = &mut observation.measurement {
             // Some micrometres apart, in turn along the axes.
             point.position[made.data.len() % 3] += 1e-6 * (made.data.len() % 7) as f64;
