@@ -181,6 +181,14 @@ pub(super) fn place(residuals: &Residuals, index: usize) -> String {
     }
 }
 
+/// The place of a row as the calibration file has it; rows that came from no file have none.
+fn named(residuals: &Residuals, file: &str, row: u32, key: &str) -> String {
+    match file {
+        "" => "–".to_owned(),
+        file => format!("{}:{}", escape(short(&residuals.files, file)), count(row as usize, key)),
+    }
+}
+
 /// A file's name without its folders, if no other file has that name.
 fn short<'a>(files: &[String], file: &'a str) -> &'a str {
     let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
@@ -243,11 +251,7 @@ fn suspects(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
             OutlierSet::Fit => "fitted",
             OutlierSet::HeldOut => "held out",
         };
-        let place = format!(
-            "{}:{}",
-            escape(short(&residuals.files, &found.file)),
-            count(found.row as usize, &key("row"))
-        );
+        let place = named(residuals, &found.file, found.row, &key("row"));
         let mut cells = vec![place, set.to_owned(), figure(found.residual_mm, &key("residual_mm"))];
         if turned {
             cells.push(
@@ -289,11 +293,7 @@ fn repeatability(page: &mut Html, file: &CalibrationFile, residuals: &Residuals)
     for (k, pose) in found.listed.iter().take(LISTED).enumerate() {
         let key = |name: &str| format!("repeatability.listed.{k}.{name}");
         table.rows.push(vec![
-            format!(
-                "{}:{}",
-                escape(short(&residuals.files, &pose.file)),
-                count(pose.row as usize, &key("row"))
-            ),
+            named(residuals, &pose.file, pose.row, &key("row")),
             count(pose.rows, &key("rows")),
             figure(pose.accuracy_nominal_mm, &key("accuracy_nominal_mm")),
             figure(pose.accuracy_registered_mm, &key("accuracy_registered_mm")),
