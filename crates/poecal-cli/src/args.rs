@@ -3,12 +3,14 @@
 mod calibrate;
 mod identify;
 mod offsets;
+mod report;
 mod reproduce;
 mod simulate;
 
 pub(crate) use calibrate::{Calibrate, Frame};
 pub(crate) use identify::Identify;
 pub(crate) use offsets::Offsets;
+pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use simulate::{Simulate, SimulatedKind};
 
@@ -48,6 +50,8 @@ pub(crate) enum Command {
     Calibrate(Calibrate),
     /// Simulate a robot with errors and its measurements, for tests and for learning
     Simulate(Simulate),
+    /// Write the report of a calibration again
+    Report(Report),
     /// Judge a calibration by other measurements
     Validate(Validate),
     /// Predict poses from joint readings

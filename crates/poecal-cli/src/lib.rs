@@ -35,7 +35,8 @@ fn usage(error: &clap::Error) -> ExitCode {
 
 /// Runs the program.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let typed: Vec<OsString> = arguments.into_iter().collect();
+    let arguments = match Arguments::try_parse_from(&typed) {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),
     };
@@ -45,7 +46,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
     let result = match &arguments.command {
-        Command::Calibrate(options) => commands::calibrate(options, &console),
+        Command::Calibrate(options) => commands::calibrate(options, &typed, &console),
         Command::Simulate(options) => commands::simulate(options, &console),
         Command::Validate(options) => commands::validate(options, &console),
         Command::Predict(options) => commands::predict(options, &console),
@@ -54,6 +55,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Offsets(options) => commands::offsets(options, &console),
         Command::Reproduce(options) => commands::reproduce(options, &console),
         Command::Identify(options) => commands::identify(options, &console),
+        Command::Report(options) => commands::report(options, &console),
         Command::Schema => commands::schema(&console),
     };
     match result {

@@ -11,8 +11,9 @@ use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{ColumnMap, DecimalSign, MeasurementFile, ReadOptions, read};
+use poecal::io::residuals::Residuals;
 use poecal::io::urdf::UrdfDocument;
-use poecal::io::{Difference, residuals, robot_toml};
+use poecal::io::{Difference, robot_toml};
 use poecal::lie::{Pose, Screw};
 use poecal::measurement::Set;
 use poecal::robot::{Joint, Robot};
@@ -113,10 +114,10 @@ fn results_have_the_documented_columns_and_keys() {
     let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let documented = blocks("Results", "text")[0].lines().next().unwrap();
-    assert_eq!(residuals::text(&made.data, &calibration).lines().next().unwrap(), documented);
-    assert!(blocks("Results", "text")[0].lines().all(|line| line.matches(',').count() == 20));
+    assert_eq!(Residuals::of(&made.data, &calibration).text().lines().next().unwrap(), documented);
+    assert!(blocks("Results", "text")[0].lines().all(|line| line.matches(',').count() == 26));
 
-    let inputs = Inputs { model: String::new(), measurements: Vec::new() };
+    let inputs = Inputs::default();
     let text = CalibrationFile::new(&calibration, &made.data, inputs).to_text().unwrap();
     let file: serde_json::Value = serde_json::from_str(&text).unwrap();
     let table = DOCUMENT.split("### calibration.json").nth(1).unwrap().split("\n### ").next().unwrap();

@@ -263,7 +263,8 @@ fn held_out_rows_are_judged_too_and_the_file_names_all() {
         row.source.line = line;
     }
     let found = calibrate(&elbow(), &data, &CalibrationOptions::default()).unwrap();
-    let inputs = Inputs { model: "elbow.toml".into(), measurements: vec!["session.csv".into()] };
+    let inputs =
+        Inputs { model: "elbow.toml".into(), measurements: vec!["session.csv".into()], ..Inputs::default() };
     let file = CalibrationFile::new(&found, &data, inputs);
     let mut rows: Vec<u32> = file.outliers.iter().map(|outlier| outlier.row - 2).collect();
     rows.sort_unstable();

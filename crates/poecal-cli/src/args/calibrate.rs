@@ -8,7 +8,7 @@ use poecal::measurement::PoseResidual;
 use poecal::parameters::Formulation;
 use poecal::solve::Method;
 
-use super::{Chain, Reading};
+use super::{Chain, Reading, ReportPlace};
 use crate::quantity::{share, sigma_m, sigma_rad, whole};
 
 /// What is known of the measuring device's frame.
@@ -156,6 +156,9 @@ pub(crate) struct Calibrate {
     /// Overwrite results in an existing folder
     #[arg(long)]
     pub(crate) force: bool,
+    /// File for the report, or `none` [default: report.html among the results]
+    #[arg(long, value_name = "FILE|none")]
+    pub(crate) report: Option<ReportPlace>,
     /// End with code 1 if the verdict is worse than this (results are written all the same)
     #[arg(long, value_enum, value_name = "VERDICT")]
     pub(crate) require: Option<RequiredLevel>,

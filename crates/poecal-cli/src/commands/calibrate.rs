@@ -1,24 +1,32 @@
 //! `poecal calibrate`: model and measurements in, calibrated robot out.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, Stage, calibrate_with_progress};
+use poecal::calibration::{
+    Calibration, CalibrationOptions, DeviceFrameKnowledge, Stage, calibrate_with_progress,
+};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
-use poecal::io::output;
+use poecal::io::output::{self, Results};
+use poecal::io::residuals::Residuals;
 use poecal::measurement::{Dataset, Measurement, PoseResidual, Set};
 use poecal::{Error, ErrorKind, Result, report, solve};
 
 use super::files::{refuse_fitted, refuse_repeats};
-use crate::args::{Calibrate, Frame};
+use super::typed::command;
+use crate::args::{Calibrate, Frame, ReportPlace};
 use crate::console::Console;
 use crate::timings::Timings;
 
-pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<ExitCode> {
+pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<ExitCode> {
     let mut timings = Timings::start();
     output::check_folder(&arguments.out, arguments.force)?;
+    if let Some(ReportPlace::File(path)) = &arguments.report {
+        output::check_file(path)?;
+    }
     let model = Model::read(&arguments.model, &arguments.chain.selection())?;
     let data = read_measurements(arguments, &model, console)?;
     let options = options(arguments);
@@ -45,27 +53,19 @@ pub(crate) fn calibrate(arguments: &Calibrate, console: &Console) -> Result<Exit
     for warning in calibration.warnings.iter().chain(found) {
         console.warning(warning);
     }
-    let inputs = inputs(arguments);
-    let written =
-        output::write(&arguments.out, arguments.force, &model, &data, &calibration, inputs.clone())?;
+    let file = CalibrationFile::new(&calibration, &data, inputs(arguments, typed)?);
+    let json = if arguments.json { Some(file.to_text()?) } else { None };
+    let words = write(arguments, &model, &data, &calibration, file, console)?;
     timings.end("write");
-    for note in &written.notes {
-        console.warning(note);
-    }
     if arguments.timings {
         console.note(timings.line(|| calibration.solve_again(&data, &options)));
     }
-    if arguments.json {
-        console.data(&CalibrationFile::new(&calibration, &data, inputs).to_text()?)?;
-    } else {
-        console.say(&report::summary(&calibration, &data))?;
-        console.say(&format!(
-            "written       {}\n              {}\n              read back: within {:.1e} m and {:.1e} rad in 1,000 configurations\n",
-            written.folder.display(),
-            written.files.join(", "),
-            written.largest.position_m,
-            written.largest.rotation_rad
-        ))?;
+    match json {
+        Some(json) => console.data(&json)?,
+        None => {
+            console.say(&report::summary(&calibration, &data))?;
+            console.say(&words)?;
+        }
     }
     if !calibration.solver.termination.is_success() {
         return Ok(ExitCode::from(3));
@@ -153,10 +153,51 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
     }
 }
 
-fn inputs(arguments: &Calibrate) -> Inputs {
-    let files = arguments.measurements.iter().chain(&arguments.validate);
-    Inputs {
-        model: arguments.model.display().to_string(),
-        measurements: files.map(|path| path.display().to_string()).collect(),
+/// Writes the results; says where.
+fn write(
+    arguments: &Calibrate,
+    model: &Model,
+    data: &Dataset,
+    calibration: &Calibration,
+    file: CalibrationFile,
+    console: &Console,
+) -> Result<String> {
+    let residuals = Residuals::of(data, calibration);
+    let page = match arguments.report {
+        Some(ReportPlace::None) => None,
+        _ => Some(report::calibration_page(&file, &residuals)?),
+    };
+    let (among, elsewhere) = match &arguments.report {
+        Some(ReportPlace::File(path)) => (None, page.map(|page| (path, page))),
+        Some(ReportPlace::None) | None => (page, None),
+    };
+    let results = Results { file, residuals, report: among };
+    let written = output::write(&arguments.out, arguments.force, model, calibration, results)?;
+    for note in &written.notes {
+        console.warning(note);
     }
+    let mut words = format!(
+        "written       {}\n              {}\n              read back: within {:.1e} m and {:.1e} rad in 1,000 configurations\n",
+        written.folder.display(),
+        written.files.iter().filter(|name| *name != output::REPORT).cloned().collect::<Vec<_>>().join(", "),
+        written.largest.position_m,
+        written.largest.rotation_rad
+    );
+    let report = written.files.iter().find(|name| *name == output::REPORT);
+    let mut report = report.map(|name| written.folder.join(name));
+    if let Some((path, page)) = elsewhere {
+        output::write_file(path, &page)?;
+        report = Some(path.clone());
+    }
+    if let Some(path) = report {
+        words.push_str(&format!("report        {}\n", path.display()));
+    }
+    Ok(words)
+}
+
+fn inputs(arguments: &Calibrate, typed: &[OsString]) -> Result<Inputs> {
+    let files: Vec<PathBuf> = arguments.measurements.iter().chain(&arguments.validate).cloned().collect();
+    let mapping: Vec<PathBuf> = arguments.reading.columns.columns.iter().cloned().collect();
+    let inputs = Inputs::of_files(&arguments.model, &files, &mapping)?;
+    Ok(Inputs { command: Some(command(typed)), ..inputs })
 }

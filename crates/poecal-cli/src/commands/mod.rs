@@ -1,4 +1,4 @@
-//! The commands, one a file (and `files`, what they ask of paths).
+//! The commands, one a file (and `files`, what they ask of paths; `typed`, what was typed).
 
 mod calibrate;
 mod check;
@@ -7,9 +7,11 @@ mod files;
 mod identify;
 mod offsets;
 mod predict;
+mod report;
 mod reproduce;
 mod schema;
 mod simulate;
+mod typed;
 mod validate;
 
 pub(crate) use calibrate::calibrate;
@@ -18,6 +20,7 @@ pub(crate) use convert::convert;
 pub(crate) use identify::identify;
 pub(crate) use offsets::offsets;
 pub(crate) use predict::predict;
+pub(crate) use report::report;
 pub(crate) use reproduce::reproduce;
 pub(crate) use schema::schema;
 pub(crate) use simulate::simulate;

@@ -20,7 +20,8 @@ fn calibrate_writes_its_folder_and_tells_three_models() {
         assert!(out.contains(words), "`{words}` is not in\n{out}");
     }
     let files = ["measurements.csv", "poecal-out", "robot.urdf"].map(|name| folder.path(name));
-    let results = ["calibrated.urdf", "calibration.json", "residuals.csv"].map(|name| files[1].join(name));
+    let results = ["calibrated.urdf", "calibration.json", "report.html", "residuals.csv"]
+        .map(|name| files[1].join(name));
     let mut expected: Vec<_> = files.into_iter().chain(results).collect();
     expected.sort();
     assert_eq!(folder.listing().into_keys().collect::<Vec<_>>(), expected);

@@ -8,6 +8,7 @@ mod diagnosis;
 mod folder;
 mod identify;
 mod offsets;
+mod report;
 mod reproduce;
 mod session;
 mod targets_and_validation;

@@ -1,6 +1,7 @@
 //! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.
 
 pub mod calibration_file;
+mod hashes;
 pub mod measurements;
 mod mimic;
 pub mod model;

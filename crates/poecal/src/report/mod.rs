@@ -7,6 +7,7 @@ mod identify;
 mod judgement;
 mod offsets;
 mod outliers;
+mod page;
 mod plot;
 mod reproduction;
 mod table;
@@ -17,6 +18,7 @@ pub use claims::claims;
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::Offsets;
+pub use page::calibration_page;
 pub use reproduction::reproduction_files;
 pub use table::{accuracy_table, summary};
 

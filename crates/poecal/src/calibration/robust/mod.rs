@@ -151,13 +151,21 @@ struct Reweighted {
     scale: Scale,
     weights: Vec<f64>,
     iterations: usize,
+    trace: Vec<f64>,
 }
 
 impl Reweighted {
     fn new(task: &Task<'_>, mut start: Estimate, noise: Noise) -> Self {
         start.recentre(task.data, task.packed, task.rows);
         let weights = vec![1.0; task.data.len()];
-        Reweighted { estimate: start, noise, scale: Scale([1.0; 2]), weights, iterations: 0 }
+        Reweighted {
+            estimate: start,
+            noise,
+            scale: Scale([1.0; 2]),
+            weights,
+            iterations: 0,
+            trace: Vec::new(),
+        }
     }
 
     /// Standard deviation of a position component as the middle of the rows shows it.
@@ -181,6 +189,7 @@ impl Reweighted {
             let weighted = Task { weights: Some(&self.weights), options: &quick, ..*task };
             let (estimate, _, summary) = weighted.fit(self.estimate.clone(), self.noise);
             self.iterations += summary.iterations;
+            self.trace.extend(summary.trace);
             self.estimate = estimate;
         }
     }
@@ -243,6 +252,7 @@ impl Reweighted {
             None => Found::new(weighted.fit(self.estimate, self.noise)),
         };
         found.report.iterations += self.iterations;
+        found.report.trace.splice(0..0, self.trace);
         let fitted = weighted.finish(found, self.noise, source)?;
         let judged = judge_rows(&weighted, &fitted, &self.weights, Some(loss));
         Ok(RobustFit { fitted, loss: Some(loss), judged })

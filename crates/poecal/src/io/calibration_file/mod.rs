@@ -2,10 +2,12 @@
 
 mod judging;
 mod outliers;
+mod repeatability;
 mod schema;
 mod trust;
 
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
+pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
 pub use trust::*;
 
@@ -49,6 +51,7 @@ impl CalibrationFile {
                 converged: calibration.solver.termination.is_success(),
                 termination: calibration.solver.termination,
                 restarts: calibration.solver.restarts,
+                trace: calibration.solver.trace.iter().copied().filter(|value| value.is_finite()).collect(),
                 joint_offsets: OffsetEntry::of(calibration),
             },
             identifiability: IdentifiabilityEntry::of(&calibration.identifiability),
@@ -65,6 +68,7 @@ impl CalibrationFile {
             uncertainty: UncertaintyEntry::of(calibration),
             robust: RobustEntry::of(calibration),
             outliers: OutlierEntry::of(calibration, data),
+            repeatability: RepeatabilityEntry::of(calibration, data),
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             noise: NoiseEntry {

@@ -1,15 +1,18 @@
 //! The keys of `calibration.json`. Lengths in metres and angles in radians unless a key says otherwise.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
-use super::{OutlierEntry, RobustEntry};
+use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
 use crate::calibration::{Accuracy, NoiseSource, Verdict};
+use crate::error::Result;
 use crate::forensics::DiagnosisKind;
+use crate::io::hashes::sha256;
 use crate::measurement::PoseResidual;
 use crate::parameters::Formulation;
 use crate::solve::{Method, Termination};
@@ -59,6 +62,9 @@ pub struct CalibrationFile {
     /// The rows that are suspected, the worst first, at most 1,000; `robust` has their number.
     #[serde(default)]
     pub outliers: Vec<OutlierEntry>,
+    /// Configurations that were measured several times; null if there are none.
+    #[serde(default)]
+    pub repeatability: Option<RepeatabilityEntry>,
     /// What makes the result doubtful, a sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -80,15 +86,40 @@ pub struct CalibrationFile {
 /// What was read.
 ///
 /// ```
-/// let inputs = poecal::io::calibration_file::Inputs { model: "robot.urdf".into(), measurements: vec!["points.csv".into()] };
+/// use poecal::io::calibration_file::Inputs;
+/// let inputs = Inputs { model: "robot.urdf".into(), measurements: vec!["points.csv".into()], ..Inputs::default() };
 /// assert_eq!(inputs.measurements.len(), 1);
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Inputs {
     /// The robot model, as named by the user.
     pub model: String,
     /// The measurement files, as named by the user.
     pub measurements: Vec<String>,
+    /// SHA-256 of each file that was read, by the name that the user gave it.
+    #[serde(default)]
+    pub sha256: BTreeMap<String, String>,
+    /// The command that makes the same calibration again; null if it was not made by the program.
+    #[serde(default)]
+    pub command: Option<String>,
+}
+
+impl Inputs {
+    /// The inputs with the checksum of each file: model, measurements and `others` (a mapping file).
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`](crate::ErrorKind::File) if a file cannot be read.
+    pub fn of_files(model: &Path, measurements: &[PathBuf], others: &[PathBuf]) -> Result<Self> {
+        let files = std::iter::once(model).chain(measurements.iter().chain(others).map(PathBuf::as_path));
+        Ok(Inputs {
+            model: model.display().to_string(),
+            measurements: measurements.iter().map(|path| path.display().to_string()).collect(),
+            sha256: files
+                .map(|path| Ok((path.display().to_string(), sha256(path)?)))
+                .collect::<Result<_>>()?,
+            command: None,
+        })
+    }
 }
 
 /// How the minimisation went.
@@ -111,6 +142,9 @@ pub struct SolverEntry {
     pub termination: Termination,
     /// Further starts that were tried because the first fit looked as if it had ended beside the optimum.
     pub restarts: usize,
+    /// Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit begins anew.
+    #[serde(default)]
+    pub trace: Vec<f64>,
     /// What each joint's value was found to be more than its reading says, where the formulation has offsets. Data cannot tell them
     /// from screws; in `joints` they stand moved into the screws, and the readings need no correction.
     #[serde(skip_serializing_if = "Option::is_none", default)]

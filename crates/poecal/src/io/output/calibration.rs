@@ -5,13 +5,42 @@ use std::path::Path;
 use super::{NewFile, Written, check_folder, robot_files, write_files};
 use crate::calibration::Calibration;
 use crate::error::Result;
-use crate::io::calibration_file::{CalibrationFile, Inputs};
+use crate::io::calibration_file::CalibrationFile;
 use crate::io::model::Model;
-use crate::io::residuals;
-use crate::measurement::Dataset;
+use crate::io::residuals::Residuals;
 
 /// Every name that a calibration may write.
-const OWN_NAMES: [&str; 4] = ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv"];
+const OWN_NAMES: [&str; 5] =
+    ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv", REPORT];
+/// The report's name among the results.
+pub const REPORT: &str = "report.html";
+
+/// What is written of a calibration beside its models.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
+/// use poecal::io::{output::Results, residuals::Residuals};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let results = Results {
+///     file: CalibrationFile::new(&calibration, &made.data, Inputs::default()),
+///     residuals: Residuals::of(&made.data, &calibration),
+///     report: None,
+/// };
+/// assert_eq!(results.residuals.rows.len(), made.data.len());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Results {
+    /// For `calibration.json`.
+    pub file: CalibrationFile,
+    /// For `residuals.csv`.
+    pub residuals: Residuals,
+    /// The text of `report.html`, if it is to be written.
+    pub report: Option<String>,
+}
 
 /// Writes a calibration's files. They are written beside the folder first, read back and compared with the fitted robot on 1,000
 /// configurations, and only then put in place.
@@ -23,9 +52,8 @@ pub fn write(
     folder: &Path,
     force: bool,
     model: &Model,
-    data: &Dataset,
     calibration: &Calibration,
-    inputs: Inputs,
+    results: Results,
 ) -> Result<Written> {
     check_folder(folder, force)?;
     let mut robot = calibration.robot.clone();
@@ -34,10 +62,11 @@ pub fn write(
         .iter()
         .filter_map(|target| target.name.clone().map(|name| (name, target.tip_from_target)))
         .collect();
-    let json = CalibrationFile::new(calibration, data, inputs).to_text()?;
     let mut notes = Vec::new();
+    let json = results.file.to_text()?;
     let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, &calibration.robot)];
     files.extend(robot_files("calibrated", model, &robot, &mut notes)?);
-    files.push(NewFile::new("residuals.csv", residuals::text(data, calibration)));
+    files.push(NewFile::new("residuals.csv", results.residuals.text()));
+    files.extend(results.report.map(|text| NewFile::new(REPORT, text)));
     write_files(folder, &files, &OWN_NAMES, notes)
 }

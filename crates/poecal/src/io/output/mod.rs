@@ -5,10 +5,10 @@ mod reproduction;
 mod simulation;
 mod staging;
 
-pub use calibration::write;
+pub use calibration::{REPORT, Results, write};
 pub use reproduction::write_reproduction;
 pub use simulation::{Session, write_simulation};
-pub use staging::{check_folder, write_file};
+pub use staging::{check_file, check_folder, write_file};
 
 use std::path::{Path, PathBuf};
 

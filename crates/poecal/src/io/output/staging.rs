@@ -154,6 +154,18 @@ impl Drop for Staging {
     }
 }
 
+/// Refuses a place where no file can be written: asked before the work begins.
+///
+/// # Errors
+/// [`ErrorKind::File`].
+pub fn check_file(path: &Path) -> Result<()> {
+    if path.is_dir() {
+        let message = "found a directory, expected a file to write: name the file";
+        return Err(Error::new(ErrorKind::File, message).in_file(path));
+    }
+    check_parent(path)
+}
+
 /// Writes one file whole or not at all: beside its place first, then moved.
 ///
 /// # Errors
@@ -166,11 +178,7 @@ pub fn write_file(path: &Path, text: &str) -> Result<()> {
         )
         .in_file(path)
     };
-    if path.is_dir() {
-        let message = "found a directory, expected a file to write: name the file";
-        return Err(Error::new(ErrorKind::File, message).in_file(path));
-    }
-    check_parent(path)?;
+    check_file(path)?;
     let name = path.file_name().map_or_else(|| "out".into(), |name| name.to_string_lossy().into_owned());
     let beside = parent(path).join(format!(".{name}.unfinished-{}", std::process::id()));
     fs::write(&beside, text).and_then(|()| fs::rename(&beside, path)).map_err(|cause| {

@@ -9,11 +9,13 @@ mod axis;
 mod dots;
 mod frame;
 mod line;
+mod ranges;
 mod svg;
 
 pub(super) use axis::{Axis, Scale};
 pub(super) use dots::{DotPlot, Dots};
 pub(super) use line::{Line, LinePlot};
+pub(super) use ranges::{RangePlot, RangeRow};
 pub(super) use svg::escape;
 
 /// A plot and the name of its file, without the extension.

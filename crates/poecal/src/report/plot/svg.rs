@@ -160,6 +160,14 @@ impl Canvas {
         ));
     }
 
+    /// A filled box from one corner to the other.
+    pub(super) fn bar(&mut self, [left, top]: [f64; 2], [right, bottom]: [f64; 2]) {
+        let (left, width, height) = (left.min(right), (right - left).abs().max(1.0), bottom - top);
+        self.put(format_args!(
+            r#"<rect x="{left:.2}" y="{top:.2}" width="{width:.2}" height="{height:.2}" stroke="none"/>"#
+        ));
+    }
+
     /// A series' marker, filled, or hollow for a value that lies beyond the axis.
     pub(super) fn marker(&mut self, style: usize, [x, y]: [f64; 2], radius: f64, filled: bool) {
         let hollow = if filled { "" } else { r##" class="hollow" fill="#ffffff""## };

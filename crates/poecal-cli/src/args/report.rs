@@ -1,0 +1,36 @@
+//! Arguments of `poecal report`, and where `poecal calibrate` writes its report.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+
+/// Where the report of a calibration goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum ReportPlace {
+    /// Nowhere.
+    None,
+    /// Into this file.
+    File(PathBuf),
+}
+
+impl FromStr for ReportPlace {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(if text == "none" { ReportPlace::None } else { ReportPlace::File(text.into()) })
+    }
+}
+
+/// Arguments of `poecal report`.
+#[derive(Args, Debug)]
+pub(crate) struct Report {
+    /// calibration.json, with the residuals.csv that was written with it in the same folder
+    pub(crate) calibration: PathBuf,
+    /// residuals.csv, where it lies elsewhere
+    #[arg(long, value_name = "FILE")]
+    pub(crate) residuals: Option<PathBuf>,
+    /// File to write, over an old one [default: report.html beside the calibration]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}

@@ -1,0 +1,84 @@
+//! The report: where it is written, and that it is made again from its files.
+
+use poecal::simulate::{Kind, Simulation};
+
+use crate::folder::Folder;
+use crate::session::{calibration, session, write_measurements};
+
+#[test]
+fn calibrate_writes_the_report_where_it_is_asked_to() {
+    let folder = session(Kind::Point);
+    let out = folder.done("calibrate robot.urdf measurements.csv");
+    assert!(out.ends_with("report        poecal-out/report.html\n"), "{out}");
+    let page = folder.read("poecal-out/report.html");
+    let out = folder.done("calibrate robot.urdf measurements.csv --out other --report page.html");
+    assert!(
+        out.ends_with("report        page.html\n") && !folder.path("other/report.html").exists(),
+        "{out}"
+    );
+    assert!(folder.read("page.html") == page, "another place is another page");
+    let out = folder.done("calibrate robot.urdf measurements.csv --force --report none");
+    assert!(!out.contains("report"), "{out}");
+    assert!(!folder.path("poecal-out/report.html").exists(), "an old report stands beside new results");
+    let run = folder.run("calibrate robot.urdf measurements.csv --out new --report missing/page.html");
+    assert!(run.code == 2 && run.err.contains("the folder above does not exist"), "{}", run.err);
+    assert!(!folder.path("new").exists());
+}
+
+#[test]
+fn the_report_made_again_is_the_same() {
+    let folder = session(Kind::Mixed);
+    write_measurements(
+        &folder,
+        "other.csv",
+        Kind::Point,
+        "mirror",
+        &Simulation { count: 60, ..Simulation::default() },
+    );
+    folder.done("calibrate robot.urdf measurements.csv --robust huber");
+    folder.done("calibrate robot.urdf other.csv --out targets");
+    for out in ["poecal-out", "targets"] {
+        let page = folder.read(&format!("{out}/report.html"));
+        folder.done(&format!("report {out}/calibration.json -o again.html"));
+        assert!(folder.read("again.html") == page, "{out}");
+        folder.write(&format!("{out}/report.html"), "old");
+        folder.done(&format!("report {out}/calibration.json"));
+        assert!(folder.read(&format!("{out}/report.html")) == page, "{out}");
+    }
+    let words = "report poecal-out/calibration.json --residuals targets/residuals.csv -o third.html";
+    let run = folder.run(words);
+    assert!(run.code == 2 && run.err.contains("targets/residuals.csv: found residuals of"), "{}", run.err);
+}
+
+#[test]
+fn the_file_names_what_it_was_made_of_and_how() {
+    let folder = session(Kind::Point);
+    folder.done("calibrate robot.urdf measurements.csv --threads 1 --out a --held-out=0.2 --report none");
+    let inputs = calibration(&folder, "a").inputs;
+    assert_eq!(
+        inputs.command.as_deref(),
+        Some("poecal calibrate robot.urdf measurements.csv --held-out=0.2")
+    );
+    let names: Vec<&str> = inputs.sha256.keys().map(String::as_str).collect();
+    assert_eq!(names, ["measurements.csv", "robot.urdf"]);
+    let hash = &inputs.sha256["robot.urdf"];
+    assert!(hash.len() == 64 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{hash}");
+}
+
+#[test]
+fn mistakes_are_told() {
+    let folder: Folder = session(Kind::Point);
+    folder.done("calibrate robot.urdf measurements.csv");
+    for (words, expected) in [
+        ("report missing.json", "missing.json: found no such file"),
+        (
+            "report poecal-out/calibration.json --residuals measurements.csv",
+            "measurements.csv:1:1: found the column `id`, expected `file`",
+        ),
+        ("report poecal-out/calibration.json -o missing/page.html", "the folder above does not exist"),
+        ("report robot.urdf", "robot.urdf:1:1: found broken JSON"),
+    ] {
+        let run = folder.run(words);
+        assert!(run.code == 2 && run.err.contains(expected), "{words}: {}", run.err);
+    }
+}

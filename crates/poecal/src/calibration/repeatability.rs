@@ -1,0 +1,144 @@
+//! Configurations that were measured several times: how well the robot came back, and how far from where a model says.
+
+use nalgebra::Vector3;
+
+use super::{Calibration, RowError, row_errors};
+use crate::estimate::{Estimate, Packed};
+use crate::measurement::Dataset;
+
+/// Rows of one configuration from which on its scatter is stated; ISO 9283 asks for 30.
+const ROWS: usize = 3;
+/// Readings (radians, metres) that differ by no more are of one configuration: what encoders of a robot that came back differ by.
+const SAME: f64 = 1e-4;
+/// Standard deviations that are added to the mean distance, as in ISO 9283.
+const DEVIATIONS: f64 = 3.0;
+
+/// One target in one configuration that was measured at least three times (theory.md §9 (46)).
+///
+/// ```
+/// use poecal::calibration::RepeatedPose;
+/// let pose = RepeatedPose { rows: vec![0, 1, 2], accuracy_m: [2e-3, 1e-3, 2e-4], repeatability_m: 5e-5 };
+/// assert!(pose.repeatability_m < pose.accuracy_m[2]);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct RepeatedPose {
+    /// Its rows.
+    pub rows: Vec<u32>,
+    /// Length of the mean of what was measured less what the nominal, registered and calibrated model predict, metres.
+    pub accuracy_m: [f64; 3],
+    /// Mean distance of the measured positions from their mean, and three standard deviations of it, metres; by the calibrated model's
+    /// predictions, where readings differ.
+    pub repeatability_m: f64,
+}
+
+/// Every configuration and target with three rows or more, in the order measured. Readings that differ by less than 0.0001 rad or 0.1 mm are
+/// of one configuration; what they differ by is allowed for, since errors are taken from each row's own prediction.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate, repeatability};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// assert!(repeatability(&calibration, &made.data).is_empty());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[must_use]
+pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedPose> {
+    let groups = groups(data);
+    if groups.is_empty() {
+        return Vec::new();
+    }
+    let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
+    let models = &calibration.models;
+    let poses = groups.into_iter().map(|rows| {
+        let errors = |estimate: &Estimate| row_errors(data, &packed, &rows, estimate);
+        let accuracy = |estimate| mean(&errors(estimate)).norm();
+        let accuracy_m = [&models.nominal, &models.registered, &models.calibrated].map(accuracy);
+        let repeatability_m = scatter(&errors(&models.calibrated));
+        RepeatedPose { rows, accuracy_m, repeatability_m }
+    });
+    poses.collect()
+}
+
+/// Rows of one target whose readings are those of the group's first row, at least [`ROWS`] each.
+fn groups(data: &Dataset) -> Vec<Vec<u32>> {
+    let target = |row: u32| data.observations[row as usize].target;
+    let readings = |row: u32| data.readings(row as usize);
+    // Rows of equal readings lie together by any sum of their readings; by this one, others seldom do.
+    let weight = |k: usize| 1.0 + 0.618_033_988_749_895 * (k as f64).sqrt();
+    let key = |row: u32| readings(row).iter().enumerate().map(|(k, value)| weight(k) * value).sum::<f64>();
+    let window = SAME * (0..data.reading_names().len()).map(weight).sum::<f64>();
+    let mut order: Vec<(usize, f64, u32)> =
+        data.all_rows().into_iter().map(|row| (target(row), key(row), row)).collect();
+    order.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+    let same = |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= SAME);
+    let mut taken = vec![false; order.len()];
+    let mut groups = Vec::new();
+    for first in 0..order.len() {
+        if taken[first] {
+            continue;
+        }
+        let (target, key, row) = order[first];
+        let near = order[first..].iter().take_while(|it| it.0 == target && it.1 - key <= window);
+        let members: Vec<usize> = (first..)
+            .zip(near)
+            .filter(|&(place, &(_, _, other))| !taken[place] && same(row, other))
+            .map(|(place, _)| place)
+            .collect();
+        if members.len() >= ROWS {
+            members.iter().for_each(|&place| taken[place] = true);
+            let mut rows: Vec<u32> = members.iter().map(|&place| order[place].2).collect();
+            rows.sort_unstable();
+            groups.push(rows);
+        }
+    }
+    groups.sort_by_key(|group| group.first().copied());
+    groups
+}
+
+/// The mean of the errors.
+fn mean(errors: &[RowError]) -> Vector3<f64> {
+    errors.iter().map(|error| error.position_m).sum::<Vector3<f64>>() / errors.len().max(1) as f64
+}
+
+/// Mean distance from the mean, and three standard deviations of that distance.
+fn scatter(errors: &[RowError]) -> f64 {
+    let middle = mean(errors);
+    let distances: Vec<f64> = errors.iter().map(|error| (error.position_m - middle).norm()).collect();
+    let count = distances.len().max(2) as f64;
+    let average = distances.iter().sum::<f64>() / count;
+    let squares: f64 = distances.iter().map(|distance| (distance - average).powi(2)).sum();
+    average + DEVIATIONS * (squares / (count - 1.0)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measurement::{Measurement, PointMeasurement};
+
+    #[test]
+    fn rows_of_one_configuration_are_found_whatever_their_order() {
+        let mut data = Dataset::new(vec!["a".to_owned(), "b".to_owned()]);
+        let rows = [
+            ([0.0, 1.0], "p"),
+            ([0.5, 0.5], "p"),
+            ([5e-5, 1.0], "p"),
+            ([0.0, 1.0], "q"),
+            ([0.0, 1.0], "p"),
+            ([2e-4, 1.0], "p"),
+        ];
+        for (readings, target) in rows {
+            let seen = Measurement::Point(PointMeasurement { position: Vector3::zeros() });
+            data.push(&readings, Some(target), seen).unwrap();
+        }
+        assert_eq!(groups(&data), [vec![0, 2, 4]]);
+    }
+
+    #[test]
+    fn scatter_is_the_mean_distance_and_three_deviations() {
+        let at = |x: f64| RowError { position_m: Vector3::new(x, 1.0, 0.0), rotation_rad: None };
+        // Distances from the mean 2: 2, 1, 3; their mean is 2, their standard deviation 1.
+        assert_eq!(scatter(&[at(0.0), at(1.0), at(5.0)]), 5.0);
+        assert_eq!(mean(&[at(0.0), at(1.0), at(5.0)]), Vector3::new(2.0, 1.0, 0.0));
+    }
+}

@@ -1,0 +1,174 @@
+//! Reads a `residuals.csv` back.
+
+use std::path::Path;
+
+use super::{COLUMNS, Judged, ModelErrors, ResidualRow, Residuals, unit};
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::source_text;
+use crate::robot::JointKind;
+
+/// What to do about a file that is none.
+const EXPECTED: &str = "a residuals.csv as written by this version's `poecal calibrate`";
+
+impl Residuals {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] if it cannot be read, [`ErrorKind::Syntax`] if it is no `residuals.csv` of this version.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        Self::parse(&source_text::read(path, EXPECTED)?, path)
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Syntax`] if it is no `residuals.csv` of this version.
+    pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let mut reader =
+            csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
+        let mut found = Residuals::default();
+        for (index, record) in reader.records().enumerate() {
+            let record = record.map_err(|error| {
+                let line = error.position().map_or(1, |position| position.line() as usize);
+                let message = format!(
+                    "found a row that cannot be read ({error}), expected {EXPECTED}: calibrate again"
+                );
+                Error::new(ErrorKind::Syntax, message).at(path, line, 1)
+            })?;
+            let line = record.position().map_or(1, |position| position.line() as usize);
+            let cells: Vec<&str> = record.iter().collect();
+            let done = if index == 0 { found.head(&cells) } else { found.row(&cells) };
+            done.map_err(|Wrong { column, message }| {
+                Error::new(ErrorKind::Syntax, message).at(path, line, column)
+            })?;
+        }
+        Ok(found)
+    }
+
+    fn head(&mut self, cells: &[&str]) -> std::result::Result<(), Wrong> {
+        for (column, expected) in COLUMNS.split(',').enumerate() {
+            let cell = cells.get(column).copied().unwrap_or_default();
+            if cell != expected {
+                let message = format!(
+                    "found the column `{cell}`, expected `{expected}`, as in {EXPECTED}: calibrate again"
+                );
+                return Err(Wrong { column: column + 1, message });
+            }
+        }
+        let first = COLUMNS.split(',').count();
+        for (column, cell) in cells.iter().enumerate().skip(first) {
+            let kinds = [JointKind::Revolute, JointKind::Prismatic];
+            let reading = kinds.into_iter().find_map(|kind| {
+                let name = cell.strip_suffix(&format!("[{}]", unit(kind)))?;
+                Some((name.to_owned(), kind))
+            });
+            let message = || {
+                format!(
+                    "found the column `{cell}`, expected a joint's name with [deg] or [mm]: calibrate again"
+                )
+            };
+            self.readings.push(reading.ok_or_else(|| Wrong { column: column + 1, message: message() })?);
+        }
+        Ok(())
+    }
+
+    fn row(&mut self, cells: &[&str]) -> std::result::Result<(), Wrong> {
+        let mut cells = Cells { cells, next: 0 };
+        let file = index_of(&mut self.files, cells.text()?);
+        let line = cells.parsed("a line number")?;
+        let id = cells.text()?.to_owned();
+        let held_out = match cells.text()? {
+            "held_out" => true,
+            "fit" => false,
+            other => return Err(cells.wrong(other, "fit or held_out")),
+        };
+        let target = index_of(&mut self.targets, cells.text()?);
+        let position_mm = cells.errors()?.ok_or_else(|| cells.wrong("", "a number"))?;
+        let rotation_deg = cells.errors()?;
+        let judged = cells.judged()?;
+        for _ in 0..self.readings.len() {
+            self.values.push(cells.number()?);
+        }
+        if let Some(extra) = cells.cells.get(cells.next) {
+            cells.next += 1;
+            return Err(cells.wrong(extra, "no further cell"));
+        }
+        self.rows.push(ResidualRow { file, line, id, held_out, target, position_mm, rotation_deg, judged });
+        Ok(())
+    }
+}
+
+/// The index of a name, added if it is new.
+fn index_of(names: &mut Vec<String>, name: &str) -> usize {
+    names.iter().rposition(|known| known == name).unwrap_or_else(|| {
+        names.push(name.to_owned());
+        names.len() - 1
+    })
+}
+
+/// What is wrong, and in which column, from 1.
+struct Wrong {
+    column: usize,
+    message: String,
+}
+
+/// The cells of a row, one after the other.
+struct Cells<'a> {
+    cells: &'a [&'a str],
+    next: usize,
+}
+
+impl<'a> Cells<'a> {
+    /// A complaint about the cell that was taken last.
+    fn wrong(&self, found: &str, expected: &str) -> Wrong {
+        Wrong { column: self.next, message: format!("found `{found}`, expected {expected}: calibrate again") }
+    }
+
+    fn text(&mut self) -> std::result::Result<&'a str, Wrong> {
+        let cell = self.cells.get(self.next).copied();
+        self.next += 1;
+        let message =
+            || "found the end of the row, expected a cell for each column: calibrate again".to_owned();
+        cell.ok_or_else(|| Wrong { column: self.next, message: message() })
+    }
+
+    fn parsed<T: std::str::FromStr>(&mut self, expected: &str) -> std::result::Result<T, Wrong> {
+        let cell = self.text()?;
+        cell.parse().map_err(|_| self.wrong(cell, expected))
+    }
+
+    fn number(&mut self) -> std::result::Result<f64, Wrong> {
+        self.parsed("a number")
+    }
+
+    /// As many numbers, or none if their cells are all empty.
+    fn numbers<const N: usize>(&mut self) -> std::result::Result<Option<[f64; N]>, Wrong> {
+        let here = self.cells.get(self.next..self.next + N);
+        if here.is_some_and(|cells| cells.iter().all(|cell| cell.is_empty())) {
+            self.next += N;
+            return Ok(None);
+        }
+        let mut values = [0.0; N];
+        for value in &mut values {
+            *value = self.number()?;
+        }
+        Ok(Some(values))
+    }
+
+    fn errors(&mut self) -> std::result::Result<Option<ModelErrors>, Wrong> {
+        let numbers: Option<[f64; 6]> = self.numbers()?;
+        Ok(numbers.map(|[a, b, c, x, y, z]| ModelErrors { models: [a, b, c], residual: [x, y, z] }))
+    }
+
+    fn judged(&mut self) -> std::result::Result<Option<Judged>, Wrong> {
+        let numbers: Option<[f64; 4]> = self.numbers()?;
+        Ok(numbers.map(|[weight, leverage, studentized, suspected]| Judged {
+            weight,
+            leverage,
+            studentized,
+            suspected: suspected != 0.0,
+        }))
+    }
+}

@@ -1,0 +1,175 @@
+//! What the script of the page works on, as JSON.
+
+use serde::Serialize;
+
+use super::rows::place;
+use super::{reading_index, readings_of};
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::calibration_file::{CalibrationFile, KindWord, PoseEntry, ScrewEntry};
+use crate::io::residuals::{ModelErrors, ResidualRow, Residuals};
+
+/// Rows that charts draw at most; how many of them are chosen for being suspected, and for being far off.
+pub(super) const MOST_ROWS: usize = 4000;
+const SUSPECTED: usize = 400;
+const WORST: usize = 100;
+/// Digits of numbers that are drawn.
+const DIGITS: usize = 6;
+
+#[derive(Serialize)]
+struct Data<'a> {
+    joints: Vec<JointData<'a>>,
+    home: &'a PoseEntry,
+    nominal_home: &'a PoseEntry,
+    base_from_device: &'a PoseEntry,
+    /// Names of the targets, and their places in the tip frame, metres.
+    targets: Vec<(&'a str, [f64; 3])>,
+    readings: Vec<ReadingData<'a>>,
+    sigma_position_mm: f64,
+    rows: RowData,
+    /// How many rows there are.
+    count: usize,
+}
+
+#[derive(Serialize)]
+struct JointData<'a> {
+    name: &'a str,
+    kind: KindWord,
+    screw: &'a ScrewEntry,
+    nominal_screw: &'a ScrewEntry,
+    origin_m: [f64; 3],
+    limits: Option<[f64; 2]>,
+    sampled: Option<[f64; 2]>,
+    reading: usize,
+    multiplier: f64,
+    offset: f64,
+}
+
+#[derive(Serialize)]
+struct ReadingData<'a> {
+    name: &'a str,
+    unit: &'static str,
+}
+
+/// The drawn rows, by column.
+#[derive(Default, Serialize)]
+struct RowData {
+    /// Number in the order read, from 1.
+    number: Vec<usize>,
+    place: Vec<String>,
+    held_out: Vec<u8>,
+    /// Whether the row is one of the evenly chosen, which stand for all.
+    even: Vec<u8>,
+    suspected: Vec<u8>,
+    target: Vec<usize>,
+    error_mm: Vec<f64>,
+    residual_mm: [Vec<f64>; 3],
+    /// Rotations, where any row has one.
+    residual_deg: Option<[Vec<Option<f64>>; 3]>,
+    leverage: Vec<Option<f64>>,
+    studentized: Vec<Option<f64>>,
+    values: Vec<Vec<f64>>,
+}
+
+/// The data, safe within a script element.
+pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<String> {
+    let joints = file.joints.iter().map(|joint| {
+        let sampled = file.coverage.iter().find(|found| found.joint == joint.name);
+        JointData {
+            name: &joint.name,
+            kind: joint.kind,
+            screw: &joint.screw,
+            nominal_screw: &joint.nominal_screw,
+            origin_m: joint.base_from_joint.position_m,
+            limits: joint.limits,
+            sampled: sampled.map(|found| [found.sampled_min, found.sampled_max]),
+            reading: reading_index(residuals, &joint.reading.name).unwrap_or_default(),
+            multiplier: joint.reading.multiplier,
+            offset: joint.reading.offset,
+        }
+    });
+    let place_of = |name: &String| file.targets.get(name).map_or([0.0; 3], |target| target.position_m);
+    let data = Data {
+        joints: joints.collect(),
+        home: &file.robot.base_from_tip_at_zero,
+        nominal_home: &file.robot.nominal_base_from_tip_at_zero,
+        base_from_device: &file.measurement_frame.base_from_device,
+        targets: residuals.targets.iter().map(|name| (name.as_str(), place_of(name))).collect(),
+        readings: readings_of(residuals).map(|(_, name, unit)| ReadingData { name, unit }).collect(),
+        sigma_position_mm: file.noise.sigma_position_mm,
+        rows: RowData::of(residuals),
+        count: residuals.rows.len(),
+    };
+    let text = serde_json::to_string(&data).map_err(|error| {
+        Error::new(ErrorKind::Export, format!("the report's data cannot be written: {error}"))
+    })?;
+    // Within a script element, `</script` and `<!--` would be markup wherever they stand.
+    Ok(text.replace('<', "\\u003c"))
+}
+
+/// The rows that are drawn, in order, and whether each is one of the evenly chosen.
+pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
+    let count = residuals.rows.len();
+    if count <= MOST_ROWS {
+        return (0..count).map(|row| (row, true)).collect();
+    }
+    let suspected = |row: usize| residuals.rows.get(row)?.judged.map(|judged| judged.suspected);
+    let error = |row: usize| residuals.rows.get(row).map_or(0.0, |row| row.position_mm.models[2]);
+    let (mut worst, mut others): (Vec<usize>, Vec<usize>) =
+        (0..count).partition(|&row| suspected(row) == Some(true));
+    for (rows, most) in [(&mut worst, SUSPECTED), (&mut others, WORST)] {
+        rows.sort_by(|&a, &b| error(b).total_cmp(&error(a)));
+        rows.truncate(most);
+    }
+    worst.extend(others);
+    let evenly = MOST_ROWS - SUSPECTED - WORST;
+    let mut rows: Vec<(usize, bool)> = (0..evenly).map(|k| (k * count / evenly, true)).collect();
+    rows.extend(worst.into_iter().map(|row| (row, false)));
+    // A row that is both counts as evenly chosen.
+    rows.sort_unstable_by_key(|&(row, even)| (row, !even));
+    rows.dedup_by_key(|found| found.0);
+    rows
+}
+
+impl RowData {
+    fn of(residuals: &Residuals) -> Self {
+        let turned = residuals.rows.iter().any(|row| row.rotation_deg.is_some());
+        let mut rows = RowData { residual_deg: turned.then(Default::default), ..RowData::default() };
+        rows.values = vec![Vec::new(); residuals.readings.len()];
+        for (index, even) in drawn(residuals) {
+            if let Some(row) = residuals.rows.get(index) {
+                rows.push(residuals, index, row, even);
+            }
+        }
+        rows
+    }
+
+    fn push(&mut self, residuals: &Residuals, index: usize, row: &ResidualRow, even: bool) {
+        self.number.push(index + 1);
+        self.place.push(place(residuals, index));
+        self.held_out.push(u8::from(row.held_out));
+        self.even.push(u8::from(even));
+        self.suspected.push(u8::from(row.judged.is_some_and(|judged| judged.suspected)));
+        self.target.push(row.target);
+        self.error_mm.push(rounded(row.position_mm.models[2]));
+        for (column, value) in self.residual_mm.iter_mut().zip(row.position_mm.residual) {
+            column.push(rounded(value));
+        }
+        if let Some(columns) = &mut self.residual_deg {
+            let turn = |errors: ModelErrors, k: usize| rounded(errors.residual[k]);
+            for (k, column) in columns.iter_mut().enumerate() {
+                column.push(row.rotation_deg.map(|errors| turn(errors, k)));
+            }
+        }
+        self.leverage.push(row.judged.map(|judged| rounded(judged.leverage)).filter(|it| it.is_finite()));
+        self.studentized
+            .push(row.judged.map(|judged| rounded(judged.studentized)).filter(|it| it.is_finite()));
+        for (column, &value) in self.values.iter_mut().zip(residuals.values(index)) {
+            column.push(rounded(value));
+        }
+    }
+}
+
+/// As many digits as a picture can show.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
+}

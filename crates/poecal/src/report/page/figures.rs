@@ -1,0 +1,138 @@
+//! Plots that need no script.
+
+use crate::io::calibration_file::{CalibrationFile, KindWord};
+use crate::io::residuals::{ResidualRow, Residuals};
+use crate::report::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
+
+/// Points of a distribution.
+const STEPS: usize = 20;
+/// Standard deviations that an interval reaches to each side.
+const INTERVAL: f64 = 2.0;
+
+/// Which share of the rows is off by how much, for the three models.
+pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> String {
+    let lines = ["nominal", "registered", "calibrated"].iter().enumerate().map(|(model, name)| {
+        let rows = residuals.rows.iter().filter(|row| row.held_out == held_out);
+        let errors = rows.map(|row| row.position_mm.models.get(model).copied().unwrap_or(f64::NAN)).collect();
+        // The same colours as the residuals of the calibrated model everywhere else.
+        Line { name: (*name).to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
+    });
+    let plot = LinePlot {
+        title: "How many rows are off by how much".to_owned(),
+        description: "For each of the three models the share of the rows whose position error is below a value; the table beside has the figures.".to_owned(),
+        x: Axis::new("position error, mm (logarithmic)", Scale::Log),
+        y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
+        lines: lines.collect(),
+        mark: None,
+    };
+    plot.svg()
+}
+
+/// Errors of the calibrated model on fitted rows and on those held out.
+pub(super) fn sets(residuals: &Residuals) -> String {
+    let of = |name: &str, style, held_out: bool| {
+        let rows = residuals.rows.iter().filter(|row| row.held_out == held_out);
+        let errors: Vec<f64> = rows.map(calibrated).collect();
+        Line { name: name.to_owned(), style, points: distribution(errors) }
+    };
+    let lines = [of("fitted", 0, false), of("held out", 1, true)];
+    let plot = LinePlot {
+        title: "Calibrated model: fitted against held-out rows".to_owned(),
+        description: "The share of fitted and of held-out rows whose position error is below a value; the table below has the figures.".to_owned(),
+        x: Axis::new("position error, mm", Scale::Linear).including(&[0.0]),
+        y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
+        lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
+        mark: None,
+    };
+    plot.svg()
+}
+
+fn calibrated(row: &ResidualRow) -> f64 {
+    row.position_mm.models[2]
+}
+
+/// Points (error, share in per cent) of the distribution of some errors.
+fn distribution(mut errors: Vec<f64>) -> Vec<[f64; 2]> {
+    errors.sort_by(f64::total_cmp);
+    let last = errors.len().saturating_sub(1);
+    let steps = STEPS.min(last.max(1));
+    let point = |step: usize| {
+        let rank = (step * last).div_ceil(steps);
+        Some([*errors.get(rank)?, 100.0 * rank as f64 / last.max(1) as f64])
+    };
+    (0..=steps).filter_map(point).collect()
+}
+
+/// Corrections of the joints with intervals: tilts, and shifts of those that turn.
+pub(super) fn corrections(file: &CalibrationFile) -> Vec<String> {
+    let row = |label: &str, value: f64, sigma: Option<f64>| RangeRow {
+        label: label.to_owned(),
+        line: sigma.map(|sigma| [(value - INTERVAL * sigma).max(0.0), value + INTERVAL * sigma]),
+        bar: None,
+        dot: Some(value),
+    };
+    let plot = |title: &str, axis: &str, rows: Vec<RangeRow>| {
+        let plot = RangePlot {
+            title: title.to_owned(),
+            description: "A dot for each joint, its interval of two standard deviations as a line; the table has the figures.".to_owned(),
+            x: Axis::new(axis, Scale::Linear).including(&[0.0]),
+            rows,
+        };
+        plot.svg()
+    };
+    let tilts = file.corrections.iter().map(|it| row(&it.joint, it.tilt_deg, it.sigma_tilt_deg));
+    let shifts =
+        file.corrections.iter().zip(&file.joints).filter(|(_, joint)| joint.kind == KindWord::Revolute);
+    let shifts: Vec<RangeRow> =
+        shifts.map(|(it, _)| row(&it.joint, it.shift_mm, it.sigma_shift_mm)).collect();
+    let mut plots = vec![plot("Tilt of each axis", "degrees from nominal", tilts.collect())];
+    if !shifts.is_empty() {
+        plots.push(plot("Shift of each axis", "mm from nominal", shifts));
+    }
+    plots
+}
+
+/// What was sampled of each joint's range: those that turn, and those that slide.
+pub(super) fn coverage(file: &CalibrationFile) -> Vec<String> {
+    let kinds = [
+        (KindWord::Revolute, "Joints that turn", "degrees", 1f64.to_degrees()),
+        (KindWord::Prismatic, "Joints that slide", "mm", 1e3),
+    ];
+    let plots = kinds.into_iter().filter_map(|(kind, title, unit, factor)| {
+        let joints = file.coverage.iter().filter(|found| {
+            file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == kind)
+        });
+        let rows: Vec<RangeRow> = joints
+            .map(|found| RangeRow {
+                label: found.joint.clone(),
+                line: found.limit_min.zip(found.limit_max).map(|(least, most)| [least * factor, most * factor]),
+                bar: Some([found.sampled_min * factor, found.sampled_max * factor]),
+                dot: None,
+            })
+            .collect();
+        let plot = RangePlot {
+            title: title.to_owned(),
+            description: "For each joint its limits as a thin line and what was sampled as a bar; the table has the figures.".to_owned(),
+            x: Axis::new(unit, Scale::Linear),
+            rows,
+        };
+        (!plot.rows.is_empty()).then(|| plot.svg())
+    });
+    plots.collect()
+}
+
+/// How the fit went down.
+pub(super) fn convergence(file: &CalibrationFile) -> String {
+    let points = file.solver.trace.iter().enumerate().map(|(step, &value)| [step as f64, value]);
+    let plot = LinePlot {
+        title: "How the fit converged".to_owned(),
+        description:
+            "The mean square of the whitened residual by iteration; the table below has the figures."
+                .to_owned(),
+        x: Axis::new("iteration", Scale::Count),
+        y: Axis::new("mean square of the whitened residual (logarithmic)", Scale::Log),
+        lines: vec![Line { name: "fit".to_owned(), style: 0, points: points.collect() }],
+        mark: None,
+    };
+    plot.svg()
+}

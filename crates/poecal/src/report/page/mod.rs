@@ -1,0 +1,123 @@
+//! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
+
+mod data;
+mod figures;
+mod first;
+mod html;
+mod joints;
+mod method;
+mod rows;
+mod trust;
+
+use crate::calibration::Statistic;
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::calibration_file::CalibrationFile;
+use crate::io::residuals::Residuals;
+use crate::report::plot::escape;
+use crate::robot::JointKind;
+use html::Html;
+
+/// Style and script, built from `web/` by `npm run build`.
+const STYLE: &str = include_str!("assets/report.css");
+const SCRIPT: &str = include_str!("assets/report.js");
+/// By which share sums of the same rows may differ: rounding.
+const SAME: f64 = 1e-9;
+/// What a browser may do with the page: nothing is loaded from anywhere.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
+
+/// The report of a calibration as an HTML page that is complete in itself. All of it can be read without its script, which adds the
+/// robot in three dimensions and charts of the rows.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
+/// use poecal::io::residuals::Residuals;
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+/// let page = poecal::report::calibration_page(&file, &Residuals::of(&made.data, &calibration))?;
+/// assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<h1>"));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+///
+/// # Errors
+/// [`ErrorKind::Problem`] if the residuals are not those of this calibration, [`ErrorKind::Model`] if the file has been changed into no
+/// calibration.
+pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result<String> {
+    check(file, residuals)?;
+    let data = data::json(file, residuals)?;
+    let title = escape(&format!("Calibration of {}", file.robot.name));
+    let mut body = Html::new();
+    first::screen(&mut body, file, residuals);
+    joints::sections(&mut body, file);
+    rows::sections(&mut body, file, residuals);
+    trust::sections(&mut body, file);
+    method::sections(&mut body, file);
+    let body = body.finish();
+    Ok(format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <meta name=\"generator\" content=\"poecal {}\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         <a class=\"skip\" href=\"#main\">Skip to the verdict</a>\n<main id=\"main\">\n{body}</main>\n\
+         <script type=\"application/json\" id=\"report-data\">{data}</script>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n",
+        escape(&file.poecal_version)
+    ))
+}
+
+/// Refuses residuals of another calibration.
+fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
+    let held_out = residuals.rows.iter().filter(|row| row.held_out).count();
+    let found = (residuals.rows.len() - held_out, held_out);
+    let accuracy = &file.accuracy;
+    let expected = (accuracy.training.count, accuracy.held_out.as_ref().map_or(0, |set| set.count));
+    if found != expected {
+        let message = format!(
+            "found residuals of {} rows fitted and {} held out, expected {} and {} as in the calibration: name the residuals.csv that was \
+             written with it",
+            found.0, found.1, expected.0, expected.1
+        );
+        return Err(Error::new(ErrorKind::Problem, message));
+    }
+    for joint in &file.joints {
+        if !residuals.readings.iter().any(|(name, _)| *name == joint.reading.name) {
+            let message = format!(
+                "found residuals without the reading of `{}`, expected a column for each joint of the calibration: name the residuals.csv \
+                 that was written with it",
+                joint.reading.name
+            );
+            return Err(Error::new(ErrorKind::Problem, message));
+        }
+    }
+    let fitted = residuals.rows.iter().filter(|row| !row.held_out);
+    let found = Statistic::of(fitted.map(|row| row.position_mm.models[2]).collect()).map_or(0.0, |it| it.rms);
+    let expected = accuracy.training.calibrated.position_mm.rms;
+    if (found - expected).abs() > SAME * expected {
+        let message = format!(
+            "found residuals of {found:.6} mm (RMS) on the fitted rows, expected {expected:.6} mm as in the calibration: name the \
+             residuals.csv that was written with it"
+        );
+        return Err(Error::new(ErrorKind::Problem, message));
+    }
+    Ok(())
+}
+
+/// Index of a reading among the columns of the residuals.
+fn reading_index(residuals: &Residuals, name: &str) -> Option<usize> {
+    residuals.readings.iter().position(|(known, _)| known == name)
+}
+
+/// The joint readings: index among the columns of the residuals, name and unit.
+fn readings_of(residuals: &Residuals) -> impl Iterator<Item = (usize, &str, &'static str)> {
+    residuals.readings.iter().enumerate().map(|(index, (name, kind))| (index, name.as_str(), unit(*kind)))
+}
+
+/// The unit of a reading.
+fn unit(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "°",
+        JointKind::Prismatic => "mm",
+    }
+}

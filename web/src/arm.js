@@ -1,0 +1,248 @@
+// The arm in three dimensions with its controls.
+import { readingsOf, shown } from "./data.js";
+import { chain } from "./kinematics.js";
+import { Scene } from "./scene.js";
+import { onColours } from "./theme.js";
+
+/** Fills `place` with the picture and its controls. */
+export function showArm(place, data) {
+  let scene;
+  try {
+    scene = new Scene(data);
+  } catch {
+    place.innerHTML = '<p class="note">This browser has no WebGL, which the picture needs. All figures are in the tables.</p>';
+    return;
+  }
+  const stage = element("div", "stage");
+  const frame = element("div", "scene");
+  frame.append(scene.canvas, scene.paper);
+  stage.append(frame, colourLine(), scaleLine(scene));
+  const panel = element("div", "panel");
+  place.append(stage, panel);
+  scene.follow(frame);
+  const state = { readings: data.readings.map((_, k) => middle(data, k)), row: null };
+  const view = { data, scene, state, listeners: [] };
+  panel.append(measurementControls(view), jointControls(view), sizeControls(view), shownControls(view), viewControls(view), stateText(view));
+  scene.onChoice((row) => choose(view, row));
+  onColours(() => {
+    scene.recolour();
+    scene.renderNow();
+  });
+  choose(view, 0);
+}
+
+function element(name, className, text) {
+  const found = document.createElement(name);
+  if (className) found.className = className;
+  if (text) found.textContent = text;
+  return found;
+}
+
+/** The middle of what was measured of a reading. */
+function middle(data, reading) {
+  const column = data.rows.values[reading];
+  return ((Math.min(...column) + Math.max(...column)) / 2) * data.factors[reading];
+}
+
+function changed(view) {
+  view.scene.pose(view.state.readings, view.state.row);
+  for (const listener of view.listeners) listener();
+}
+
+/** Takes the arm to a row that is drawn. */
+function choose(view, row) {
+  view.state.row = row;
+  view.state.readings = readingsOf(view.data, row);
+  changed(view);
+}
+
+function group(title) {
+  const set = element("fieldset");
+  set.append(element("legend", "", title));
+  return set;
+}
+
+function button(text, action) {
+  const found = element("button", "", text);
+  found.type = "button";
+  found.addEventListener("click", action);
+  return found;
+}
+
+/** The drawn row whose number is nearest to the one asked for. */
+function rowOfNumber({ rows }, number) {
+  const distance = (row) => Math.abs(rows.number[row] - number);
+  return rows.number.reduce((best, _, row) => (distance(row) < distance(best) ? row : best), 0);
+}
+
+function measurementControls(view) {
+  const { data, state } = view;
+  const { rows } = data;
+  const set = group("Measurement");
+  const line = element("div", "row");
+  const label = element("label", "", "row");
+  const input = element("input");
+  Object.assign(input, { type: "number", min: 1, max: data.count, step: 1 });
+  label.append(input);
+  input.addEventListener("change", () => choose(view, rowOfNumber(data, Number(input.value) || 1)));
+  const step = (by) => () => choose(view, ((state.row ?? 0) + by + rows.count) % rows.count);
+  const worst = () => rows.error_mm.reduce((best, error, row) => (error > rows.error_mm[best] ? row : best), 0);
+  line.append(label, button("previous", step(-1)), button("next", step(1)), button("worst", () => choose(view, worst())));
+  const text = element("p", "state");
+  view.listeners.push(() => {
+    input.value = state.row === null ? "" : rows.number[state.row];
+    text.textContent = state.row === null ? "none: the arm stands as the sliders say" : describe(data, state.row);
+  });
+  set.append(line, text);
+  return set;
+}
+
+function describe({ rows, targets }, row) {
+  const set = rows.held_out[row] ? "held out" : "fitted";
+  const target = targets[rows.target[row]][0];
+  return `${rows.place[row]}, ${set}${target ? `, target ${target}` : ""}: off by ${shown(rows.error_mm[row])} mm`;
+}
+
+function slider(label, { min, max, step, value, spoken }, changedTo) {
+  const line = element("div", "slider");
+  const input = element("input");
+  Object.assign(input, { type: "range", min, max, step, value, id: `slider-${label.replace(/[^a-z0-9]+/gi, "-")}-${counter++}` });
+  const name = element("label", "", label);
+  name.htmlFor = input.id;
+  const output = element("output");
+  output.htmlFor = input.id;
+  const tell = () => {
+    const text = spoken(Number(input.value));
+    output.textContent = text;
+    input.setAttribute("aria-valuetext", text);
+  };
+  input.addEventListener("input", () => {
+    changedTo(Number(input.value));
+    tell();
+  });
+  tell();
+  line.append(name, output, input);
+  return { line, input, output, tell };
+}
+
+let counter = 0;
+
+function jointControls(view) {
+  const { data, state } = view;
+  const set = group("Joints");
+  data.readings.forEach((reading, k) => {
+    const factor = data.factors[k];
+    const column = data.rows.values[k];
+    const sampled = [Math.min(...column), Math.max(...column)];
+    const joint = data.joints.find((it) => it.reading === k && it.multiplier === 1 && it.offset === 0 && it.limits);
+    // Placeholders for "no limits" would leave a slider without a use.
+    const limits = joint && joint.limits[1] - joint.limits[0] < 100 ? joint.limits.map((limit) => limit / factor) : sampled;
+    const range = [Math.min(limits[0], sampled[0]), Math.max(limits[1], sampled[1])];
+    if (range[0] === range[1]) range[1] = range[0] + 1;
+    const { line, input, output, tell } = slider(
+      reading.name,
+      { min: range[0], max: range[1], step: "any", value: state.readings[k] / factor, spoken: (value) => `${shown(value, 4)} ${reading.unit}` },
+      (value) => {
+        state.readings[k] = value * factor;
+        state.row = null;
+        changed(view);
+      },
+    );
+    view.listeners.push(() => {
+      const value = state.readings[k] / factor;
+      if (state.row !== null) input.value = value;
+      tell();
+      const outside = value < sampled[0] - 1e-3 || value > sampled[1] + 1e-3;
+      output.classList.toggle("outside", outside);
+      if (outside) output.textContent += ", not sampled";
+    });
+    set.append(line);
+  });
+  return set;
+}
+
+function sizeControls(view) {
+  const set = group("Exaggeration");
+  const { scene } = view;
+  const add = (label, value, most, apply) => {
+    const { line } = slider(
+      label,
+      { min: 0, max: Math.log10(most), step: 0.01, value: Math.log10(value), spoken: (power) => `× ${shown(10 ** power, 2)}` },
+      (power) => {
+        apply(10 ** power);
+        changed(view);
+      },
+    );
+    set.append(line);
+  };
+  add("nominal against calibrated", scene.axisScale, 1000, (value) => (scene.axisScale = value));
+  add("residual arrows", scene.arrowScale, 1e5, (value) => (scene.arrowScale = value));
+  return set;
+}
+
+function shownControls(view) {
+  const set = group("Shown");
+  const add = (text, part, on) => {
+    const label = element("label");
+    const box = element("input");
+    Object.assign(box, { type: "checkbox", checked: on });
+    box.addEventListener("change", () => {
+      view.scene.show(part, box.checked);
+    });
+    view.scene.show(part, on);
+    label.append(box, text);
+    const line = element("div", "row");
+    line.append(label);
+    set.append(line);
+  };
+  add("nominal arm", "nominal", true);
+  add("residual arrows", "arrows", true);
+  add("where it could reach but was not measured", "reach", true);
+  return set;
+}
+
+function viewControls(view) {
+  const set = group("View");
+  const line = element("div", "row");
+  for (const name of ["oblique", "front", "side", "top"]) line.append(button(name, () => view.scene.look(name)));
+  line.append(button("nearer", () => view.scene.zoom(0.8)), button("farther", () => view.scene.zoom(1.25)));
+  set.append(line);
+  return set;
+}
+
+/** Where the tip is, in words that a screen reader hears when it has come to rest. */
+function stateText(view) {
+  const text = element("p", "state");
+  text.setAttribute("role", "status");
+  text.id = "tip";
+  view.listeners.push(() => {
+    const of = (model) => chain(view.data, view.state.readings, model).tip;
+    const [calibrated, nominal] = [of("screw"), of("nominal_screw")];
+    const apart = Math.hypot(...calibrated.map((value, k) => value - nominal[k]));
+    text.dataset.tip = calibrated.join(",");
+    text.textContent = `Tip at ${calibrated.map((value) => shown(1e3 * value, 5)).join(", ")} mm in the base; the nominal model says ${shown(1e3 * apart)} mm elsewhere.`;
+  });
+  return text;
+}
+
+function colourLine() {
+  const line = element("ul", "keys");
+  for (const [text, name] of [["calibrated", "s0"], ["nominal", "soft"], ["axes of the joints", "s2"], ["chosen measurement", "alarm"]]) {
+    const item = element("li");
+    const sign = element("i");
+    sign.style.setProperty("--key", `var(--${name})`);
+    item.append(sign, text);
+    line.append(item);
+  }
+  return line;
+}
+
+function scaleLine(scene) {
+  const line = element("p", "scale");
+  const { least, most, square } = scene.legend;
+  const ramp = element("span", "ramp");
+  ramp.style.setProperty("--from", "var(--arrow-least)");
+  ramp.style.setProperty("--to", "var(--arrow-most)");
+  line.append(`Arrows: ${least}`, ramp, `${shown(most)} mm and more. Grid: ${square} mm. Drag to turn, wheel to come nearer.`);
+  return line;
+}

@@ -1,0 +1,277 @@
+// The charts of the rows.
+import { shown } from "./data.js";
+import { bars, dots, keys, line, plot, readoutLine, steps, withUnit } from "./plot.js";
+import { interpolate, normalQuantile, quantile, smooth } from "./statistics.js";
+
+/** Draws every chart that the page has a place for. */
+export function drawCharts(data) {
+  const charts = { rows, components, joints, histogram, normal, leverage };
+  for (const figure of document.querySelectorAll("[data-chart]")) {
+    charts[figure.dataset.chart](figure.querySelector(".drawing"), data);
+  }
+}
+
+const SETS = [
+  ["fitted", "s0"],
+  ["held out", "s1"],
+];
+
+/** Fitted, held-out and suspected rows as three series of some values, in this order of rows. */
+function bySet({ rows }, order, values, size) {
+  const { held_out, suspected } = rows;
+  const of = (keep) => order.map((row) => (keep(row) ? values[row] : null));
+  const series = [
+    [dots("fitted", "s0", { size }), of((row) => !held_out[row])],
+    [dots("held out", "s1", { size }), of((row) => held_out[row])],
+    [dots("suspected", "alarm", { size: size + 5, ring: true }), of((row) => suspected[row])],
+  ];
+  const present = series.filter(([, column]) => column.some((value) => value !== null));
+  return { series: present.map(([it]) => it), columns: present.map(([, column]) => column) };
+}
+
+/** All rows in order, or only those that stand for all. */
+function inOrder({ rows }, keep = () => true) {
+  return rows.number.map((_, row) => row).filter(keep);
+}
+
+function sized(data) {
+  return data.rows.count > 800 ? 3 : 5;
+}
+
+/** What is said of a row under the cursor. */
+function name({ rows }, row) {
+  const set = rows.held_out[row] ? "held out" : "fitted";
+  const suspected = rows.suspected[row] ? ", suspected" : "";
+  return `${rows.place[row]}, ${set}${suspected}: ${withUnit(rows.error_mm[row], "mm")}`;
+}
+
+function rows(place, data) {
+  const order = inOrder(data);
+  const { series, columns } = bySet(data, order, data.rows.error_mm, sized(data));
+  keys(place, series);
+  const largest = order.reduce((a, b) => (data.rows.error_mm[b] > data.rows.error_mm[a] ? b : a), 0);
+  const chart = document.createElement("div");
+  place.append(chart);
+  plot(chart, {
+    x: "row, in the order read",
+    y: "position error, mm",
+    series,
+    values: [data.rows.number, ...columns],
+    range: (_, __, most) => [0, most > 0 ? most * 1.05 : 1],
+    spoken: `Position error of ${order.length} rows in the order read; the largest is ${name(data, largest)}.`,
+    readout: readoutLine(place),
+    tell: (index) => name(data, order[index]),
+  });
+}
+
+function components(place, data) {
+  const { residual_mm, residual_deg } = data.rows;
+  const parts = ["x", "y", "z"].map((it, k) => [it, "mm", residual_mm[k]]);
+  if (residual_deg) parts.push(...["x", "y", "z"].map((it, k) => [`about ${it}`, "°", residual_deg[k]]));
+  const order = inOrder(data);
+  keys(place, bySet(data, order, residual_mm[0], 5).series);
+  const grid = gridIn(place);
+  for (const [part, unit, values] of parts) {
+    const cell = cellIn(grid, part);
+    const { series, columns } = bySet(data, order, values, sized(data) - 1);
+    plot(cell, {
+      x: "row",
+      y: unit === "°" ? "residual, °" : "residual, mm",
+      height: 190,
+      series,
+      values: [data.rows.number, ...columns],
+      spoken: `Residuals ${part} of each row in the order read; the table below has their means and spreads.`,
+    });
+  }
+}
+
+function gridIn(place) {
+  const grid = document.createElement("div");
+  grid.className = "grid";
+  place.append(grid);
+  return grid;
+}
+
+function cellIn(grid, title) {
+  const cell = document.createElement("div");
+  cell.className = "cell";
+  const text = document.createElement("p");
+  text.className = "name";
+  text.textContent = title;
+  cell.append(text);
+  grid.append(cell);
+  return cell;
+}
+
+/** What can be drawn over joint values. */
+function quantities({ rows }) {
+  const device = ["x", "y", "z"].map((it, k) => [`along the device's ${it}`, () => rows.residual_mm[k]]);
+  const turned = rows.residual_deg ? ["x", "y", "z"].map((it, k) => [`rotation about the device's ${it}`, () => rows.residual_deg[k], "°"]) : [];
+  return [
+    ["along the joint's own motion", (reading) => rows.motion[reading]],
+    ["distance", () => rows.error_mm],
+    ...device,
+    ...turned,
+  ];
+}
+
+function joints(place, data) {
+  const choice = document.createElement("label");
+  choice.className = "choice";
+  const select = document.createElement("select");
+  const offered = quantities(data);
+  for (const [text] of offered) select.append(new Option(text));
+  choice.append("Residual", select);
+  place.append(choice);
+  const believed = inOrder(data, (row) => !data.rows.suspected[row]);
+  keys(place, [...bySet(data, believed, data.rows.error_mm, 5).series, line("smoothed", "ink")]);
+  const grid = gridIn(place);
+  const draw = () => {
+    grid.replaceChildren();
+    const [text, valuesOf, unit = "mm"] = offered[select.selectedIndex];
+    const range = commonRange(data.readings.flatMap((_, k) => believed.map((row) => valuesOf(k)[row])));
+    data.readings.forEach((reading, k) => {
+      joint(cellIn(grid, reading.name), data, { believed, reading, k, text, values: valuesOf(k), unit, range });
+    });
+  };
+  select.addEventListener("change", draw);
+  draw();
+}
+
+/** One range for all joints, so that they compare: a few rows far off are left out of sight. */
+function commonRange(values) {
+  const sizes = values.filter((value) => value !== null).map(Math.abs);
+  sizes.sort((a, b) => a - b);
+  const most = 1.3 * quantile(sizes, 0.995) || 1;
+  return values.some((value) => value < 0) ? [-most, most] : [0, most];
+}
+
+/** The curve at sorted places, broken where nothing was measured for a good part of its range. */
+function curveAt(curve, xs) {
+  const [first, last] = [curve.places[0], curve.places[curve.places.length - 1]];
+  const gap = (last - first) * Math.max(1 / 20, 8 / xs.length);
+  const apart = (k) => k > 0 && xs[k] - xs[k - 1] > gap;
+  return xs.map((x, k) => (x < first || x > last || apart(k) ? null : interpolate(curve, x)));
+}
+
+function joint(cell, data, { believed, reading, k, text, values, unit, range }) {
+  const column = data.rows.values[k];
+  const order = believed.filter((row) => values[row] !== null).sort((a, b) => column[a] - column[b]);
+  if (!order.length) {
+    const text = document.createElement("p");
+    text.className = "note";
+    text.textContent = "What was measured lies on this joint's axis, and does not move with it.";
+    cell.append(text);
+    return;
+  }
+  const { series, columns } = bySet(data, order, values, sized(data) - 1);
+  const even = order.filter((row) => data.rows.even[row]);
+  const curve = smooth(even.map((row) => column[row]), even.map((row) => values[row]));
+  if (curve) {
+    series.push(line("smoothed", "ink"));
+    columns.push(curveAt(curve, order.map((row) => column[row])));
+  }
+  const swing = curve ? Math.max(...curve.values) - Math.min(...curve.values) : NaN;
+  plot(cell, {
+    x: `${reading.name}, ${reading.unit}`,
+    y: `residual, ${unit}`,
+    height: 190,
+    range: () => range,
+    series,
+    values: [order.map((row) => column[row]), ...columns],
+    spoken: `Residual ${text} over ${reading.name}; the smoothed curve swings by ${withUnit(swing, unit)}.`,
+  });
+}
+
+/** Errors of fitted and of held-out rows that stand for all. */
+function errorsOfSets({ rows }) {
+  const of = (held) => rows.error_mm.filter((_, row) => rows.even[row] && Boolean(rows.held_out[row]) === held);
+  return [of(false), of(true)];
+}
+
+function histogram(place, data) {
+  const sets = errorsOfSets(data);
+  const sorted = sets.flat().sort((a, b) => a - b);
+  // A few rows far off would leave all others in one bar.
+  const most = Math.min(sorted[sorted.length - 1], 1.6 * quantile(sorted, 0.97)) || 1;
+  const count = Math.max(8, Math.min(40, Math.round(Math.sqrt(sorted.length))));
+  const width = most / count;
+  const beyond = sorted.filter((value) => value > most).length;
+  const shares = sets.map((values) => {
+    const bins = new Array(count + 1).fill(0);
+    for (const value of values) if (value <= most) bins[Math.min(Math.floor(value / width), count - 1)] += 100 / values.length;
+    bins[count] = null;
+    return values.length ? bins : null;
+  });
+  const series = [];
+  const columns = [];
+  shares.forEach((bins, k) => {
+    if (!bins) return;
+    series.push(k === 0 ? bars(...SETS[0]) : steps(...SETS[1]));
+    columns.push(k === 0 ? bins : bins.map((value, i) => value ?? bins[i - 1]));
+  });
+  keys(place, series);
+  const chart = document.createElement("div");
+  place.append(chart);
+  plot(chart, {
+    x: beyond ? `position error, mm (${beyond} rows beyond are not drawn)` : "position error, mm",
+    y: "share of the rows, %",
+    height: 240,
+    wide: true,
+    series,
+    values: [Array.from({ length: count + 1 }, (_, k) => k * width), ...columns],
+    range: (_, __, highest) => [0, highest * 1.08],
+    spoken: `Histogram of position errors in steps of ${withUnit(width, "mm")}; the tables of errors have mean, RMS, 95 % and largest.`,
+  });
+}
+
+const NORMAL_POINTS = 1500;
+
+function normal(place, data) {
+  const { rows } = data;
+  const values = rows.residual_mm.flatMap((column) => column.filter((_, row) => rows.even[row]));
+  values.sort((a, b) => a - b);
+  const count = Math.min(values.length, NORMAL_POINTS);
+  // Both ends whole, and the middle thinned if there are many.
+  const ranks = Array.from({ length: count }, (_, k) => Math.round((k * (values.length - 1)) / Math.max(count - 1, 1)));
+  const xs = ranks.map((rank) => normalQuantile((rank + 0.5) / values.length));
+  const [low, high] = [quantile(values, 0.25), quantile(values, 0.75)];
+  const slope = (high - low) / (2 * normalQuantile(0.75));
+  const series = [dots("components of all rows", "s0", { size: 4 }), line("normal, through the quartiles", "soft", { width: 1.5 })];
+  keys(place, series);
+  const chart = document.createElement("div");
+  place.append(chart);
+  plot(chart, {
+    x: "quantile of the normal distribution, standard deviations",
+    y: "component, mm",
+    height: 240,
+    series,
+    values: [xs, ranks.map((rank) => values[rank]), xs.map((x) => (low + high) / 2 + slope * x)],
+    spoken: `Normal plot of ${values.length} components of position; a normal distribution through their quartiles has a standard deviation of ${withUnit(slope, "mm")}.`,
+  });
+}
+
+function leverage(place, data) {
+  const { rows } = data;
+  const order = inOrder(data, (row) => rows.leverage[row] !== null && rows.studentized[row] !== null);
+  if (!order.length) {
+    place.textContent = "The rows were not judged.";
+    return;
+  }
+  order.sort((a, b) => rows.leverage[a] - rows.leverage[b]);
+  const { series, columns } = bySet(data, order, rows.studentized, sized(data));
+  keys(place, series);
+  const largest = order[order.length - 1];
+  const chart = document.createElement("div");
+  place.append(chart);
+  plot(chart, {
+    x: "leverage",
+    y: "studentised residual",
+    series,
+    values: [order.map((row) => rows.leverage[row]), ...columns],
+    range: (_, __, most) => [0, most * 1.05],
+    spoken: `Studentised residual over leverage of ${order.length} rows; the largest leverage, ${shown(rows.leverage[largest])}, is that of ${name(data, largest)}.`,
+    readout: readoutLine(place),
+    tell: (index) => `${name(data, order[index])}, leverage ${shown(rows.leverage[order[index]])}`,
+  });
+}

@@ -1,0 +1,94 @@
+// Forward kinematics by the product of exponentials. A pose is { r, t }: a rotation by rows and a translation in metres.
+
+/** A pose from a position and a quaternion x, y, z, w. */
+export function poseOf({ position_m, quaternion_xyzw: [x, y, z, w] }) {
+  const r = [
+    [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+    [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+    [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+  ];
+  return { r, t: position_m };
+}
+
+export function rotate(r, [x, y, z]) {
+  return r.map((row) => row[0] * x + row[1] * y + row[2] * z);
+}
+
+export function add(a, b) {
+  return a.map((value, k) => value + b[k]);
+}
+
+export function subtract(a, b) {
+  return a.map((value, k) => value - b[k]);
+}
+
+export function scale(a, factor) {
+  return a.map((value) => value * factor);
+}
+
+export function dot(a, b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+export function cross(a, b) {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+export function act({ r, t }, point) {
+  return add(rotate(r, point), t);
+}
+
+export function compose(a, b) {
+  const column = (k) => rotate(a.r, b.r.map((row) => row[k]));
+  const columns = [column(0), column(1), column(2)];
+  return { r: [0, 1, 2].map((row) => columns.map((it) => it[row])), t: act(a, b.t) };
+}
+
+/** The motion of a screw through a joint value. */
+export function exponential({ v_m: v, w }, value) {
+  if (dot(w, w) < 0.5) return { r: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], t: scale(v, value) };
+  const [x, y, z] = w;
+  const s = Math.sin(value);
+  const c = 2 * Math.sin(value / 2) ** 2;
+  const r = [
+    [1 - c * (y * y + z * z), c * x * y - s * z, c * x * z + s * y],
+    [c * x * y + s * z, 1 - c * (x * x + z * z), c * y * z - s * x],
+    [c * x * z - s * y, c * y * z + s * x, 1 - c * (x * x + y * y)],
+  ];
+  // The axis passes through w × v, which stays where it is.
+  const q = cross(w, v);
+  return { r, t: add(subtract(q, rotate(r, q)), scale(w, dot(w, v) * value)) };
+}
+
+/** The point of a screw's axis nearest to another point; for a slide, that point. */
+function pointOn({ v_m: v, w }, near) {
+  if (dot(w, w) < 0.5) return near;
+  const q = cross(w, v);
+  return add(q, scale(w, dot(w, subtract(near, q))));
+}
+
+/**
+ * Where the axes, the tip and a target are. `model` is "screw" or "nominal_screw". `motion` is how the target moves with each reading.
+ */
+export function chain(data, readings, model, target = [0, 0, 0]) {
+  let pose = { r: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], t: [0, 0, 0] };
+  const axes = data.joints.map((joint) => {
+    const screw = joint[model];
+    const turns = joint.kind === "revolute";
+    const axis = {
+      point: act(pose, pointOn(screw, joint.origin_m)),
+      direction: rotate(pose.r, turns ? screw.w : screw.v_m),
+    };
+    pose = compose(pose, exponential(screw, joint.multiplier * readings[joint.reading] + joint.offset));
+    return axis;
+  });
+  const tip = compose(pose, model === "screw" ? data.home : data.nominal_home);
+  const place = act(tip, target);
+  const motion = data.readings.map(() => [0, 0, 0]);
+  data.joints.forEach((joint, k) => {
+    const turns = joint.kind === "revolute";
+    const velocity = turns ? cross(axes[k].direction, subtract(place, axes[k].point)) : axes[k].direction;
+    motion[joint.reading] = add(motion[joint.reading], scale(velocity, joint.multiplier));
+  });
+  return { axes, tip: tip.t, target: place, motion };
+}

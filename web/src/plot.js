@@ -1,0 +1,165 @@
+// One chart: dots, lines and bars over two axes, by uPlot, in the page's colours and as wide as its place.
+import uPlot from "uplot";
+import { shown } from "./data.js";
+import { colour, onColours } from "./theme.js";
+
+const FONT = '12px system-ui, "Segoe UI", Roboto, "Liberation Sans", Arial, sans-serif';
+
+function axis(label, size, gap) {
+  return {
+    label,
+    labelSize: 16,
+    labelGap: 0,
+    size,
+    gap,
+    font: FONT,
+    labelFont: FONT,
+    stroke: () => colour("soft"),
+    grid: { stroke: () => colour("rule"), width: 1 },
+    ticks: { show: false },
+    values: (_, splits) => splits.map((value) => ticked(value, splits)),
+  };
+}
+
+/** A tick's label, with as many decimals as the steps need. */
+function ticked(value, splits) {
+  if (value === null) return "";
+  const step = splits.length > 1 ? Math.abs(splits[1] - splits[0]) : 1;
+  if (step < 1e-5 || Math.abs(value) >= 1e6) return value === 0 ? "0" : value.toExponential(0).replaceAll("-", "−");
+  let decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  // Steps of 2.5 need one more.
+  if (Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6) decimals += 1;
+  return value.toFixed(decimals).replace("-", "−");
+}
+
+function padded(_, least, most) {
+  const room = 0.02 * (most - least) || 0.5;
+  return [least - room, most + room];
+}
+
+/** Series of dots that follow the colour of `name`: discs, or rings around what is suspected. */
+export function dots(label, name, options = {}) {
+  const { size = 5, ring = false } = options;
+  return { label, key: name, ring, size, paths: () => null, points: { show: false } };
+}
+
+/** Draws a series of dots. Small ones are squares, which thousands of take no time. */
+function drawDots(chart, index) {
+  const { key, ring, size } = chart.series[index];
+  if (!size) return;
+  const { ctx, bbox } = chart;
+  const [xs, ys] = [chart.data[0], chart.data[index]];
+  const side = size * devicePixelRatio;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  ctx.fillStyle = ctx.strokeStyle = colour(key);
+  ctx.globalAlpha = ring ? 1 : 0.75;
+  ctx.lineWidth = 2 * devicePixelRatio;
+  ys.forEach((value, k) => {
+    if (value === null || value === undefined) return;
+    const [x, y] = [chart.valToPos(xs[k], "x", true), chart.valToPos(value, "y", true)];
+    if (!ring && size < 4) {
+      ctx.fillRect(x - side / 2, y - side / 2, side, side);
+      return;
+    }
+    ctx.beginPath();
+    ctx.arc(x, y, side / 2, 0, 2 * Math.PI);
+    if (ring) ctx.stroke();
+    else ctx.fill();
+  });
+  ctx.restore();
+}
+
+/** A line that follows the colour of `name`. */
+export function line(label, name, options = {}) {
+  const { width = 2, dash, paths } = options;
+  return { label, key: name, isLine: true, stroke: () => colour(name), width, dash, paths, points: { show: false } };
+}
+
+/** Bars that follow the colour of `name`. */
+export function bars(label, name) {
+  return {
+    label,
+    key: name,
+    stroke: () => colour(name),
+    width: 1,
+    fill: () => `color-mix(in srgb, ${colour(name)} 35%, transparent)`,
+    paths: uPlot.paths.bars({ size: [1, Infinity], align: 1 }),
+    points: { show: false },
+  };
+}
+
+/** Steps that begin at each x. */
+export function steps(label, name) {
+  return line(label, name, { paths: uPlot.paths.stepped({ align: 1 }) });
+}
+
+/**
+ * Draws a chart into `place`. `spoken` is what a screen reader says instead of the picture, `tell(index)` what stands below when the
+ * cursor is near a point.
+ */
+export function plot(place, { x, y, series, values, height = 260, range, spoken, readout, tell, wide = false }) {
+  const target = document.createElement("div");
+  place.append(target);
+  const width = () => Math.max(target.clientWidth, 120);
+  const chart = new uPlot(
+    {
+      width: width(),
+      height,
+      legend: { show: false },
+      cursor: { drag: { x: true, y: true, uni: 20 }, points: { show: false }, focus: { prox: 30 } },
+      // Dots at the ends lie whole on the plot.
+      scales: { x: { time: false, range: wide ? undefined : padded }, y: range ? { range } : {} },
+      axes: [axis(x, 27, 8), axis(y, 52, 4)],
+      series: [{}, ...series],
+      hooks: { drawSeries: [drawDots], setCursor: readout ? [(it) => say(it, readout, tell)] : [] },
+    },
+    values,
+    target,
+  );
+  const canvas = target.querySelector("canvas");
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", spoken);
+  new ResizeObserver(() => {
+    if (width() !== chart.width) chart.setSize({ width: width(), height });
+  }).observe(target);
+  onColours(() => chart.redraw(false));
+  return chart;
+}
+
+function say(chart, readout, tell) {
+  const index = chart.cursor.idx;
+  const at = index === null || index === undefined ? null : tell(index);
+  readout.textContent = at ?? "";
+}
+
+/** What colours mean. */
+export function keys(place, series) {
+  const list = document.createElement("ul");
+  list.className = "keys";
+  for (const { label, key, ring, isLine } of series) {
+    const item = document.createElement("li");
+    const sign = document.createElement("i");
+    sign.style.setProperty("--key", `var(--${key})`);
+    sign.className = ring ? "ring" : isLine ? "line" : "";
+    item.append(sign, label);
+    list.append(item);
+  }
+  place.append(list);
+}
+
+/** A line of text below a chart, where what the cursor is on is said. */
+export function readoutLine(place) {
+  const text = document.createElement("p");
+  text.className = "readout";
+  text.setAttribute("aria-hidden", "true");
+  place.append(text);
+  return text;
+}
+
+/** Text with a number and its unit. */
+export function withUnit(value, unit) {
+  return `${shown(value)} ${unit}`;
+}

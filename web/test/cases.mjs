@@ -1,0 +1,83 @@
+// Calibrations whose reports are opened: the paper's elbow, a broken one, poses of seven axes, repeated rows, and real robots where their data are.
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+export const ROOT = fileURLToPath(new URL("../..", import.meta.url));
+const PROGRAM = process.env.POECAL_PROGRAM ?? join(ROOT, "target/release/poecal");
+const ELBOW = join(ROOT, "examples/elbow");
+
+export const folder = mkdtempSync(join(tmpdir(), "poecal-report-"));
+process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
+
+/** Standard output of the program, which must end well. */
+export function poecal(...words) {
+  return execFileSync(PROGRAM, words, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], cwd: ROOT });
+}
+
+function calibrate(name, ...words) {
+  const out = join(folder, name);
+  poecal("calibrate", ...words, "--out", out, "--quiet");
+  return out;
+}
+
+/** The example's points with joint 4 counted the other way. */
+function broken() {
+  const path = join(folder, "broken.csv");
+  const lines = readFileSync(join(ELBOW, "points.csv"), "utf8").split("\n").filter((line) => line && !line.startsWith("#"));
+  const turned = lines[0].split(",").findIndex((column) => column.startsWith("joint4"));
+  const row = (line) => line.split(",").map((cell, k) => (k === turned ? String(-Number(cell)) : cell)).join(",");
+  writeFileSync(path, `${[lines[0], ...lines.slice(1).map(row)].join("\n")}\n`);
+  return path;
+}
+
+/** The example's points, six of them measured five times more. */
+function repeated() {
+  const path = join(folder, "repeated.csv");
+  const lines = readFileSync(join(ELBOW, "points.csv"), "utf8").split("\n").filter((line) => line && !line.startsWith("#"));
+  const x = lines[0].split(",").findIndex((column) => column.startsWith("x["));
+  const near = (line, k) => line.split(",").map((cell, column) => (column === x ? String(Number(cell) + 0.01 * (k - 2)) : cell)).join(",");
+  const again = [0, 1, 2, 3, 4].flatMap((k) => lines.slice(1, 7).map((line) => near(line, k)));
+  writeFileSync(path, `${[...lines, ...again].join("\n")}\n`);
+  return path;
+}
+
+function simulated(name, ...words) {
+  const out = join(folder, `${name}-session`);
+  poecal("simulate", ...words, "--out", out, "--quiet");
+  return join(out, "measurements.csv");
+}
+
+/** Every case: its name, a function that gives the folder with its results, and whether it is looked at in one width only. */
+export const CASES = [
+  ["the paper's elbow", () => calibrate("elbow", join(ELBOW, "robot.urdf"), join(ELBOW, "points.csv"))],
+  ["a broken calibration", () => calibrate("broken", join(ELBOW, "robot.urdf"), broken())],
+  ["repeated rows", () => calibrate("repeated", join(ELBOW, "robot.urdf"), repeated())],
+  [
+    "seven axes, poses",
+    () => {
+      const model = join(ROOT, "crates/poecal/tests/data/urdf/seven_axis.urdf");
+      return calibrate("seven", model, simulated("seven", model, "--kind", "pose", "--count", "80"));
+    },
+  ],
+];
+
+/** A session of 50,000 rows. */
+export function long() {
+  const model = join(ELBOW, "robot.urdf");
+  return calibrate("long", model, simulated("long", model, "--kind", "pose", "--count", "50000"));
+}
+
+const datasets = process.env.POECAL_DATASETS ?? join(ROOT, "../shared/datasets");
+if (existsSync(datasets)) {
+  const { cases } = JSON.parse(readFileSync(join(ROOT, "validation/expected.json"), "utf8"));
+  // The same rows from another file make the same report.
+  for (const { name, model, measurements, options } of cases.filter((it) => !it.name.startsWith("the same"))) {
+    const words = options.map((word) => (word.startsWith("validation/") ? join(ROOT, word) : word));
+    CASES.push([name, () => calibrate(name.replace(/\W+/g, "-"), join(datasets, model), join(datasets, measurements), ...words), true]);
+  }
+} else {
+  console.log(`real robots skipped: no folder of data sets at ${datasets}; set POECAL_DATASETS`);
+}

@@ -1,0 +1,203 @@
+// Opens reports in headless Chromium: nothing is loaded or complained of, everything is drawn, the arm moves, the text is that of
+// calibration.json, and axe finds no serious fault.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import { CHROMIUM, launch, open } from "./browser.mjs";
+import { CASES, folder, long, poecal } from "./cases.mjs";
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const skip = CHROMIUM ? false : "found no Chromium; install it (Debian: apt install chromium), or name it: CHROMIUM=/path";
+/** Share of a canvas' pixels that must differ from its background: axes alone are less. */
+const DRAWN = 0.002;
+/** The browser and the program round differently. */
+const TIP_M = 1e-9;
+
+let browser;
+before(async () => {
+  if (!skip) browser = await launch();
+});
+after(() => browser?.close());
+
+/** The share of each canvas' pixels that differ from its corner. */
+function drawnShares() {
+  return [...document.querySelectorAll("canvas:not(.paper)")].map((canvas) => {
+    const copy = document.createElement("canvas");
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const context = copy.getContext("2d");
+    context.drawImage(canvas, 0, 0);
+    const pixels = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
+    const name = canvas.closest("[data-chart]")?.dataset.chart ?? "arm";
+    return { name, share: pixels.filter((pixel) => pixel !== pixels[0]).length / pixels.length };
+  });
+}
+
+function valueOf(file, key) {
+  return key.split(".").reduce((value, part) => value?.[part], file);
+}
+
+/** Whether a text is this value to the digits that it shows. */
+function shows(text, value) {
+  const plain = text.replaceAll("−", "-");
+  const [mantissa, power = "0"] = plain.split("e");
+  const decimals = mantissa.split(".")[1]?.length ?? 0;
+  return plain.trim() !== "" && Math.abs(Number(plain) - value) <= 0.5001 * 10 ** (Number(power) - decimals);
+}
+
+function checkText(figures, file) {
+  for (const { key, factor, text } of figures) {
+    const value = valueOf(file, key);
+    if (typeof value === "number") assert.ok(shows(text, value * factor), `${key} is shown as ${text}, expected ${value * factor}`);
+    else assert.equal(text, String(value).replaceAll("`", ""), key);
+  }
+  return figures.length;
+}
+
+async function faults(page) {
+  await page.evaluate(AXE);
+  const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+  const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+  return serious.map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map((node) => node.target.join(" ")).join("; ")}`);
+}
+
+/** Moves every joint's slider, and gives where the page says that the tip is at random values. */
+async function moveArm(page) {
+  return page.evaluate(async () => {
+    const tip = () => document.getElementById("tip").dataset.tip;
+    const picture = () => document.querySelector(".scene canvas").toDataURL();
+    const frame = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    const sliders = [...document.querySelectorAll(".panel fieldset")].find((it) => it.querySelector("legend").textContent === "Joints").querySelectorAll("input");
+    const still = [];
+    for (const [k, slider] of sliders.entries()) {
+      const earlier = [tip(), picture()];
+      const [least, most] = [Number(slider.min), Number(slider.max)];
+      slider.value = Number(slider.value) > (least + most) / 2 ? least + 0.2 * (most - least) : most - 0.3 * (most - least);
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+      await frame();
+      if (tip() === earlier[0] && picture() === earlier[1]) still.push(k);
+    }
+    return { still, values: [...sliders].map((slider) => Number(slider.value)), tip: tip().split(",").map(Number) };
+  });
+}
+
+/** Where the program says that the tip is. */
+function predicted(out, names, units, values) {
+  const table = join(folder, "joints.csv");
+  writeFileSync(table, `${names.map((name, k) => `"${name}[${units[k] === "mm" ? "mm" : "deg"}]"`).join(",")}\n${values.join(",")}\n`);
+  const [, row] = poecal("predict", join(out, "calibration.json"), table, "--quiet").split("\n");
+  return row.split(",").slice(0, 3).map(Number);
+}
+
+const LOOKS = [[400, "light"], [900, "dark"], [1300, "light"]];
+
+for (const [name, make, brief] of CASES) {
+  describe(name, { skip }, () => {
+    let out, file, report;
+    before(() => {
+      out = make();
+      report = join(out, "report.html");
+      file = JSON.parse(readFileSync(join(out, "calibration.json"), "utf8"));
+    });
+
+    test("is drawn, quiet, and says what calibration.json says", async () => {
+      const page = await open(browser, report);
+      const figures = await page.$$eval("[data-key]", (all) =>
+        all.map((it) => ({ key: it.dataset.key, factor: Number(it.dataset.factor ?? 1), text: it.textContent })),
+      );
+      const count = checkText(figures, file);
+      const shares = await page.evaluate(drawnShares);
+      const charts = new Set(shares.map((it) => it.name));
+      assert.deepEqual([...charts].sort(), ["arm", "components", "histogram", "joints", "leverage", "normal", "rows"]);
+      for (const { name, share } of shares) assert.ok(share > DRAWN, `${name}: ${share} of the pixels are drawn`);
+      const plots = await page.$$eval("svg.plot", (all) => all.map((it) => [it.querySelectorAll("circle, rect, polyline").length, it.clientWidth]));
+      for (const [marks, width] of plots) assert.ok(marks > 2 && width > 100, `a plot has ${marks} marks, ${width} px wide`);
+      assert.deepEqual(page.complaints, []);
+      console.log(`${name}: ${count} figures, ${shares.length} canvases, ${plots.length} plots, ${readFileSync(report).length} bytes`);
+      await page.close();
+    });
+
+    test("the sliders move the arm to where the program says", async () => {
+      const page = await open(browser, report);
+      const { still, values, tip } = await moveArm(page);
+      assert.deepEqual(still, [], "these sliders move nothing");
+      const readings = await page.evaluate(() => JSON.parse(document.getElementById("report-data").textContent).readings);
+      const expected = predicted(out, readings.map((it) => it.name), readings.map((it) => it.unit), values);
+      const apart = Math.hypot(...tip.map((value, k) => value - expected[k]));
+      assert.ok(apart < TIP_M, `the tip is ${apart} m from where the program says`);
+      await page.getByRole("button", { name: "worst" }).click();
+      const worst = Math.max(file.accuracy.training.calibrated.position_mm.max, file.accuracy.held_out?.calibrated.position_mm.max ?? 0);
+      const told = await page.locator(".panel .state").first().textContent();
+      const shown = Number(told.match(/off by ([\d.]+) mm/)?.[1]);
+      assert.ok(Math.abs(shown / worst - 1) < 5e-3 || Math.abs(shown - worst) < 5e-4, `${told}; the worst is ${worst}`);
+      assert.deepEqual(page.complaints, []);
+      await page.close();
+    });
+
+    for (const [width, colours] of brief ? [[400, "dark"]] : LOOKS) {
+      test(`axe finds nothing serious, and nothing is cut off, at ${width} px in ${colours}`, async () => {
+        const page = await open(browser, report, { width, colours });
+        const cut = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+        assert.ok(cut <= 0, `the page is ${cut} px too wide`);
+        await page.$$eval("details", (all) => all.forEach((it) => (it.open = true)));
+        assert.deepEqual(await faults(page), []);
+        await page.close();
+      });
+    }
+  });
+}
+
+describe("the page", { skip }, () => {
+  let report;
+  before(() => {
+    // The first case has written it.
+    report = join(folder, "elbow", "report.html");
+  });
+
+  test("colours can be chosen, and are redrawn", async () => {
+    const page = await open(browser, report);
+    const look = () => page.evaluate(() => [getComputedStyle(document.body).backgroundColor, document.querySelector(".scene canvas").toDataURL().length]);
+    const light = await look();
+    await page.getByRole("button", { name: "dark" }).click();
+    const dark = await look();
+    assert.notEqual(light[0], dark[0]);
+    assert.notEqual(light[1], dark[1]);
+    await page.close();
+  });
+
+  test("prints, with every table open", async () => {
+    const page = await open(browser, report, { colours: "dark" });
+    const pdf = await page.pdf({ preferCSSPageSize: true, printBackground: true });
+    assert.equal(pdf.subarray(0, 4).toString(), "%PDF");
+    assert.ok(pdf.length > 50_000, `${pdf.length} bytes`);
+    await page.close();
+  });
+
+  test("says everything without scripts", async () => {
+    const context = await browser.newContext({ javaScriptEnabled: false });
+    const page = await context.newPage();
+    await page.goto(`file://${report}`);
+    assert.ok((await page.locator("table").count()) > 8);
+    assert.ok(await page.locator(".first svg.plot").isVisible());
+    await context.close();
+  });
+
+  test("of 50,000 rows opens with less than 3 s of work", async () => {
+    const path = join(long(), "report.html");
+    const [times, worked] = [[], []];
+    for (let round = 0; round < 3; round++) {
+      const begin = Date.now();
+      const page = await open(browser, path);
+      times.push(((Date.now() - begin) / 1e3).toFixed(1));
+      worked.push(await page.processorTime());
+      assert.deepEqual(page.complaints, []);
+      assert.match(await page.locator("#errors").textContent(), /Charts draw \d+ of 50000 rows/);
+      await page.close();
+    }
+    const seconds = Math.min(...worked);
+    console.log(`50,000 rows: ${readFileSync(path).length} bytes, opened in ${times.join(", ")} s, ${seconds.toFixed(1)} s of them at work`);
+    // Of work, since a busy machine takes longer by the clock.
+    assert.ok(seconds < 3, `${worked} s`);
+  });
+});
