@@ -89,6 +89,13 @@ fn corrections(page: &mut Html, file: &CalibrationFile) {
         ]);
     }
     page.table(&table);
+    for (k, found) in file.corrections.iter().enumerate() {
+        if let Some(words) = &found.suspicious {
+            let name = quoted(&found.joint, &format!("corrections.{k}.joint"));
+            let words = quoted(words, &format!("corrections.{k}.suspicious"));
+            page.text(&format!("<strong>Suspicious: {name}.</strong> {words}."));
+        }
+    }
     offsets(page, file);
     page.end_section();
 }

@@ -51,6 +51,22 @@ fn expected(page: &mut Html, found: &UncertaintyEntry) {
     } else {
         page.text("The residuals look like noise, so predictions are better than any single measurement.");
     }
+    if let Some(sigma) = found.sigma_position_if_robot_mm {
+        page.text(&format!(
+            "So few rows cannot tell noise from errors of the robot for certain. If all that the fit leaves were the robot and none of it noise \
+             of measuring, {} mm (RMS) would be to be expected as measured.",
+            figure(sigma, "uncertainty.sigma_position_if_robot_mm")
+        ));
+    }
+    if let Some(drawn) = &found.bootstrap {
+        page.text(&format!(
+            "Drawing neighbourhoods of rows anew {} times spreads the predictions there by {} mm (RMS); if rows err independently and alike it \
+             is {} mm.",
+            count(drawn.drawings, "uncertainty.bootstrap.drawings"),
+            figure(drawn.sigma_position_mm, "uncertainty.bootstrap.sigma_position_mm"),
+            figure(drawn.formal_sigma_position_mm, "uncertainty.bootstrap.formal_sigma_position_mm")
+        ));
+    }
 }
 
 fn cross_validation(page: &mut Html, file: &CalibrationFile) {
