@@ -237,11 +237,11 @@ fn refits_have_the_same_optimum() {
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
         let rows: Vec<u32> = (0..made.data.len() as u32).collect();
         let free = parameters(&made.nominal, &made.data, &Case::default());
-        let problem = |data| Problem::new(data, &packed, rows.clone(), free.clone(), NOISE, LENGTH_M);
+        let first = Problem::new(&made.data, &packed, rows.clone(), free.clone(), NOISE, LENGTH_M);
         let start = delivered(&made.nominal, &made.data);
         let strict = Options { decrement: 1e-12, ..Options::default() };
-        let (optimum, _, _) = minimize(&problem(&made.data), start.clone(), &strict);
-        let mut refit = Refit::new(problem(&made.data), optimum.clone(), strict);
+        let (optimum, _, _) = minimize(&first, start.clone(), &strict);
+        let mut refit = Refit::new(first, optimum.clone(), strict);
         let (mut worst, mut iterations): (f64, usize) = (0.0, 0);
         let mut generator = ChaCha8Rng::seed_from_u64(7);
         for trial in 0..40 {
@@ -258,7 +258,8 @@ fn refits_have_the_same_optimum() {
             }
             let measured: Vec<Measurement> = data.observations.iter().map(|seen| seen.measurement).collect();
             let (quick, _, summary) = refit.fit(&measured);
-            let (plain, _, _) = minimize(&Plain(&problem(&data)), optimum.clone(), &strict);
+            let own = Problem::new(&data, &packed, rows.clone(), free.clone(), NOISE, LENGTH_M);
+            let (plain, _, _) = minimize(&Plain(&own), optimum.clone(), &strict);
             worst = worst.max(farthest(&data, &packed, &rows, &quick, &plain) / scale);
             iterations += summary.iterations;
         }

@@ -20,9 +20,11 @@ use crate::simulate::random;
 use crate::solve::{LeastSquares, Normal, Options, Summary, minimize};
 use crate::start::target_parameters;
 
-/// Rows of the sample on which a fit of many rows begins: for each unknown, and at least.
-const SAMPLE_PER_UNKNOWN: usize = 10;
+/// Rows of the sample on which a fit of many rows begins: at least, for each unknown, and for the root of the number of rows, so
+/// that however many they are, one step with the first `JᵀJ` of all rows does about as well.
 const SAMPLE: usize = 512;
+const SAMPLE_PER_UNKNOWN: usize = 10;
+const SAMPLE_PER_ROOT: usize = 7;
 /// Times as many rows as are in a sample, beyond which a fit begins on one.
 const MANY: usize = 3;
 /// The optimum of a sample is an estimate: closer than a tenth of its own standard deviation need not be gone.
@@ -100,7 +102,7 @@ pub fn fit_screws(
     let mut start = start;
     let mut before = None;
     let unknowns: usize = free.iter().map(|parameter| parameter.model().columns().len()).sum();
-    let enough = SAMPLE.max(SAMPLE_PER_UNKNOWN * unknowns);
+    let enough = SAMPLE.max(SAMPLE_PER_UNKNOWN * unknowns).max(SAMPLE_PER_ROOT * rows.len().isqrt());
     if rows.len() > MANY * enough {
         let sample = sample_rows(rows, enough);
         let decrement = SAMPLE_DECREMENT.max(options.solver.decrement);

@@ -60,9 +60,9 @@ impl Packed {
         Packed { joints, kinds, values, angles }
     }
 
-    /// Revolute or prismatic, a joint.
-    pub(crate) fn kinds(&self) -> &[JointKind] {
-        &self.kinds
+    /// Whether it turns, a joint.
+    pub(crate) fn turns(&self) -> impl Iterator<Item = bool> {
+        self.kinds.iter().map(|&kind| kind == JointKind::Revolute)
     }
 
     /// Number of rows.

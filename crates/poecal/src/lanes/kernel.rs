@@ -306,6 +306,10 @@ fn add_rows<V: Vector, const FULL: bool>(
     let Some((position, rest)) = rest.split_first_chunk::<3>() else { return };
     let (measured, joints) = rest.split_at(if plan.framed { 9 } else { 0 });
     let (weight, per_length) = (V::load(&noise[0], part), V::splat(1.0 / plan.length_m));
+    if !FULL && weight.are_below(f64::MIN_POSITIVE) {
+        // Nothing but rows that fill the block.
+        return;
+    }
     // Empty without unknowns.
     let columns = jacobian.get_mut(filled..).unwrap_or_default();
     let stride = *waiting;

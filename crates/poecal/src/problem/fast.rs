@@ -9,7 +9,6 @@ use crate::lanes::{self, Arm, JointPlan, Level, Plan, RowData, Rows, Step, Total
 use crate::lie::Pose;
 use crate::measurement::Measurement;
 use crate::parameters::Parameter;
-use crate::robot::JointKind;
 use crate::solve::Normal;
 use rayon::prelude::*;
 
@@ -19,6 +18,9 @@ const CHUNK: usize = 1024;
 const TOGETHER: usize = 64;
 /// Most rows that stay packed; more are packed anew in each pass, chunk by chunk, which costs a tenth of it.
 const KEPT: usize = 8192;
+
+/// Relative difference of two ratios that differ by rounding only.
+const SAME_RATIO: f64 = 1e-14;
 
 /// Groups of rows that are computed alike.
 #[derive(Clone, Debug)]
@@ -55,9 +57,9 @@ impl Fast {
             let target = observation.target;
             let known = groups.iter_mut().find(|group| group.target == target && group.plan.framed == framed);
             if let Some(group) = known {
-                if group.plan.ratio != ratio {
-                    group.plan.ratio = None;
-                }
+                group.plan.ratio = group.plan.ratio.zip(ratio).and_then(|(known, ratio)| {
+                    ((ratio - known).abs() <= SAME_RATIO * known).then_some(known)
+                });
                 group.rows.push(row);
             } else {
                 let mut group = Group::new(problem, target, framed)?;
@@ -150,7 +152,7 @@ impl Group {
             };
             let first = self.shift_places.len();
             let joint = self.plan.joints.get_mut(axis.joint)?;
-            if joint.columns.is_some() || joint.turns != (axis.kind == JointKind::Revolute) {
+            if joint.columns.is_some() || joint.turns != (places.len() == 4) {
                 return None;
             }
             joint.columns = Some((first, self.turn_places.len()));
@@ -246,9 +248,8 @@ impl Group {
 }
 
 fn plan_without_unknowns(problem: &Problem<'_>, framed: bool) -> Plan {
-    let turns = |kind: &JointKind| JointPlan { turns: *kind == JointKind::Revolute, columns: None };
     Plan {
-        joints: problem.packed.kinds().iter().map(turns).collect(),
+        joints: problem.packed.turns().map(|turns| JointPlan { turns, columns: None }).collect(),
         device: None,
         place: None,
         frame: None,
