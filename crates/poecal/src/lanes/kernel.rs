@@ -1,11 +1,13 @@
 //! One pass over rows: the chain, its columns in local axis frames, residuals, and their products (theory.md §5, §6 (28)).
 //!
-//! One source for every width of vector: `L` rows are computed at a time, in blocks of [`WIDTH`].
+//! One source for every width of vector: as many rows as a vector has lanes are computed at a time, in blocks of [`WIDTH`].
 
 use std::cell::RefCell;
 
+use super::frame::{Frame, turned};
 use super::gram::{TILE, add_products, sums_len};
 use super::plan::{Plan, Step};
+use super::totals::Totals;
 use super::turn::Turn;
 use super::vector::{Vector, Vectors, WIDTH, Wide};
 
@@ -13,41 +15,6 @@ use super::vector::{Vector, Vectors, WIDTH, Wide};
 const WAITING: usize = 570;
 /// Fewest and most blocks that wait: with few, the tiles' sums are loaded and stored too often, even if columns fill the second cache.
 const BLOCKS_WAITING: (usize, usize) = (6, 8);
-
-/// Sums of one pass over some rows.
-pub(crate) struct Totals {
-    /// Products of position columns, tile after tile: see [`product`].
-    pub(crate) products: Vec<f64>,
-    /// What rotation rows add to products of turns, likewise.
-    pub(crate) turned: Vec<f64>,
-    /// `Jᵀe` of shifts, then of turns.
-    pub(crate) gradient: Vec<f64>,
-    /// `½ Σ e²`.
-    pub(crate) cost: f64,
-}
-
-impl Totals {
-    /// Adds those of other rows.
-    pub(crate) fn add(&mut self, other: &Totals) {
-        let pairs = [
-            (&mut self.products, &other.products),
-            (&mut self.turned, &other.turned),
-            (&mut self.gradient, &other.gradient),
-        ];
-        for (own, others) in pairs {
-            own.iter_mut().zip(others).for_each(|(own, other)| *own += other);
-        }
-        self.cost += other.cost;
-    }
-}
-
-/// Where the product of two of `columns` columns is in a sum of tiles, for `a ≤ b`.
-pub(crate) fn product(columns: usize, a: usize, b: usize) -> usize {
-    let tiles = columns.div_ceil(TILE);
-    let (row, column) = (a / TILE, b / TILE);
-    let before = row * tiles - row * row.saturating_sub(1) / 2;
-    (before + column - row) * TILE * TILE + a % TILE * TILE + b % TILE
-}
 
 /// What is kept of a joint: its two shift columns and its origin in the rows under way, and the gradient of shifts and tilts.
 #[derive(Clone, Copy)]
@@ -219,53 +186,6 @@ fn add_up<V: Vector>(sums: &[Wide]) -> Vec<f64> {
 fn total(sum: &Wide) -> f64 {
     let [a, b, c, d, e, f, g, h] = sum.0;
     ((a + e) + (c + g)) + ((b + f) + (d + h))
-}
-
-/// A frame in the device's axes: for each of these, its part of the directions x, y, z and of the origin. So ordered, a product needs
-/// few registers.
-#[derive(Clone, Copy)]
-struct Frame<V>([[V; 4]; 3]);
-
-impl<V: Vector> Frame<V> {
-    #[inline(always)]
-    fn fixed(step: &Step) -> Self {
-        let [x, y, z] = &step.columns;
-        let mut rows = [[V::splat(0.0); 4]; 3];
-        for (k, row) in rows.iter_mut().enumerate() {
-            *row = [V::splat(x[k]), V::splat(y[k]), V::splat(z[k]), V::splat(step.translation[k])];
-        }
-        Frame(rows)
-    }
-
-    /// The frame after a fixed motion.
-    #[inline(always)]
-    fn then(mut self, step: &Step) -> Self {
-        for row in &mut self.0 {
-            *row = turned(*row, step);
-        }
-        self
-    }
-
-    #[inline(always)]
-    fn column(&self, k: usize) -> Vectors<V> {
-        let [a, b, c] = &self.0;
-        Vectors([a[k], b[k], c[k]])
-    }
-
-    #[inline(always)]
-    fn origin(&self) -> Vectors<V> {
-        self.column(3)
-    }
-}
-
-/// A row of a frame after a fixed motion.
-#[inline(always)]
-fn turned<V: Vector>([x, y, z, origin]: [V; 4], step: &Step) -> [V; 4] {
-    let [a, b, c] = &step.columns;
-    let along = |v: &[f64; 3]| x.times_plus(V::splat(v[0]), y.times_plus(V::splat(v[1]), z * V::splat(v[2])));
-    let [p, q, r] = step.translation;
-    let origin = x.times_plus(V::splat(p), y.times_plus(V::splat(q), z.times_plus(V::splat(r), origin)));
-    [along(a), along(b), along(c), origin]
 }
 
 /// One vector of rows under way: part `part` of a block.

@@ -1,18 +1,21 @@
 //! The hot path of a fit: several rows at a time, by vector instructions.
 mod dense;
+mod frame;
 mod gram;
 mod kernel;
 mod plain;
 mod plan;
 mod simd;
 mod sincos;
+mod totals;
 mod turn;
 mod vector;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub(crate) use dense::Factor;
-pub(crate) use kernel::{Arm, Totals, product};
+pub(crate) use kernel::Arm;
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
 pub use simd::{Level, levels};
 pub(crate) use simd::{cholesky, cosines_and_sines, lower_solve, solve, sum_gradient, sum_products};
+pub(crate) use totals::{Totals, product};

@@ -1,11 +1,12 @@
 //! Run-time dispatch: the same source compiled for each set of vector instructions. The only unsafe code of the library.
 
 use super::dense::{self, Factor};
-use super::kernel::{self, Arm, Totals};
+use super::kernel::{self, Arm};
 #[cfg(target_arch = "x86_64")]
 use super::plain::Pair;
 use super::plain::Two;
 use super::sincos;
+use super::totals::Totals;
 use super::vector::Wide;
 #[cfg(target_arch = "x86_64")]
 use super::x86::{Eight, Four};
