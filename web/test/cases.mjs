@@ -9,6 +9,8 @@ export const ROOT = fileURLToPath(new URL("../..", import.meta.url));
 const PROGRAM = process.env.POECAL_PROGRAM ?? join(ROOT, "target/release/poecal");
 const ELBOW = join(ROOT, "examples/elbow");
 
+if (!existsSync(PROGRAM)) throw new Error(`found no program at ${PROGRAM}; build it (cargo build --release -p poecal-cli), or name it: POECAL_PROGRAM=/path`);
+
 export const folder = mkdtempSync(join(tmpdir(), "poecal-report-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 
