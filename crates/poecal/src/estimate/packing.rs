@@ -98,16 +98,21 @@ impl Packed {
 /// let sample = poecal::estimate::sample_rows(&rows, 60);
 /// assert_eq!(sample.len(), 60);
 /// assert!((0..3).all(|target| sample.iter().any(|row| row % 3 == target)));
+/// let most = poecal::estimate::sample_rows(&rows, 800);
+/// assert!(most.len() == 800 && most.windows(2).all(|pair| pair[0] < pair[1]));
 /// ```
 #[must_use]
 pub fn sample_rows(rows: &[u32], count: usize) -> Vec<u32> {
     if rows.len() <= count {
         return rows.to_vec();
     }
-    // One of each of `count` equal parts, at a place in it that the golden ratio spreads.
+    // One of each of `count` parts as equal as whole rows allow, at a place in it that the golden ratio spreads; so no row comes twice.
     let golden = 0.618_033_988_749_894_9;
-    let part = rows.len() as f64 / count as f64;
     (0..count)
-        .filter_map(|k| rows.get(((k as f64 + (k as f64 * golden).fract()) * part) as usize).copied())
+        .filter_map(|k| {
+            let (first, next) = (k * rows.len() / count, (k + 1) * rows.len() / count);
+            let place = (k as f64 * golden).fract() * (next - first) as f64;
+            rows.get(first + place as usize).copied()
+        })
         .collect()
 }
