@@ -100,7 +100,7 @@ pub fn fit_screws(
     let free = free_parameters(&start, data, rows, options.formulation);
     let problem = |rows: Vec<u32>| Problem::new(data, packed, rows, free.clone(), noise, length_m);
     let mut start = start;
-    let mut before = None;
+    let (mut solver, mut before) = (options.solver, None);
     let unknowns: usize = free.iter().map(|parameter| parameter.model().columns().len()).sum();
     let enough = SAMPLE.max(SAMPLE_PER_UNKNOWN * unknowns).max(SAMPLE_PER_ROOT * rows.len().isqrt());
     if rows.len() > MANY * enough {
@@ -110,8 +110,10 @@ pub fn fit_screws(
         let (estimate, _, summary) = minimize(&problem(sample), start, &near);
         start = estimate;
         before = Some(summary);
+        // A sample's optimum is close to that of all rows: no belief in the start is needed to get there.
+        solver.trust *= 1e3;
     }
-    let (estimate, normal, mut summary) = minimize(&problem(rows.to_vec()), start, &options.solver);
+    let (estimate, normal, mut summary) = minimize(&problem(rows.to_vec()), start, &solver);
     if let Some(before) = before {
         summary.iterations += before.iterations;
         summary.trace.splice(0..0, before.trace);

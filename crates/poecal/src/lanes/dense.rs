@@ -11,60 +11,83 @@ pub(crate) struct Factor {
     inverses: Vec<f64>,
 }
 
+impl Factor {
+    /// The least that remained of a diagonal element when those before it were eliminated.
+    pub(crate) fn smallest_pivot(&self) -> f64 {
+        self.inverses.iter().fold(0.0, |most: f64, &inverse| most.max(inverse)).powi(-2)
+    }
+}
+
+/// Rows that are eliminated together.
+const PANEL: usize = 4;
+
 /// Factor of the matrix given by its upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that is not positive
 /// definite.
 #[inline(always)]
 pub(super) fn cholesky<V: Vector>(upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
     let stride = n.div_ceil(WIDTH);
-    let mut factor = Factor { n, rows: vec![Wide::ZERO; n * stride], inverses: Vec::with_capacity(n) };
-    for (i, source) in upper.chunks_exact(n.max(1)).enumerate() {
-        let (above, rest) = factor.rows.split_at_mut(i * stride);
-        let (first, row) = (i / WIDTH, &mut rest[..stride]);
-        for (wide, source) in row.iter_mut().zip(source.chunks(WIDTH)).skip(first) {
-            wide.0[..source.len()].copy_from_slice(source);
+    let mut rows = vec![Wide::ZERO; n.next_multiple_of(PANEL) * stride];
+    let mut inverses = Vec::with_capacity(n);
+    for i in (0..n).step_by(PANEL) {
+        let (above, rest) = rows.split_at_mut(i * stride);
+        let panel = &mut rest[..PANEL * stride];
+        let block = i / WIDTH;
+        for (row, source) in panel.chunks_exact_mut(stride).zip(upper[i * n..].chunks_exact(n)) {
+            for (wide, source) in row.iter_mut().zip(source.chunks(WIDTH)).skip(block) {
+                wide.0[..source.len()].copy_from_slice(source);
+            }
         }
-        // Four rows above at a time: each number of this row is loaded and stored a quarter as often.
-        let mut fours = above.chunks_exact(4 * stride);
-        for four in &mut fours {
-            let (a, b) = four.split_at(2 * stride);
-            let ((a, b), (c, d)) = (a.split_at(stride), b.split_at(stride));
-            let lane = i % WIDTH;
-            let factors = [a[first].0[lane], b[first].0[lane], c[first].0[lane], d[first].0[lane]];
-            subtract::<V, 4>(
-                &mut row[first..],
-                [&a[first..], &b[first..], &c[first..], &d[first..]],
-                factors,
-            );
-        }
-        for other in fours.remainder().chunks_exact(stride) {
-            subtract::<V, 1>(&mut row[first..], [&other[first..]], [other[first].0[i % WIDTH]]);
-        }
-        let pivot = row[first].0[i % WIDTH] + damping;
-        if pivot.is_nan() || pivot <= 0.0 {
-            return None;
-        }
-        let inverse = 1.0 / pivot.sqrt();
-        factor.inverses.push(inverse);
-        let inverse = V::splat(inverse);
-        for wide in &mut row[first..] {
-            for part in 0..WIDTH / V::LANES {
-                (V::load(wide, part) * inverse).store(wide, part);
+        subtract_all::<V>(panel, above, stride, i);
+        for k in 0..PANEL.min(n - i) {
+            let (done, later) = panel.split_at_mut((k + 1) * stride);
+            let row = &mut done[k * stride + block..];
+            let lane = i % WIDTH + k;
+            let pivot = row[0].0[lane] + damping;
+            if pivot.is_nan() || pivot <= 0.0 {
+                return None;
+            }
+            let inverse = 1.0 / pivot.sqrt();
+            inverses.push(inverse);
+            for wide in row.iter_mut() {
+                for part in 0..WIDTH / V::LANES {
+                    (V::load(wide, part) * V::splat(inverse)).store(wide, part);
+                }
+            }
+            for (other, later) in later.chunks_exact_mut(stride).enumerate() {
+                subtract::<V>(&mut later[block..], row, row[0].0[lane + 1 + other]);
             }
         }
     }
-    Some(factor)
+    Some(Factor { n, rows, inverses })
 }
 
-/// `row -= Σ factor · other`.
+/// Takes from the rows of a panel, the first of which is row `i`, what the finished rows above have in common with them.
 #[inline(always)]
-fn subtract<V: Vector, const N: usize>(row: &mut [Wide], others: [&[Wide]; N], factors: [f64; N]) {
-    for (at, wide) in row.iter_mut().enumerate() {
+fn subtract_all<V: Vector>(panel: &mut [Wide], above: &[Wide], stride: usize, i: usize) {
+    let (first, lane) = (i / WIDTH, i % WIDTH);
+    for block in first..stride {
         for part in 0..WIDTH / V::LANES {
-            let mut value = V::load(wide, part);
-            for (other, factor) in others.iter().zip(factors) {
-                value = V::load(&other[at], part).times_from(V::splat(factor), value);
+            let mut values: [V; PANEL] = std::array::from_fn(|k| V::load(&panel[k * stride + block], part));
+            for row in above.chunks_exact(stride) {
+                let other = V::load(&row[block], part);
+                for (value, &factor) in values.iter_mut().zip(&row[first].0[lane..lane + PANEL]) {
+                    *value = other.times_from(V::splat(factor), *value);
+                }
             }
-            value.store(wide, part);
+            for (k, value) in values.into_iter().enumerate() {
+                value.store(&mut panel[k * stride + block], part);
+            }
+        }
+    }
+}
+
+/// `row -= factor · other`.
+#[inline(always)]
+fn subtract<V: Vector>(row: &mut [Wide], other: &[Wide], factor: f64) {
+    let factor = V::splat(factor);
+    for (wide, other) in row.iter_mut().zip(other) {
+        for part in 0..WIDTH / V::LANES {
+            V::load(other, part).times_from(factor, V::load(wide, part)).store(wide, part);
         }
     }
 }
@@ -77,10 +100,10 @@ pub(super) fn lower_solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
     for (wide, x) in wide.iter_mut().zip(x.chunks(WIDTH)) {
         wide.0[..x.len()].copy_from_slice(x);
     }
-    for (i, row) in factor.rows.chunks_exact(stride.max(1)).enumerate() {
+    for (i, row) in factor.rows.chunks_exact(stride.max(1)).take(factor.n).enumerate() {
         let first = i / WIDTH;
         x[i] = wide[first].0[i % WIDTH] * factor.inverses[i];
-        subtract::<V, 1>(&mut wide[first..], [&row[first..]], [x[i]]);
+        subtract::<V>(&mut wide[first..], &row[first..], x[i]);
     }
 }
 
@@ -90,7 +113,7 @@ pub(super) fn solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
     lower_solve::<V>(factor, x);
     let stride = factor.n.div_ceil(WIDTH);
     let mut found = vec![Wide::ZERO; stride];
-    for (i, row) in factor.rows.chunks_exact(stride.max(1)).enumerate().rev() {
+    for (i, row) in factor.rows.chunks_exact(stride.max(1)).take(factor.n).enumerate().rev() {
         let (block, lane) = (i / WIDTH, i % WIDTH);
         let mut sum = V::splat(0.0);
         for (row, found) in row[block + 1..].iter().zip(&found[block + 1..]) {

@@ -43,6 +43,8 @@ struct Work {
     square: Wide,
     /// Blocks that wait at a time.
     waiting: usize,
+    /// Rows a block of what rotation adds.
+    turned_rows: usize,
 }
 
 impl Default for Work {
@@ -62,13 +64,16 @@ impl Work {
         turn_gradient: Vec::new(),
         square: Wide::ZERO,
         waiting: 1,
+        turned_rows: 0,
     };
 
     /// Makes room for a plan, with all sums at zero.
-    fn begin(&mut self, plan: &Plan, lanes: usize, full: bool) {
+    fn begin(&mut self, arm: &Arm<'_>, lanes: usize, full: bool) {
+        let plan = arm.plan;
         let columns = plan.columns().next_multiple_of(TILE);
         let turns = plan.turns.len().next_multiple_of(TILE);
-        let rows = plan.turned_rows();
+        let rows = plan.turned_rows(arm.nearly);
+        self.turned_rows = rows;
         let sums = |columns: usize| if full { sums_len(columns, lanes) } else { 0 };
         self.waiting =
             if full { (WAITING / (3 * columns).max(1)).clamp(BLOCKS_WAITING.0, BLOCKS_WAITING.1) } else { 1 };
@@ -105,6 +110,8 @@ pub(crate) struct Arm<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) steps: &'a [Step],
     pub(crate) end: &'a Step,
+    /// Whether the curvature of the logarithm may be left out of the products where that spares time (theory.md §6 (28a)).
+    pub(crate) nearly: bool,
 }
 
 /// Sums over all rows of `blocks`.
@@ -126,7 +133,7 @@ fn sum<V: Vector, const FULL: bool>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
     // A pass does not call another, so the room is free; if it were not, there would be another.
     let mut own = WORK.take();
     let work = &mut own;
-    work.begin(plan, V::LANES, FULL);
+    work.begin(arm, V::LANES, FULL);
     let len = plan.block_len();
     for blocks in blocks.chunks(len * work.waiting) {
         for (filled, block) in blocks.chunks_exact(len).enumerate() {
@@ -162,7 +169,7 @@ fn multiply<V: Vector>(plan: &Plan, work: &mut Work, filled: usize) {
     let columns = plan.columns().next_multiple_of(TILE);
     let stride = 3 * work.waiting;
     add_products::<V>(work.jacobian.as_flattened(), stride, 3 * filled, columns, &mut work.products);
-    let rows = plan.turned_rows();
+    let rows = work.turned_rows;
     if rows > 0 {
         let turns = plan.turns.len().next_multiple_of(TILE);
         let (stride, used) = (rows * work.waiting, rows * filled);
@@ -220,8 +227,9 @@ fn add_rows<V: Vector, const FULL: bool>(
     filled: usize,
     part: usize,
 ) {
-    let Arm { plan, steps, end } = *arm;
+    let Arm { plan, steps, end, .. } = *arm;
     let Work { jacobian, turned, axes, shift_gradient, turn_gradient, square, waiting, .. } = work;
+    let rows = work.turned_rows;
     let Some((noise, rest)) = block.split_first_chunk::<2>() else { return };
     let Some((position, rest)) = rest.split_first_chunk::<3>() else { return };
     let (measured, joints) = rest.split_at(if plan.framed { 9 } else { 0 });
@@ -254,8 +262,7 @@ fn add_rows<V: Vector, const FULL: bool>(
     batch.add_device::<V, FULL>(&target, &seen);
     batch.add_axes::<V, FULL>(&target, &seen);
     batch.add_place::<V, FULL>(&target, &seen);
-    if let (true, Some((turn, ratio))) = (FULL, turn) {
-        let rows = plan.turned_rows();
+    if let (true, true, Some((turn, ratio))) = (FULL, rows > 0, turn) {
         batch.add_turned(&turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
     }
 }

@@ -18,4 +18,4 @@ pub(crate) use kernel::Arm;
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
 pub use simd::{Level, levels};
 pub(crate) use simd::{cholesky, cosines_and_sines, lower_solve, solve, sum_gradient, sum_products};
-pub(crate) use totals::{Totals, product};
+pub(crate) use totals::{Tiles, Totals};

@@ -45,11 +45,17 @@ impl Plan {
         self.shifts + self.tilts
     }
 
-    /// Rows of what rotation adds to the products of turns.
-    pub(super) fn turned_rows(&self) -> usize {
+    /// Rows of what rotation adds to the products of turns; none if it is the curvature of the logarithm alone, and that may be left out.
+    pub(super) fn turned_rows(&self, nearly: bool) -> usize {
         match (self.framed, self.ratio) {
             (false, _) => 0,
-            (true, Some(_)) => 2,
+            (true, Some(_)) => {
+                if nearly {
+                    0
+                } else {
+                    2
+                }
+            }
             (true, None) => 3,
         }
     }
@@ -72,45 +78,59 @@ pub(crate) struct Rows {
 pub(crate) struct RowData<'a> {
     /// `(cos θ, sin θ)` or `(θ, 0)` of each joint.
     pub(crate) joints: &'a [(f64, f64)],
-    pub(crate) position: [f64; 3],
+    pub(crate) position: &'a [f64; 3],
     /// Columns of the measured orientation, and position over rotation noise.
-    pub(crate) orientation: Option<([[f64; 3]; 3], f64)>,
+    pub(crate) orientation: Option<(&'a [[f64; 3]; 3], f64)>,
     /// `1/σ` of a position component, or zero.
     pub(crate) weight: f64,
 }
 
 impl Rows {
+    pub(crate) const EMPTY: Rows = Rows { blocks: Vec::new() };
+
     /// Packs rows, whatever was packed before.
+    #[inline(always)]
     pub(crate) fn pack<'a>(&mut self, plan: &Plan, count: usize, row: impl Fn(usize) -> RowData<'a>) {
         let len = plan.block_len();
         let blocks = count.div_ceil(WIDTH);
         self.blocks.resize(blocks * len, Wide::ZERO);
         for (index, block) in self.blocks.chunks_exact_mut(len).enumerate() {
-            for lane in 0..WIDTH {
-                let at = index * WIDTH + lane;
-                let data = row(at.min(count - 1));
-                put(block, lane, &data, if at < count { data.weight } else { 0.0 });
+            let first = index * WIDTH;
+            // What fills up the last block is its last row, without weight.
+            let rows: [RowData<'a>; WIDTH] = std::array::from_fn(|lane| row((first + lane).min(count - 1)));
+            put(block, &rows);
+            if let Some(weights) = block.first_mut() {
+                weights.0[(count - first).min(WIDTH)..].fill(0.0);
             }
         }
     }
 }
 
+/// Writes a block, a number of all rows after the other.
 #[inline(always)]
-fn put(block: &mut [Wide], lane: usize, data: &RowData<'_>, weight: f64) {
+fn put(block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
     let Some((noise, rest)) = block.split_first_chunk_mut::<2>() else { return };
-    noise[0].0[lane] = weight;
-    noise[1].0[lane] = data.orientation.map_or(0.0, |(_, ratio)| ratio);
+    noise[0] = Wide(std::array::from_fn(|lane| rows[lane].weight));
+    noise[1] = Wide(std::array::from_fn(|lane| rows[lane].orientation.map_or(0.0, |(_, ratio)| ratio)));
     let Some((position, rest)) = rest.split_first_chunk_mut::<3>() else { return };
-    for (wide, number) in position.iter_mut().zip(data.position) {
-        wide.0[lane] = number;
+    for (k, wide) in position.iter_mut().enumerate() {
+        *wide = Wide(std::array::from_fn(|lane| rows[lane].position[k]));
     }
-    let columns = data.orientation.as_ref().map_or(&[] as &[f64], |(columns, _)| columns.as_flattened());
-    let (turned, joints) = rest.split_at_mut(columns.len());
-    for (wide, number) in turned.iter_mut().zip(columns) {
-        wide.0[lane] = *number;
+    let (turned, joints) = rest.split_at_mut(if rows[0].orientation.is_some() { 9 } else { 0 });
+    if let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g), Some(h)] =
+        rows.each_ref().map(|row| row.orientation.map(|(columns, _)| columns))
+    {
+        let columns = [a, b, c, d, e, f, g, h];
+        for (k, wide) in turned.iter_mut().enumerate() {
+            *wide = Wide(std::array::from_fn(|lane| columns[lane][k / 3][k % 3]));
+        }
     }
-    for (pair, &(cosine, sine)) in joints.as_chunks_mut::<2>().0.iter_mut().zip(data.joints) {
-        pair[0].0[lane] = cosine;
-        pair[1].0[lane] = sine;
+    let values = rows.each_ref().map(|row| row.joints);
+    for (joint, pair) in joints.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+        for (lane, values) in values.iter().enumerate() {
+            let (cosine, sine) = values[joint];
+            pair[0].0[lane] = cosine;
+            pair[1].0[lane] = sine;
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::gram::TILE;
 
 /// Sums of one pass over some rows.
 pub(crate) struct Totals {
-    /// Products of position columns, tile after tile: see [`product`].
+    /// Products of position columns, tile after tile: see [`Tiles`].
     pub(crate) products: Vec<f64>,
     /// What rotation rows add to products of turns, likewise.
     pub(crate) turned: Vec<f64>,
@@ -29,10 +29,21 @@ impl Totals {
     }
 }
 
-/// Where the product of two of `columns` columns is in a sum of tiles, for `a ≤ b`.
-pub(crate) fn product(columns: usize, a: usize, b: usize) -> usize {
-    let tiles = columns.div_ceil(TILE);
-    let (row, column) = (a / TILE, b / TILE);
-    let before = row * tiles - row * row.saturating_sub(1) / 2;
-    (before + column - row) * TILE * TILE + a % TILE * TILE + b % TILE
+/// Where the product of columns `a ≤ b` is in a sum of tiles: at `left[a] + right[b]`.
+pub(crate) struct Tiles {
+    pub(crate) left: Vec<usize>,
+    pub(crate) right: Vec<usize>,
+}
+
+impl Tiles {
+    /// For so many columns.
+    pub(crate) fn new(columns: usize) -> Self {
+        let tiles = columns.div_ceil(TILE);
+        // Before the tiles of row `r` stand those of the rows above, each one shorter; the first of its own is on the diagonal.
+        let before = |r: usize| r * tiles - r * (r + 1) / 2;
+        Tiles {
+            left: (0..columns).map(|a| before(a / TILE) * TILE * TILE + a % TILE * TILE).collect(),
+            right: (0..columns).map(|b| b / TILE * TILE * TILE + b % TILE).collect(),
+        }
+    }
 }

@@ -3,29 +3,48 @@
 //! It serves points and poses with minimal screws, targets and a device frame; everything else takes the general path in `mod.rs`,
 //! which is also what this one is tested against.
 
+use super::scatter::Scatter;
 use super::{Layout, Problem};
 use crate::estimate::{Estimate, Linkage};
-use crate::lanes::{self, Arm, JointPlan, Level, Plan, RowData, Rows, Step, Totals, product};
+use crate::lanes::{self, Arm, JointPlan, Level, Plan, RowData, Rows, Step, Totals};
 use crate::lie::Pose;
-use crate::measurement::Measurement;
+use crate::measurement::{Measurement, Noise, Observation, PoseMeasurement, SpatialPoseMeasurement};
 use crate::parameters::Parameter;
 use crate::solve::Normal;
 use rayon::prelude::*;
+use std::cell::RefCell;
 
 /// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
 const CHUNK: usize = 1024;
 /// Partial sums that exist at a time: memory beside the data stays bounded.
 const TOGETHER: usize = 64;
-/// Most rows that stay packed; more are packed anew in each pass, chunk by chunk, which costs a tenth of it.
-const KEPT: usize = 8192;
+/// Most rows that stay packed; more are packed anew in each pass, chunk by chunk, which costs a tenth of it, and less than memory that
+/// has not been used before.
+const KEPT: usize = 2048;
+
+thread_local! {
+    /// Room for a chunk that is not kept.
+    static ROWS: RefCell<Rows> = const { RefCell::new(Rows::EMPTY) };
+}
 
 /// Relative difference of two ratios that differ by rounding only.
 const SAME_RATIO: f64 = 1e-14;
 
+/// What is summed over rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sums {
+    /// Cost, gradient and `JᵀJ`.
+    All,
+    /// The same, `JᵀJ` but for the curvature of the logarithm where that spares time.
+    Nearly,
+    /// Cost and gradient.
+    Gradient,
+}
+
 /// Groups of rows that are computed alike.
 #[derive(Clone, Debug)]
 pub(super) struct Fast {
-    groups: Vec<Group>,
+    groups: Vec<(Group, Scatter)>,
     level: Level,
 }
 
@@ -45,6 +64,8 @@ impl Fast {
     /// Arranges the rows of a problem; `None` if the general path must serve it.
     pub(super) fn new(problem: &Problem<'_>, level: Level) -> Option<Self> {
         let mut groups: Vec<Group> = Vec::new();
+        let usual = Whitening::new(problem.noise);
+        let mut at = 0;
         for &row in &problem.rows {
             let observation = &problem.data.observations[row as usize];
             let framed = match problem.measurement(row as usize) {
@@ -52,11 +73,13 @@ impl Fast {
                 Measurement::Pose(_) => true,
                 Measurement::SpatialPose(_) => return None,
             };
-            let noise = observation.noise_or(problem.noise);
-            let ratio = framed.then(|| noise.position_m / noise.rotation_rad);
             let target = observation.target;
-            let known = groups.iter_mut().find(|group| group.target == target && group.plan.framed == framed);
-            if let Some(group) = known {
+            let is_alike = |group: &Group| group.target == target && group.plan.framed == framed;
+            if !groups.get(at).is_some_and(is_alike) {
+                at = groups.iter().position(is_alike).unwrap_or(groups.len());
+            }
+            let ratio = framed.then(|| usual.of(observation, problem.noise).ratio);
+            if let Some(group) = groups.get_mut(at) {
                 group.plan.ratio = group.plan.ratio.zip(ratio).and_then(|(known, ratio)| {
                     ((ratio - known).abs() <= SAME_RATIO * known).then_some(known)
                 });
@@ -68,6 +91,8 @@ impl Fast {
                 groups.push(group);
             }
         }
+        let scatters: Vec<Scatter> = groups.iter().map(|group| group.scatter(problem.layout.dim())).collect();
+        let groups = groups.into_iter().zip(scatters).collect();
         let mut fast = Fast { groups, level };
         fast.pack(problem);
         Some(fast)
@@ -78,7 +103,7 @@ impl Fast {
         if problem.rows.len() > KEPT {
             return;
         }
-        for Group { plan, rows, packed, .. } in &mut self.groups {
+        for (Group { plan, rows, packed, .. }, _) in &mut self.groups {
             packed.resize_with(rows.len().div_ceil(CHUNK), Rows::default);
             for (rows, packed) in rows.chunks(CHUNK).zip(packed) {
                 pack(problem, plan, rows, packed);
@@ -86,15 +111,23 @@ impl Fast {
         }
     }
 
-    /// Normal information of all rows; with `full` false its `JᵀJ` is left zero.
-    pub(super) fn normal(&self, problem: &Problem<'_>, state: &Estimate, full: bool) -> Normal {
+    /// Normal information of all rows; a `JᵀJ` that is not asked for is left empty.
+    pub(super) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Sums) -> Normal {
         let linkage = Linkage::new(state);
         let steps: Vec<Step> = linkage.steps().iter().map(step).collect();
-        let mut normal = Normal::new(problem.layout.dim());
-        for group in &self.groups {
+        let mut normal = match sums {
+            Sums::Gradient => Normal::new(0),
+            Sums::All | Sums::Nearly => Normal::new(problem.layout.dim()),
+        };
+        normal.gradient.resize(problem.layout.dim(), 0.0);
+        for (group, scatter) in &self.groups {
             let end = step(linkage.end(group.target));
-            let totals = group.sum(problem, self.level, &steps, &end, full);
-            group.put(&totals, &mut normal, full);
+            let arm = Arm { plan: &group.plan, steps: &steps, end: &end, nearly: sums == Sums::Nearly };
+            let totals = group.sum(problem, self.level, &arm, sums);
+            group.put(&totals, &mut normal);
+            if sums != Sums::Gradient {
+                scatter.add(&totals, &mut normal.gram);
+            }
         }
         normal
     }
@@ -187,16 +220,17 @@ impl Group {
     }
 
     /// Sums over all rows of the group, in the order of its chunks whatever the number of threads.
-    fn sum(&self, problem: &Problem<'_>, level: Level, steps: &[Step], end: &Step, full: bool) -> Totals {
-        let arm = Arm { plan: &self.plan, steps, end };
-        let sum = if full { lanes::sum_products } else { lanes::sum_gradient };
+    fn sum(&self, problem: &Problem<'_>, level: Level, arm: &Arm<'_>, sums: Sums) -> Totals {
+        let sum = if sums == Sums::Gradient { lanes::sum_gradient } else { lanes::sum_products };
         let chunk = |index: usize| match self.packed.get(index) {
-            Some(rows) => sum(level, &arm, &rows.blocks),
+            Some(rows) => sum(level, arm, &rows.blocks),
             None => {
                 let last = self.rows.len().min((index + 1) * CHUNK);
-                let mut packed = Rows::default();
+                let mut packed = ROWS.take();
                 pack(problem, &self.plan, &self.rows[index * CHUNK..last], &mut packed);
-                sum(level, &arm, &packed.blocks)
+                let totals = sum(level, arm, &packed.blocks);
+                ROWS.set(packed);
+                totals
             }
         };
         let mut total = chunk(0);
@@ -208,42 +242,18 @@ impl Group {
         total
     }
 
-    /// Puts sums of the group into the problem's normal information.
-    fn put(&self, totals: &Totals, normal: &mut Normal, full: bool) {
-        let n = normal.dim();
+    fn scatter(&self, n: usize) -> Scatter {
+        Scatter::new(&self.plan, &self.shift_places, &self.turn_places, n)
+    }
+
+    /// Puts cost and gradient of the group into the problem's normal information.
+    fn put(&self, totals: &Totals, normal: &mut Normal) {
         let places = self.shift_places.iter().chain(&self.turn_places);
         for (value, &place) in totals.gradient.iter().zip(places) {
             normal.gradient[place] += value;
         }
         normal.cost += totals.cost;
         normal.residuals += self.rows.len() * if self.plan.framed { 6 } else { 3 };
-        if !full {
-            return;
-        }
-        let mut add = |a: usize, b: usize, value: f64| normal.gram[a.min(b) * n + a.max(b)] += value;
-        let columns = self.plan.columns();
-        let seen = &self.turn_places[..self.plan.tilts];
-        let places: Vec<usize> = self.shift_places.iter().chain(seen).copied().collect();
-        for (a, &place) in places.iter().enumerate() {
-            for (b, &other) in places.iter().enumerate().skip(a) {
-                add(place, other, totals.products[product(columns, a, b)]);
-            }
-        }
-        if !self.plan.framed {
-            return;
-        }
-        let turns = self.turn_places.len();
-        let shared = self.plan.ratio.map(|ratio| (ratio / self.plan.length_m).powi(2));
-        for (a, (&place, &shift)) in self.turn_places.iter().zip(&self.plan.turns).enumerate() {
-            for (b, (&other, &other_shift)) in
-                self.turn_places.iter().zip(&self.plan.turns).enumerate().skip(a)
-            {
-                let own = totals.turned[product(turns, a, b)];
-                let (first, second) = (shift.min(other_shift), shift.max(other_shift));
-                let of_shifts = totals.products[product(columns, first, second)];
-                add(place, other, shared.map_or(own, |factor| factor * (of_shifts + own)));
-            }
-        }
     }
 }
 
@@ -262,27 +272,52 @@ fn plan_without_unknowns(problem: &Problem<'_>, framed: bool) -> Plan {
     }
 }
 
-/// Sets rows side by side.
-fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut Rows) {
-    packed.pack(plan, rows.len(), |at| row_data(problem, rows[at] as usize, plan.framed));
+/// What makes a row's residuals comparable.
+#[derive(Clone, Copy)]
+struct Whitening {
+    /// `1/σ` of a position component.
+    weight: f64,
+    /// Position over rotation noise.
+    ratio: f64,
 }
 
-fn row_data<'a>(problem: &'a Problem<'_>, row: usize, framed: bool) -> RowData<'a> {
-    let observation = &problem.data.observations[row];
-    let noise = observation.noise_or(problem.noise);
-    let root = problem.weights.and_then(|weights| weights.get(row)).map_or(1.0, |weight| weight.sqrt());
-    let (position, orientation) = match problem.measurement(row) {
-        Measurement::Point(point) => (point.position, None),
-        Measurement::Pose(seen) => (seen.pose.translation, Some(seen.pose.rotation)),
-        Measurement::SpatialPose(seen) => (seen.pose.translation, Some(seen.pose.rotation)),
-    };
-    let ratio = noise.position_m / noise.rotation_rad;
-    RowData {
-        joints: problem.packed.row(row),
-        position: position.into(),
-        orientation: orientation.filter(|_| framed).map(|rotation| (rotation.data.0, ratio)),
-        weight: root / noise.position_m,
+impl Whitening {
+    fn new(noise: Noise) -> Self {
+        Whitening { weight: 1.0 / noise.position_m, ratio: noise.position_m / noise.rotation_rad }
     }
+
+    /// That of a row, which may state its own noise; `self` is that of the `usual` noise.
+    #[inline(always)]
+    fn of(self, observation: &Observation, usual: Noise) -> Self {
+        match (observation.sigma_position_m, observation.sigma_rotation_rad) {
+            (None, None) => self,
+            _ => Whitening::new(observation.noise_or(usual)),
+        }
+    }
+}
+
+/// Sets rows side by side.
+fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut Rows) {
+    let usual = Whitening::new(problem.noise);
+    packed.pack(plan, rows.len(), |at| row_data(problem, usual, rows[at] as usize, plan.framed));
+}
+
+#[inline(always)]
+fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, framed: bool) -> RowData<'a> {
+    let observation = &problem.data.observations[row];
+    let Whitening { weight, ratio } = usual.of(observation, problem.noise);
+    let weight = match problem.weights.and_then(|weights| weights.get(row)) {
+        Some(own) => own.sqrt() * weight,
+        None => weight,
+    };
+    let (position, orientation) = match problem.measurement(row) {
+        Measurement::Point(point) => (&point.position, None),
+        Measurement::Pose(PoseMeasurement { pose })
+        | Measurement::SpatialPose(SpatialPoseMeasurement { pose }) => {
+            (&pose.translation, framed.then_some((&pose.rotation.data.0, ratio)))
+        }
+    };
+    RowData { joints: problem.packed.row(row), position: &position.data.0[0], orientation, weight }
 }
 
 fn step(pose: &Pose) -> Step {

@@ -3,6 +3,7 @@
 mod fast;
 mod layout;
 mod refit;
+mod scatter;
 
 pub use crate::lanes::{Level, levels};
 pub use layout::Layout;
@@ -13,7 +14,7 @@ use crate::lie::TargetTwist;
 use crate::measurement::{Dataset, Measurement, Noise};
 use crate::parameters::{Parameter, Wrench};
 use crate::solve::{LeastSquares, Normal};
-use fast::Fast;
+use fast::{Fast, Sums};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::mem::discriminant;
@@ -23,6 +24,8 @@ use std::sync::OnceLock;
 const CHUNK: usize = 1024;
 /// Partial sums that exist at a time: memory beside the data stays bounded.
 const GROUP: usize = 64;
+/// Rows of which the farthest measurement is looked for, at most.
+const SEEN: usize = 500;
 /// Rows whose Jacobian is held at a time.
 const BLOCK: usize = 16;
 
@@ -77,9 +80,10 @@ impl<'a> Problem<'a> {
         noise: Noise,
         length_m: f64,
     ) -> Self {
-        // A few roundings of the largest number in sight: the distance from the device.
+        // A few roundings of the largest number in sight, or about that: the distance from the device.
         let position = |&row: &u32| data.observations[row as usize].measurement.residual_model().position();
-        let farthest = rows.iter().map(|row| position(row).amax());
+        let some = rows.iter().step_by(rows.len().div_ceil(SEEN).max(1));
+        let farthest = some.map(|row| position(row).amax());
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
         Problem {
             data,
@@ -283,13 +287,20 @@ impl LeastSquares for Problem<'_> {
 
     fn normal(&self, state: &Estimate) -> Normal {
         match self.fast(state) {
-            Some(fast) => fast.normal(self, state, true),
+            Some(fast) => fast.normal(self, state, Sums::All),
+            None => self.normal_row_by_row(state),
+        }
+    }
+
+    fn nearly_normal(&self, state: &Estimate) -> Normal {
+        match self.fast(state) {
+            Some(fast) => fast.normal(self, state, Sums::Nearly),
             None => self.normal_row_by_row(state),
         }
     }
 
     fn gradient(&self, state: &Estimate) -> Option<Normal> {
-        self.fast(state).map(|fast| fast.normal(self, state, false))
+        self.fast(state).map(|fast| fast.normal(self, state, Sums::Gradient))
     }
 
     fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {

@@ -26,10 +26,26 @@ const NEAR: f64 = 5e-2;
 /// Steps with an old `JᵀJ` converge fast if each promises less than this share of what the one before promised.
 pub(super) const FAST: f64 = 1e-2;
 
+/// Share of the largest diagonal element which the smallest pivot must exceed for every direction to be firm: unknowns a thousand
+/// times less certain than others hang on what small steps change, as the tool does that lies on the last axis.
+const FIRM: f64 = 1e-6;
+
+/// Where steps converge fast, the next one promises about as small a share again; if that is below this times what would end the
+/// search, the step at hand is the last, and what it does is not computed but taken from the model.
+const SURE: f64 = 1e-2;
+
+/// Whether a step is sure to be the last, by what it promises, what the one before did, and what would end the search.
+pub(super) fn is_sure(promise: f64, before: f64, end: f64) -> bool {
+    let share = promise / before;
+    before.is_finite() && share < FAST && share * promise < SURE * end
+}
+
 /// Minimises from `start`; gives the state reached, its normal information and a summary.
 ///
-/// Residuals and gradient are those of the state reached. `JᵀJ` may be that of an earlier state close by, since the last steps do not
-/// need it anew: who needs it at the optimum asks for [`LeastSquares::normal`] there (theory.md §6, *Many rows*).
+/// Cost and gradient are those of the state reached, or what the quadratic model promises of a last step too small to be worth
+/// computing. `JᵀJ` may be that of an earlier state close by, since the last steps do not need it anew, and is
+/// [nearly](LeastSquares::nearly_normal) what it should be: who needs it at the optimum asks for [`LeastSquares::normal`] there
+/// (theory.md §6, *Many rows*).
 pub fn minimize<P: LeastSquares>(
     problem: &P,
     start: P::State,
@@ -53,6 +69,8 @@ struct Search<'a, P: LeastSquares> {
     is_old: bool,
     /// Upper triangle of what steps are solved with: `JᵀJ`, or the full Hessian where that is known and convex.
     hessian: Vec<f64>,
+    /// Its factor with the damping it was last factorised with; none where that failed, or since it changed.
+    factor: Option<(f64, Factor)>,
     /// Damping as a multiple of the mean squared residual.
     damping: f64,
     /// Factor of the next increase of the damping (Nielsen): doubles with every rejection in a row.
@@ -61,18 +79,21 @@ struct Search<'a, P: LeastSquares> {
     nonlinear: bool,
     /// What the step before promised.
     promised: f64,
+    /// Whether fast steps so far have led to where residuals are left that the model does not explain, and not on to nothing.
+    has_floor: bool,
     iterations: usize,
     trace: Vec<f64>,
 }
 
 impl<'a, P: LeastSquares> Search<'a, P> {
     fn new(problem: &'a P, state: P::State, options: Options) -> Self {
-        let normal = problem.normal(&state);
+        let normal = problem.nearly_normal(&state);
         Search {
             problem,
             options,
             state,
             hessian: normal.gram.clone(),
+            factor: None,
             trace: vec![normal.mean_square()],
             normal,
             is_old: false,
@@ -80,6 +101,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             increase: 2.0,
             nonlinear: false,
             promised: f64::INFINITY,
+            has_floor: true,
             iterations: 0,
         }
     }
@@ -89,7 +111,16 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             return Termination::NotFinite;
         }
         loop {
-            let trial = self.damped_step();
+            let mut trial = self.damped_step();
+            if self.is_old && trial.as_ref().is_none_or(|trial| trial.predicted > NEAR * self.normal.cost) {
+                // Residuals without noise: each step goes as far as `JᵀJ` is right.
+                self.has_floor = false;
+                self.renew_normal();
+                trial = self.damped_step();
+            }
+            if let Some(termination) = trial.as_ref().and_then(|trial| self.near(trial)) {
+                return termination;
+            }
             if !trial.as_ref().is_some_and(|trial| self.is_open(trial))
                 && let Some(termination) = self.converged()
             {
@@ -112,6 +143,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
 
     /// Takes the full Hessian where it is convex; far from the optimum it seldom is, and `JᵀJ` leads better there.
     fn renew_hessian(&mut self) {
+        self.factor = None;
         self.hessian.copy_from_slice(&self.normal.gram);
         if !(self.nonlinear && self.options.acceleration) {
             return;
@@ -127,8 +159,39 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     /// Replaces the `JᵀJ` of an earlier state.
     fn renew_normal(&mut self) {
         self.is_old = false;
-        self.normal = self.problem.normal(&self.state);
+        self.normal = self.problem.nearly_normal(&self.state);
         self.renew_hessian();
+    }
+
+    /// Judges a step with an old `JᵀJ`, which is undamped; takes it if it is sure to be the last.
+    fn near(&mut self, trial: &Trial) -> Option<Termination> {
+        if !self.is_old || trial.is_cut {
+            return None;
+        }
+        if let Some(termination) = self.is_last(&trial.step, trial.predicted) {
+            return Some(termination);
+        }
+        let end = self.options.decrement * self.normal.mean_square();
+        let share = trial.predicted / self.promised;
+        if !(share < FAST && share * trial.predicted < SURE * end)
+            || self.iterations >= self.options.iterations
+        {
+            return None;
+        }
+        self.iterations += 1;
+        self.state = self.problem.retract(&self.state, &trial.step);
+        self.normal.cost -= trial.predicted;
+        self.normal.gradient.fill(0.0);
+        self.trace.push(self.normal.mean_square());
+        Some(Termination::Optimum)
+    }
+
+    /// Whether an undamped step that promises `decrement` is not worth taking.
+    fn is_last(&self, step: &[f64], decrement: f64) -> Option<Termination> {
+        if norm(step) < self.options.step || self.normal.mean_square() < self.problem.rounding() {
+            return Some(Termination::StepVanished);
+        }
+        (decrement < self.options.decrement * self.normal.mean_square()).then_some(Termination::Optimum)
     }
 
     /// Whether a damped step already shows that the undamped one, which is longer and promises more, is not the last.
@@ -156,10 +219,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         } else {
             (quadratic(&self.hessian, &self.normal.gradient, &kept).abs(), kept)
         };
-        if norm(&step) < self.options.step || self.normal.mean_square() < self.problem.rounding() {
-            return Some(Termination::StepVanished);
-        }
-        (decrement < self.options.decrement * self.normal.mean_square()).then_some(Termination::Optimum)
+        self.is_last(&step, decrement)
     }
 
     /// One trial step; `false` when steps have become too small to matter without having helped.
@@ -178,7 +238,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         let state = self.problem.retract(&self.state, &trial.step);
         let old = self.gradient_only(&state, trial.predicted);
         let is_old = old.is_some();
-        let normal = old.unwrap_or_else(|| self.problem.normal(&state));
+        let normal = old.unwrap_or_else(|| self.problem.nearly_normal(&state));
         let gain = (self.normal.cost - normal.cost) / trial.predicted;
         if normal.cost.is_finite() && gain > 1e-3 {
             // With an old `JᵀJ` the model is not the problem's own, and says nothing of how curved that is.
@@ -206,25 +266,36 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             && self.damping.is_finite()
     }
 
-    /// Residuals and gradient at a new state beside the `JᵀJ` of the old one, where that will do for a further step: where the model
-    /// already fits but for a little, so that this step is short, and as long as such steps converge fast.
+    /// Residuals and gradient at a new state beside the `JᵀJ` of the old one, where that will do for a further step: where steps converge
+    /// so fast that `JᵀJ` can hardly have changed, or where the model already fits but for a little, so that this step is short.
     fn gradient_only(&self, state: &P::State, predicted: f64) -> Option<Normal> {
-        let is_near = predicted < NEAR * self.normal.cost;
-        let falls = !self.is_old || predicted < FAST * self.promised;
-        if self.nonlinear || !is_near || !falls {
+        let falls = self.has_floor && self.promised.is_finite() && predicted < FAST * self.promised;
+        let is_fast = falls && (self.is_old || self.is_firm());
+        let is_near = !self.is_old && predicted < NEAR * self.normal.cost;
+        if self.nonlinear || !(is_fast || is_near) {
             return None;
         }
         let mut normal = self.problem.gradient(state)?;
-        normal.gram.copy_from_slice(&self.normal.gram);
+        normal.gram.clone_from(&self.normal.gram);
         Some(normal)
     }
 
-    /// The damped step as it stands.
-    fn damped_step(&self) -> Option<Trial> {
-        let n = self.problem.dim();
-        let damping = (self.damping * self.normal.mean_square()).max(0.1 * ROUNDING * self.scale());
-        let factor = linalg::cholesky(&self.hessian, n, damping)?;
-        let velocity = linalg::cholesky_solve(&factor, &self.normal.gradient);
+    /// Whether no direction is so weak that `JᵀJ` along it would change with a small step.
+    fn is_firm(&self) -> bool {
+        self.factor.as_ref().is_some_and(|(_, factor)| factor.smallest_pivot() > FIRM * self.scale())
+    }
+
+    /// The damped step as it stands; with an old `JᵀJ`, which is close to the optimum, undamped but for rounding.
+    fn damped_step(&mut self) -> Option<Trial> {
+        let floor = ROUNDING * self.scale();
+        let damping =
+            if self.is_old { floor } else { (self.damping * self.normal.mean_square()).max(0.1 * floor) };
+        if self.factor.as_ref().is_none_or(|&(before, _)| before != damping) {
+            let factor = linalg::cholesky(&self.hessian, self.problem.dim(), damping);
+            self.factor = factor.map(|factor| (damping, factor));
+        }
+        let (_, factor) = self.factor.as_ref()?;
+        let velocity = linalg::cholesky_solve(factor, &self.normal.gradient);
         let kept = kept(self.problem, &velocity);
         let is_cut = kept != velocity;
         let damped = damping * dot(&velocity, &velocity);
@@ -233,7 +304,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         } else {
             promise(1.0, dot(&velocity, &self.normal.gradient), damped)
         };
-        Some(Trial { step: velocity, predicted, shortened: false, factor, damping, is_cut })
+        Some(Trial { step: velocity, predicted, shortened: false, damping, is_cut })
     }
 
     /// The damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature, with t below one
@@ -242,9 +313,10 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         if !(self.options.acceleration && self.nonlinear) || trial.is_cut {
             return trial;
         }
+        let Some((_, factor)) = &self.factor else { return trial };
         let velocity = &trial.step;
         let second = self.problem.second_order(&self.state, velocity);
-        let acceleration = linalg::cholesky_solve(&trial.factor, &second);
+        let acceleration = linalg::cholesky_solve(factor, &second);
         let t = (LARGEST_ACCELERATION * norm(velocity) / norm(&acceleration)).min(1.0);
         let step = velocity.iter().zip(&acceleration).map(|(v, a)| t * v + 0.5 * t * t * a).collect();
         let predicted =
@@ -284,8 +356,6 @@ struct Trial {
     step: Vec<f64>,
     predicted: f64,
     shortened: bool,
-    /// Of the damped Hessian.
-    factor: Factor,
     damping: f64,
     /// Whether the retraction drops something of the step.
     is_cut: bool,

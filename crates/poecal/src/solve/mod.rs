@@ -24,7 +24,12 @@ pub trait LeastSquares {
     /// Residuals and their derivatives, as normal information.
     fn normal(&self, state: &Self::State) -> Normal;
 
-    /// The same without `JᵀJ`, which is left zero: for steps with an older one. `None` where that would save nothing.
+    /// The same with a `JᵀJ` that may differ by a share that is quadratic in the residuals, where that spares time: for steps.
+    fn nearly_normal(&self, state: &Self::State) -> Normal {
+        self.normal(state)
+    }
+
+    /// The same without `JᵀJ`, which is left empty: for steps with an older one. `None` where that would save nothing.
     fn gradient(&self, _state: &Self::State) -> Option<Normal> {
         None
     }

@@ -1,6 +1,6 @@
 //! Minimisation close to a known optimum, with its factorised `JᵀJ`.
 
-use super::levenberg_marquardt::{FAST, ROUNDING, minimize};
+use super::levenberg_marquardt::{FAST, ROUNDING, is_sure, minimize};
 use super::{LeastSquares, Normal, Options, Summary, Termination};
 use crate::linalg::{self, Factor};
 
@@ -56,12 +56,20 @@ pub fn minimize_near<P: LeastSquares>(
         let promise = 0.5 * linalg::dot(&step, &normal.gradient);
         let is_short = linalg::dot(&step, &step).sqrt() < options.step;
         if is_short || promise < options.decrement * normal.mean_square() {
-            normal.gram.copy_from_slice(&near.normal.gram);
+            normal.gram.clone_from(&near.normal.gram);
             let termination = if is_short { Termination::StepVanished } else { Termination::Optimum };
             let summary = Summary { iterations: trace.len() - 1, termination, trace };
             return (state, normal, summary);
         }
         let next = problem.retract(&state, &step);
+        if is_sure(promise, promised, options.decrement * normal.mean_square()) {
+            normal.gram.clone_from(&near.normal.gram);
+            normal.cost -= promise;
+            normal.gradient.fill(0.0);
+            trace.push(normal.mean_square());
+            let summary = Summary { iterations: trace.len() - 1, termination: Termination::Optimum, trace };
+            return (next, normal, summary);
+        }
         let after =
             problem.gradient(&next).filter(|after| after.cost < normal.cost && promise < FAST * promised);
         let Some(after) = after else { break };
