@@ -92,14 +92,20 @@ def poecal_peer(poecal: Path) -> Peer:
     return Peer("poecal", ("pose", "point"), calibrate)
 
 
-def poecal_monte_carlo(poecal: Path) -> tuple[list[Peer], str | None]:
-    """The program `monte_carlo` beside poecal, which prints what the peers print."""
-    program = poecal.parent / "monte_carlo"
-    if not program.is_file():
-        return [], f"poecal, Monte Carlo: found no {program}"
+def poecal_monte_carlo() -> tuple[list[Peer], str | None]:
+    """The benchmark `monte_carlo` of the library, which prints what the peers print."""
+    command = ["cargo", "bench", "-p", "poecal", "--bench", "monte_carlo", "--no-run", "--message-format", "json"]
+    try:
+        built = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    except OSError:
+        return [], "poecal, Monte Carlo: found no cargo, which builds it"
+    artifacts = [json.loads(line) for line in built.stdout.splitlines() if line.startswith("{")]
+    programs = [one["executable"] for one in artifacts if one.get("executable") and one["target"]["name"] == "monte_carlo"]
+    if not programs:
+        return [], f"poecal, Monte Carlo: cannot be built: {built.stderr.strip().splitlines()[-1]}"
 
     def repeat(problem: Problem, folder: Path) -> dict:
-        return printed([program, problem.model, folder / "exact.csv", folder / "held_out.csv", problem.fits], problem)
+        return printed([programs[0], problem.model, folder / "exact.csv", folder / "held_out.csv", problem.fits], problem)
 
     return [Peer("poecal", ("monte_carlo",), repeat)], None
 

@@ -54,16 +54,17 @@ pub(crate) fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor> 
     lanes::cholesky(Level::best(), upper, n, damping)
 }
 
-/// Solves `L x = b` in place, with `L Lᵀ` the matrix that was factorised.
-pub(crate) fn lower_solve(factor: &Factor, x: &mut [f64]) {
-    lanes::lower_solve(Level::best(), factor, x);
-}
-
 /// Solves `L Lᵀ x = b`.
 pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
     lanes::solve(Level::best(), factor, &mut x);
     x
+}
+
+/// `J N⁻¹ Jᵀ` (row-major) of a Jacobian of at most eight rows, with N the matrix that was factorised.
+pub(crate) fn hat(factor: &Factor, jacobian: &[f64], rows: usize) -> Vec<f64> {
+    let hat = lanes::hat(Level::best(), factor, jacobian, rows);
+    hat.iter().take(rows).flat_map(|row| row.iter().take(rows).copied()).collect()
 }
 
 /// `aᵀb`.

@@ -69,17 +69,7 @@ fn row_influence(
     weight: f64,
 ) -> Influence {
     let dim = residual.len();
-    let n = jacobian.len() / dim.max(1);
-    let mut hat = vec![0.0; dim * dim];
-    if let Some(factor) = factor {
-        let mut half = jacobian.to_vec();
-        half.chunks_exact_mut(n.max(1)).for_each(|row| linalg::lower_solve(factor, row));
-        for (i, a) in half.chunks_exact(n.max(1)).enumerate() {
-            for (j, b) in half.chunks_exact(n.max(1)).enumerate() {
-                hat[i * dim + j] = a.iter().zip(b).map(|(a, b)| a * b).sum();
-            }
-        }
-    }
+    let hat = factor.map_or_else(|| vec![0.0; dim * dim], |factor| linalg::hat(factor, jacobian, dim));
     let leverage = (0..dim).map(|i| hat[i * dim + i]).sum::<f64>() / dim.max(1) as f64;
     let solved = |x: Vec<f64>, share: f64, diagonal: f64| {
         let matrix: Vec<f64> = hat.iter().map(|h| share * h).collect();

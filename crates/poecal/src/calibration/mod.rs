@@ -24,6 +24,7 @@ pub use noise::{NoiseSource, estimate_noise};
 pub use options::{CalibrationOptions, DeviceFrameKnowledge};
 pub use repeatability::{RepeatedPose, repeatability};
 pub use result::{CalibratedTarget, Calibration, Models, SolverReport};
+pub(crate) use robust::RowInfluence;
 pub use robust::{Loss, Robust, Robustness, RowJudgement, row_influence};
 pub use split::split_rows;
 pub(crate) use trust::inside;

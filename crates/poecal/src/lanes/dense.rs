@@ -94,7 +94,7 @@ fn subtract<V: Vector>(row: &mut [Wide], other: &[Wide], factor: f64) {
 
 /// Solves `Rᵀ x = b` in place.
 #[inline(always)]
-pub(super) fn lower_solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
+fn lower_solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
     let stride = factor.n.div_ceil(WIDTH);
     let mut wide = vec![Wide::ZERO; stride];
     for (wide, x) in wide.iter_mut().zip(x.chunks(WIDTH)) {
@@ -126,4 +126,35 @@ pub(super) fn solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
         x[i] = (x[i] - (sum.sum() + own)) * factor.inverses[i];
         found[block].0[lane] = x[i];
     }
+}
+
+/// `J N⁻¹ Jᵀ` of a Jacobian (row-major) of at most [`WIDTH`] rows, which stand side by side in the lanes.
+#[inline(always)]
+pub(super) fn hat<V: Vector>(factor: &Factor, jacobian: &[f64], rows: usize) -> [[f64; WIDTH]; WIDTH] {
+    let n = factor.n;
+    let mut columns = vec![Wide::ZERO; n];
+    for (lane, row) in jacobian.chunks_exact(n.max(1)).take(rows.min(WIDTH)).enumerate() {
+        columns.iter_mut().zip(row).for_each(|(wide, &value)| wide.0[lane] = value);
+    }
+    let mut hat = [Wide::ZERO; WIDTH];
+    let stride = n.div_ceil(WIDTH);
+    for (i, row) in factor.rows.chunks_exact(stride.max(1)).take(n).enumerate() {
+        let (done, later) = columns.split_at_mut(i + 1);
+        let own = &mut done[i];
+        for part in 0..WIDTH / V::LANES {
+            (V::load(own, part) * V::splat(factor.inverses[i])).store(own, part);
+        }
+        for (j, wide) in (i + 1..).zip(later) {
+            let value = row[j / WIDTH].0[j % WIDTH];
+            for part in 0..WIDTH / V::LANES {
+                V::load(own, part).times_from(V::splat(value), V::load(wide, part)).store(wide, part);
+            }
+        }
+        for (sum, &value) in hat.iter_mut().zip(&own.0[..rows.min(WIDTH)]) {
+            for part in 0..WIDTH / V::LANES {
+                V::load(own, part).times_plus(V::splat(value), V::load(sum, part)).store(sum, part);
+            }
+        }
+    }
+    hat.map(|wide| wide.0)
 }

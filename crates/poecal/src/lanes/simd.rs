@@ -7,7 +7,7 @@ use super::plain::Pair;
 use super::plain::Two;
 use super::sincos;
 use super::totals::Totals;
-use super::vector::Wide;
+use super::vector::{WIDTH, Wide};
 #[cfg(target_arch = "x86_64")]
 use super::x86::{Eight, Four};
 
@@ -120,10 +120,10 @@ dispatch!(
     dense::cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor>
 );
 dispatch!(
-    /// Solves `Rᵀ x = b` in place.
-    dense::lower_solve(factor: &Factor, x: &mut [f64])
-);
-dispatch!(
     /// Solves `RᵀR x = b` in place.
     dense::solve(factor: &Factor, x: &mut [f64])
+);
+dispatch!(
+    /// `J N⁻¹ Jᵀ` of a Jacobian (row-major) of at most eight rows.
+    dense::hat(factor: &Factor, jacobian: &[f64], rows: usize) -> [[f64; WIDTH]; WIDTH]
 );

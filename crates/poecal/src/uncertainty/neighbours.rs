@@ -17,15 +17,22 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     let spans = view.spans(view.rows);
     let target = |row: u32| view.data.observations[row as usize].target;
     let step = pool.len().div_ceil(PROBES).max(1);
+    let scaled: Vec<f64> = pool.iter().flat_map(|&row| scaled(view, &spans, row)).collect();
+    let joints = scaled.len() / pool.len().max(1);
+    let values = |at: usize| &scaled[at * joints..(at + 1) * joints];
     let (mut position, mut rotation) = (Shared::default(), Shared::default());
     for (a, &probe) in pool.iter().enumerate().step_by(step) {
-        let others = pool.iter().enumerate().filter(|&(b, &row)| b != a && target(row) == target(probe));
-        let distance = |row: u32| distance(view, &spans, probe, row);
-        let Some((b, _)) =
-            others.min_by(|x, y| distance(*x.1).total_cmp(&distance(*y.1)).then(x.0.cmp(&y.0)))
-        else {
-            continue;
-        };
+        let mut nearest: Option<(usize, f64)> = None;
+        for (b, &row) in pool.iter().enumerate() {
+            if b == a || target(row) != target(probe) {
+                continue;
+            }
+            let distance = values(a).iter().zip(values(b)).map(|(a, b)| (a - b).powi(2)).sum();
+            if nearest.is_none_or(|(_, least)| distance < least) {
+                nearest = Some((b, distance));
+            }
+        }
+        let Some((b, _)) = nearest else { continue };
         position.add(&errors[a].position_m, &errors[b].position_m);
         if let (Some(a), Some(b)) = (&errors[a].rotation_rad, &errors[b].rotation_rad) {
             rotation.add(a, b);
@@ -34,10 +41,10 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     (position.is_significant(), rotation.is_significant())
 }
 
-/// Squared distance of two configurations, each joint against how far it moves.
-fn distance(view: &View<'_>, spans: &[f64], a: u32, b: u32) -> f64 {
-    let each = view.values(a).iter().zip(view.values(b)).zip(spans).filter(|(_, span)| **span > 0.0);
-    each.map(|((a, b), span)| ((a - b) / span).powi(2)).sum()
+/// The joint values of a row, each against how far it moves; of joints that do not move, nothing.
+fn scaled(view: &View<'_>, spans: &[f64], row: u32) -> impl Iterator<Item = f64> {
+    let each = view.values(row).iter().zip(spans).filter(|(_, span)| **span > 0.0);
+    each.map(|(value, span)| value / span)
 }
 
 /// Products of neighbours' residuals.

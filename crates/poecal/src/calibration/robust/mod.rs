@@ -7,6 +7,7 @@ mod rows;
 mod scale;
 
 pub use loss::{Loss, Robust};
+pub(crate) use rows::RowInfluence;
 pub(super) use rows::registrable;
 pub use rows::{Robustness, RowJudgement, row_influence};
 

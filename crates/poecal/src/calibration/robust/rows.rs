@@ -1,5 +1,7 @@
 //! What each row means to the fit, and which rows are suspected (theory.md §6 (34d) to (34f)).
 
+use std::borrow::Cow;
+
 use super::{Loss, Parts, Scale, chi_square, parts};
 use crate::analysis::{Influence, influence};
 use crate::calibration::fit::{self, Fitted, Task};
@@ -8,7 +10,7 @@ use crate::estimate::Packed;
 use crate::measurement::{Dataset, PoseResidual};
 use crate::parameters::Formulation;
 use crate::problem::Problem;
-use crate::solve::LeastSquares;
+use crate::solve::{LeastSquares, Normal};
 
 /// Probability that clean, normal data show a row beyond the bound of normal noise.
 const FAMILY: f64 = 1e-3;
@@ -224,26 +226,58 @@ pub fn row_influence(calibration: &Calibration, data: &Dataset, rows: &[u32]) ->
     if rows.is_empty() {
         return Vec::new();
     }
-    let converted = (calibration.pose_residual != PoseResidual::Tool)
-        .then(|| data.with_residual(calibration.pose_residual));
-    let data = converted.as_ref().unwrap_or(data);
-    let nominal = &calibration.nominal;
-    let packed = Packed::new(nominal, data.all_readings(), data.reading_names().len());
-    let estimate = &calibration.models.calibrated;
-    let fitted = &calibration.fit_rows;
-    let judged = &calibration.robustness;
-    let problem = |rows: &[u32]| {
-        let free = fit::free_parameters(estimate, data, fitted, Formulation::Adjoint);
-        let length_m = radian_m(nominal, &packed);
-        Problem::new(data, &packed, rows.to_vec(), free, calibration.noise, length_m)
-    };
-    let weights: Vec<f64> = judged.rows.iter().map(|row| row.weight).collect();
-    let normal = problem(fitted).with_weights(&weights).normal(estimate);
-    let counted: Vec<f64> =
-        rows.iter().map(|row| fitted.binary_search(row).map_or(0.0, |_| weights[*row as usize])).collect();
-    influence(&problem(rows), estimate, &normal, rows, &counted, |row, component| {
-        component_scale(data, judged.scale, row, component)
-    })
+    RowInfluence::new(calibration, data).of(rows)
+}
+
+/// [`row_influence`] for some rows after the other.
+pub(crate) struct RowInfluence<'a> {
+    calibration: &'a Calibration,
+    data: Cow<'a, Dataset>,
+    packed: Packed,
+    weights: Vec<f64>,
+    /// Of the fitted rows; none if there is no row.
+    normal: Option<Normal>,
+}
+
+impl<'a> RowInfluence<'a> {
+    /// Prepares a finished calibration.
+    pub(crate) fn new(calibration: &'a Calibration, data: &'a Dataset) -> Self {
+        let data = match calibration.pose_residual {
+            PoseResidual::Tool => Cow::Borrowed(data),
+            other => Cow::Owned(data.with_residual(other)),
+        };
+        let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
+        let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
+        let mut made = RowInfluence { calibration, data, packed, weights, normal: None };
+        if !made.data.is_empty() {
+            let problem = made.problem(&calibration.fit_rows).with_weights(&made.weights);
+            made.normal = Some(problem.normal(&calibration.models.calibrated));
+        }
+        made
+    }
+
+    /// The joint values of the data.
+    pub(crate) fn packed(&self) -> &Packed {
+        &self.packed
+    }
+
+    fn problem(&self, rows: &[u32]) -> Problem<'_> {
+        let Calibration { nominal, fit_rows, noise, models, .. } = self.calibration;
+        let free = fit::free_parameters(&models.calibrated, &self.data, fit_rows, Formulation::Adjoint);
+        let length_m = radian_m(nominal, &self.packed);
+        Problem::new(&self.data, &self.packed, rows.to_vec(), free, *noise, length_m)
+    }
+
+    /// Of these rows.
+    pub(crate) fn of(&self, rows: &[u32]) -> Vec<Influence> {
+        let (Some(normal), false) = (&self.normal, rows.is_empty()) else { return Vec::new() };
+        let Calibration { fit_rows, models, robustness, .. } = self.calibration;
+        let weight = |row: &u32| fit_rows.binary_search(row).map_or(0.0, |_| self.weights[*row as usize]);
+        let counted: Vec<f64> = rows.iter().map(weight).collect();
+        influence(&self.problem(rows), &models.calibrated, normal, rows, &counted, |row, component| {
+            component_scale(&self.data, robustness.scale, row, component)
+        })
+    }
 }
 
 /// The rows by which devices and targets are registered for the table: without those suspected, unless that would leave too few.

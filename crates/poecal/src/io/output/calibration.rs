@@ -66,7 +66,7 @@ pub fn write(
     let json = results.file.to_text()?;
     let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, &calibration.robot)];
     files.extend(robot_files("calibrated", model, &robot, &mut notes)?);
-    files.push(NewFile::new("residuals.csv", results.residuals.text()));
+    files.push(NewFile::of_residuals("residuals.csv", results.residuals));
     files.extend(results.report.map(|text| NewFile::new(REPORT, text)));
     write_files(folder, &files, &OWN_NAMES, notes)
 }

@@ -10,10 +10,13 @@ pub use reproduction::write_reproduction;
 pub use simulation::{Session, write_simulation};
 pub use staging::{check_file, check_folder, write_file};
 
+use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::model::{Model, ModelSource};
 use super::proof::Difference;
+use super::residuals::Residuals;
 use super::robot_toml;
 use super::urdf::{self, ChainSelection};
 use crate::error::{Error, ErrorKind, Result};
@@ -44,21 +47,39 @@ pub struct Written {
     pub notes: Vec<String>,
 }
 
+/// What a file will hold.
+enum Content {
+    Text(String),
+    /// Written row by row: there may be many.
+    Residuals(Residuals),
+}
+
 /// A file to be written.
 struct NewFile<'a> {
     name: String,
-    text: String,
+    content: Content,
     /// The robot that the file is a model of, and the link that is its tip there.
     model_of: Option<(&'a Robot, String)>,
 }
 
 impl<'a> NewFile<'a> {
     fn new(name: &str, text: String) -> Self {
-        NewFile { name: name.to_owned(), text, model_of: None }
+        NewFile { name: name.to_owned(), content: Content::Text(text), model_of: None }
+    }
+
+    fn of_residuals(name: &str, residuals: Residuals) -> Self {
+        NewFile { name: name.to_owned(), content: Content::Residuals(residuals), model_of: None }
     }
 
     fn of_robot(name: String, text: String, robot: &'a Robot) -> Self {
-        NewFile { name, text, model_of: Some((robot, robot.tip_name.clone())) }
+        NewFile { name, content: Content::Text(text), model_of: Some((robot, robot.tip_name.clone())) }
+    }
+
+    fn write_to(&self, out: &mut File) -> std::io::Result<()> {
+        match &self.content {
+            Content::Text(text) => out.write_all(text.as_bytes()),
+            Content::Residuals(residuals) => residuals.write_to(out),
+        }
     }
 
     /// Compares the model, read back, with its robot.
@@ -99,7 +120,8 @@ fn robot_files<'a>(
         ModelSource::Urdf(document) => {
             let patched = document.patched(robot)?;
             notes.extend(patched.notes);
-            Ok(vec![NewFile { name: urdf, text: patched.text, model_of: Some((robot, patched.tip_link)) }])
+            let model_of = Some((robot, patched.tip_link));
+            Ok(vec![NewFile { name: urdf, content: Content::Text(patched.text), model_of }])
         }
         ModelSource::Toml | ModelSource::Calibration(_) => {
             let toml = NewFile::of_robot(format!("{stem}.toml"), robot_toml::write(robot), robot);
@@ -115,7 +137,7 @@ fn robot_files<'a>(
 fn write_files(folder: &Path, files: &[NewFile], own_names: &[&str], notes: Vec<String>) -> Result<Written> {
     let staging = Staging::new(folder)?;
     for file in files {
-        staging.write(&file.name, &file.text)?;
+        staging.write(&file.name, |out| file.write_to(out))?;
     }
     let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
     for difference in files.iter().map(|file| file.prove(staging.folder(), folder)) {

@@ -1,6 +1,6 @@
 //! Files written whole or not at all: beside their place first, then moved.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::ErrorKind as ErrorKindIo;
 use std::path::{Path, PathBuf};
 
@@ -81,9 +81,14 @@ impl Staging {
         &self.folder
     }
 
-    pub(super) fn write(&self, name: &str, text: &str) -> Result<()> {
-        let path = self.folder.join(name);
-        fs::write(&path, text).map_err(|error| {
+    /// Writes a file by `fill`.
+    pub(super) fn write(
+        &self,
+        name: &str,
+        fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+    ) -> Result<()> {
+        let written = File::create(self.folder.join(name)).and_then(|mut file| fill(&mut file));
+        written.map_err(|error| {
             let message = format!(
                 "the file cannot be written ({error}), expected a folder that can be written to: choose another with --out"
             );
@@ -190,12 +195,17 @@ pub fn write_file(path: &Path, text: &str) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Write;
 
     fn new_folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("poecal_staging_{name}_{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir(&folder).unwrap();
         folder
+    }
+
+    fn text(text: &str) -> impl FnOnce(&mut File) -> std::io::Result<()> {
+        move |file| file.write_all(text.as_bytes())
     }
 
     fn names(folder: &Path) -> Vec<String> {
@@ -213,7 +223,7 @@ mod tests {
         let first = Staging::new(&folder.join("out")).unwrap();
         let second = Staging::new(&folder.join("out")).unwrap();
         assert_ne!(first.folder(), second.folder());
-        second.write("a", "1").unwrap();
+        second.write("a", text("1")).unwrap();
         second.put_in_place(&["a".to_owned()], &[]).unwrap();
         assert!(first.folder().is_dir());
         drop(first);
@@ -230,7 +240,7 @@ mod tests {
             fs::write(out.join(name), "old").unwrap();
         }
         let staging = Staging::new(&out).unwrap();
-        staging.write("a", "new").unwrap();
+        staging.write("a", text("new")).unwrap();
         staging.put_in_place(&["a".to_owned()], &["a", "b", "c"]).unwrap();
         assert_eq!(names(&out), ["a", "mine"]);
         assert_eq!(fs::read_to_string(out.join("a")).unwrap(), "new");
@@ -246,15 +256,15 @@ mod tests {
         fs::write(out.join("a"), "old").unwrap();
         let both = ["a".to_owned(), "b".to_owned()];
         let staging = Staging::new(&out).unwrap();
-        staging.write("a", "new").unwrap();
-        staging.write("b", "new").unwrap();
+        staging.write("a", text("new")).unwrap();
+        staging.write("b", text("new")).unwrap();
         let error = staging.put_in_place(&both, &[]).unwrap_err();
         assert_eq!(error.place().unwrap().path, out.join("b"));
         // A file that vanished fails while files are moved.
         fs::remove_dir(out.join("b")).unwrap();
         fs::write(out.join("stale"), "old").unwrap();
         let staging = Staging::new(&out).unwrap();
-        staging.write("a", "new").unwrap();
+        staging.write("a", text("new")).unwrap();
         let error = staging.put_in_place(&both, &["stale"]).unwrap_err();
         assert!(!error.to_string().contains("unfinished"), "{error}");
         assert_eq!(names(&out), ["a", "stale"]);

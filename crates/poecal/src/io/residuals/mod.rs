@@ -3,10 +3,11 @@
 mod read;
 
 use std::fmt::Write as _;
+use std::io::Write;
 
 use super::numbers::push_number;
-use crate::calibration::{Calibration, RowError, row_errors, row_influence};
-use crate::estimate::{Estimate, Packed};
+use crate::calibration::{Calibration, RowError, RowInfluence, row_errors};
+use crate::estimate::Estimate;
 use crate::measurement::Dataset;
 use crate::robot::{JointKind, Robot};
 
@@ -14,6 +15,11 @@ use crate::robot::{JointKind, Robot};
 const COLUMNS: &str = "file,line,id,set,target,position_nominal[mm],position_registered[mm],position_calibrated[mm],x[mm],y[mm],z[mm],\
      rotation_nominal[deg],rotation_registered[deg],rotation_calibrated[deg],rx[deg],ry[deg],rz[deg],\
      weight,leverage,studentized,suspected";
+
+/// Bytes that are written at a time, about.
+const PIECE: usize = 1 << 16;
+/// Rows that are worked out at a time.
+const TOGETHER: usize = 8192;
 
 /// Errors of one row by the nominal, registered and calibrated model, and the calibrated model's residual (measured less predicted) by
 /// component in the device's axes.
@@ -107,13 +113,6 @@ impl Residuals {
     /// Of a finished calibration.
     #[must_use]
     pub fn of(data: &Dataset, calibration: &Calibration) -> Self {
-        let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
-        let rows: Vec<u32> = data.all_rows();
-        let errors = |estimate: &Estimate| row_errors(data, &packed, &rows, estimate);
-        let models = &calibration.models;
-        let [nominal, registered, calibrated] =
-            [&models.nominal, &models.registered, &models.calibrated].map(errors);
-        let influences = row_influence(calibration, data, &rows);
         let mut held_out = vec![false; data.len()];
         for &row in &calibration.held_out_rows {
             held_out[row as usize] = true;
@@ -127,30 +126,39 @@ impl Residuals {
             .flat_map(|row| data.readings(row).iter().zip(&readings))
             .map(|(&value, &(_, kind))| shown(kind, value))
             .collect();
-        let of_row = |row: usize| {
-            let observation = &data.observations[row];
-            let errors = [&nominal[row], &registered[row], &calibrated[row]];
-            ResidualRow {
-                file: observation.source.file as usize,
-                line: observation.source.line,
-                id: data.ids.get(row).cloned().unwrap_or_default(),
-                held_out: held_out[row],
-                target: observation.target,
-                position_mm: position_errors(errors),
-                rotation_deg: rotation_errors(errors),
-                judged: calibration.robustness.rows.get(row).map(|found| Judged {
-                    weight: found.weight,
-                    leverage: influences[row].leverage,
-                    studentized: influences[row].studentized,
-                    suspected: found.suspected,
-                }),
+        let models = &calibration.models;
+        let influence = RowInfluence::new(calibration, data);
+        let mut rows = Vec::with_capacity(data.len());
+        for some in data.all_rows().chunks(TOGETHER) {
+            let errors = |estimate: &Estimate| row_errors(data, influence.packed(), some, estimate);
+            let [nominal, registered, calibrated] =
+                [&models.nominal, &models.registered, &models.calibrated].map(errors);
+            let influences = influence.of(some);
+            for (at, &row) in some.iter().enumerate() {
+                let observation = &data.observations[row as usize];
+                let errors = [&nominal[at], &registered[at], &calibrated[at]];
+                rows.push(ResidualRow {
+                    file: observation.source.file as usize,
+                    line: observation.source.line,
+                    id: data.ids.get(row as usize).cloned().unwrap_or_default(),
+                    held_out: held_out[row as usize],
+                    target: observation.target,
+                    position_mm: position_errors(errors),
+                    rotation_deg: rotation_errors(errors),
+                    judged: calibration.robustness.rows.get(row as usize).map(|found| Judged {
+                        weight: found.weight,
+                        leverage: influences[at].leverage,
+                        studentized: influences[at].studentized,
+                        suspected: found.suspected,
+                    }),
+                });
             }
-        };
+        }
         Residuals {
             files: data.files.iter().map(|path| path.display().to_string()).collect(),
             targets: data.targets.iter().map(|name| name.clone().unwrap_or_default()).collect(),
             readings,
-            rows: (0..data.len()).map(of_row).collect(),
+            rows,
             values,
         }
     }
@@ -171,31 +179,49 @@ impl Residuals {
     /// The text of the file.
     #[must_use]
     pub fn text(&self) -> String {
-        let mut out = String::with_capacity(self.rows.len() * 200);
-        out.push_str(COLUMNS);
-        // Writing to a String cannot fail.
+        let mut out = Vec::with_capacity(self.rows.len() * 200);
+        // Writing to memory cannot fail, and what is written is text.
+        let _ = self.write_to(&mut out);
+        String::from_utf8(out).unwrap_or_default()
+    }
+
+    /// Writes the text of the file piece by piece.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_to(&self, out: &mut dyn Write) -> std::io::Result<()> {
+        let mut text = String::with_capacity(PIECE + PIECE / 4);
+        text.push_str(COLUMNS);
         for (name, kind) in &self.readings {
-            let _ = write!(out, ",{}", quoted(&format!("{name}[{}]", unit(*kind))));
+            text.push(',');
+            text.push_str(&quoted(&format!("{name}[{}]", unit(*kind))));
         }
-        out.push('\n');
+        text.push('\n');
+        let files: Vec<_> = self.files.iter().map(|name| quoted(name)).collect();
+        let targets: Vec<_> = self.targets.iter().map(|name| quoted(name)).collect();
         for (index, row) in self.rows.iter().enumerate() {
-            let set = if row.held_out { "held_out" } else { "fit" };
-            let (file, id, line) = (quoted(self.file(row)), quoted(&row.id), row.line);
-            let target = quoted(self.targets.get(row.target).map_or("", String::as_str));
-            let _ = write!(out, "{file},{line},{id},{set},{target}");
-            write_errors(&mut out, Some(&row.position_mm));
-            write_errors(&mut out, row.rotation_deg.as_ref());
+            text.push_str(files.get(row.file).map_or("", |name| name));
+            let _ = write!(text, ",{},", row.line);
+            text.push_str(&quoted(&row.id));
+            text.push_str(if row.held_out { ",held_out," } else { ",fit," });
+            text.push_str(targets.get(row.target).map_or("", |name| name));
+            write_errors(&mut text, Some(&row.position_mm));
+            write_errors(&mut text, row.rotation_deg.as_ref());
             match &row.judged {
                 Some(Judged { weight, leverage, studentized, suspected }) => {
-                    [*weight, *leverage, *studentized].into_iter().for_each(|number| cell(&mut out, number));
-                    out.push_str(if *suspected { ",1" } else { ",0" });
+                    [*weight, *leverage, *studentized].into_iter().for_each(|number| cell(&mut text, number));
+                    text.push_str(if *suspected { ",1" } else { ",0" });
                 }
-                None => out.push_str(",,,,"),
+                None => text.push_str(",,,,"),
             }
-            self.values(index).iter().for_each(|&value| cell(&mut out, value));
-            out.push('\n');
+            self.values(index).iter().for_each(|&value| cell(&mut text, value));
+            text.push('\n');
+            if text.len() >= PIECE {
+                out.write_all(text.as_bytes())?;
+                text.clear();
+            }
         }
-        out
+        out.write_all(text.as_bytes())
     }
 }
 

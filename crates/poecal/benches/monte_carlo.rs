@@ -1,0 +1,94 @@
+//! Many fits of one session with new noise each, for `benches/peers/run`: `monte_carlo MODEL EXACT.csv HELD_OUT.csv FITS` prints the CPU
+//! time of all fits (packing, the first fit and the sharing of its factor included), mean iterations, and the error of the fitted robots
+//! in the configurations held out. Measurements are exact, and get noise of 0.05 mm and 0.0005 rad for each fit.
+
+#![allow(clippy::print_stdout, reason = "what it finds is for a program that reads it")]
+
+use std::path::Path;
+
+use cpu_time::ProcessTime;
+use poecal::calibration::delivered;
+use poecal::estimate::{Estimate, Packed, row_errors};
+use poecal::io::measurements::{self, ReadOptions};
+use poecal::io::model::Model;
+use poecal::lie::{Pose, rotation};
+use poecal::measurement::{Dataset, Measurement, Noise, PoseMeasurement};
+use poecal::parameters::{Formulation, Parameter, TargetFrame};
+use poecal::problem::{Problem, Refit};
+use poecal::robot::Robot;
+use poecal::simulate::random;
+use poecal::solve::{Options, minimize};
+use poecal::{Error, ErrorKind};
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+use rayon::prelude::*;
+
+const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 5e-4 };
+/// Fits that one thread takes at a time.
+const TOGETHER: usize = 50;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|it| !it.starts_with("--")).collect();
+    let [model, exact, held_out, fits] = &arguments[..] else {
+        let message = "expected MODEL EXACT.csv HELD_OUT.csv FITS";
+        return Err(Error::new(ErrorKind::Option, message).into());
+    };
+    let robot = Model::read(Path::new(model), &Default::default())?.robot;
+    let [exact, held_out] = [read(exact, &robot)?, read(held_out, &robot)?];
+    let mut generator = ChaCha8Rng::seed_from_u64(1);
+    let trials: Vec<Vec<Measurement>> =
+        (0..fits.parse()?).map(|_| disturbed(&exact, &mut generator)).collect();
+
+    let begin = ProcessTime::now();
+    let found = fit_all(&robot, &exact, &trials);
+    let cpu_ms = begin.elapsed().as_secs_f64() * 1e3;
+
+    let iterations: usize = found.iter().map(|(_, iterations)| iterations).sum();
+    let packed = Packed::new(&robot, held_out.all_readings(), held_out.reading_names().len());
+    let rows = held_out.all_rows();
+    let squares: f64 = found
+        .iter()
+        .flat_map(|(estimate, _)| row_errors(&held_out, &packed, &rows, estimate))
+        .map(|error| error.position_m.norm_squared())
+        .sum();
+    let mean = |sum: f64, count: usize| sum / count.max(1) as f64;
+    let held_out_mm = 1e3 * mean(squares, found.len() * rows.len()).sqrt();
+    let iterations = mean(iterations as f64, found.len());
+    println!("{{\"cpu_ms\": {cpu_ms}, \"iterations\": {iterations}, \"held_out_mm\": {held_out_mm}}}");
+    Ok(())
+}
+
+fn read(path: &str, robot: &Robot) -> poecal::Result<Dataset> {
+    Ok(measurements::read(&[path], robot, &ReadOptions::default())?.data)
+}
+
+/// Fits every trial from the optimum of the first; estimates and numbers of iterations.
+fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(Estimate, usize)> {
+    let Some(first) = trials.first() else { return Vec::new() };
+    let mut begun = data.clone();
+    begun.observations.iter_mut().zip(first).for_each(|(row, seen)| row.measurement = *seen);
+    let start = delivered(robot, &begun);
+    let packed = Packed::new(robot, begun.all_readings(), begun.reading_names().len());
+    let mut free = Formulation::Adjoint.joint_parameters(&start.kinds);
+    free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
+    let problem = Problem::new(&begun, &packed, begun.all_rows(), free, NOISE, robot.reach_m() / 3.0);
+    let (optimum, _, _) = minimize(&problem, start, &Options::default());
+    let refit = Refit::new(problem, optimum, Options::default());
+    let fit = |refit: &mut Refit<'_>, measured: &Vec<Measurement>| {
+        let (estimate, _, summary) = refit.fit(measured);
+        (estimate, summary.iterations)
+    };
+    trials.par_iter().with_min_len(TOGETHER).map_init(|| refit.clone(), fit).collect()
+}
+
+/// Measurements with noise.
+fn disturbed(data: &Dataset, generator: &mut ChaCha8Rng) -> Vec<Measurement> {
+    let mut disturb = |seen: &Measurement| {
+        let shift = random::normal_vector(generator) * NOISE.position_m;
+        let turn = random::normal_vector(generator) * NOISE.rotation_rad;
+        let seen = seen.pose();
+        let pose = Pose::new(rotation::exp(&turn) * seen.rotation, seen.translation + shift);
+        Measurement::Pose(PoseMeasurement { pose })
+    };
+    data.observations.iter().map(|observation| disturb(&observation.measurement)).collect()
+}
