@@ -1,6 +1,7 @@
 //! Forward kinematics by the product of exponentials.
 
 use super::Robot;
+use crate::lanes::{self, Level};
 use crate::lie::Pose;
 
 impl Robot {
@@ -28,12 +29,21 @@ impl Robot {
         configurations: impl Iterator<Item = &'a [f64]>,
     ) -> impl Iterator<Item = Pose> {
         let indices = self.reading_indices();
-        let mut values = vec![0.0; self.joints.len()];
+        let n = self.joints.len();
+        // Values and their halves, and sines of both.
+        let mut values = vec![0.0; 2 * n];
+        let mut sines = vec![(0.0, 0.0); 2 * n];
         configurations.map(move |readings| {
-            for ((value, joint), &index) in values.iter_mut().zip(&self.joints).zip(&indices) {
-                *value = joint.reading.value(readings.get(index).copied().unwrap_or(0.0));
+            for (k, (joint, &index)) in self.joints.iter().zip(&indices).enumerate() {
+                values[k] = joint.reading.value(readings.get(index).copied().unwrap_or(0.0));
+                values[n + k] = 0.5 * values[k];
             }
-            self.motion(&values) * self.home
+            lanes::cosines_and_sines(Level::best(), &values, &mut sines);
+            let each = self.joints.iter().zip(&values).zip(sines.iter().zip(&sines[n..]));
+            let motion = each.fold(Pose::identity(), |pose, ((joint, &value), ((_, sine), (_, half)))| {
+                pose * joint.screw.exp_with(value, *sine, *half)
+            });
+            motion * self.home
         })
     }
 
