@@ -1,14 +1,23 @@
-//! One fit of the paper's elbow and nothing else, for `scripts/count-instructions`: the number of rows is the first argument.
+//! Fits of the paper's elbow to poses and nothing else: `ROWS [REPEATS [points]]`. Once for `scripts/count-instructions`; repeated, it
+//! prints the median and the least CPU time in milliseconds (packing included) for `scripts/plot-cost`.
 
-#![allow(clippy::expect_used, reason = "a benchmark may end in a panic")]
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a benchmark may end in a panic, and prints what it measured"
+)]
 
+use cpu_time::ProcessTime;
 use poecal::calibration::{CalibrationOptions, delivered, fit_screws};
 use poecal::estimate::Packed;
 use poecal::measurement::Noise;
 use poecal::simulate::{Kind, Simulation, elbow};
 
 fn main() {
-    let rows = std::env::args().nth(1).and_then(|rows| rows.parse().ok()).unwrap_or(500);
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|it| !it.starts_with("--")).collect();
+    let number = |at: usize| arguments.get(at).and_then(|text| text.parse::<usize>().ok());
+    let (rows, repeats) = (number(0).unwrap_or(500), number(1).unwrap_or(0));
+    let kind = if arguments.get(2).is_some_and(|word| word == "points") { Kind::Point } else { Kind::Pose };
     let noise = Noise { position_m: 5e-5, rotation_rad: 5e-4 };
     let simulation = Simulation {
         count: rows,
@@ -17,10 +26,24 @@ fn main() {
         device_anywhere: false,
         ..Simulation::default()
     };
-    let made = simulation.run(&elbow(), Kind::Pose).expect("a simulation of a finite robot");
-    let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
-    let all: Vec<u32> = (0..rows as u32).collect();
-    let (start, length_m) = (delivered(&made.nominal, &made.data), made.nominal.reach_m() / 3.0);
+    let made = simulation.run(&elbow(), kind).expect("a simulation of a finite robot");
+    let all = made.data.all_rows();
     let options = CalibrationOptions::default();
-    std::hint::black_box(fit_screws(&made.data, &packed, &all, start, noise, length_m, &options));
+    let fit = || {
+        let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
+        let (start, length_m) = (delivered(&made.nominal, &made.data), made.nominal.reach_m() / 3.0);
+        std::hint::black_box(fit_screws(&made.data, &packed, &all, start, noise, length_m, &options));
+    };
+    if repeats == 0 {
+        return fit();
+    }
+    let mut times: Vec<f64> = (0..repeats)
+        .map(|_| {
+            let begin = ProcessTime::now();
+            fit();
+            begin.elapsed().as_secs_f64() * 1e3
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    println!("{{\"rows\": {rows}, \"cpu_ms\": {}, \"least_ms\": {}}}", times[repeats / 2], times[0]);
 }

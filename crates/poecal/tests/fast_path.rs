@@ -178,6 +178,10 @@ fn both_paths_agree() {
                     }
                     let gradient = problem.gradient(&session.estimate).unwrap();
                     assert_eq!((&gradient.gradient, gradient.cost), (&fast.gradient, fast.cost), "{name}");
+                    // What is left out of this one is about rotations alone, and of `JᵀJ` alone.
+                    let nearly = problem.nearly_normal(&session.estimate);
+                    assert_eq!((&nearly.gradient, nearly.cost), (&fast.gradient, fast.cost), "{name}");
+                    assert!(kind != Kind::Point || nearly == fast, "{name}");
                 }
             }
         }
@@ -199,13 +203,18 @@ fn sums_do_not_depend_on_threads() {
     assert!((2..5).all(|threads| of(threads) == of(1)));
 }
 
-/// Fits of many rows begin on a sample and end by gradients alone; here is what one plain minimisation over all rows finds.
+/// Fits go by few passes (many rows begin on a sample, last steps go by gradients alone, the very last one by the model); here is what
+/// one plain minimisation finds whose every step sees all of every row.
 #[test]
-fn many_rows_have_the_same_optimum() {
-    for (kind, largest_m) in [(Kind::Pose, 1e-9), (Kind::Point, 1e-9)] {
-        let made = Simulation { count: 6000, ..Simulation::default() }.run(&elbow(), kind).unwrap();
+fn few_passes_have_the_same_optimum() {
+    let cases = [50, 50, 50, 500, 6000].into_iter().zip(1..);
+    for (kind, (count, seed)) in
+        [Kind::Pose, Kind::Point].into_iter().flat_map(|kind| cases.clone().map(move |case| (kind, case)))
+    {
+        let simulation = Simulation { count, seed, ..Simulation::default() };
+        let made = simulation.run(&elbow(), kind).unwrap();
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
-        let rows: Vec<u32> = (0..6000).collect();
+        let rows = made.data.all_rows();
         let mut start = delivered(&made.nominal, &made.data);
         start.device_from_base = made.device_from_base;
         let options = CalibrationOptions::default();
@@ -220,10 +229,11 @@ fn many_rows_have_the_same_optimum() {
         let apart = farthest(&made.data, &packed, &rows, &quick, &plain);
         let excess = (rest.cost - normal.cost) / normal.mean_square();
         println!(
-            "{kind:?}: {} iterations, predictions apart by {apart:.1e} m, cost above by {excess:.1e}",
+            "{kind:?} {count}: {} iterations, predictions apart by {apart:.1e} m, cost above by {excess:.1e}",
             summary.iterations
         );
-        assert!(apart < largest_m);
+        // Iterations end at a decrement of 1e-7, which is 4.5e-4 of a standard deviation: with 50 rows some 1e-8 m.
+        assert!(apart < 1e-9 * (6000.0 / count as f64).sqrt());
         assert!(excess < 1e-6);
     }
 }

@@ -1,7 +1,12 @@
 //! Joint values of every row with their sines and cosines, computed once: no trigonometry inside the iterations.
 
+use rayon::prelude::*;
+
 use crate::lanes::{self, Level};
 use crate::robot::{JointKind, Robot};
+
+/// Rows that one thread takes at a time.
+const CHUNK: usize = 1024;
 
 /// Joint values of all rows, flat: `n` joints a row. For a revolute joint `(cos θ, sin θ)`, for a prismatic one `(θ, 0)`; and θ
 /// itself, which knows of whole turns.
@@ -49,13 +54,21 @@ impl Packed {
         let joints = robot.joints.len();
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
         let mut values = vec![(0.0, 0.0); angles.len()];
-        lanes::cosines_and_sines(Level::best(), &angles, &mut values);
-        if kinds.contains(&JointKind::Prismatic) {
-            for (index, (packed, &value)) in values.iter_mut().zip(&angles).enumerate() {
-                if kinds[index % joints] == JointKind::Prismatic {
-                    *packed = (value, 0.0);
+        let chunk = CHUNK * joints.max(1);
+        let fill = |(values, angles): (&mut [(f64, f64)], &[f64])| {
+            lanes::cosines_and_sines(Level::best(), angles, values);
+            if kinds.contains(&JointKind::Prismatic) {
+                for (index, (packed, &value)) in values.iter_mut().zip(angles).enumerate() {
+                    if kinds[index % joints] == JointKind::Prismatic {
+                        *packed = (value, 0.0);
+                    }
                 }
             }
+        };
+        if angles.len() <= chunk || rayon::current_num_threads() == 1 {
+            fill((&mut values, &angles));
+        } else {
+            values.par_chunks_mut(chunk).zip(angles.par_chunks(chunk)).for_each(fill);
         }
         Packed { joints, kinds, values, angles }
     }

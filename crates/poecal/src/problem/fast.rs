@@ -233,13 +233,28 @@ impl Group {
                 totals
             }
         };
-        let mut total = chunk(0);
-        let chunks: Vec<usize> = (1..self.rows.len().div_ceil(CHUNK)).collect();
-        for together in chunks.chunks(TOGETHER) {
-            let parts: Vec<Totals> = together.par_iter().map(|&index| chunk(index)).collect();
-            parts.iter().for_each(|part| total.add(part));
+        let chunks = self.rows.len().div_ceil(CHUNK);
+        if chunks <= 1 {
+            return chunk(0);
         }
-        total
+        let mut total: Option<Totals> = None;
+        for first in (0..chunks).step_by(TOGETHER) {
+            let together = first..chunks.min(first + TOGETHER);
+            // With one thread there is nobody to hand work to, and no need to wake him.
+            let parts: Vec<Totals> = if rayon::current_num_threads() > 1 {
+                together.into_par_iter().map(chunk).collect()
+            } else {
+                together.map(chunk).collect()
+            };
+            for part in parts {
+                match &mut total {
+                    Some(total) => total.add(&part),
+                    None => total = Some(part),
+                }
+            }
+        }
+        // There is more than one chunk.
+        total.unwrap_or_else(|| chunk(0))
     }
 
     fn scatter(&self, n: usize) -> Scatter {
