@@ -38,7 +38,8 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
         "#\n\
          # Columns to add if you have them, in any place:\n\
          #   id                   name of the row, kept in the results\n\
-         #   target               which of several tool points was seen; a row for each, with the same joint readings\n\
+         #   target               name of the tool point that was seen; several in one configuration are several rows. Without this\n\
+         #                        column, the point that was seen becomes the tip of the calibrated model\n\
          #   set                  fit, or held_out for rows to judge by [default: a random 30 % of the configurations]\n\
          #   sigma_position[mm]   standard deviation of each of x, y, z, if the device states it [default: estimated]\n",
     );
