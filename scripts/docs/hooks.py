@@ -39,6 +39,8 @@ def on_files(files, config):
 def on_page_markdown(markdown, page, config, files):
     page.formulas, page.glyphs = [], {}
     source = SOURCES.get(page.file.src_uri, f"docs/{page.file.src_uri}")
+    # What follows a language is for other readers, as in rust,no_run.
+    markdown = re.sub(r"^( *```\w+),\S*$", r"\1", markdown, flags=re.M)
     markdown = COMMENT.sub(lambda match: "" if match["comment"] else match[0], markdown)
     markdown = LINK.sub(lambda match: link(match, source, page.file.src_uri, files), markdown)
     return FORMULA.sub(lambda match: formula(match, page), markdown)

@@ -6,6 +6,7 @@ What a block is follows from its language and from an HTML comment right above i
     <!-- file: NAME -->           the block is written into this file
     <!-- given: NAME = SOURCE --> before the commands, a file of the repository is copied to this name
     <!-- exit: CODE -->           the commands end with this code
+    <!-- shorter: OLD = NEW -->   the commands are run with other words, which take less time
     <!-- not run: REASON -->      the block is left out, and counted as excused
 
 Commands (`sh`) and programs (`python`) without such a comment are run, in the order of the page, in one folder a page.
@@ -23,8 +24,8 @@ from pathlib import Path
 from program import ROOT, program
 
 FENCE = re.compile(r"^(?P<indent> *)```(?P<info>[^\n`]*)\n(?P<text>.*?)^(?P=indent)```$", re.M | re.S)
-NOTES = re.compile(r"(?:<!-- *(?:output|(?:file|given|exit|not run):[^\n]*?) *-->\s*)+\Z")
-NOTE = re.compile(r"<!-- *(?P<word>output|file|given|exit|not run)(?:: *(?P<value>.*?))? *-->")
+NOTES = re.compile(r"(?:<!-- *(?:output|(?:file|given|exit|shorter|not run):[^\n]*?) *-->\s*)+\Z")
+NOTE = re.compile(r"<!-- *(?P<word>output|file|given|exit|shorter|not run)(?:: *(?P<value>.*?))? *-->")
 # Languages that are not run: what is shown, not done.
 SHOWN = {"", "text", "math"}
 # Files that are shown there are read by crates/poecal/tests/documented_files.rs.
@@ -122,6 +123,10 @@ class Page:
     def shell(self, block: Block, place: str) -> None:
         # The program that is tested stands for the one that cargo would build.
         commands = block.text.replace("cargo run --release --", "poecal")
+        if "shorter" in block.notes:
+            old, new = block.notes["shorter"].split(" = ")
+            assert old in commands, f"{place}: found no `{old}`"
+            commands = commands.replace(old, new)
         done = subprocess.run(
             ["bash", "-euo", "pipefail", "-c", commands],
             cwd=self.folder,
