@@ -8,6 +8,7 @@ mod commands;
 mod console;
 mod quantity;
 mod settings;
+mod style;
 mod timings;
 
 use std::error::Error as _;

@@ -19,6 +19,7 @@ use super::files::{refuse_fitted, refuse_repeats};
 use super::typed::command;
 use crate::args::{Calibrate, Frame, ReportPlace};
 use crate::console::Console;
+use crate::style::labelled;
 use crate::timings::Timings;
 
 pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<ExitCode> {
@@ -191,12 +192,16 @@ fn write(
     for note in &written.notes {
         console.warning(note);
     }
-    let mut words = format!(
-        "written       {}\n              {}\n              read back: within {:.1e} m and {:.1e} rad in 1,000 configurations\n",
-        written.folder.display(),
-        written.files.iter().filter(|name| *name != output::REPORT).cloned().collect::<Vec<_>>().join(", "),
-        written.largest.position_m,
-        written.largest.rotation_rad
+    let others = written.files.iter().filter(|name| *name != output::REPORT).cloned().collect::<Vec<_>>();
+    let mut words = labelled(
+        "written",
+        &format!(
+            "{}\n{}\nread back within {:.1e} m and {:.1e} rad in 1,000 configurations",
+            written.folder.display(),
+            others.join(", "),
+            written.largest.position_m,
+            written.largest.rotation_rad
+        ),
     );
     let report = written.files.iter().find(|name| *name == output::REPORT);
     let mut report = report.map(|name| written.folder.join(name));
@@ -205,7 +210,7 @@ fn write(
         report = Some(path.clone());
     }
     if let Some(path) = report {
-        words.push_str(&format!("report        {}\n", path.display()));
+        words.push_str(&labelled("report", &path.display().to_string()));
     }
     Ok(words)
 }

@@ -8,6 +8,7 @@ use poecal::io::output::{Project, write_project};
 
 use crate::args::Init;
 use crate::console::Console;
+use crate::style::labelled;
 
 pub(crate) fn init(arguments: &Init, console: &Console) -> Result<ExitCode> {
     let chain = arguments.chain.selection();
@@ -20,12 +21,11 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<ExitCode> {
         seed: arguments.seed,
     };
     let written = write_project(&arguments.out, &project)?;
-    console.say(&format!(
-        "written       {}\n              {}\nnext          read {}: measure, fill in measurements.csv, and run\n              \
-         `poecal calibrate` in that folder\n",
-        written.folder.display(),
-        written.files.join(", "),
+    let next = format!(
+        "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
         written.folder.join("README.md").display()
-    ))?;
+    );
+    let files = format!("{}\n{}", written.folder.display(), written.files.join(", "));
+    console.say(&(labelled("written", &files) + &labelled("next", &next)))?;
     Ok(ExitCode::SUCCESS)
 }

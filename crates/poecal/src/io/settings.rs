@@ -12,6 +12,14 @@ use crate::error::{Error, ErrorKind, Result, nearest_or_all};
 const VERSION_KEY: &str = "poecal_settings";
 
 /// The value of a setting.
+///
+/// ```
+/// use poecal::io::settings::{SettingValue, Settings};
+/// let text = "poecal_settings = 1\nmeasurements = ['monday.csv', 'tuesday.csv']\n";
+/// let settings = Settings::parse(text, "poecal.toml", &["measurements"])?;
+/// assert!(matches!(&settings.entries[0].value, SettingValue::Many(files) if files.len() == 2));
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SettingValue {
     /// A text or a number, as it would be typed.
