@@ -11,10 +11,14 @@ URDFS = ROOT / "crates/poecal/tests/data/urdf"
 ELBOW = ROOT / "examples/elbow/robot.urdf"
 
 
+def program() -> str:
+    """The program that is tested."""
+    return os.environ.get("POECAL_PROGRAM", str(ROOT / "target/release/poecal"))
+
+
 def poecal(*arguments) -> str:
     """Standard output of a run that must end well."""
-    program = os.environ.get("POECAL_PROGRAM", str(ROOT / "target/release/poecal"))
-    run = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    run = subprocess.run([program(), *map(str, arguments)], capture_output=True, text=True)
     assert run.returncode == 0, f"poecal {arguments}\n{run.stdout}{run.stderr}"
     return run.stdout
 

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod identify;
+mod init;
 mod offsets;
 mod report;
 mod reproduce;
@@ -9,6 +10,7 @@ mod simulate;
 
 pub(crate) use calibrate::{Calibrate, Frame};
 pub(crate) use identify::Identify;
+pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
 pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
@@ -46,6 +48,8 @@ pub(crate) struct Arguments {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Write a project folder to start from: the model, an empty measurement file, settings
+    Init(Init),
     /// Calibrate a robot from measurements
     Calibrate(Calibrate),
     /// Simulate a robot with errors and its measurements, for tests and for learning

@@ -1,13 +1,16 @@
-//! Standard output for results, standard error for everything else.
+//! Standard output for results, standard error for everything else. On a terminal, colours and lines as wide as it; elsewhere neither.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal as _, Write as _};
 use std::path::Path;
 use std::time::Duration;
 
+use anstream::{AutoStream, ColorChoice};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use poecal::Result;
 use poecal::io::output;
+
+use crate::style;
 
 /// Where the program speaks.
 pub(crate) struct Console {
@@ -44,12 +47,21 @@ impl Console {
 
     /// A result that `--quiet` suppresses.
     pub(crate) fn say(&self, text: &str) -> Result<()> {
-        if self.quiet { Ok(()) } else { self.data(text) }
+        if self.quiet {
+            return Ok(());
+        }
+        let stdout = std::io::stdout();
+        let text = match width_of(&stdout) {
+            Some(width) => style::narrowed(text, width),
+            None => text.to_owned(),
+        };
+        let plain = AutoStream::choice(&stdout) == ColorChoice::Never;
+        self.data(&if plain { text } else { style::painted(&text) })
     }
 
     pub(crate) fn warning(&self, message: impl Display) {
         if !self.quiet {
-            let _ = writeln!(std::io::stderr().lock(), "warning: {message}");
+            tell("warning:", style::WARNING, &message.to_string());
         }
     }
 
@@ -59,19 +71,45 @@ impl Console {
     }
 
     pub(crate) fn error(&self, message: impl Display) {
-        let _ = writeln!(std::io::stderr().lock(), "error: {message}");
+        tell("error:", style::ERROR, &message.to_string());
     }
 
-    /// A bar of `steps` on a terminal; nothing elsewhere.
+    /// A bar of `steps` on a terminal that can draw it; nothing elsewhere.
     pub(crate) fn progress(&self, steps: u64) -> ProgressBar {
-        if self.quiet || !std::io::stderr().is_terminal() {
+        let draws =
+            std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb");
+        if self.quiet || !draws {
             return ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
         }
         let bar = ProgressBar::new(steps);
-        if let Ok(style) = ProgressStyle::with_template("{bar:20} {msg} {elapsed}") {
+        if let Ok(style) = ProgressStyle::with_template("{bar:20} {elapsed} {wide_msg}") {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(200));
         bar
     }
+}
+
+/// Columns of a stream that is a terminal.
+#[cfg(unix)]
+fn width_of(stream: &impl std::os::fd::AsFd) -> Option<usize> {
+    terminal_size::terminal_size_of(stream).map(|(terminal_size::Width(width), _)| usize::from(width))
+}
+
+/// Columns of a stream that is a terminal.
+#[cfg(windows)]
+fn width_of(stream: &impl std::os::windows::io::AsHandle) -> Option<usize> {
+    terminal_size::terminal_size_of(stream).map(|(terminal_size::Width(width), _)| usize::from(width))
+}
+
+/// A message on standard error: one line, or on a terminal as many as its width asks for.
+fn tell(word: &str, style: anstyle::Style, message: &str) {
+    let stderr = std::io::stderr();
+    let message = match width_of(&stderr) {
+        Some(width) => style::wrapped(message, word.len() + 1, width),
+        None => message.to_owned(),
+    };
+    let mut out = AutoStream::auto(stderr.lock());
+    // Nobody is left to hear that nobody listens.
+    let _ = writeln!(out, "{style}{word}{style:#} {message}");
 }

@@ -7,6 +7,8 @@ mod args;
 mod commands;
 mod console;
 mod quantity;
+mod settings;
+mod style;
 mod timings;
 
 use std::error::Error as _;
@@ -14,8 +16,8 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use args::{Arguments, Command};
-use clap::Parser as _;
 use clap::error::ContextKind;
+use clap::{CommandFactory as _, FromArgMatches as _};
 use console::Console;
 
 /// Help and version go to standard output, mistakes to standard error: one sentence for a bad value, with clap's hints for the rest.
@@ -33,12 +35,33 @@ fn usage(error: &clap::Error) -> ExitCode {
     ExitCode::from(if error.use_stderr() { 2 } else { 0 })
 }
 
+/// The command line, with what its settings file adds, and what it means; or else the code to end with.
+fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), ExitCode> {
+    let refused = |error: &poecal::Error| {
+        Console::new(false).error(error);
+        ExitCode::from(2)
+    };
+    let parsed = |words: &[OsString]| {
+        let matches = Arguments::command().try_get_matches_from(words)?;
+        let arguments = Arguments::from_arg_matches(&matches)?;
+        Ok((matches, arguments))
+    };
+    let (matches, arguments) = parsed(&typed).map_err(|error| usage(&error))?;
+    let Some(completed) = settings::complete(&typed, &matches).map_err(|error| refused(&error))? else {
+        return Ok((typed, arguments));
+    };
+    match parsed(&completed.words) {
+        Ok((_, arguments)) => Ok((completed.words, arguments)),
+        Err(error) => Err(completed.error(&error).map_or_else(|| usage(&error), |error| refused(&error))),
+    }
+}
+
 /// Runs the program.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let typed: Vec<OsString> = arguments.into_iter().collect();
-    let arguments = match Arguments::try_parse_from(&typed) {
-        Ok(arguments) => arguments,
-        Err(error) => return usage(&error),
+    let (typed, arguments) = match understood(typed) {
+        Ok(both) => both,
+        Err(code) => return code,
     };
     let console = Console::new(arguments.quiet);
     if let Some(threads) = arguments.threads {
@@ -46,6 +69,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
     let result = match &arguments.command {
+        Command::Init(options) => commands::init(options, &console),
         Command::Calibrate(options) => commands::calibrate(options, &typed, &console),
         Command::Simulate(options) => commands::simulate(options, &console),
         Command::Validate(options) => commands::validate(options, &console),

@@ -110,11 +110,13 @@ impl From<MethodWord> for Method {
 /// Arguments of `poecal calibrate`.
 #[derive(Args, Debug)]
 pub(crate) struct Calibrate {
-    /// Robot model: URDF, TOML or calibration.json
-    pub(crate) model: PathBuf,
-    /// Measurement files (CSV), joined
-    #[arg(required = true)]
+    /// Robot model: URDF, TOML or calibration.json [default: what the settings name]
+    pub(crate) model: Option<PathBuf>,
+    /// Measurement files (CSV), joined [default: what the settings name]
     pub(crate) measurements: Vec<PathBuf>,
+    /// Settings (TOML) for all that is not typed [default: poecal.toml in this folder, if no model is named]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) settings: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) chain: Chain,
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! `poecal calibrate`: model and measurements in, calibrated robot out.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use poecal::calibration::{
@@ -19,15 +19,17 @@ use super::files::{refuse_fitted, refuse_repeats};
 use super::typed::command;
 use crate::args::{Calibrate, Frame, ReportPlace};
 use crate::console::Console;
+use crate::style::labelled;
 use crate::timings::Timings;
 
 pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<ExitCode> {
     let mut timings = Timings::start();
+    let model_path = stated_model(arguments)?;
     output::check_folder(&arguments.out, arguments.force)?;
     if let Some(ReportPlace::File(path)) = &arguments.report {
         output::check_file(path)?;
     }
-    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    let model = Model::read(model_path, &arguments.chain.selection())?;
     let data = read_measurements(arguments, &model, console)?;
     let options = options(arguments);
     let poses = data.observations.iter().any(|row| matches!(row.measurement, Measurement::Pose(_)));
@@ -53,7 +55,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     for warning in calibration.warnings.iter().chain(found) {
         console.warning(warning);
     }
-    let file = CalibrationFile::new(&calibration, &data, inputs(arguments, typed)?);
+    let file = CalibrationFile::new(&calibration, &data, inputs(arguments, model_path, typed)?);
     let json = if arguments.json { Some(file.to_text()?) } else { None };
     let words = write(arguments, &model, &data, &calibration, file, console)?;
     timings.end("write");
@@ -72,6 +74,20 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     }
     let worse = arguments.require.is_some_and(|required| calibration.verdict.level < required.into());
     Ok(if worse { ExitCode::from(1) } else { ExitCode::SUCCESS })
+}
+
+/// The model, if it and measurements are named, by arguments or settings.
+fn stated_model(arguments: &Calibrate) -> Result<&Path> {
+    let missing = |what: &str| {
+        let message =
+            format!("found no {what}, expected `poecal calibrate MODEL FILES…`, or settings that name both");
+        Err(Error::new(ErrorKind::Option, message))
+    };
+    match &arguments.model {
+        None => missing("model"),
+        Some(_) if arguments.measurements.is_empty() => missing("measurement file"),
+        Some(model) => Ok(model),
+    }
 }
 
 /// Reads and joins the files; with `--validate`, those rows are held out and all others fitted.
@@ -176,12 +192,16 @@ fn write(
     for note in &written.notes {
         console.warning(note);
     }
-    let mut words = format!(
-        "written       {}\n              {}\n              read back: within {:.1e} m and {:.1e} rad in 1,000 configurations\n",
-        written.folder.display(),
-        written.files.iter().filter(|name| *name != output::REPORT).cloned().collect::<Vec<_>>().join(", "),
-        written.largest.position_m,
-        written.largest.rotation_rad
+    let others = written.files.iter().filter(|name| *name != output::REPORT).cloned().collect::<Vec<_>>();
+    let mut words = labelled(
+        "written",
+        &format!(
+            "{}\n{}\nread back within {:.1e} m and {:.1e} rad in 1,000 configurations",
+            written.folder.display(),
+            others.join(", "),
+            written.largest.position_m,
+            written.largest.rotation_rad
+        ),
     );
     let report = written.files.iter().find(|name| *name == output::REPORT);
     let mut report = report.map(|name| written.folder.join(name));
@@ -190,14 +210,14 @@ fn write(
         report = Some(path.clone());
     }
     if let Some(path) = report {
-        words.push_str(&format!("report        {}\n", path.display()));
+        words.push_str(&labelled("report", &path.display().to_string()));
     }
     Ok(words)
 }
 
-fn inputs(arguments: &Calibrate, typed: &[OsString]) -> Result<Inputs> {
+fn inputs(arguments: &Calibrate, model: &Path, typed: &[OsString]) -> Result<Inputs> {
     let files: Vec<PathBuf> = arguments.measurements.iter().chain(&arguments.validate).cloned().collect();
     let mapping: Vec<PathBuf> = arguments.reading.columns.columns.iter().cloned().collect();
-    let inputs = Inputs::of_files(&arguments.model, &files, &mapping)?;
+    let inputs = Inputs::of_files(model, &files, &mapping)?;
     Ok(Inputs { command: Some(command(typed)), ..inputs })
 }

@@ -9,6 +9,7 @@ use poecal::{Result, report as text};
 
 use crate::args::Report;
 use crate::console::Console;
+use crate::style::labelled;
 
 pub(crate) fn report(arguments: &Report, console: &Console) -> Result<ExitCode> {
     let beside = |name: &str| arguments.calibration.with_file_name(name);
@@ -19,6 +20,6 @@ pub(crate) fn report(arguments: &Report, console: &Console) -> Result<ExitCode> 
     let residuals = Residuals::read(&path)?;
     let page = text::calibration_page(&file, &residuals).map_err(|error| error.in_file(&path))?;
     output::write_file(&out, &page)?;
-    console.say(&format!("written       {}\n", out.display()))?;
+    console.say(&labelled("written", &out.display().to_string()))?;
     Ok(ExitCode::SUCCESS)
 }

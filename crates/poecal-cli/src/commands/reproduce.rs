@@ -8,6 +8,7 @@ use poecal::{Result, report};
 
 use crate::args::{Experiment, Reproduce};
 use crate::console::Console;
+use crate::style::labelled;
 
 pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<ExitCode> {
     output::check_folder(&arguments.out, arguments.force)?;
@@ -28,6 +29,7 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<Exit
     let (files, words) = found?;
     let written = output::write_reproduction(&arguments.out, arguments.force, &files)?;
     console.say(&words)?;
-    console.say(&format!("written       {}: {}\n", written.folder.display(), written.files.join(", ")))?;
+    console
+        .say(&labelled("written", &format!("{}\n{}", written.folder.display(), written.files.join(", "))))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -9,6 +9,7 @@ use poecal::simulate::{Kind, Simulation};
 
 use crate::args::{Chain, Frame, Simulate};
 use crate::console::Console;
+use crate::style::labelled;
 
 pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<ExitCode> {
     output::check_folder(&arguments.out, arguments.force)?;
@@ -40,7 +41,8 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<ExitCo
     for note in &written.notes {
         console.warning(note);
     }
-    console.say(&format!("written  {}: {}\n", written.folder.display(), written.files.join(", ")))?;
+    console
+        .say(&labelled("written", &format!("{}\n{}", written.folder.display(), written.files.join(", "))))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -2,8 +2,8 @@
 
 use std::ffi::OsString;
 
-/// Options that say where results go, what is printed and how fast, but not what is computed.
-const WITH_VALUE: [&str; 4] = ["--out", "--threads", "--require", "--report"];
+/// Options that say where results go, what is printed and how fast, but not what is computed; settings are among the words already.
+const WITH_VALUE: [&str; 5] = ["--out", "--threads", "--require", "--report", "--settings"];
 const WITHOUT_VALUE: [&str; 3] = ["--force", "--json", "--quiet"];
 
 /// The arguments of a run, the program first, as one would type them, without those that do not change the result.

@@ -54,6 +54,12 @@ impl Folder {
         Run::new(self.command(arguments).output().unwrap())
     }
 
+    /// As [`Folder::run`], for arguments with blanks in them.
+    pub(crate) fn run_words(&self, arguments: &[String]) -> Run {
+        let mut command = self.command("");
+        Run::new(command.args(arguments).output().unwrap())
+    }
+
     /// As [`Folder::run`], with standard output going into a file or device.
     pub(crate) fn run_into(&self, arguments: &str, out: fs::File) -> Run {
         Run::new(self.command(arguments).stdout(out).output().unwrap())

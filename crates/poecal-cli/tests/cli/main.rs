@@ -1,12 +1,13 @@
 //! The program as users run it.
 
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod bad_input;
 mod commands;
 mod diagnosis;
 mod folder;
 mod identify;
+mod init;
 mod offsets;
 mod report;
 mod reproduce;

@@ -41,7 +41,8 @@ use steps::Prepared;
 /// Calibrates a robot from measurements.
 ///
 /// # Errors
-/// [`ErrorKind::Problem`] if there are too few measurements, [`ErrorKind::Option`] for options out of range, [`ErrorKind::Solver`]
+/// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if there are too few measurements,
+/// [`ErrorKind::Option`](crate::ErrorKind::Option) for options out of range, [`ErrorKind::Solver`](crate::ErrorKind::Solver)
 /// if no finite result could be reached.
 pub fn calibrate(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> Result<Calibration> {
     calibrate_with_progress(robot, data, options, &mut |_| {})

@@ -11,6 +11,7 @@ pub mod predictions;
 mod proof;
 pub mod residuals;
 pub mod robot_toml;
+pub mod settings;
 mod source_text;
 pub mod urdf;
 

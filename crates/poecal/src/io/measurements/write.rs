@@ -12,32 +12,11 @@ use crate::robot::{JointKind, Robot};
 /// orientations as quaternions. Readings read back as the same numbers; measured ones are rounded to less than a thousandth of
 /// their noise.
 pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
-    let (deg, mm) = (Unit::parse("deg", Quantity::Angle)?, Unit::parse("mm", Quantity::Length)?);
+    let mm = Unit::parse("mm", Quantity::Length)?;
     let number = Quantity::Number.si_unit();
-    let units: Vec<Unit> = data
-        .reading_names()
-        .iter()
-        .map(|name| match robot.joints.iter().find(|joint| joint.reading.name == *name) {
-            Some(joint) if joint.kind == JointKind::Prismatic => mm,
-            _ => deg,
-        })
-        .collect();
     let orientations = data.observations.iter().any(|row| row.measurement.sees_orientation());
-    let measured_names: &[&str] =
-        if orientations { &["x", "y", "z", "qx", "qy", "qz", "qw"] } else { &["x", "y", "z"] };
-    if let Some(name) = data.reading_names().iter().find(|name| measured_names.contains(&name.as_str())) {
-        let message = format!(
-            "found the joint `{name}` in the model, expected none with the name of a measured column, which could not be \
-             read back: rename the joint in the model"
-        );
-        return Err(Error::new(ErrorKind::Model, message));
-    }
-    let mut out = format!("# {comment}\n");
-    for (name, unit) in data.reading_names().iter().zip(&units) {
-        // Writing to a String cannot fail.
-        let _ = write!(out, "{},", quoted(&format!("{name}[{}]", unit.symbol())));
-    }
-    out.push_str(if orientations { "x[mm],y[mm],z[mm],qx,qy,qz,qw\n" } else { "x[mm],y[mm],z[mm]\n" });
+    let units = reading_units(data.reading_names(), robot)?;
+    let mut out = format!("# {comment}\n{}\n", header(data.reading_names(), &units, orientations)?);
     let position_decimals = decimals(mm.from_si(noise.position_m));
     // A rotation turns the quaternion by half its angle.
     let quaternion_decimals = decimals(noise.rotation_rad / 2.0);
@@ -58,13 +37,44 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
     Ok(out)
 }
 
+/// The units that readings are written in: degrees and millimetres.
+pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>> {
+    let (deg, mm) = (Unit::parse("deg", Quantity::Angle)?, Unit::parse("mm", Quantity::Length)?);
+    let unit = |name: &String| match robot.joints.iter().find(|joint| joint.reading.name == *name) {
+        Some(joint) if joint.kind == JointKind::Prismatic => mm,
+        _ => deg,
+    };
+    Ok(names.iter().map(unit).collect())
+}
+
+/// The header of a file of readings and measured positions, with orientations or without.
+pub(super) fn header(names: &[String], units: &[Unit], orientations: bool) -> Result<String> {
+    let measured_names: &[&str] =
+        if orientations { &["x", "y", "z", "qx", "qy", "qz", "qw"] } else { &["x", "y", "z"] };
+    if let Some(name) = names.iter().find(|name| measured_names.contains(&name.as_str())) {
+        let message = format!(
+            "found the joint `{name}` in the model, expected none with the name of a measured column, which could not be \
+             read back: rename the joint in the model"
+        );
+        return Err(Error::new(ErrorKind::Model, message));
+    }
+    let measured = if orientations { "x[mm],y[mm],z[mm],qx,qy,qz,qw" } else { "x[mm],y[mm],z[mm]" };
+    Ok(format!("{},{measured}", reading_header(names, units)))
+}
+
+/// The columns of the readings.
+pub(super) fn reading_header(names: &[String], units: &[Unit]) -> String {
+    let cell = |(name, unit): (&String, &Unit)| quoted(&format!("{name}[{}]", unit.symbol())).to_string();
+    names.iter().zip(units).map(cell).collect::<Vec<_>>().join(",")
+}
+
 /// Decimals that leave less than a thousandth of a noise; `None`, all that there are, without noise.
 fn decimals(noise: f64) -> Option<usize> {
     (noise > 0.0).then(|| (3.0 - noise.log10()).ceil().clamp(0.0, 17.0) as usize)
 }
 
 /// A number in a unit: with the decimals asked for, else with as many as it takes to read back as the same number.
-fn decimal(si: f64, unit: Unit, decimals: Option<usize>) -> String {
+pub(super) fn decimal(si: f64, unit: Unit, decimals: Option<usize>) -> String {
     let value = unit.from_si(si);
     let with = |count: usize| format!("{value:.count$}");
     match decimals {

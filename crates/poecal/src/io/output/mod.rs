@@ -1,11 +1,13 @@
 //! Output folders: written whole or not at all, and every robot model in them proven equal to the one it is of.
 
 mod calibration;
+mod project;
 mod reproduction;
 mod simulation;
 mod staging;
 
 pub use calibration::{REPORT, Results, write};
+pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
 pub use simulation::{Session, write_simulation};
 pub use staging::{check_file, check_folder, write_file};

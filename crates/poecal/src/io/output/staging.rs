@@ -27,7 +27,7 @@ pub fn check_folder(folder: &Path, force: bool) -> Result<()> {
 }
 
 /// Refuses a place whose folder does not exist.
-fn check_parent(path: &Path) -> Result<()> {
+pub(super) fn check_parent(path: &Path) -> Result<()> {
     if parent(path).is_dir() {
         return Ok(());
     }

@@ -1,0 +1,31 @@
+//! `poecal init`: a folder to start a calibration from.
+
+use std::process::ExitCode;
+
+use poecal::Result;
+use poecal::io::model::Model;
+use poecal::io::output::{Project, write_project};
+
+use crate::args::Init;
+use crate::console::Console;
+use crate::style::labelled;
+
+pub(crate) fn init(arguments: &Init, console: &Console) -> Result<ExitCode> {
+    let chain = arguments.chain.selection();
+    let model = Model::read(&arguments.model, &chain)?;
+    let project = Project {
+        model: &model,
+        chain: &chain,
+        kind: arguments.measure.into(),
+        count: arguments.count as usize,
+        seed: arguments.seed,
+    };
+    let written = write_project(&arguments.out, &project)?;
+    let next = format!(
+        "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
+        written.folder.join("README.md").display()
+    );
+    let files = format!("{}\n{}", written.folder.display(), written.files.join(", "));
+    console.say(&(labelled("written", &files) + &labelled("next", &next)))?;
+    Ok(ExitCode::SUCCESS)
+}

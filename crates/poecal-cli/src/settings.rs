@@ -1,0 +1,169 @@
+//! What a settings file says, written out as options, so that one parser understands both.
+
+use std::error::Error as _;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::error::ContextKind;
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory as _};
+use poecal::io::settings::{Setting, SettingValue, Settings};
+use poecal::{Error, ErrorKind, Result};
+
+use crate::args::Arguments;
+
+/// The settings that are read where no model is named.
+const USUAL: &str = "poecal.toml";
+/// The command that reads settings.
+const COMMAND: &str = "calibrate";
+/// Options that are not kept in a file: those of one run of the program.
+const NOT_KEPT: [&str; 6] = ["settings", "json", "timings", "quiet", "threads", "help"];
+/// Settings that name files, which are seen from the settings' folder.
+const FILES: [&str; 6] = ["model", "measurements", "columns", "validate", "out", "report"];
+
+/// A command line with the settings in it, and where they came from.
+pub(crate) struct Completed {
+    /// The words, as if all of them had been typed.
+    pub(crate) words: Vec<OsString>,
+    settings: Settings,
+}
+
+/// The command line `typed`, which clap understood as `matches`, with what its settings file adds; `None` if it has none.
+///
+/// # Errors
+/// As [`Settings::read`], and if no model is named and there are no settings.
+pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Option<Completed>> {
+    let Some((COMMAND, matches)) = matches.subcommand() else { return Ok(None) };
+    let named: Option<&PathBuf> = matches.get_one("settings");
+    if named.is_none() && matches.contains_id("model") {
+        return Ok(None);
+    }
+    let path = named.map_or(Path::new(USUAL), PathBuf::as_path);
+    if named.is_none() && !path.exists() {
+        let message = "found neither a model among the arguments nor this file, expected `poecal calibrate MODEL FILES…`, or settings in \
+                       this folder: `poecal init MODEL` writes them";
+        return Err(Error::new(ErrorKind::Option, message).in_file(path));
+    }
+    let whole = Arguments::command();
+    let Some(command) = whole.find_subcommand(COMMAND) else { return Ok(None) };
+    let keys: Vec<&str> = kept(command).map(|arg| arg.get_id().as_str()).collect();
+    let settings = Settings::read(path, &keys)?;
+    let (mut options, mut files) = (Vec::new(), Vec::new());
+    for arg in kept(command) {
+        let entry = settings.entries.iter().find(|entry| arg.get_id() == entry.key.as_str());
+        if let Some(entry) = entry.filter(|_| !is_replaced(arg, command, matches)) {
+            let values = values(arg, entry, &settings)?;
+            if arg.is_positional() {
+                files.extend(values.into_iter().map(not_an_option));
+            } else {
+                options.extend(values);
+            }
+        }
+    }
+    Ok(Some(Completed { words: joined(typed, options, files), settings }))
+}
+
+impl Completed {
+    /// clap's complaint about a setting, at the setting's place; `None` if it is about something that was typed.
+    pub(crate) fn error(&self, error: &clap::Error) -> Option<Error> {
+        let option = error.get(ContextKind::InvalidArg)?.to_string();
+        let key = option.split([' ', '=']).next()?.trim_start_matches('-').replace('-', "_");
+        let entry = self.settings.entries.iter().find(|entry| entry.key == key)?;
+        let text = |kind| error.get(kind).map(ToString::to_string);
+        let sentence = match (error.source(), text(ContextKind::InvalidValue), text(ContextKind::ValidValue))
+        {
+            (Some(sentence), _, _) => sentence.to_string(),
+            (None, Some(found), Some(expected)) => format!("found `{found}`, expected one of {expected}"),
+            _ => error.kind().to_string(),
+        };
+        Some(self.settings.error(entry, format!("{key}: {sentence}")))
+    }
+}
+
+/// The options that a settings file may have: all that clap knows, so that there is one list of them.
+fn kept(command: &Command) -> impl Iterator<Item = &Arg> {
+    command.get_arguments().filter(|arg| !NOT_KEPT.contains(&arg.get_id().as_str()))
+}
+
+/// Whether the option was typed, or one that excludes it.
+fn is_replaced(arg: &Arg, command: &Command, matches: &ArgMatches) -> bool {
+    let typed = |arg: &Arg| matches.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine);
+    let excluded =
+        |other: &Arg| command.get_arg_conflicts_with(other).iter().any(|it| it.get_id() == arg.get_id());
+    let excludes =
+        |other: &Arg| command.get_arg_conflicts_with(arg).iter().any(|it| it.get_id() == other.get_id());
+    typed(arg) || kept(command).any(|other| typed(other) && (excluded(other) || excludes(other)))
+}
+
+/// A setting as words of a command line.
+fn values(arg: &Arg, entry: &Setting, settings: &Settings) -> Result<Vec<OsString>> {
+    let key = entry.key.as_str();
+    let is_switch = matches!(arg.get_action(), ArgAction::SetTrue);
+    let takes_many = matches!(arg.get_action(), ArgAction::Append)
+        || arg.get_num_args().is_some_and(|range| range.max_values() > 1);
+    let texts = match &entry.value {
+        SettingValue::Switch(on) if is_switch => {
+            let words = on.then(|| format!("--{}", key.replace('_', "-")).into());
+            return Ok(words.into_iter().collect());
+        }
+        _ if is_switch => {
+            return Err(settings.error(entry, format!("found a value for `{key}`, expected true or false")));
+        }
+        SettingValue::One(text) => vec![text],
+        SettingValue::Many(texts) if takes_many => texts.iter().collect(),
+        SettingValue::Many(_) => {
+            return Err(settings.error(entry, format!("found a list for `{key}`, expected one value")));
+        }
+        SettingValue::Switch(_) => {
+            return Err(settings.error(entry, format!("found true or false for `{key}`, expected a value")));
+        }
+    };
+    let folder = settings.path.parent().unwrap_or(Path::new(""));
+    let word = |text: &String| {
+        let is_file = FILES.contains(&key) && !(key == "report" && text == "none");
+        let value = if is_file { folder.join(text).into_os_string() } else { OsString::from(text) };
+        if arg.is_positional() {
+            return value;
+        }
+        let mut word = OsString::from(format!("--{}=", key.replace('_', "-")));
+        word.push(value);
+        word
+    };
+    Ok(texts.into_iter().map(word).collect())
+}
+
+/// A file's name that clap does not take for an option.
+fn not_an_option(name: OsString) -> OsString {
+    if name.to_string_lossy().starts_with('-') { Path::new(".").join(name).into_os_string() } else { name }
+}
+
+/// Options go behind the command, so that they stand before any `--`; files go last, behind those that were typed.
+fn joined(typed: &[OsString], options: Vec<OsString>, files: Vec<OsString>) -> Vec<OsString> {
+    let at = typed.iter().position(|word| word == COMMAND).map_or(typed.len(), |index| index + 1);
+    let (before, after) = typed.split_at(at);
+    [before.to_vec(), options, after.to_vec(), files].concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn the_documented_settings_are_the_options() {
+        let document = include_str!("../../../docs/file-formats.md");
+        let section = document.split("\n## Settings\n").nth(1).unwrap().split("\n## ").next().unwrap();
+        let names =
+            section.lines().filter(|line| line.starts_with("| `")).filter_map(|line| line.split('|').nth(1));
+        let documented: BTreeSet<&str> = names.flat_map(|cell| cell.split('`').skip(1).step_by(2)).collect();
+        let whole = Arguments::command();
+        let mut expected: BTreeSet<&str> =
+            kept(whole.find_subcommand(COMMAND).unwrap()).map(|arg| arg.get_id().as_str()).collect();
+        expected.insert("poecal_settings = 1");
+        assert_eq!(documented, expected);
+        let example = section.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+        let keys: Vec<&str> = expected.into_iter().collect();
+        assert_eq!(Settings::parse(example, "poecal.toml", &keys).unwrap().entries.len(), 6);
+    }
+}

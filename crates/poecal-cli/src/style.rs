@@ -1,0 +1,143 @@
+//! How reports look on a terminal: labels, verdicts and what to look at stand out. Their words are the library's.
+
+use anstyle::{AnsiColor, Style};
+
+/// Of the word before an error.
+pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
+/// Of the word before a warning.
+pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
+const GOOD: Style = AnsiColor::Green.on_default().bold();
+const LABEL: Style = Style::new().bold();
+
+/// Width of the column of labels.
+const LABELS: usize = 14;
+/// Width of lines that are not as wide as a terminal.
+const WIDTH: usize = 80;
+/// Labels of what a reader must look at.
+const LOOK: [&str; 3] = ["outliers", "warnings", "diagnosis"];
+/// How each verdict begins.
+const VERDICTS: [(&str, Style); 3] =
+    [("good", GOOD), ("use inside the sampled range", WARNING), ("do not use", ERROR)];
+
+/// A labelled paragraph as reports have them, in lines of 80 characters where words are not longer.
+pub(crate) fn labelled(label: &str, text: &str) -> String {
+    let mut out = format!("{label:LABELS$}");
+    for (k, line) in text.lines().enumerate() {
+        if k > 0 {
+            out.push_str(&" ".repeat(LABELS));
+        }
+        out.push_str(&broken(line, LABELS, LABELS, WIDTH));
+        out.push('\n');
+    }
+    out
+}
+
+/// A message in lines of a width; the first one begins behind `before` characters, the others are indented by two.
+pub(crate) fn wrapped(message: &str, before: usize, width: usize) -> String {
+    broken(message, before, 2, width)
+}
+
+/// A report whose paragraphs fit a terminal that is narrower than usual. Tables stay as they are: they would tell nothing if broken.
+pub(crate) fn narrowed(text: &str, width: usize) -> String {
+    if width >= WIDTH || width <= 2 * LABELS {
+        return text.to_owned();
+    }
+    let lines = text.lines().map(|line| {
+        let prose = line.get(LABELS..).is_some_and(|text| !text.starts_with(' ') && !text.contains("  "));
+        let continued = line.get(..LABELS).is_some_and(|start| start.trim().is_empty());
+        if prose && (continued || label(line).is_some()) {
+            broken(line, 0, LABELS, width) + "\n"
+        } else {
+            format!("{line}\n")
+        }
+    });
+    lines.collect()
+}
+
+/// A text with line breaks in place of blanks where it would be wider than `width`.
+fn broken(text: &str, before: usize, indent: usize, width: usize) -> String {
+    let (mut out, mut used) = (String::new(), before);
+    for (k, word) in text.split(' ').enumerate() {
+        let length = word.chars().count();
+        if k > 0 && used + 1 + length > width {
+            out.push('\n');
+            out.push_str(&" ".repeat(indent));
+            used = indent;
+        } else if k > 0 {
+            out.push(' ');
+            used += 1;
+        }
+        out.push_str(word);
+        used += length;
+    }
+    out
+}
+
+/// A report with its labels and its verdict in colours.
+pub(crate) fn painted(text: &str) -> String {
+    text.split_inclusive('\n').map(painted_line).collect()
+}
+
+fn painted_line(line: &str) -> String {
+    let Some((label, rest)) = label(line) else { return line.to_owned() };
+    let style = if LOOK.contains(&label) { WARNING } else { LABEL };
+    let gap = rest.len() - rest.trim_start().len();
+    let (gap, rest) = rest.split_at(gap);
+    let verdict = VERDICTS.iter().find(|(words, _)| label == "verdict" && rest.starts_with(words));
+    let rest = match verdict.and_then(|(words, style)| Some((words, style, rest.strip_prefix(words)?))) {
+        Some((words, style, rest)) => format!("{style}{words}{style:#}{rest}"),
+        None => rest.to_owned(),
+    };
+    format!("{style}{label}{style:#}{gap}{rest}")
+}
+
+/// The label that a line begins with, and the rest of the line.
+fn label(line: &str) -> Option<(&str, &str)> {
+    let (label, rest) = line.split_at_checked(LABELS)?;
+    let words = label.trim_end();
+    let is_label = label.ends_with(' ')
+        && words.starts_with(|c: char| c.is_ascii_lowercase())
+        && words.chars().all(|c| c.is_ascii_lowercase() || c == ' ' || c == ',');
+    is_label.then(|| (words, line.get(words.len()..).unwrap_or(rest)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_and_verdicts_stand_out_and_nothing_is_lost() {
+        let report = "robot         elbow\nposition, mm        nominal\n  mean    1\n\nsampled range 71 %\nverdict       do not use: why\n              more\noutliers      1 row\nheld-out error by share\n";
+        let painted = painted(report);
+        assert_eq!(anstream::adapter::strip_str(&painted).to_string(), report);
+        assert!(painted.starts_with("\u{1b}[1mrobot\u{1b}[0m         elbow\n"), "{painted:?}");
+        assert!(painted.contains("\u{1b}[1mposition, mm\u{1b}[0m  "), "{painted:?}");
+        assert!(painted.contains("\u{1b}[1msampled range\u{1b}[0m 71"), "{painted:?}");
+        assert!(painted.contains("\u{1b}[1m\u{1b}[31mdo not use\u{1b}[0m: why"), "{painted:?}");
+        assert!(painted.contains("\u{1b}[1m\u{1b}[33moutliers\u{1b}[0m"), "{painted:?}");
+        assert!(painted.ends_with("\nheld-out error by share\n"), "{painted:?}");
+    }
+
+    #[test]
+    fn paragraphs_fit_a_narrow_terminal_and_tables_stay() {
+        let report = "noise         0.05 mm each component, from the fit\nposition, mm                  nominal    registered    calibrated\n  mean 1\n";
+        let narrow = narrowed(report, 40);
+        let paragraph = "noise         0.05 mm each component,\n              from the fit\n";
+        assert_eq!(
+            narrow,
+            report.replacen("noise         0.05 mm each component, from the fit\n", paragraph, 1)
+        );
+        assert_eq!(narrowed(report, 80), report);
+    }
+
+    #[test]
+    fn lines_break_at_blanks_only() {
+        assert_eq!(wrapped("ab cd efghijkl m", 4, 10), "ab cd\n  efghijkl\n  m");
+        let text = labelled("written", &format!("folder\n{}", ["figure.svg"; 9].join(", ")));
+        assert!(
+            text.starts_with("written       folder\n              figure.svg, ")
+                && text.ends_with("figure.svg\n")
+        );
+        assert!(text.lines().all(|line| line.len() <= 80), "{text}");
+    }
+}

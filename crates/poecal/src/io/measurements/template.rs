@@ -1,0 +1,100 @@
+//! An empty measurement file for a robot, and a table of configurations to measure it in.
+
+use std::fmt::Write as _;
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng as _;
+
+use super::write::{decimal, header, reading_header, reading_units};
+use crate::error::Result;
+use crate::robot::Robot;
+use crate::simulate::{Configurations, Kind};
+
+/// Rows from one visit of the first configuration to the next.
+const ROWS_BETWEEN_VISITS: usize = 20;
+
+/// A measurement file without rows: the columns that this robot needs, and what to do with them as comments.
+pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
+    let names = robot.reading_names();
+    let columns = header(&names, &reading_units(&names, robot)?, kind != Kind::Point)?;
+    let mut text = "# Measurements: a row for each configuration, below the line of column names. Lines that begin with # are left alone.\n\
+         # Units stand in brackets. If your numbers have others, change them there: [rad], [deg], [m], [mm], [um].\n\
+         #\n\
+         # Joints      what the controller shows while the robot stands still, not what it was told to do.\n\
+         # x, y, z     where the device sees the target, in the device's own frame, wherever the device stands.\n"
+        .to_owned();
+    text.push_str(match kind {
+        Kind::Point => "",
+        Kind::Pose => {
+            "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last). Instead, name the columns\n\
+             #             rx,ry,rz[deg] for a rotation vector, or roll,pitch,yaw[deg] for turns about the fixed x, then y, then z.\n"
+        }
+        Kind::Mixed => {
+            "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last); leave all four empty in rows\n\
+             #             where a point was seen.\n"
+        }
+    });
+    text.push_str(
+        "#\n\
+         # Columns to add if you have them, in any place:\n\
+         #   id                   name of the row, kept in the results\n\
+         #   target               name of the tool point that was seen; several in one configuration are several rows. Without this\n\
+         #                        column, the point that was seen becomes the tip of the calibrated model\n\
+         #   set                  fit, or held_out for rows to judge by [default: a random 30 % of the configurations]\n\
+         #   sigma_position[mm]   standard deviation of each of x, y, z, if the device states it [default: estimated]\n",
+    );
+    if kind != Kind::Point {
+        text.push_str("#   sigma_rotation[deg]  standard deviation of the rotation about each axis [default: estimated]\n");
+    }
+    Ok(format!("{text}{columns}\n"))
+}
+
+/// A table of `count` random configurations within the limits (±180° and ±0.5 m where there are none). Every twentieth is the first
+/// again, which shows what repeats and what drifts.
+pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<String> {
+    let names = robot.reading_names();
+    let units = reading_units(&names, robot)?;
+    let mut text = format!(
+        "# {count} configurations to measure, random within the limits of the joints (180 deg, 500 mm to either side where a joint has none).\n\
+         # NOBODY HAS LOOKED WHETHER THE ROBOT COLLIDES in them or on the way, or whether the device sees the target there: go through\n\
+         # them slowly or in simulation first, and replace or leave out what does not work. Every twentieth is the first again, which\n\
+         # shows how well the robot repeats and whether anything drifts. What they would tell: poecal identify\n\
+         {}\n",
+        reading_header(&names, &units)
+    );
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    let configurations = Configurations::new(robot);
+    let first = configurations.random(&mut generator);
+    for row in 1..=count {
+        let again = row == 1 || row % ROWS_BETWEEN_VISITS == 0;
+        let readings = if again { first.clone() } else { configurations.random(&mut generator) };
+        let cells: Vec<String> =
+            readings.iter().zip(&units).map(|(&value, &unit)| decimal(value, unit, None)).collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{}", cells.join(","));
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::{elbow, scara};
+
+    #[test]
+    fn the_columns_are_those_of_the_robot() {
+        let last = |kind| template(&scara(), kind).unwrap().lines().last().unwrap().to_owned();
+        let joints = "joint1[deg],joint2[deg],joint3[mm],joint4[deg]";
+        assert_eq!(last(Kind::Point), format!("{joints},x[mm],y[mm],z[mm]"));
+        assert_eq!(last(Kind::Pose), format!("{joints},x[mm],y[mm],z[mm],qx,qy,qz,qw"));
+    }
+
+    #[test]
+    fn every_twentieth_configuration_is_the_first_again() {
+        let text = plan(&elbow(), 60, 1).unwrap();
+        let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).skip(1).collect();
+        assert_eq!(rows.len(), 60);
+        let first: Vec<usize> = (1..=60).filter(|row| rows[row - 1] == rows[0]).collect();
+        assert_eq!(first, [1, 20, 40, 60]);
+    }
+}

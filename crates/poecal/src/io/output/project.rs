@@ -1,0 +1,113 @@
+//! A folder to start a calibration from.
+
+use std::path::Path;
+
+use super::staging::check_parent;
+use super::{NewFile, Written, write_files};
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::measurements::{plan, template};
+use crate::io::model::{Model, ModelSource};
+use crate::io::source_text;
+use crate::io::urdf::ChainSelection;
+use crate::simulate::Kind;
+
+const SETTINGS: &str = include_str!("project/poecal.toml");
+const README: &str = include_str!("project/README.md");
+
+/// What a project folder is to hold.
+///
+/// ```no_run
+/// use poecal::io::{model::Model, output::{Project, write_project}, urdf::ChainSelection};
+/// use poecal::simulate::Kind;
+/// let chain = ChainSelection::default();
+/// let model = Model::read("robot.urdf", &chain)?;
+/// let project = Project { model: &model, chain: &chain, kind: Kind::Point, count: 60, seed: 1 };
+/// let written = write_project("cell4".as_ref(), &project)?;
+/// assert_eq!(written.files, ["robot.urdf", "measurements.csv", "joints.csv", "poecal.toml", "README.md"]);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Project<'a> {
+    /// The robot's model.
+    pub model: &'a Model,
+    /// The chain that was selected in it.
+    pub chain: &'a ChainSelection,
+    /// What the device sees.
+    pub kind: Kind,
+    /// Number of configurations to suggest.
+    pub count: usize,
+    /// Seed of their choice.
+    pub seed: u64,
+}
+
+impl Project<'_> {
+    fn model_name(&self) -> &'static str {
+        match self.model.source {
+            ModelSource::Urdf(_) => "robot.urdf",
+            ModelSource::Toml => "robot.toml",
+            ModelSource::Calibration(_) => "robot.json",
+        }
+    }
+
+    fn files(&self) -> Result<Vec<NewFile<'static>>> {
+        let robot = &self.model.robot;
+        // As it is, comments and all: not written anew from what was understood.
+        let model = source_text::read(&self.model.path, "a robot model")?;
+        Ok(vec![
+            NewFile::new(self.model_name(), model),
+            NewFile::new("measurements.csv", template(robot, self.kind)?),
+            NewFile::new("joints.csv", plan(robot, self.count, self.seed)?),
+            NewFile::new("poecal.toml", self.filled(SETTINGS)),
+            NewFile::new("README.md", self.filled(README)),
+        ])
+    }
+
+    /// A text with the project's own words in it.
+    fn filled(&self, text: &str) -> String {
+        let links = [("base_link", &self.chain.base_link), ("tip_link", &self.chain.tip_link)];
+        let line = |(key, link): &(&str, &Option<String>)| match link {
+            Some(link) => format!("{key} = {}\n", toml::Value::String(link.clone())),
+            None => String::new(),
+        };
+        let words = |(key, link): &(&str, &Option<String>)| match link {
+            Some(link) => format!(" --{} '{}'", key.replace('_', "-"), link.replace('\'', "'\\''")),
+            None => String::new(),
+        };
+        let orientation = if self.kind == Kind::Point { "" } else { ROTATION_NOISE };
+        let name: String = self.model.robot.name.replace(char::is_control, "?");
+        let replaced = [
+            ("{model}", self.model_name().to_owned()),
+            ("{chain}\n", links.iter().map(line).collect()),
+            ("{chain options}", links.iter().map(words).collect()),
+            ("{rotation noise}\n", orientation.to_owned()),
+            ("{kind}", self.kind.word().to_owned()),
+            ("{count}", self.count.to_string()),
+            ("{robot}", name),
+        ];
+        replaced.iter().fold(text.to_owned(), |text, (place, words)| text.replace(place, words))
+    }
+}
+
+const ROTATION_NOISE: &str =
+    "# And of the measured rotation about each axis.\n#sigma_rotation = \"0.01deg\"\n\n";
+
+/// Writes a project folder: the model as it is, an empty measurement file with this robot's columns, configurations to measure,
+/// settings for `poecal calibrate`, and what to do with them. The folder may exist; files in it are never replaced, since somebody
+/// may have filled them in.
+///
+/// # Errors
+/// [`ErrorKind::File`] if one of the files exists or cannot be written; [`ErrorKind::Model`] if a joint has the name of a measured
+/// column. Nothing is left behind then.
+pub fn write_project(folder: &Path, project: &Project) -> Result<Written> {
+    if folder.exists() && !folder.is_dir() {
+        let message = "found a file, expected a folder for the project: choose another with --out";
+        return Err(Error::new(ErrorKind::File, message).in_file(folder));
+    }
+    check_parent(folder)?;
+    let files = project.files()?;
+    if let Some(taken) = files.iter().map(|file| folder.join(&file.name)).find(|path| path.exists()) {
+        let message = "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out";
+        return Err(Error::new(ErrorKind::File, message).in_file(taken));
+    }
+    write_files(folder, &files, &[], Vec::new())
+}

@@ -1,0 +1,213 @@
+//! Settings files: the options of a command as TOML, so that they need not be typed each time (docs/file-formats.md, "Settings").
+
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::source_text::{self, position};
+use crate::error::{Error, ErrorKind, Result, nearest_or_all};
+
+/// The key that says of which version the file is.
+const VERSION_KEY: &str = "poecal_settings";
+
+/// The value of a setting.
+///
+/// ```
+/// use poecal::io::settings::{SettingValue, Settings};
+/// let text = "poecal_settings = 1\nmeasurements = ['monday.csv', 'tuesday.csv']\n";
+/// let settings = Settings::parse(text, "poecal.toml", &["measurements"])?;
+/// assert!(matches!(&settings.entries[0].value, SettingValue::Many(files) if files.len() == 2));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SettingValue {
+    /// A text or a number, as it would be typed.
+    One(String),
+    /// Several of them.
+    Many(Vec<String>),
+    /// `true` or `false`.
+    Switch(bool),
+}
+
+/// One line of a settings file.
+///
+/// ```
+/// use poecal::io::settings::{SettingValue, Settings};
+/// let settings = Settings::parse("poecal_settings = 1\nseed = 3\n", "poecal.toml", &["seed"])?;
+/// assert_eq!(settings.entries[0].value, SettingValue::One("3".to_owned()));
+/// assert_eq!((settings.entries[0].line, settings.entries[0].column), (2, 8));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// What is set.
+    pub key: String,
+    /// To what.
+    pub value: SettingValue,
+    /// Line of the value, from 1.
+    pub line: usize,
+    /// Column of the value, from 1.
+    pub column: usize,
+}
+
+/// A settings file.
+///
+/// ```
+/// use poecal::io::settings::Settings;
+/// let known = ["model", "sigma_position"];
+/// let error = Settings::parse("poecal_settings = 1\nsigma-position = '1mm'", "poecal.toml", &known).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "poecal.toml:2:1: found the key `sigma-position`, expected a setting: the nearest is `sigma_position`"
+/// );
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// The file, as the user named it.
+    pub path: PathBuf,
+    /// What it says, in the order of its lines.
+    pub entries: Vec<Setting>,
+}
+
+impl Settings {
+    /// Reads a settings file, which may have these keys.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] if it cannot be read, else as [`Settings::parse`].
+    pub fn read(path: impl AsRef<Path>, keys: &[&str]) -> Result<Self> {
+        let path = path.as_ref();
+        Settings::parse(
+            &source_text::read(path, "settings (TOML, as `poecal init` writes them)")?,
+            path,
+            keys,
+        )
+    }
+
+    /// Settings from their text; `path` is what messages call it.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, is not of this version, or has a key that is not known
+    /// or a value of a wrong kind.
+    pub fn parse(text: &str, path: impl AsRef<Path>, keys: &[&str]) -> Result<Self> {
+        let path = path.as_ref();
+        let at = |offset: usize, message: String| {
+            let (line, column) = position(text, offset);
+            Error::new(ErrorKind::Syntax, message).at(path, line, column)
+        };
+        let table = DeTable::parse(text).map_err(|error| {
+            at(error.span().map_or(0, |span| span.start), error.message().trim().replace('\n', ", "))
+        })?;
+        let (mut versioned, mut entries) = (false, Vec::new());
+        for (key, value) in table.get_ref() {
+            let start = value.span().start;
+            if key.get_ref() == VERSION_KEY {
+                versioned = plain(value).is_some_and(|number| number == "1");
+                continue;
+            }
+            if !keys.contains(&key.get_ref().as_ref()) {
+                let near = nearest_or_all(key.get_ref(), keys);
+                let message = format!("found the key `{}`, expected a setting: {near}", key.get_ref());
+                return Err(at(key.span().start, message));
+            }
+            let value = setting(value).ok_or_else(|| {
+                let message = format!(
+                    "found {} for `{}`, expected a text, a number, true, false, or a list of texts or numbers",
+                    value.get_ref().type_str(),
+                    key.get_ref()
+                );
+                at(start, message)
+            })?;
+            let (line, column) = position(text, start);
+            entries.push(Setting { key: key.get_ref().to_string(), value, line, column });
+        }
+        if !versioned {
+            let message = format!(
+                "found no `{VERSION_KEY} = 1`, expected settings with this line, the version of their form"
+            );
+            return Err(Error::new(ErrorKind::Syntax, message).in_file(path));
+        }
+        entries.sort_by_key(|entry| (entry.line, entry.column));
+        Ok(Settings { path: path.to_path_buf(), entries })
+    }
+
+    /// A complaint about one of the settings, at its place.
+    #[must_use]
+    pub fn error(&self, entry: &Setting, message: impl Into<String>) -> Error {
+        Error::new(ErrorKind::Option, message).at(&self.path, entry.line, entry.column)
+    }
+}
+
+fn setting(value: &Spanned<DeValue>) -> Option<SettingValue> {
+    match value.get_ref() {
+        DeValue::Boolean(on) => Some(SettingValue::Switch(*on)),
+        DeValue::Array(items) => items.iter().map(plain).collect::<Option<_>>().map(SettingValue::Many),
+        _ => plain(value).map(SettingValue::One),
+    }
+}
+
+/// A text or a number as it would be typed.
+fn plain(value: &Spanned<DeValue>) -> Option<String> {
+    match value.get_ref() {
+        DeValue::String(text) => Some(text.to_string()),
+        DeValue::Integer(number) if number.radix() == 10 => Some(number.as_str().to_owned()),
+        DeValue::Float(number) => Some(number.as_str().to_owned()),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KEYS: [&str; 4] = ["model", "measurements", "held_out", "force"];
+
+    fn refused(text: &str) -> String {
+        Settings::parse(text, "s.toml", &KEYS).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn values_are_as_they_would_be_typed() {
+        let text = "# mine\nforce = true\nmeasurements = [\"a.csv\", 'b c.csv']\nheld_out = 0.30\npoecal_settings = 1\n";
+        let settings = Settings::parse(text, "s.toml", &KEYS).unwrap();
+        let values: Vec<_> =
+            settings.entries.iter().map(|entry| (entry.key.as_str(), &entry.value)).collect();
+        let files = SettingValue::Many(vec!["a.csv".to_owned(), "b c.csv".to_owned()]);
+        assert_eq!(
+            values,
+            [
+                ("force", &SettingValue::Switch(true)),
+                ("measurements", &files),
+                ("held_out", &SettingValue::One("0.30".to_owned())),
+            ]
+        );
+        let error = settings.error(&settings.entries[2], "found it");
+        assert_eq!(error.to_string(), "s.toml:4:12: found it");
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_place() {
+        assert_eq!(
+            refused("model = 'robot.urdf'\n"),
+            "s.toml: found no `poecal_settings = 1`, expected settings with this line, the version of their form"
+        );
+        assert_eq!(
+            refused("poecal_settings = 1\nmodle = 'robot.urdf'\n"),
+            "s.toml:2:1: found the key `modle`, expected a setting: the nearest is `model`"
+        );
+        assert_eq!(
+            refused("poecal_settings = 1\n[model]\n"),
+            "s.toml:2:1: found table for `model`, expected a text, a number, true, false, or a list of texts or numbers"
+        );
+        assert_eq!(
+            refused("poecal_settings = 1\nheld_out = [[1]]\n"),
+            "s.toml:2:12: found array for `held_out`, expected a text, a number, true, false, or a list of texts or numbers"
+        );
+        assert!(refused("poecal_settings = 1\nmodel = \n").starts_with("s.toml:2:"));
+        assert!(
+            refused("poecal_settings = 1\nmodel = 'a'\nmodel = 'b'\n")
+                .starts_with("s.toml:3:1: duplicate key")
+        );
+        assert!(refused("poecal_settings = 2\n").contains("poecal_settings = 1"));
+    }
+}

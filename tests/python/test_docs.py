@@ -1,0 +1,45 @@
+"""What the documentation says to type is typed, and prints what it shows."""
+
+import subprocess
+import sys
+
+import pytest
+from program import ROOT, program
+from snippets import Counts, Page, matches, plain
+
+PAGES = sorted(
+    path
+    for pattern in ["*.md", "docs/*.md", "docs/lou2009/*.md", "examples/**/*.md", "validation/*.md", "benches/**/*.md"]
+    for path in ROOT.glob(pattern)
+)
+COUNTS = Counts()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_block_does_what_the_page_says(page, tmp_path):
+    Page(page, tmp_path, COUNTS).run()
+
+
+def test_blocks_are_counted(capsys):
+    with capsys.disabled():
+        print(
+            f"\ndocumentation: {COUNTS.run} blocks run, {COUNTS.compared} outputs compared, {COUNTS.written} files written, "
+            f"{COUNTS.shown} shown only, {len(COUNTS.excused)} not run:"
+        )
+        for reason in COUNTS.excused:
+            print(f"documentation: not run: {reason}")
+    counted = COUNTS.run + COUNTS.compared + COUNTS.written + COUNTS.shown + len(COUNTS.excused)
+    assert counted == COUNTS.fences
+
+
+def test_the_page_of_commands_is_what_the_program_says():
+    script = ROOT / "scripts/docs/commands.py"
+    page = subprocess.run([sys.executable, script, program()], capture_output=True, text=True, check=True).stdout
+    shown = (ROOT / "docs/commands.md").read_text(encoding="utf-8")
+    assert page == shown, f"make it anew: python {script.relative_to(ROOT)} {program()} > docs/commands.md"
+
+
+def test_dots_stand_for_anything():
+    assert matches("a … c\n…\nz", "a b c\n1\n2\nz") and matches("a\n…\nz", "a\nz")
+    assert not matches("a … c", "a b d") and not matches("a", "a\nb")
+    assert plain("within 2.1e-15 m  \n") == "within # m" and plain("4.9e3 1.2e-3") == "4.9e3 1.2e-3"
