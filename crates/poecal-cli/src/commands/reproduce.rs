@@ -1,15 +1,14 @@
 //! `poecal reproduce`: the experiment of a paper and what became of its claims, or what gross errors do.
 
-use std::process::ExitCode;
-
 use poecal::io::output;
 use poecal::reproduce::{Options, breakdown, lou2009};
 use poecal::{Result, report};
 
+use crate::DONE;
 use crate::args::{Experiment, Reproduce};
 use crate::console::Console;
 
-pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<ExitCode> {
+pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> {
     output::check_folder(&arguments.out, arguments.force)?;
     let options = Options {
         trials: arguments.trials as usize,
@@ -29,5 +28,5 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<Exit
     let written = output::write_reproduction(&arguments.out, arguments.force, &files)?;
     console.say(&words)?;
     console.say(&format!("written       {}: {}\n", written.folder.display(), written.files.join(", ")))?;
-    Ok(ExitCode::SUCCESS)
+    Ok(DONE)
 }

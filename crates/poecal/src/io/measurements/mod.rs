@@ -25,7 +25,7 @@ pub use fit_where::FitWhere;
 pub use joints::{JointsTable, read_joints};
 pub use mapping::ColumnMap;
 pub use number::DecimalSign;
-pub use read::read;
+pub use read::{parse, read};
 pub use text::Separator;
 pub use understanding::{ColumnUnderstanding, FileUnderstanding, UnitSource};
 pub use units::{Quantity, Unit};

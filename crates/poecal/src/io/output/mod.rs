@@ -5,7 +5,7 @@ mod reproduction;
 mod simulation;
 mod staging;
 
-pub use calibration::{REPORT, Results, write};
+pub use calibration::{REPORT, Results, write, write_robot};
 pub use reproduction::write_reproduction;
 pub use simulation::{Session, write_simulation};
 pub use staging::{check_file, check_folder, write_file};
