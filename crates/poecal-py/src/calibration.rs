@@ -278,14 +278,15 @@ impl Calibration {
     ///
     /// All is written or nothing, and the models are read back and compared with the fit. `report` may be False, or another file.
     /// Gives the names of the files.
-    #[pyo3(signature = (folder, *, force=false, report=ReportPlace::Among(true)))]
+    #[pyo3(signature = (folder, *, force=false, report=None), text_signature = "($self, folder, *, force=False, report=True)")]
     fn write(
         &self,
         py: Python<'_>,
         folder: PathBuf,
         force: bool,
-        report: ReportPlace,
+        report: Option<ReportPlace>,
     ) -> PyResult<Vec<String>> {
+        let report = report.unwrap_or(ReportPlace::Among(true));
         let (file, residuals) = (self.file()?, self.residuals()?);
         let (robot, model) = (self.as_fitted(), &self.nominal.model);
         let written = py.detach(|| {
@@ -431,7 +432,7 @@ impl Calibration {
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<bool> {
         let Ok(other) = other.cast::<Calibration>() else { return Ok(false) };
         let other = other.get();
-        let residuals = |it: &Calibration| it.residuals().ok().cloned();
+        let residuals = |it: &Calibration| it.residuals().ok().map(Residuals::text);
         Ok(self.file()? == other.file()?
             && self.nominal.model == other.nominal.model
             && residuals(self) == residuals(other))
