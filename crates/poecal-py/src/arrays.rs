@@ -87,7 +87,7 @@ fn converted<'py>(
     let array = numpy.call_method1("ascontiguousarray", (array, "float64"))?;
     // A number alone becomes an array of one.
     let array = if value.getattr("__len__").is_err() { array.call_method1("reshape", ((),))? } else { array };
-    Ok(array.extract::<PyReadonlyArrayDyn<'_, f64>>()?)
+    array.extract().map_err(Into::into)
 }
 
 /// The argument `name` as one pose, an array of shape (4, 4).
@@ -106,7 +106,8 @@ pub(crate) fn pose_of(numbers: &[f64]) -> Result<Pose, String> {
     }
     let rotation = Matrix3::from_fn(at);
     let off = (rotation.transpose() * rotation - Matrix3::identity()).norm();
-    if !(off <= ROTATION_TOLERANCE && rotation.determinant() > 0.0) {
+    let is_rotation = off <= ROTATION_TOLERANCE && rotation.determinant() > 0.0;
+    if !is_rotation {
         return Err(format!(
             "found a matrix whose upper left part is no rotation (RᵀR is {off:.1e} from the identity, determinant {:.4}), expected one",
             rotation.determinant()

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use poecal::calibration::{CalibrationOptions, Stage, calibrate_with_progress, settle_sets};
 use poecal::io::calibration_file::Inputs;
@@ -84,7 +85,13 @@ pub(crate) fn calibrate(
         }
     };
     let nominal = &robot.model.robot;
-    let found = py.detach(|| calibrate_with_progress(nominal, &data, &options, &mut tell));
+    let mut took = Duration::ZERO;
+    let found = py.detach(|| {
+        let start = Instant::now();
+        let found = calibrate_with_progress(nominal, &data, &options, &mut tell);
+        took = start.elapsed();
+        found
+    });
     if let Some(raised) = raised {
         return Err(raised);
     }
@@ -96,7 +103,7 @@ pub(crate) fn calibrate(
             warnings: Vec::new(),
         }),
     };
-    Ok(Calibration::of_fit(robot.same(), found.map_err(raise)?, data, inputs))
+    Ok(Calibration::of_fit(robot.same(), found.map_err(raise)?, data, inputs, took))
 }
 
 /// The rows to fit and to hold out, joined and settled.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use numpy::PyArray2;
 use poecal::calibration;
@@ -49,11 +50,10 @@ enum Found {
         calibration: Box<calibration::Calibration>,
         data: Arc<MeasurementFile>,
         inputs: Inputs,
+        took: Duration,
     },
     /// From files or a pickle: the calibrated robot with its targets as fitted; file, residuals and summary are there.
-    Written {
-        robot: Box<poecal::robot::Robot>,
-    },
+    Written { robot: Box<poecal::robot::Robot> },
 }
 
 /// What rebuilds a calibration exactly.
@@ -82,8 +82,9 @@ impl Calibration {
         calibration: calibration::Calibration,
         data: Arc<MeasurementFile>,
         inputs: Inputs,
+        took: Duration,
     ) -> Self {
-        let found = Found::Fit { calibration: Box::new(calibration), data, inputs };
+        let found = Found::Fit { calibration: Box::new(calibration), data, inputs, took };
         Calibration {
             nominal,
             found,
@@ -121,7 +122,7 @@ impl Calibration {
 
     pub(crate) fn file(&self) -> PyResult<&CalibrationFile> {
         match &self.found {
-            Found::Fit { calibration, data, inputs } => {
+            Found::Fit { calibration, data, inputs, .. } => {
                 Ok(self.file.get_or_init(|| CalibrationFile::new(calibration, &data.data, inputs.clone())))
             }
             Found::Written { .. } => self.file.get().ok_or_else(|| argument("calibration", "found no file")),
@@ -379,6 +380,15 @@ impl Calibration {
         frame: &str,
     ) -> PyResult<Findings> {
         identified(py, self.calibrated()?, joints, kind, sigma_position_mm, sigma_rotation_deg, frame)
+    }
+
+    /// Seconds that the library took for the fit; None if it was read. What a call took beyond them is Python's.
+    #[getter]
+    fn library_seconds(&self) -> Option<f64> {
+        match &self.found {
+            Found::Fit { took, .. } => Some(took.as_secs_f64()),
+            Found::Written { .. } => None,
+        }
     }
 
     fn __str__(&self) -> String {

@@ -158,7 +158,7 @@ fn points(
             return Ok(Measurement::Point(PointMeasurement { position }));
         };
         let norm = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
-        if !((norm - 1.0).abs() <= QUATERNION_TOLERANCE) {
+        if norm.is_nan() || (norm - 1.0).abs() > QUATERNION_TOLERANCE {
             let message = format!(
                 "row {row}: found a quaternion of norm {norm:.4}, expected 1 to within {QUATERNION_TOLERANCE}"
             );

@@ -54,10 +54,10 @@ fn cell(value: &Bound<'_, PyAny>) -> PyResult<String> {
     if let Ok(text) = value.cast::<PyString>() {
         return Ok(quoted(&text.to_cow()?));
     }
-    if value.is_instance_of::<PyFloat>() || value.hasattr("dtype")? {
-        if let Ok(number) = value.extract::<f64>() {
-            return Ok(if number.is_nan() { String::new() } else { format!("{number:?}") });
-        }
+    if (value.is_instance_of::<PyFloat>() || value.hasattr("dtype")?)
+        && let Ok(number) = value.extract::<f64>()
+    {
+        return Ok(if number.is_nan() { String::new() } else { format!("{number:?}") });
     }
     let text = value.str()?;
     let text = text.to_cow()?;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use numpy::{PyArray2, PyArray3};
+use numpy::{PyArray2, PyArray3, PyArrayMethods as _};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
 use poecal::io::output::write_file;
@@ -247,6 +247,22 @@ impl Robot {
             .detach(|| predicted(model, &joints.readings, PredictionFrame::Base, target, false))
             .map_err(raise)?;
         poses(py, &found.poses, joints.single)
+    }
+
+    /// Frames of the joints in the base frame, as a drawing of the robot needs them.
+    ///
+    /// `joints` as for `forward_kinematics`; the result is of shape (m, n, 4, 4), or (n, 4, 4) for one configuration of shape (n,).
+    fn joint_poses<'py>(&self, py: Python<'py>, joints: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let robot = self.robot();
+        let joints = Joints::of(joints, robot)?;
+        let configurations = joints.readings.chunks_exact(robot.reading_names().len().max(1));
+        let rows = configurations.len();
+        let frames: Vec<_> = configurations.flat_map(|readings| robot.joint_poses(readings)).collect();
+        let frames = pose_arrays(py, &frames)?;
+        if joints.single {
+            return frames.into_bound_py_any(py);
+        }
+        frames.reshape([rows, robot.joints.len(), 4, 4])?.into_bound_py_any(py)
     }
 
     /// The robot's name.

@@ -62,6 +62,17 @@ def test_one_configuration_gives_one_pose():
     assert robot.forward_kinematics(np.empty((0, 6))).shape == (0, 4, 4)
 
 
+def test_joint_frames_are_those_of_the_chain():
+    robot, joints = elbow(), configurations(7)
+    frames = robot.joint_poses(joints)
+    assert frames.shape == (7, 6, 4, 4) and robot.joint_poses(joints[0]).shape == (6, 4, 4)
+    for q, of_row in zip(joints, frames, strict=True):
+        pose = np.eye(4)
+        for screw, at_zero, value, frame in zip(robot.screws, robot.joint_frames, q, of_row, strict=True):
+            pose = pose @ exponential(hat(screw) * value)
+            assert np.abs(frame - pose @ at_zero).max() < 1e-11
+
+
 def test_screws_make_the_same_robot_again():
     robot = elbow()
     again = poecal.Robot.from_screws(robot.screws, robot.home, limits=robot.limits, names=robot.joint_names)
