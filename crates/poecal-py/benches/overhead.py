@@ -27,12 +27,14 @@ def main() -> None:
     made = poecal.simulate(robot, count=rows)
     measurements = made.measurements
     joints, poses = measurements.joints, measurements.poses
-    whole, library, arrays = [], [], []
+    whole: list[float] = []
+    library: list[float] = []
+    arrays: list[float] = []
     for _ in range(REPEATS):
         start = time.perf_counter()
         found = poecal.calibrate(robot, measurements)
         calibrated = time.perf_counter()
-        inside = found.library_seconds
+        inside = found.library_seconds or 0.0
         released = time.perf_counter()
         del found
         end = time.perf_counter()

@@ -1,13 +1,14 @@
 //! A finished calibration.
 
+mod content;
+
+use content::{Found, part};
+
 use std::path::PathBuf;
-use std::sync::{Arc, OnceLock};
-use std::time::Duration;
+use std::sync::OnceLock;
 
 use numpy::PyArray2;
-use poecal::calibration;
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::measurements::MeasurementFile;
+use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
@@ -16,11 +17,10 @@ use poecal::report;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
-use serde::{Deserialize, Serialize};
 
 use crate::accuracy::{Accuracy, Verdict};
 use crate::arrays::{Joints, pose_array};
-use crate::errors::{argument, raise};
+use crate::errors::raise;
 use crate::findings::{Findings, identified};
 use crate::html::Html;
 use crate::measurements::Measurements;
@@ -38,32 +38,7 @@ pub(crate) struct Calibration {
     /// The robot as delivered, after whose file models are written.
     nominal: Robot,
     found: Found,
-    file: OnceLock<CalibrationFile>,
-    residuals: OnceLock<Option<Residuals>>,
-    summary: OnceLock<String>,
     calibrated: OnceLock<Robot>,
-}
-
-/// What all else follows from.
-enum Found {
-    Fit {
-        calibration: Box<calibration::Calibration>,
-        data: Arc<MeasurementFile>,
-        inputs: Inputs,
-        took: Duration,
-    },
-    /// From files or a pickle: the calibrated robot with its targets as fitted; file, residuals and summary are there.
-    Written { robot: Box<poecal::robot::Robot> },
-}
-
-/// What rebuilds a calibration exactly.
-#[derive(Serialize, Deserialize)]
-struct State {
-    nominal: Vec<u8>,
-    robot: poecal::robot::Robot,
-    file: String,
-    residuals: Option<String>,
-    summary: String,
 }
 
 /// Where a report goes: among the results or not, or to a file.
@@ -71,105 +46,6 @@ struct State {
 enum ReportPlace {
     Among(bool),
     File(PathBuf),
-}
-
-/// The name that stands for a file where there is none.
-const UNWRITTEN: &str = "calibration.json";
-
-impl Calibration {
-    pub(crate) fn of_fit(
-        nominal: Robot,
-        calibration: calibration::Calibration,
-        data: Arc<MeasurementFile>,
-        inputs: Inputs,
-        took: Duration,
-    ) -> Self {
-        let found = Found::Fit { calibration: Box::new(calibration), data, inputs, took };
-        Calibration {
-            nominal,
-            found,
-            file: OnceLock::new(),
-            residuals: OnceLock::new(),
-            summary: OnceLock::new(),
-            calibrated: OnceLock::new(),
-        }
-    }
-
-    fn written(
-        nominal: Robot,
-        robot: poecal::robot::Robot,
-        file: CalibrationFile,
-        residuals: Option<Residuals>,
-        summary: String,
-    ) -> Self {
-        Calibration {
-            nominal,
-            found: Found::Written { robot: Box::new(robot) },
-            file: file.into(),
-            residuals: residuals.into(),
-            summary: summary.into(),
-            calibrated: OnceLock::new(),
-        }
-    }
-
-    pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
-        let State { nominal, robot, file, residuals, summary } = pickle::value(state)?;
-        let file = CalibrationFile::parse(&file, UNWRITTEN).map_err(raise)?;
-        let residuals =
-            residuals.map(|text| Residuals::parse(&text, "residuals.csv")).transpose().map_err(raise)?;
-        Ok(Calibration::written(Robot::of_state(&nominal)?, robot, file, residuals, summary))
-    }
-
-    pub(crate) fn file(&self) -> PyResult<&CalibrationFile> {
-        match &self.found {
-            Found::Fit { calibration, data, inputs, .. } => {
-                Ok(self.file.get_or_init(|| CalibrationFile::new(calibration, &data.data, inputs.clone())))
-            }
-            Found::Written { .. } => self.file.get().ok_or_else(|| argument("calibration", "found no file")),
-        }
-    }
-
-    fn residuals(&self) -> PyResult<&Residuals> {
-        let of_fit = || match &self.found {
-            Found::Fit { calibration, data, .. } => Some(Residuals::of(&data.data, calibration)),
-            Found::Written { .. } => None,
-        };
-        self.residuals.get_or_init(of_fit).as_ref().ok_or_else(|| {
-            argument("residuals", "found no residuals.csv beside the calibration.json, expected it: name it in Calibration.read")
-        })
-    }
-
-    fn summary(&self) -> &str {
-        self.summary.get_or_init(|| match &self.found {
-            Found::Fit { calibration, data, .. } => report::summary(calibration, &data.data),
-            Found::Written { .. } => String::new(),
-        })
-    }
-
-    /// The calibrated robot with its targets, to the last digit as fitted.
-    fn as_fitted(&self) -> poecal::robot::Robot {
-        match &self.found {
-            Found::Fit { calibration, .. } => calibration.robot_with_targets(),
-            Found::Written { robot } => (**robot).clone(),
-        }
-    }
-
-    /// The calibrated robot as its file says, which every prediction is made by.
-    pub(crate) fn calibrated(&self) -> PyResult<&Robot> {
-        if let Some(robot) = self.calibrated.get() {
-            return Ok(robot);
-        }
-        let file = self.file()?.clone();
-        let robot = file.robot().map_err(raise)?;
-        let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path: UNWRITTEN.into() };
-        Ok(self.calibrated.get_or_init(|| Robot::new(model)))
-    }
-
-    /// A part of the file as Python's dicts and lists.
-    fn part<'py>(&self, py: Python<'py>, part: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
-        let text = report::json(part).map_err(raise)?;
-        py.import("json")?.call_method1("loads", (text,))
-    }
 }
 
 #[pymethods]
@@ -207,67 +83,61 @@ impl Calibration {
 
     /// Errors of the nominal, registered and calibrated model on fitted and held-out rows.
     #[getter]
-    fn accuracy(&self) -> PyResult<Accuracy> {
-        match &self.found {
-            Found::Fit { calibration, .. } => Ok(calibration.accuracy.into()),
-            Found::Written { .. } => Ok(self.file()?.accuracy.into()),
-        }
+    fn accuracy(&self) -> Accuracy {
+        self.errors().into()
     }
 
     /// How far it may be used; None of a file that states none.
     #[getter]
-    fn verdict(&self) -> PyResult<Option<Verdict>> {
-        match &self.found {
-            Found::Fit { calibration, .. } => Ok(Some(Verdict(calibration.verdict.clone()))),
-            Found::Written { .. } => Ok(self.file()?.verdict.clone().map(Verdict)),
-        }
+    fn verdict(&self) -> Option<Verdict> {
+        self.judged().cloned().map(Verdict)
     }
 
     /// Whether the fit reached an optimum.
     #[getter]
-    fn converged(&self) -> PyResult<bool> {
-        Ok(self.file()?.solver.converged)
+    fn converged(&self) -> bool {
+        self.file().solver.converged
     }
 
     /// What makes the result doubtful, and mistakes that the measurements show, a sentence each.
     #[getter]
-    fn warnings(&self) -> PyResult<Vec<String>> {
-        let file = self.file()?;
-        Ok(file.warnings.iter().chain(file.diagnosis.iter().map(|found| &found.statement)).cloned().collect())
+    fn warnings(&self) -> Vec<String> {
+        let file = self.file();
+        file.warnings.iter().chain(file.diagnosis.iter().map(|found| &found.statement)).cloned().collect()
     }
 
     /// Pose of the measuring device in the base, shape (4, 4).
     #[getter]
     fn base_from_device<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        pose_array(py, &self.file()?.base_from_device().map_err(raise)?)
+        pose_array(py, &self.file().base_from_device().map_err(raise)?)
     }
 
     /// Each joint's correction, its uncertainty and its worth: `corrections` of calibration.json.
     #[getter]
     fn corrections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, &self.file()?.corrections)
+        part(py, &self.file().corrections)
     }
 
     /// Errors to expect of predictions: `uncertainty` of calibration.json; None if there are no more residuals than unknowns.
     #[getter]
     fn uncertainty<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, &self.file()?.uncertainty)
+        part(py, &self.file().uncertainty)
     }
 
     /// What the measurements can tell: `identifiability` of calibration.json.
     #[getter]
     fn identifiability<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, &self.file()?.identifiability)
+        part(py, &self.file().identifiability)
     }
 
     /// The whole calibration.json as dicts and lists.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, self.file()?)
+        part(py, self.file())
     }
 
     /// The text of calibration.json.
     fn to_json(&self) -> PyResult<String> {
-        self.file()?.to_text().map_err(raise)
+        self.file().to_text().map_err(raise)
     }
 
     /// The text of residuals.csv: what each row leaves.
@@ -288,7 +158,7 @@ impl Calibration {
         report: Option<ReportPlace>,
     ) -> PyResult<Vec<String>> {
         let report = report.unwrap_or(ReportPlace::Among(true));
-        let (file, residuals) = (self.file()?, self.residuals()?);
+        let (file, residuals) = (self.file(), self.residuals()?);
         let (robot, model) = (self.as_fitted(), &self.nominal.model);
         let written = py.detach(|| {
             output::check_folder(&folder, force)?;
@@ -317,7 +187,7 @@ impl Calibration {
 
     /// Writes the report, one HTML file, over an old one.
     fn report(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let (file, residuals) = (self.file()?, self.residuals()?);
+        let (file, residuals) = (self.file(), self.residuals()?);
         py.detach(|| output::write_file(&path, &report::calibration_page(file, residuals)?)).map_err(raise)
     }
 
@@ -359,7 +229,7 @@ impl Calibration {
         refit_tool: bool,
     ) -> PyResult<Findings> {
         measurements.check_robot(self.calibrated()?)?;
-        let file = self.file()?;
+        let file = self.file();
         let data = measurements.data();
         let judgement = py.detach(|| file.judge(data, refit_frame, refit_tool)).map_err(raise)?;
         let names = measurements.source.names.join(", ");
@@ -385,31 +255,28 @@ impl Calibration {
     /// Seconds that the library took for the fit; None if it was read. What a call took beyond them is Python's.
     #[getter]
     fn library_seconds(&self) -> Option<f64> {
-        match &self.found {
-            Found::Fit { took, .. } => Some(took.as_secs_f64()),
-            Found::Written { .. } => None,
-        }
+        self.seconds()
     }
 
     fn __str__(&self) -> String {
         self.summary().to_owned()
     }
 
-    fn __repr__(&self) -> PyResult<String> {
-        let file = self.file()?;
+    fn __repr__(&self) -> String {
+        let file = self.file();
         let (set, name) = match &file.accuracy.held_out {
             Some(set) => (set, "held-out"),
             None => (&file.accuracy.training, "fitted"),
         };
         let verdict = file.verdict.as_ref().map_or("", |verdict| verdict.level.words());
-        Ok(format!(
+        format!(
             "<poecal.Calibration of {}: {:.4} mm (RMS) on {} {name} rows, nominal {:.4} mm; verdict {verdict}>",
             file.robot.name, set.calibrated.position_mm.rms, set.count, set.nominal.position_mm.rms
-        ))
+        )
     }
 
-    fn _repr_html_(&self) -> PyResult<String> {
-        let file = self.file()?;
+    fn _repr_html_(&self) -> String {
+        let file = self.file();
         let mut html = Html::new();
         if let Some(verdict) = &file.verdict {
             html.paragraph(&format!(
@@ -433,29 +300,23 @@ impl Calibration {
                 html.row(&[&format!("rotation, {name}"), &count, &a, &b, &c]);
             }
         }
-        for warning in self.warnings()? {
+        for warning in self.warnings() {
             html.paragraph(&format!("warning: {warning}"));
         }
-        Ok(html.finish())
+        html.finish()
     }
 
-    fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<bool> {
-        let Ok(other) = other.cast::<Calibration>() else { return Ok(false) };
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        let Ok(other) = other.cast::<Calibration>() else { return false };
         let other = other.get();
         let residuals = |it: &Calibration| it.residuals().ok().map(Residuals::text);
-        Ok(self.file()? == other.file()?
+        self.file() == other.file()
             && self.nominal.model == other.nominal.model
-            && residuals(self) == residuals(other))
+            && residuals(self) == residuals(other)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let state = State {
-            nominal: self.nominal.state()?,
-            robot: self.as_fitted(),
-            file: self.to_json()?,
-            residuals: self.residuals().ok().map(Residuals::text),
-            summary: self.summary().to_owned(),
-        };
+        let state = self.state()?;
         pickle::reduce(py, "_calibration", PyBytes::new(py, &pickle::bytes(&state)?))
     }
 

@@ -84,7 +84,7 @@ mod _poecal {
 
     #[pyfunction]
     fn _robot(state: &[u8]) -> PyResult<Robot> {
-        Robot::of_state(state)
+        Robot::of_state(crate::pickle::value(state)?)
     }
 
     #[pyfunction]
@@ -94,7 +94,7 @@ mod _poecal {
 
     #[pyfunction]
     fn _calibration(state: &[u8]) -> PyResult<Calibration> {
-        Calibration::of_state(state)
+        Calibration::of_state(crate::pickle::value(state)?)
     }
 
     #[pyfunction]

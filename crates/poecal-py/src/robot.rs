@@ -1,11 +1,15 @@
 //! Robots.
 
+mod state;
+
+pub(crate) use state::RobotState;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use numpy::{PyArray2, PyArray3, PyArrayMethods as _};
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
+use poecal::io::calibration_file::Inputs;
 use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
 use poecal::io::output::write_file;
 use poecal::io::predictions::{PredictionFrame, predicted};
@@ -15,7 +19,6 @@ use poecal::robot::JointKind;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
-use serde::{Deserialize, Serialize};
 
 use crate::arrays::{Joints, pose_array, pose_arrays, table};
 use crate::build::{DhTable, Naming, from_dh, from_screws};
@@ -33,22 +36,6 @@ pub(crate) struct Robot {
     pub(crate) model: Arc<Model>,
     /// SHA-256 of the file that it was read from, by its name.
     pub(crate) sha256: Arc<BTreeMap<String, String>>,
-}
-
-/// What rebuilds a robot exactly.
-#[derive(Serialize, Deserialize)]
-struct State {
-    robot: poecal::robot::Robot,
-    path: PathBuf,
-    source: SourceState,
-    sha256: BTreeMap<String, String>,
-}
-
-#[derive(Serialize, Deserialize)]
-enum SourceState {
-    Urdf { text: String, base: String, tip: String },
-    Toml,
-    Calibration { text: String },
 }
 
 impl Robot {
@@ -69,41 +56,6 @@ impl Robot {
 
     fn robot(&self) -> &poecal::robot::Robot {
         &self.model.robot
-    }
-
-    pub(crate) fn state(&self) -> PyResult<Vec<u8>> {
-        let source = match &self.model.source {
-            ModelSource::Urdf(document) => SourceState::Urdf {
-                text: document.text().to_owned(),
-                base: document.robot().base_name.clone(),
-                tip: document.robot().tip_name.clone(),
-            },
-            ModelSource::Toml => SourceState::Toml,
-            ModelSource::Calibration(file) => {
-                SourceState::Calibration { text: file.to_text().map_err(raise)? }
-            }
-        };
-        pickle::bytes(&State {
-            robot: self.robot().clone(),
-            path: self.model.path.clone(),
-            source,
-            sha256: (*self.sha256).clone(),
-        })
-    }
-
-    pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
-        let State { robot, path, source, sha256 } = pickle::value(state)?;
-        let source = match source {
-            SourceState::Urdf { text, base, tip } => {
-                let selection = ChainSelection { base_link: Some(base), tip_link: Some(tip) };
-                ModelSource::Urdf(Box::new(UrdfDocument::parse(&text, &path, &selection).map_err(raise)?))
-            }
-            SourceState::Toml => ModelSource::Toml,
-            SourceState::Calibration { text } => {
-                ModelSource::Calibration(Box::new(CalibrationFile::parse(&text, &path).map_err(raise)?))
-            }
-        };
-        Ok(Robot { model: Arc::new(Model { robot, source, path }), sha256: Arc::new(sha256) })
     }
 }
 
@@ -396,7 +348,7 @@ impl Robot {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        pickle::reduce(py, "_robot", PyBytes::new(py, &self.state()?))
+        pickle::reduce(py, "_robot", PyBytes::new(py, &pickle::bytes(&self.state()?)?))
     }
 
     fn __copy__(&self) -> Self {
