@@ -14,6 +14,7 @@ mod html;
 mod measurements;
 mod pickle;
 mod prediction;
+mod project;
 mod robot;
 mod simulation;
 mod words;
@@ -54,6 +55,8 @@ mod _poecal {
     use crate::measurements::Measurements;
     #[pymodule_export]
     use crate::prediction::Prediction;
+    #[pymodule_export]
+    use crate::project::init;
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]

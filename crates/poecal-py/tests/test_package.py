@@ -8,6 +8,7 @@ from importlib.resources import files
 
 import poecal
 import pytest
+from robots import elbow
 
 
 def test_version_is_a_text():
@@ -60,3 +61,17 @@ def test_the_package_runs_as_the_program():
     run = subprocess.run([sys.executable, "-m", "poecal", "check", "no_such.urdf"], capture_output=True, text=True)
     assert run.returncode == 2
     assert run.stderr.startswith("error: no_such.urdf: ")
+
+
+def test_a_project_folder_is_made_once(tmp_path):
+    model = tmp_path / "robot.toml"
+    model.write_text(elbow().to_text("toml"))
+    folder = tmp_path / "cell"
+    made = poecal.init(model, folder, measure="poses", count=12)
+    assert sorted(made) == sorted(path.name for path in folder.iterdir())
+    assert len(poecal.read_joints(folder / "joints.csv", poecal.Robot.read(folder / "robot.toml"))) == 12
+    with pytest.raises(poecal.FileError):
+        poecal.init(model, folder)
+    with pytest.raises(poecal.OptionError, match=r"measure: found `point`, .* did you mean `points`\?"):
+        poecal.init(model, tmp_path / "other", measure="point")
+    assert not (tmp_path / "other").exists()

@@ -383,6 +383,16 @@ def identify(
     sigma_rotation_deg: float | None = None,
     frame: _Frame = "unknown",
 ) -> Findings: ...
+def init(
+    model: _Path,
+    out: _Path,
+    *,
+    measure: Literal["points", "poses"] = "points",
+    count: int = 60,
+    seed: int = 1,
+    base_link: str | None = None,
+    tip_link: str | None = None,
+) -> list[str]: ...
 def offsets(
     nominal: Robot, actual: Robot | Calibration, *, base: _End | None = None, tip: _End | None = None
 ) -> Findings: ...

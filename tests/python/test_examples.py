@@ -1,4 +1,4 @@
-"""What documents and examples show in Python runs, and examples print what their twins in Rust print."""
+"""Examples in Python run, and print what their twins in Rust print."""
 
 import os
 import re
@@ -14,25 +14,10 @@ TWINS = sorted(path.stem for path in (ROOT / "crates/poecal/examples").glob("*.r
 NEEDS = {"with_pinocchio": "pinocchio", "with_yourdfpy": "yourdfpy", "with_rerun": "rerun"}
 
 
-def blocks(document: str) -> list[str]:
-    """The pieces of Python of a document."""
-    return re.findall(r"^```python\n(.*?)^```", (ROOT / document).read_text(), re.MULTILINE | re.DOTALL)
-
-
 def run(script: Path, folder: Path) -> str:
     done = subprocess.run([sys.executable, script], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
-
-
-@pytest.mark.parametrize("document", ["README.md", "docs/python.md"])
-def test_the_python_of_a_document_runs(document, tmp_path):
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
-    script = tmp_path / "document.py"
-    script.write_text("\n".join(blocks(document)))
-    printed = run(script, tmp_path)
-    assert "good 0.0951" in printed or document != "README.md"
-    print(printed)
 
 
 def test_every_example_has_its_twin():

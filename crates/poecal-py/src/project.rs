@@ -1,0 +1,51 @@
+//! A folder to start a calibration from.
+
+use std::path::PathBuf;
+
+use poecal::io::model::Model;
+use poecal::io::output::{Project, write_project};
+use poecal::io::urdf::ChainSelection;
+use poecal::simulate::Kind;
+use pyo3::prelude::*;
+
+use crate::errors::{argument, raise};
+use crate::words::chosen;
+
+/// Most configurations that are suggested, as by the program.
+const MOST: usize = 100_000;
+
+/// Writes a project folder to start from: the model, a measurement file to fill in, configurations to measure, settings for
+/// `poecal calibrate`, and what to do with them. Gives the names of the files.
+///
+/// Parameters
+/// ----------
+/// model : path of a URDF, TOML model or calibration.json
+/// out : folder; files in it are never overwritten
+/// measure : "points" or "poses", what the device will see
+/// count : number of configurations to suggest, from 1 to 100,000
+/// seed : of their choice
+/// base_link, tip_link : the chain of a URDF that has several
+#[pyfunction]
+#[pyo3(signature = (model, out, *, measure="points", count=60, seed=1, base_link=None, tip_link=None))]
+#[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
+pub(crate) fn init(
+    py: Python<'_>,
+    model: PathBuf,
+    out: PathBuf,
+    measure: &str,
+    count: usize,
+    seed: u64,
+    base_link: Option<String>,
+    tip_link: Option<String>,
+) -> PyResult<Vec<String>> {
+    let kind = chosen("measure", measure, &[("points", Kind::Point), ("poses", Kind::Pose)])?;
+    if !(1..=MOST).contains(&count) {
+        return Err(argument("count", format!("found {count}, expected a number from 1 to {MOST}")));
+    }
+    let chain = ChainSelection { base_link, tip_link };
+    let write = || {
+        let model = Model::read(&model, &chain)?;
+        write_project(&out, &Project { model: &model, chain: &chain, kind, count, seed })
+    };
+    Ok(py.detach(write).map_err(raise)?.files)
+}
