@@ -20,8 +20,17 @@ use clap::error::ContextKind;
 use clap::{CommandFactory as _, FromArgMatches as _};
 use console::Console;
 
+/// Done.
+pub(crate) const DONE: u8 = 0;
+/// Done, but the verdict is worse than `--require` asks.
+pub(crate) const WORSE: u8 = 1;
+/// Wrong input or usage.
+const WRONG: u8 = 2;
+/// The fit did not converge.
+pub(crate) const NOT_CONVERGED: u8 = 3;
+
 /// Help and version go to standard output, mistakes to standard error: one sentence for a bad value, with clap's hints for the rest.
-fn usage(error: &clap::Error) -> ExitCode {
+fn usage(error: &clap::Error) -> u8 {
     match (error.get(ContextKind::InvalidArg), error.source()) {
         (Some(option), Some(sentence)) => {
             let option = option.to_string();
@@ -32,14 +41,14 @@ fn usage(error: &clap::Error) -> ExitCode {
             let _ = error.print();
         }
     }
-    ExitCode::from(if error.use_stderr() { 2 } else { 0 })
+    if error.use_stderr() { WRONG } else { DONE }
 }
 
 /// The command line, with what its settings file adds, and what it means; or else the code to end with.
-fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), ExitCode> {
+fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
     let refused = |error: &poecal::Error| {
         Console::new(false).error(error);
-        ExitCode::from(2)
+        WRONG
     };
     let parsed = |words: &[OsString]| {
         let matches = Arguments::command().try_get_matches_from(words)?;
@@ -58,6 +67,11 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), ExitCo
 
 /// Runs the program.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    ExitCode::from(run_to_code(arguments))
+}
+
+/// [`run`], with the exit code as a number, for callers that end the process themselves.
+pub fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let typed: Vec<OsString> = arguments.into_iter().collect();
     let (typed, arguments) = match understood(typed) {
         Ok(both) => both,
@@ -86,7 +100,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(code) => code,
         Err(error) => {
             console.error(&error);
-            ExitCode::from(2)
+            WRONG
         }
     }
 }

@@ -1,13 +1,104 @@
 //! The compiled half of the Python package `poecal`: conversions between Python and the library, and nothing else.
 
+mod accuracy;
+mod arrays;
+mod build;
+mod calibrate;
+mod calibration;
+mod convert;
+mod errors;
+mod findings;
+mod from_arrays;
+mod from_dataframe;
+mod html;
+mod measurements;
+mod pickle;
+mod prediction;
+mod robot;
+mod simulation;
+mod words;
+
+use pyo3::prelude::*;
+
+/// Warns of what a plain value cannot carry, a sentence each.
+fn warn(py: Python<'_>, sentences: &[String]) -> PyResult<()> {
+    if sentences.is_empty() {
+        return Ok(());
+    }
+    let category = py.import("poecal._errors")?.getattr("PoecalWarning")?;
+    let warn = py.import("warnings")?.getattr("warn")?;
+    for sentence in sentences {
+        warn.call1((errors::python_words(sentence), &category, 1))?;
+    }
+    Ok(())
+}
+
 /// The compiled half of the Python package `poecal`.
-#[pyo3::pymodule]
+#[pymodule]
 mod _poecal {
-    use pyo3::pyfunction;
+    use std::ffi::OsString;
+
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::accuracy::{Accuracy, ModelAccuracy, SetAccuracy, Statistic, Verdict};
+    #[pymodule_export]
+    use crate::calibrate::calibrate;
+    #[pymodule_export]
+    use crate::calibration::Calibration;
+    #[pymodule_export]
+    use crate::convert::{convert, read_joints, schema};
+    #[pymodule_export]
+    use crate::findings::{Findings, check, identify, offsets, reproduce};
+    #[pymodule_export]
+    use crate::measurements::Measurements;
+    #[pymodule_export]
+    use crate::prediction::Prediction;
+    #[pymodule_export]
+    use crate::robot::Robot;
+    #[pymodule_export]
+    use crate::simulation::{Simulation, simulate};
 
     /// The version of poecal that this module was built from.
     #[pyfunction]
     fn version() -> &'static str {
         env!("CARGO_PKG_VERSION")
+    }
+
+    /// Number of threads that all work shares; results do not depend on it. It can be set once, before anything is computed.
+    #[pyfunction]
+    fn set_threads(count: usize) -> PyResult<()> {
+        rayon::ThreadPoolBuilder::new().num_threads(count).build_global().map_err(|_| {
+            crate::errors::argument(
+                "count",
+                "found threads at work already, expected to be asked before anything is computed",
+            )
+        })
+    }
+
+    /// Runs the program `poecal` with these arguments, the program's name first; gives its exit code.
+    #[pyfunction]
+    fn run_program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+        py.detach(|| poecal_cli::run_to_code(arguments))
+    }
+
+    #[pyfunction]
+    fn _robot(state: &[u8]) -> PyResult<Robot> {
+        Robot::of_state(crate::pickle::value(state)?)
+    }
+
+    #[pyfunction]
+    fn _measurements(state: &[u8]) -> PyResult<Measurements> {
+        Measurements::of_state(state)
+    }
+
+    #[pyfunction]
+    fn _calibration(state: &[u8]) -> PyResult<Calibration> {
+        Calibration::of_state(crate::pickle::value(state)?)
+    }
+
+    #[pyfunction]
+    fn _findings(state: &[u8]) -> PyResult<Findings> {
+        Findings::of_state(state)
     }
 }

@@ -2,27 +2,27 @@
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use poecal::calibration::{
-    Calibration, CalibrationOptions, DeviceFrameKnowledge, Stage, calibrate_with_progress,
+    Calibration, CalibrationOptions, DeviceFrameKnowledge, Stage, calibrate_with_progress, settle_sets,
 };
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
+use poecal::io::named_files::{refuse_fitted, refuse_repeats};
 use poecal::io::output::{self, Results};
 use poecal::io::residuals::Residuals;
-use poecal::measurement::{Dataset, Measurement, PoseResidual, Set};
+use poecal::measurement::{Dataset, Measurement, PoseResidual};
 use poecal::{Error, ErrorKind, Result, report, solve};
 
-use super::files::{refuse_fitted, refuse_repeats};
 use super::typed::command;
 use crate::args::{Calibrate, Frame, ReportPlace};
 use crate::console::Console;
 use crate::style::labelled;
 use crate::timings::Timings;
+use crate::{DONE, NOT_CONVERGED, WORSE};
 
-pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<ExitCode> {
+pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<u8> {
     let mut timings = Timings::start();
     let model_path = stated_model(arguments)?;
     output::check_folder(&arguments.out, arguments.force)?;
@@ -70,10 +70,10 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
         }
     }
     if !calibration.solver.termination.is_success() {
-        return Ok(ExitCode::from(3));
+        return Ok(NOT_CONVERGED);
     }
     let worse = arguments.require.is_some_and(|required| calibration.verdict.level < required.into());
-    Ok(if worse { ExitCode::from(1) } else { ExitCode::SUCCESS })
+    Ok(if worse { WORSE } else { DONE })
 }
 
 /// The model, if it and measurements are named, by arguments or settings.
@@ -107,19 +107,7 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
     };
     let mut data = read(&arguments.measurements)?;
     if !arguments.validate.is_empty() {
-        let mut other = read(&arguments.validate)?;
-        data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
-        other.observations.iter_mut().for_each(|row| row.set = Some(Set::HeldOut));
-        data.extend(&other)?;
-    }
-    settle_sets(arguments, &mut data, console)?;
-    Ok(data)
-}
-
-/// Where files or options state which rows are held out, a share of them has no meaning, unless it is none.
-fn settle_sets(arguments: &Calibrate, data: &mut Dataset, console: &Console) -> Result<()> {
-    if data.observations.iter().all(|row| row.set.is_none()) {
-        return Ok(());
+        data.judged_by(&read(&arguments.validate)?)?;
     }
     let stated_by = if !arguments.validate.is_empty() {
         "--validate"
@@ -128,24 +116,10 @@ fn settle_sets(arguments: &Calibrate, data: &mut Dataset, console: &Console) -> 
     } else {
         "a column of the files"
     };
-    match arguments.held_out {
-        Some(share) if share > 0.0 => {
-            let message = format!(
-                "found --held-out {share}, but {stated_by} already says which rows are held out, expected one of the \
-                 two: leave --held-out out, or fit every row with --held-out 0"
-            );
-            return Err(Error::new(ErrorKind::Option, message));
-        }
-        // Beside --validate nothing else is held out anyway.
-        Some(_) if arguments.validate.is_empty() => {
-            data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
-        }
-        _ => {}
-    }
-    if arguments.seed.is_some() {
+    if settle_sets(&mut data, arguments.held_out, stated_by)? && arguments.seed.is_some() {
         console.warning("--seed has no effect on which rows are held out: that is stated");
     }
-    Ok(())
+    Ok(data)
 }
 
 fn options(arguments: &Calibrate) -> CalibrationOptions {

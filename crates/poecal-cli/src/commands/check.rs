@@ -1,16 +1,15 @@
 //! `poecal check`: how files are understood.
 
-use std::process::ExitCode;
-
 use poecal::forensics::{Options, diagnose};
 use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::{Result, report};
 
+use crate::DONE;
 use crate::args::{Check, Frame};
 use crate::console::Console;
 
-pub(crate) fn check(arguments: &Check, console: &Console) -> Result<ExitCode> {
+pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
     let model = Model::read(&arguments.model, &arguments.chain.selection())?;
     let options = arguments.reading.options()?;
     let measurements = if arguments.measurements.is_empty() {
@@ -29,5 +28,5 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<ExitCode> {
     } else {
         console.say(&check.text())?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(DONE)
 }

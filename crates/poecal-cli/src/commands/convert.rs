@@ -1,18 +1,17 @@
 //! `poecal convert`: a model in another form, or without the offsets of its joints.
 
-use std::process::ExitCode;
-
 use poecal::io::measurements::Quantity;
 use poecal::io::model::{self, Model, ModelFormat};
 use poecal::offsets::into_screws;
 use poecal::robot::{JointKind, Robot};
 use poecal::{Error, ErrorKind, Result, nearest};
 
+use crate::DONE;
 use crate::args::Convert;
 use crate::console::Console;
 use crate::quantity::signed;
 
-pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<ExitCode> {
+pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
     let form = form(arguments)?;
     let mut model = Model::read(&arguments.model, &arguments.chain.selection())?;
     if !arguments.offset.is_empty() {
@@ -35,7 +34,7 @@ pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<ExitCode
         console.warning(note);
     }
     console.deliver(&converted.text, arguments.out.as_deref())?;
-    Ok(ExitCode::SUCCESS)
+    Ok(DONE)
 }
 
 /// The offsets that `--offset JOINT=VALUE` state, in the order of the joints.

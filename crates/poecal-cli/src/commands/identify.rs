@@ -1,18 +1,17 @@
 //! `poecal identify`: what measuring in some configurations would tell.
 
-use std::process::ExitCode;
-
 use poecal::analysis::{Session, identify as foresee};
 use poecal::io::measurements;
 use poecal::io::model::Model;
+use poecal::io::named_files::refuse_repeats;
 use poecal::measurement::Noise;
 use poecal::{Result, report};
 
-use super::files::refuse_repeats;
+use crate::DONE;
 use crate::args::{Frame, Identify};
 use crate::console::Console;
 
-pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<ExitCode> {
+pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.joints)?;
     let model = Model::read(&arguments.model, &arguments.chain.selection())?;
     let options = arguments.columns.options()?;
@@ -41,5 +40,5 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<ExitCo
     } else {
         console.say(&report.text())?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(DONE)
 }

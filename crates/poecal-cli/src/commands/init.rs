@@ -1,16 +1,15 @@
 //! `poecal init`: a folder to start a calibration from.
 
-use std::process::ExitCode;
-
 use poecal::Result;
 use poecal::io::model::Model;
 use poecal::io::output::{Project, write_project};
 
+use crate::DONE;
 use crate::args::Init;
 use crate::console::Console;
 use crate::style::labelled;
 
-pub(crate) fn init(arguments: &Init, console: &Console) -> Result<ExitCode> {
+pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     let chain = arguments.chain.selection();
     let model = Model::read(&arguments.model, &chain)?;
     let project = Project {
@@ -27,5 +26,5 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<ExitCode> {
     );
     let files = format!("{}\n{}", written.folder.display(), written.files.join(", "));
     console.say(&(labelled("written", &files) + &labelled("next", &next)))?;
-    Ok(ExitCode::SUCCESS)
+    Ok(DONE)
 }

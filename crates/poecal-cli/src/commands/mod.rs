@@ -1,9 +1,8 @@
-//! The commands, one a file (and `files`, what they ask of paths; `typed`, what was typed).
+//! The commands, one a file (and `typed`, what was typed).
 
 mod calibrate;
 mod check;
 mod convert;
-mod files;
 mod identify;
 mod init;
 mod offsets;

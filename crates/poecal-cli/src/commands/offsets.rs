@@ -1,19 +1,18 @@
 //! `poecal offsets`: the joint offsets with which a model comes nearest to another.
 
 use std::ffi::OsStr;
-use std::process::ExitCode;
 
-use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::model::{Model, ModelSource};
+use poecal::io::model::Model;
 use poecal::io::urdf::ChainSelection;
-use poecal::offsets::{End, Options, explain};
+use poecal::offsets::{Options, explain};
 use poecal::{Result, report};
 
 use super::convert::quoted;
+use crate::DONE;
 use crate::args::Offsets;
 use crate::console::Console;
 
-pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<ExitCode> {
+pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
     let selection = arguments.chain.selection();
     let nominal = Model::read(&arguments.nominal, &selection)?;
     // Other forms than URDF have one chain only; a calibration beside a URDF that has several is compared with the chain chosen there.
@@ -21,8 +20,8 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<ExitCode
         ["toml", "json"].map(OsStr::new).contains(&arguments.actual.extension().unwrap_or_default());
     let whole = ChainSelection::default();
     let actual = Model::read(&arguments.actual, if one_chain { &whole } else { &selection })?;
-    let (base, base_reason) = base(arguments, &actual);
-    let (tip, tip_reason) = tip(arguments, &actual);
+    let ends = [arguments.base, arguments.tip].map(|end| end.map(Into::into));
+    let [(base, base_reason), (tip, tip_reason)] = report::offset_ends(ends[0], ends[1], &actual);
     let options = Options { base, tip, ..Options::default() };
     let explanation =
         explain(&nominal.robot, &actual.robot, &options).map_err(|error| error.in_file(&arguments.actual))?;
@@ -44,32 +43,5 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<ExitCode
     } else {
         console.say(&text)?;
     }
-    Ok(ExitCode::SUCCESS)
-}
-
-/// Whether the base is free, and why.
-fn base(arguments: &Offsets, actual: &Model) -> (End, &'static str) {
-    if let Some(asked) = arguments.base {
-        return (asked.into(), "as asked");
-    }
-    match &actual.source {
-        ModelSource::Calibration(file) => match file.frame() {
-            DeviceFrameKnowledge::Unknown => {
-                (End::Free, "the calibration's device stood anywhere, so its base frame is a choice")
-            }
-            DeviceFrameKnowledge::Base => (End::Kept, "the calibration was measured in it"),
-        },
-        ModelSource::Urdf(_) | ModelSource::Toml => (End::Kept, "both models state it"),
-    }
-}
-
-/// Whether the tip is free, and why.
-fn tip(arguments: &Offsets, actual: &Model) -> (End, &'static str) {
-    if let Some(asked) = arguments.tip {
-        return (asked.into(), "as asked");
-    }
-    match &actual.source {
-        ModelSource::Calibration(_) => (End::Free, "the calibration found the tool anew"),
-        ModelSource::Urdf(_) | ModelSource::Toml => (End::Kept, "both models state it"),
-    }
+    Ok(DONE)
 }

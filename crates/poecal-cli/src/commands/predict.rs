@@ -1,15 +1,14 @@
 //! `poecal predict`: poses from joint readings.
 
-use std::process::ExitCode;
-
 use poecal::Result;
 use poecal::io::model::Model;
 use poecal::io::{measurements, predictions};
 
+use crate::DONE;
 use crate::args::Predict;
 use crate::console::Console;
 
-pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<ExitCode> {
+pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     let model = Model::read(&arguments.model, &arguments.chain.selection())?;
     let joints = measurements::read_joints(&arguments.joints, &model.robot, &arguments.columns.options()?)?;
     for warning in &joints.warnings {
@@ -18,5 +17,5 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<ExitCode
     let (frame, target) = (arguments.frame.into(), arguments.target.as_deref());
     let text = predictions::predict(&model, &joints, frame, target, arguments.with_uncertainty)?;
     console.deliver(&text, arguments.out.as_deref())?;
-    Ok(ExitCode::SUCCESS)
+    Ok(DONE)
 }

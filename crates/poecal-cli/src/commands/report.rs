@@ -1,17 +1,16 @@
 //! `poecal report`: the report of a finished calibration, made again from its files.
 
-use std::process::ExitCode;
-
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::output;
 use poecal::io::residuals::Residuals;
 use poecal::{Result, report as text};
 
+use crate::DONE;
 use crate::args::Report;
 use crate::console::Console;
 use crate::style::labelled;
 
-pub(crate) fn report(arguments: &Report, console: &Console) -> Result<ExitCode> {
+pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
     let beside = |name: &str| arguments.calibration.with_file_name(name);
     let out = arguments.out.clone().unwrap_or_else(|| beside(output::REPORT));
     output::check_file(&out)?;
@@ -21,5 +20,5 @@ pub(crate) fn report(arguments: &Report, console: &Console) -> Result<ExitCode> 
     let page = text::calibration_page(&file, &residuals).map_err(|error| error.in_file(&path))?;
     output::write_file(&out, &page)?;
     console.say(&labelled("written", &out.display().to_string()))?;
-    Ok(ExitCode::SUCCESS)
+    Ok(DONE)
 }

@@ -1,16 +1,15 @@
 //! `poecal reproduce`: the experiment of a paper and what became of its claims, or what gross errors do.
 
-use std::process::ExitCode;
-
 use poecal::io::output;
 use poecal::reproduce::{Options, breakdown, lou2009};
 use poecal::{Result, report};
 
+use crate::DONE;
 use crate::args::{Experiment, Reproduce};
 use crate::console::Console;
 use crate::style::labelled;
 
-pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<ExitCode> {
+pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> {
     output::check_folder(&arguments.out, arguments.force)?;
     let options = Options {
         trials: arguments.trials as usize,
@@ -31,5 +30,5 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<Exit
     console.say(&words)?;
     console
         .say(&labelled("written", &format!("{}\n{}", written.folder.display(), written.files.join(", "))))?;
-    Ok(ExitCode::SUCCESS)
+    Ok(DONE)
 }

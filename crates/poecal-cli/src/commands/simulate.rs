@@ -1,17 +1,16 @@
 //! `poecal simulate`: a robot with known errors, and what a device would measure of it.
 
-use std::process::ExitCode;
-
 use poecal::Result;
 use poecal::io::model::Model;
 use poecal::io::output::{self, Session};
 use poecal::simulate::{Kind, Simulation};
 
+use crate::DONE;
 use crate::args::{Chain, Frame, Simulate};
 use crate::console::Console;
 use crate::style::labelled;
 
-pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<ExitCode> {
+pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     output::check_folder(&arguments.out, arguments.force)?;
     let model = Model::read(&arguments.model, &arguments.chain.selection())?;
     let simulation = Simulation {
@@ -43,7 +42,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<ExitCo
     }
     console
         .say(&labelled("written", &format!("{}\n{}", written.folder.display(), written.files.join(", "))))?;
-    Ok(ExitCode::SUCCESS)
+    Ok(DONE)
 }
 
 /// The command that makes the same files anywhere: with every option that they depend on, and no output folder.

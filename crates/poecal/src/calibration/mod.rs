@@ -25,7 +25,7 @@ pub use options::{CalibrationOptions, DeviceFrameKnowledge};
 pub use repeatability::{RepeatedPose, repeatability};
 pub use result::{CalibratedTarget, Calibration, Models, SolverReport};
 pub use robust::{Loss, Robust, Robustness, RowJudgement, row_influence};
-pub use split::split_rows;
+pub use split::{settle_sets, split_rows};
 pub(crate) use trust::inside;
 pub use trust::{Expected, JointCorrection, RangePart, Trust};
 pub use verdict::{Level, Verdict};

@@ -110,6 +110,13 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// The calibrated robot with the named targets in its tip frame, as models of it are written.
+    #[must_use]
+    pub fn robot_with_targets(&self) -> Robot {
+        let named = |target: &CalibratedTarget| Some((target.name.clone()?, target.tip_from_target));
+        Robot { targets: self.targets.iter().filter_map(named).collect(), ..self.robot.clone() }
+    }
+
     /// Root mean square distance to expect where it was measured if all that the fit leaves were error of the robot and none noise of
     /// measuring, metres; none where that was settled (noise stated, or found to be no noise, or nothing left). The truth lies between:
     /// few rows cannot tell.

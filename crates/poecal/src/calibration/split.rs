@@ -8,6 +8,9 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::{Dataset, Set};
 use crate::simulate::random;
 
+/// The option that names measurements to judge by.
+const VALIDATE: &str = "--validate";
+
 /// Rows to fit and rows held out, each in the order of the data. Where a row states its set, that holds (and rows that state none
 /// are then fitted); otherwise a seeded share of the *configurations* is held out, so that several targets seen in one
 /// configuration never stand on both sides.
@@ -38,6 +41,32 @@ pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u
         ));
     }
     Ok((fitted, kept_back))
+}
+
+/// Where rows state which of them are held out, a share of them has no meaning, unless it is none: then every row is fitted, but for
+/// those of `--validate`. `stated_by` is what stated it, for the message. Tells whether it is stated.
+///
+/// # Errors
+/// [`ErrorKind::Option`] if a share above 0 is asked for as well.
+pub fn settle_sets(data: &mut Dataset, held_out: Option<f64>, stated_by: &str) -> Result<bool> {
+    if data.observations.iter().all(|row| row.set.is_none()) {
+        return Ok(false);
+    }
+    match held_out {
+        Some(share) if share > 0.0 => {
+            let message = format!(
+                "found --held-out {share}, but {stated_by} already says which rows are held out, expected one of the \
+                 two: leave --held-out out, or fit every row with --held-out 0"
+            );
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+        // Beside --validate nothing else is held out anyway.
+        Some(_) if stated_by != VALIDATE => {
+            data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
+        }
+        _ => {}
+    }
+    Ok(true)
 }
 
 /// A seeded share of the configurations (rows with the same readings are one).

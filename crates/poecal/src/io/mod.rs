@@ -5,6 +5,7 @@ mod hashes;
 pub mod measurements;
 mod mimic;
 pub mod model;
+pub mod named_files;
 mod numbers;
 pub mod output;
 pub mod predictions;

@@ -4,12 +4,10 @@ use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
 use super::numbers::push_number;
 use super::residuals::quoted;
-use crate::analysis::JointCoverage;
 use crate::calibration::inside;
 use crate::error::{Error, ErrorKind, Result, nearest};
 use crate::estimate::Packed;
 use crate::lie::Pose;
-use crate::robot::Robot;
 use crate::uncertainty::PredictedError;
 
 /// The frame in which poses are predicted.
@@ -49,23 +47,14 @@ pub fn predict(
     target: Option<&str>,
     with_uncertainty: bool,
 ) -> Result<String> {
-    let robot = &model.robot;
-    let tip_from_target = target.map_or(Ok(Pose::identity()), |name| tip_from_target(model, name))?;
-    let frame_from_base = match frame {
-        PredictionFrame::Base => Pose::identity(),
-        PredictionFrame::Device => device_from_base(model)?,
-    };
+    let found = predicted(model, &joints.readings, frame, target, with_uncertainty)?;
     let with_ids = !joints.ids.is_empty();
-    let doubts = if with_uncertainty { Some(Doubts::new(model, joints, target)?) } else { None };
     let mut out = String::with_capacity((joints.rows + 1) * 200);
     out.push_str(if with_ids { "id," } else { "" });
     out.push_str("x[m],y[m],z[m],qx,qy,qz,qw");
     out.push_str(if with_uncertainty { UNCERTAINTY_COLUMNS } else { "" });
     out.push('\n');
-    let configurations = joints.readings.chunks_exact(robot.reading_names().len().max(1));
-    let poses = robot.forward_kinematics_of(configurations.clone());
-    for (row, (readings, base_from_tip)) in configurations.zip(poses).enumerate() {
-        let pose = frame_from_base * base_from_tip * tip_from_target;
+    for (row, pose) in found.poses.iter().enumerate() {
         if with_ids {
             out.push_str(&quoted(joints.ids.get(row).map_or("", String::as_str)));
             out.push(',');
@@ -76,12 +65,58 @@ pub fn predict(
             out.push_str(if column == 0 { "" } else { "," });
             push_number(&mut out, number);
         }
-        if let Some(doubts) = &doubts {
-            doubts.write(row, readings, robot, &mut out);
+        if let Some((error, inside)) = found.doubts.as_ref().and_then(|doubts| doubts.get(row)) {
+            for number in [error.sigma_position_m(), error.sigma_rotation_rad(), error.bound_position_m()] {
+                out.push(',');
+                push_number(&mut out, number);
+            }
+            out.push_str(if *inside { ",true" } else { ",false" });
         }
         out.push('\n');
     }
     Ok(out)
+}
+
+/// Predicted poses as numbers.
+///
+/// ```
+/// use poecal::io::model::{Model, ModelSource};
+/// use poecal::io::predictions::{PredictionFrame, predicted};
+/// let model = Model { robot: poecal::simulate::scara(), source: ModelSource::Toml, path: "scara.toml".into() };
+/// let found = predicted(&model, &[0.0; 8], PredictionFrame::Base, None, false)?;
+/// assert_eq!((found.poses.len(), found.poses[0]), (2, model.robot.home));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Predicted {
+    /// Pose of the tip, or of the target, in the frame asked for, a configuration each.
+    pub poses: Vec<Pose>,
+    /// The error to expect of each, and whether every joint is within the range that was sampled; if asked for.
+    pub doubts: Option<Vec<(PredictedError, bool)>>,
+}
+
+/// Predicts as [`predict`], from readings one after the other in the order of [`Robot::reading_names`](crate::robot::Robot::reading_names)
+/// (radians, metres).
+///
+/// # Errors
+/// As [`predict`].
+pub fn predicted(
+    model: &Model,
+    readings: &[f64],
+    frame: PredictionFrame,
+    target: Option<&str>,
+    with_uncertainty: bool,
+) -> Result<Predicted> {
+    let tip_from_target = target.map_or(Ok(Pose::identity()), |name| tip_from_target(model, name))?;
+    let frame_from_base = match frame {
+        PredictionFrame::Base => Pose::identity(),
+        PredictionFrame::Device => device_from_base(model)?,
+    };
+    let doubts = if with_uncertainty { Some(doubts(model, readings, target)?) } else { None };
+    let configurations = readings.chunks_exact(model.robot.reading_names().len().max(1));
+    let poses = model.robot.forward_kinematics_of(configurations);
+    let poses = poses.map(|base_from_tip| frame_from_base * base_from_tip * tip_from_target).collect();
+    Ok(Predicted { poses, doubts })
 }
 
 /// Root mean square distance and angle to expect, the distance not exceeded in 95 % of all cases, and whether every joint is within the range
@@ -90,37 +125,18 @@ const UNCERTAINTY_COLUMNS: &str =
     ",sigma_position[m],sigma_rotation[rad],bound95_position[m],inside_sampled_range";
 
 /// What to expect of each predicted row.
-struct Doubts {
-    errors: Vec<PredictedError>,
-    sampled: Vec<JointCoverage>,
-}
-
-impl Doubts {
-    fn new(model: &Model, joints: &JointsTable, target: Option<&str>) -> Result<Self> {
-        let ModelSource::Calibration(file) = &model.source else {
-            let message = "found a robot model without uncertainty, expected a calibration.json for \
-                           --with-uncertainty: calibrate first";
-            return Err(Error::new(ErrorKind::Option, message).in_file(&model.path));
-        };
-        let (uncertainty, indices) =
-            file.uncertainty(&[target]).map_err(|error| error.in_file(&model.path))?;
-        let width = model.robot.reading_names().len();
-        let packed = Packed::new(&model.robot, &joints.readings, width);
-        Ok(Doubts {
-            errors: uncertainty.predictions(&packed, indices.first().copied().unwrap_or_default()),
-            sampled: file.coverage.clone(),
-        })
-    }
-
-    fn write(&self, row: usize, readings: &[f64], robot: &Robot, out: &mut String) {
-        if let Some(error) = self.errors.get(row) {
-            for number in [error.sigma_position_m(), error.sigma_rotation_rad(), error.bound_position_m()] {
-                out.push(',');
-                push_number(out, number);
-            }
-        }
-        out.push_str(if inside(robot, &self.sampled, readings) { ",true" } else { ",false" });
-    }
+fn doubts(model: &Model, readings: &[f64], target: Option<&str>) -> Result<Vec<(PredictedError, bool)>> {
+    let ModelSource::Calibration(file) = &model.source else {
+        let message = "found a robot model without uncertainty, expected a calibration.json for \
+                       --with-uncertainty: calibrate first";
+        return Err(Error::new(ErrorKind::Option, message).in_file(&model.path));
+    };
+    let (uncertainty, indices) = file.uncertainty(&[target]).map_err(|error| error.in_file(&model.path))?;
+    let width = model.robot.reading_names().len();
+    let packed = Packed::new(&model.robot, readings, width);
+    let errors = uncertainty.predictions(&packed, indices.first().copied().unwrap_or_default());
+    let sampled = |row: &[f64]| inside(&model.robot, &file.coverage, row);
+    Ok(errors.into_iter().zip(readings.chunks_exact(width.max(1)).map(sampled)).collect())
 }
 
 fn tip_from_target(model: &Model, name: &str) -> Result<Pose> {

@@ -24,7 +24,7 @@ use super::{Twist, hat, rotation, series};
 /// let identity = base_from_tool * base_from_tool.inverse();
 /// assert!(identity.log().to_vector().norm() < 1e-15);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Pose {
     /// Rotation matrix.
     pub rotation: Matrix3<f64>,

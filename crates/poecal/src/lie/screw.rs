@@ -14,7 +14,7 @@ use super::{Pose, Twist, rotation};
 /// let quarter = axis.exp(std::f64::consts::FRAC_PI_2);
 /// assert!((quarter.act(&Vector3::zeros()) - Vector3::new(1.0, -1.0, 0.0)).norm() < 1e-15);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Screw {
     v: Vector3<f64>,
     w: Vector3<f64>,

@@ -1,13 +1,15 @@
 //! All measurements of a calibration: configurations, targets and what was seen.
 
+use std::path::PathBuf;
+
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use super::{Measurement, Noise, PoseResidual};
 use crate::error::{Error, ErrorKind, Result};
-use std::path::PathBuf;
 
 /// What a row is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Set {
     /// Used to fit.
     Fit,
@@ -16,7 +18,7 @@ pub enum Set {
 }
 
 /// Where a row came from: index into [`Dataset::files`] and line (from 1; 0 if it has none).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Source {
     /// Index into [`Dataset::files`].
     pub file: u32,
@@ -25,7 +27,7 @@ pub struct Source {
 }
 
 /// One row: which target was seen how, and how well.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// Index into [`Dataset::targets`].
     pub target: usize,
@@ -63,7 +65,7 @@ impl Observation {
 /// assert_eq!((data.len(), data.readings(0)), (1, &[0.1, -0.4][..]));
 /// # Ok::<(), poecal::Error>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Dataset {
     reading_names: Vec<String>,
     readings: Vec<f64>,
@@ -136,6 +138,24 @@ impl Dataset {
         self.readings.extend_from_slice(readings);
         self.observations.push(observation);
         Ok(())
+    }
+
+    /// Refuses a data set that was put together from elsewhere, such as a serialised one, and does not fit together.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Measurement`].
+    pub fn check(&self) -> Result<()> {
+        let files = self.files.len().max(1);
+        let fits = self.readings.len() == self.reading_names.len() * self.len()
+            && (self.ids.is_empty() || self.ids.len() == self.len())
+            && self.observations.iter().all(|row| row.target < self.targets.len())
+            && self.observations.iter().all(|row| (row.source.file as usize) < files);
+        if fits {
+            return Ok(());
+        }
+        let message = "found readings, rows and targets of a data set that do not fit together, expected a reading of each joint and a \
+                       target in every row";
+        Err(Error::new(ErrorKind::Measurement, message))
     }
 
     /// Index of a target, added if it is new.
@@ -238,6 +258,19 @@ impl Dataset {
 
     fn positions(&self, rows: &[u32]) -> impl Iterator<Item = Vector3<f64>> {
         rows.iter().map(|&row| self.observations[row as usize].measurement.residual_model().position())
+    }
+
+    /// Marks every row as one to fit, and adds the rows of another data set as held out.
+    ///
+    /// # Errors
+    /// As [`Dataset::extend`].
+    pub fn judged_by(&mut self, other: &Dataset) -> Result<()> {
+        let known = self.len();
+        self.extend(other)?;
+        for (row, observation) in self.observations.iter_mut().enumerate() {
+            observation.set = Some(if row < known { Set::Fit } else { Set::HeldOut });
+        }
+        Ok(())
     }
 
     /// The rows of another data set after these; readings are matched by name.

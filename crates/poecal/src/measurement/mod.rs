@@ -48,7 +48,7 @@ impl PoseResidual {
 /// let seen = Measurement::Point(PointMeasurement { position: Vector3::new(1.0, 2.0, 3.0) });
 /// assert_eq!(seen.residual_model().dim(), 3);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Measurement {
     /// Position of a point.
     Point(PointMeasurement),

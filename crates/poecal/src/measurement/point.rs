@@ -16,7 +16,7 @@ use crate::lie::{Pose, TargetTwist};
 /// seen.residual(&Pose::identity(), &Noise { position_m: 0.001, rotation_rad: 1.0 }, &mut e);
 /// assert_eq!(e, [0.0, 0.0, 2.0]);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PointMeasurement {
     /// Position in the device's frame, metres.
     pub position: Vector3<f64>,

@@ -17,7 +17,7 @@ use crate::lie::{Pose, TargetTwist, hat, rotation, series};
 /// PoseMeasurement { pose }.residual(&pose, &Noise { position_m: 1e-3, rotation_rad: 1e-3 }, &mut e);
 /// assert!(e.iter().all(|component| component.abs() < 1e-12));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PoseMeasurement {
     /// `device_from_target`.
     pub pose: Pose,

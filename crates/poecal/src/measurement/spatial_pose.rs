@@ -20,7 +20,7 @@ use crate::lie::{Pose, TargetTwist, Twist};
 /// SpatialPoseMeasurement { pose }.residual(&pose, &Noise { position_m: 1e-3, rotation_rad: 1e-3 }, &mut e);
 /// assert!(e.iter().all(|component| component.abs() < 1e-12));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SpatialPoseMeasurement {
     /// `device_from_target`.
     pub pose: Pose,

@@ -17,7 +17,7 @@ pub use check::{Check, SetCounts};
 pub use claims::claims;
 pub use identify::Identify;
 pub use judgement::judgement;
-pub use offsets::Offsets;
+pub use offsets::{Offsets, offset_ends};
 pub use page::calibration_page;
 pub use reproduction::reproduction_files;
 pub use table::{accuracy_table, summary};

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::{line, number, robot_words};
-use crate::io::model::Model;
+use crate::calibration::DeviceFrameKnowledge;
+use crate::io::model::{Model, ModelSource};
 use crate::lie::{Pose, rotation};
 use crate::offsets::{End, Explanation, TipError};
 use crate::robot::JointKind;
@@ -88,6 +89,26 @@ struct Errors {
     position_max_mm: f64,
     rotation_rms_deg: f64,
     rotation_max_deg: f64,
+}
+
+/// Which ends are free where nothing else is asked, each with the reason: those that the actual model, a calibration, found anew.
+#[must_use]
+pub fn offset_ends(base: Option<End>, tip: Option<End>, actual: &Model) -> [(End, &'static str); 2] {
+    let both = (End::Kept, "both models state it");
+    let (usual_base, usual_tip) = match &actual.source {
+        ModelSource::Calibration(file) => {
+            let base = match file.frame() {
+                DeviceFrameKnowledge::Unknown => {
+                    (End::Free, "the calibration's device stood anywhere, so its base frame is a choice")
+                }
+                DeviceFrameKnowledge::Base => (End::Kept, "the calibration was measured in it"),
+            };
+            (base, (End::Free, "the calibration found the tool anew"))
+        }
+        ModelSource::Urdf(_) | ModelSource::Toml => (both, both),
+    };
+    let asked = |end: Option<End>, usual| end.map_or(usual, |end| (end, "as asked"));
+    [asked(base, usual_base), asked(tip, usual_tip)]
 }
 
 impl Offsets {

@@ -1,10 +1,12 @@
 //! One joint: its screw, its frame, and how a reading becomes a joint value.
 
-use crate::lie::{Pose, Screw, rotation};
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
+
+use crate::lie::{Pose, Screw, rotation};
 
 /// What a joint does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointKind {
     /// Turns about an axis; value in radians. URDF's continuous joints are revolute ones without limits.
     Revolute,
@@ -24,7 +26,7 @@ impl JointKind {
 }
 
 /// Lower and upper limit of a joint's value, radians or metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     /// Smallest value.
     pub lower: f64,
@@ -44,7 +46,7 @@ impl Limits {
 /// let own = poecal::robot::Reading::own("joint1");
 /// assert_eq!(own.value(0.3), 0.3);
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reading {
     /// Name of the measured joint: this one, or the leader of a mimic joint.
     pub name: String,
@@ -77,7 +79,7 @@ impl Reading {
 /// let joint = Joint::revolute("elbow", Screw::revolute(&Vector3::y(), &Vector3::new(0.15, 0.0, 0.57)));
 /// assert_eq!(joint.frame.translation, Vector3::new(0.15, 0.0, 0.57));
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Joint {
     /// Name, as in the model.
     pub name: String,

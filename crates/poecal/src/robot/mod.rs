@@ -26,7 +26,7 @@ use crate::lie::{Pose, Screw};
 /// assert!((tip.translation - Vector3::new(0.0, 0.5, 0.0)).norm() < 1e-15);
 /// # Ok::<(), poecal::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Robot {
     /// The robot's name.
     pub name: String,

@@ -5,6 +5,7 @@ mod outliers;
 mod repeatability;
 mod schema;
 mod trust;
+mod validation;
 
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};

@@ -114,11 +114,17 @@ impl Inputs {
         Ok(Inputs {
             model: model.display().to_string(),
             measurements: measurements.iter().map(|path| path.display().to_string()).collect(),
-            sha256: files
-                .map(|path| Ok((path.display().to_string(), sha256(path)?)))
-                .collect::<Result<_>>()?,
+            sha256: Inputs::checksums(files)?,
             command: None,
         })
+    }
+
+    /// The checksum of each file, by its name.
+    ///
+    /// # Errors
+    /// As [`Inputs::of_files`].
+    pub fn checksums<'a>(files: impl Iterator<Item = &'a Path>) -> Result<BTreeMap<String, String>> {
+        files.map(|path| Ok((path.display().to_string(), sha256(path)?))).collect()
     }
 }
 

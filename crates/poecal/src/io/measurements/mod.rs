@@ -26,7 +26,7 @@ pub use fit_where::FitWhere;
 pub use joints::{JointsTable, read_joints};
 pub use mapping::ColumnMap;
 pub use number::DecimalSign;
-pub use read::read;
+pub use read::{parse, read};
 pub(in crate::io) use template::{plan, template};
 pub use text::Separator;
 pub use understanding::{ColumnUnderstanding, FileUnderstanding, UnitSource};

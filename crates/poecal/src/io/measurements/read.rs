@@ -31,20 +31,36 @@ pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) ->
         return Err(Error::new(ErrorKind::Option, "found no measurement file, expected at least one"));
     }
     let no_map = ColumnMap::default();
-    let mut reader = Reader {
-        robot,
-        options,
-        map: options.mapping.as_ref().unwrap_or(&no_map),
-        data: Dataset::new(robot.reading_names()),
-        target_indices: BTreeMap::new(),
-        naming: None,
-        fit_values_seen: Vec::new(),
-        understood: Vec::new(),
-        warnings: Vec::new(),
-    };
+    let mut reader = Reader::new(robot, options, &no_map);
     for path in paths {
-        reader.file(path.as_ref())?;
+        let path = path.as_ref();
+        reader.file(path, &read_text(path, "a measurement file (CSV)")?)?;
     }
+    reader.finish()
+}
+
+/// Reads the text of a measurement file; `path` is for the messages only.
+///
+/// ```
+/// use poecal::io::measurements::{ReadOptions, parse};
+/// let robot = poecal::simulate::scara();
+/// let text = "joint1,joint2,joint3,joint4,x,y,z\n0,0.1,0.1,0,0.6,0.05,0.1\n";
+/// let file = parse(text, "a table", &robot, &ReadOptions::default())?;
+/// assert_eq!(file.data.readings(0), [0.0, 0.1, 0.1, 0.0]);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`read()`].
+pub fn parse(
+    text: &str,
+    path: impl AsRef<Path>,
+    robot: &Robot,
+    options: &ReadOptions,
+) -> Result<MeasurementFile> {
+    let no_map = ColumnMap::default();
+    let mut reader = Reader::new(robot, options, &no_map);
+    reader.file(path.as_ref(), text)?;
     reader.finish()
 }
 
@@ -67,10 +83,23 @@ struct Naming {
     line: usize,
 }
 
-impl Reader<'_> {
-    fn file(&mut self, path: &Path) -> Result<()> {
-        let text = read_text(path, "a measurement file (CSV)")?;
-        let mut table = Table::open(path, &text, self.map)?;
+impl<'a> Reader<'a> {
+    fn new(robot: &'a Robot, options: &'a ReadOptions, no_map: &'a ColumnMap) -> Self {
+        Reader {
+            robot,
+            options,
+            map: options.mapping.as_ref().unwrap_or(no_map),
+            data: Dataset::new(robot.reading_names()),
+            target_indices: BTreeMap::new(),
+            naming: None,
+            fit_values_seen: Vec::new(),
+            understood: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    fn file(&mut self, path: &Path, text: &str) -> Result<()> {
+        let mut table = Table::open(path, text, self.map)?;
         let layout = Layout::new(&table.header, self.robot, self.options, self.map)?;
         let mut inputs = InputReader::new(&layout.inputs, Numbers::new(self.map.decimal));
         let mut watch = JointWatch::new(self.robot);

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::model::Model;
 use crate::io::residuals::Residuals;
+use crate::robot::Robot;
 
 /// Every name that a calibration may write.
 const OWN_NAMES: [&str; 5] =
@@ -55,17 +56,25 @@ pub fn write(
     calibration: &Calibration,
     results: Results,
 ) -> Result<Written> {
+    write_robot(folder, force, model, &calibration.robot_with_targets(), results)
+}
+
+/// [`write`] for a calibrated robot with its targets, where the calibration itself is no longer at hand.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_robot(
+    folder: &Path,
+    force: bool,
+    model: &Model,
+    robot: &Robot,
+    results: Results,
+) -> Result<Written> {
     check_folder(folder, force)?;
-    let mut robot = calibration.robot.clone();
-    robot.targets = calibration
-        .targets
-        .iter()
-        .filter_map(|target| target.name.clone().map(|name| (name, target.tip_from_target)))
-        .collect();
     let mut notes = Vec::new();
     let json = results.file.to_text()?;
-    let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, &calibration.robot)];
-    files.extend(robot_files("calibrated", model, &robot, &mut notes)?);
+    let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, robot)];
+    files.extend(robot_files("calibrated", model, robot, &mut notes)?);
     files.push(NewFile::new("residuals.csv", results.residuals.text()));
     files.extend(results.report.map(|text| NewFile::new(REPORT, text)));
     write_files(folder, &files, &OWN_NAMES, notes)

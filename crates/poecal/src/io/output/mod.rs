@@ -6,7 +6,7 @@ mod reproduction;
 mod simulation;
 mod staging;
 
-pub use calibration::{REPORT, Results, write};
+pub use calibration::{REPORT, Results, write, write_robot};
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
 pub use simulation::{Session, write_simulation};

@@ -3,15 +3,19 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use poecal::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result};
 
 /// The one path of the file that a path leads to. One that leads nowhere stays as it is, for reading it to complain about.
-pub(crate) fn actual(path: &Path) -> PathBuf {
+#[must_use]
+pub fn actual(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
 /// Refuses a measurement file that is named twice: the same rows twice are not more data.
-pub(crate) fn refuse_repeats(paths: &[PathBuf]) -> Result<()> {
+///
+/// # Errors
+/// [`ErrorKind::Option`].
+pub fn refuse_repeats(paths: &[PathBuf]) -> Result<()> {
     let mut seen = HashSet::new();
     match paths.iter().find(|path| !seen.insert(actual(path))) {
         Some(path) => {
@@ -24,7 +28,10 @@ pub(crate) fn refuse_repeats(paths: &[PathBuf]) -> Result<()> {
 }
 
 /// Refuses a file that is to judge a fit and is fitted as well.
-pub(crate) fn refuse_fitted(judges: &[PathBuf], fitted: &[PathBuf]) -> Result<()> {
+///
+/// # Errors
+/// [`ErrorKind::Option`].
+pub fn refuse_fitted(judges: &[PathBuf], fitted: &[PathBuf]) -> Result<()> {
     let fitted: HashSet<PathBuf> = fitted.iter().map(|path| actual(path)).collect();
     match judges.iter().find(|path| fitted.contains(&actual(path))) {
         Some(path) => {

@@ -1,0 +1,72 @@
+"""Exceptions and warnings, by what went wrong."""
+
+from __future__ import annotations
+
+
+class Error(Exception):
+    """Any error of poecal: one sentence that says where, what was found, what was expected and what to do.
+
+    ``path``, ``line`` and ``column`` (from 1) tell where in a file it happened, ``row`` (from 0) where in a data frame or an array;
+    each is None where that is not known.
+    """
+
+    path: str | None
+    line: int | None
+    column: int | None
+    row: int | None
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        path: str | None = None,
+        line: int | None = None,
+        column: int | None = None,
+        row: int | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.path, self.line, self.column, self.row = path, line, column, row
+
+
+class InputError(Error, ValueError):
+    """Something is wrong with what was given: a file, an array or an option."""
+
+
+class FileError(InputError):
+    """A file could not be read or written."""
+
+
+class FormatError(InputError):
+    """A text is not of the form that it should be (XML, TOML, JSON, CSV)."""
+
+
+class ModelError(InputError):
+    """A robot model that is well formed but cannot be used."""
+
+
+class MeasurementError(InputError):
+    """Measurements that are well formed but cannot be used."""
+
+
+class UnitError(InputError):
+    """A unit that is not known, or does not fit its quantity."""
+
+
+class OptionError(InputError):
+    """An argument that is out of range, of the wrong shape, or contradicts another."""
+
+
+class ProblemError(Error):
+    """Too few or unsuitable measurements for what is asked."""
+
+
+class ExportError(Error):
+    """Written files did not reproduce the fitted model."""
+
+
+class SolverError(Error):
+    """The solver could not produce a usable result."""
+
+
+class PoecalWarning(UserWarning):
+    """What the user should know of a result that cannot carry it."""

@@ -1,0 +1,175 @@
+//! NumPy arrays in and out.
+
+use nalgebra::Matrix3;
+use numpy::{
+    PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArrayMethods as _,
+};
+use poecal::lie::Pose;
+use pyo3::prelude::*;
+
+use crate::errors::argument;
+
+/// How far a rotation matrix may be from one: what is left of matrices that were printed with three decimals.
+const ROTATION_TOLERANCE: f64 = 1e-2;
+
+/// Numbers of any array-like, one after the other, with their shape.
+pub(crate) struct Numbers {
+    pub(crate) values: Vec<f64>,
+    pub(crate) shape: Vec<usize>,
+}
+
+impl Numbers {
+    /// The numbers of `value`, the argument `name`: float32, integers, lists and arrays of any layout become float64.
+    pub(crate) fn of(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
+        let array = match value.extract::<PyReadonlyArrayDyn<'_, f64>>() {
+            Ok(array) if array.is_c_contiguous() => array,
+            _ => converted(value, name, expected)?,
+        };
+        Ok(Numbers { shape: array.shape().to_vec(), values: array.as_slice()?.to_vec() })
+    }
+
+    /// The same, refused if a number is not finite.
+    pub(crate) fn finite(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
+        let numbers = Numbers::of(value, name, expected)?;
+        let row_length: usize = numbers.shape.iter().skip(1).product::<usize>().max(1);
+        match numbers.values.iter().position(|number| !number.is_finite()) {
+            Some(at) if numbers.shape.len() > 1 => {
+                let (row, number) = (at / row_length, numbers.values.get(at).copied().unwrap_or_default());
+                Err(argument(name, format!("found {number} in row {row}, expected finite numbers")))
+            }
+            Some(at) => {
+                let number = numbers.values.get(at).copied().unwrap_or_default();
+                Err(argument(name, format!("found {number} at index {at}, expected finite numbers")))
+            }
+            None => Ok(numbers),
+        }
+    }
+
+    /// Refuses another shape than `wanted`, in which `None` is any length.
+    pub(crate) fn shaped(self, wanted: &[Option<usize>], name: &str, expected: &str) -> PyResult<Self> {
+        let fits = |(&found, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|wanted| found == wanted);
+        if self.shape.len() == wanted.len() && self.shape.iter().zip(wanted).all(fits) {
+            return Ok(self);
+        }
+        Err(argument(name, format!("found an array of shape {}, expected {expected}", self.shape_words())))
+    }
+
+    /// The shape as Python prints it.
+    pub(crate) fn shape_words(&self) -> String {
+        match self.shape.as_slice() {
+            [length] => format!("({length},)"),
+            shape => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+        }
+    }
+
+    /// Number of rows.
+    pub(crate) fn rows(&self) -> usize {
+        self.shape.first().copied().unwrap_or(1)
+    }
+}
+
+/// `numpy.ascontiguousarray(value, dtype=float)`, refused where that would lose or guess something.
+fn converted<'py>(
+    value: &Bound<'py, PyAny>,
+    name: &str,
+    expected: &str,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let numpy = value.py().import("numpy")?;
+    let array = numpy
+        .call_method1("asarray", (value,))
+        .map_err(|cause| argument(name, format!("found no array ({cause}), expected {expected}")))?;
+    let dtype = array.getattr("dtype")?;
+    let kind: String = dtype.getattr("kind")?.extract()?;
+    if !["f", "i", "u"].contains(&kind.as_str()) {
+        let found = if value.is_none() { "None".to_owned() } else { format!("values of type {dtype}") };
+        return Err(argument(name, format!("found {found}, expected {expected}")));
+    }
+    let array = numpy.call_method1("ascontiguousarray", (array, "float64"))?;
+    // A number alone becomes an array of one.
+    let array = if value.getattr("__len__").is_err() { array.call_method1("reshape", ((),))? } else { array };
+    array.extract().map_err(Into::into)
+}
+
+/// The argument `name` as one pose, an array of shape (4, 4).
+pub(crate) fn pose(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Pose> {
+    let expected = "a pose of shape (4, 4)";
+    let numbers = Numbers::finite(value, name, expected)?.shaped(&[Some(4), Some(4)], name, expected)?;
+    pose_of(&numbers.values).map_err(|message| argument(name, message))
+}
+
+/// The pose of 16 numbers, row by row.
+pub(crate) fn pose_of(numbers: &[f64]) -> Result<Pose, String> {
+    let at = |row: usize, column: usize| numbers.get(4 * row + column).copied().unwrap_or_default();
+    let last = [at(3, 0), at(3, 1), at(3, 2), at(3, 3)];
+    if last != [0.0, 0.0, 0.0, 1.0] {
+        return Err(format!("found the last row {last:?}, expected 0, 0, 0, 1"));
+    }
+    let rotation = Matrix3::from_fn(at);
+    let off = (rotation.transpose() * rotation - Matrix3::identity()).norm();
+    let is_rotation = off <= ROTATION_TOLERANCE && rotation.determinant() > 0.0;
+    if !is_rotation {
+        return Err(format!(
+            "found a matrix whose upper left part is no rotation (RᵀR is {off:.1e} from the identity, determinant {:.4}), expected one",
+            rotation.determinant()
+        ));
+    }
+    Ok(Pose::new(rotation, nalgebra::Vector3::new(at(0, 3), at(1, 3), at(2, 3))).orthonormalized())
+}
+
+/// A pose as 16 numbers, row by row.
+fn numbers_of(pose: &Pose) -> [f64; 16] {
+    let mut numbers = [0.0; 16];
+    for (row, chunk) in numbers.chunks_exact_mut(4).take(3).enumerate() {
+        for (column, number) in chunk.iter_mut().take(3).enumerate() {
+            *number = pose.rotation[(row, column)];
+        }
+        chunk[3] = pose.translation[row];
+    }
+    numbers[15] = 1.0;
+    numbers
+}
+
+/// A pose as an array of shape (4, 4).
+pub(crate) fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    PyArray1::from_vec(py, numbers_of(pose).to_vec()).reshape([4, 4])
+}
+
+/// Poses as an array of shape (m, 4, 4).
+pub(crate) fn pose_arrays<'py>(py: Python<'py>, poses: &[Pose]) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    let numbers: Vec<f64> = poses.iter().flat_map(numbers_of).collect();
+    PyArray1::from_vec(py, numbers).reshape([poses.len(), 4, 4])
+}
+
+/// Rows of `columns` numbers as an array of shape (m, columns).
+pub(crate) fn table<'py>(
+    py: Python<'py>,
+    numbers: Vec<f64>,
+    columns: usize,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let rows = numbers.len() / columns.max(1);
+    PyArray1::from_vec(py, numbers).reshape([rows, columns])
+}
+
+/// Joint readings, of shape (m, n) or (n,) for one configuration.
+pub(crate) struct Joints {
+    /// One configuration after the other, in the order of the robot's readings.
+    pub(crate) readings: Vec<f64>,
+    /// Whether it was one configuration alone.
+    pub(crate) single: bool,
+}
+
+impl Joints {
+    /// Of the argument `joints`.
+    pub(crate) fn of(value: &Bound<'_, PyAny>, robot: &poecal::robot::Robot) -> PyResult<Self> {
+        let names = robot.reading_names();
+        let n = names.len();
+        let expected = format!(
+            "shape (m, {n}) or ({n},): in each configuration {} (radians; metres of sliding joints)",
+            names.join(", ")
+        );
+        let numbers = Numbers::finite(value, "joints", &expected)?;
+        let single = numbers.shape.len() == 1;
+        let wanted: &[Option<usize>] = if single { &[Some(n)] } else { &[None, Some(n)] };
+        Ok(Joints { readings: numbers.shaped(wanted, "joints", &expected)?.values, single })
+    }
+}

@@ -1,0 +1,177 @@
+//! Robots of arrays. The arrays become a TOML model, whose reader checks all that there is to check.
+
+use std::fmt::Write as _;
+
+use poecal::Error;
+use poecal::io::model::{Model, ModelSource};
+use poecal::io::robot_toml;
+use poecal::lie::Pose;
+use pyo3::prelude::*;
+
+use crate::arrays::{Numbers, pose};
+use crate::errors::{argument, raise};
+use crate::words::chosen;
+
+/// What does not concern geometry.
+pub(crate) struct Naming<'a, 'py> {
+    pub(crate) name: &'a str,
+    pub(crate) names: Option<Vec<String>>,
+    pub(crate) limits: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) base_link: &'a str,
+    pub(crate) tip_link: &'a str,
+}
+
+impl Naming<'_, '_> {
+    /// Names of the joints.
+    fn joints(&self, count: usize) -> PyResult<Vec<String>> {
+        match &self.names {
+            Some(names) if names.len() != count => Err(argument(
+                "names",
+                format!("found {} names, expected one for each of {count} joints", names.len()),
+            )),
+            Some(names) => Ok(names.clone()),
+            None => Ok((1..=count).map(|index| format!("joint{index}")).collect()),
+        }
+    }
+
+    /// Limits of the joints as keys of their tables.
+    fn limits(&self, count: usize) -> PyResult<Vec<String>> {
+        let Some(limits) = self.limits else { return Ok(vec![String::new(); count]) };
+        let expected = format!("shape ({count}, 2): lower and upper limit of each joint, radians or metres");
+        let limits =
+            Numbers::of(limits, "limits", &expected)?.shaped(&[Some(count), Some(2)], "limits", &expected)?;
+        let key = |row: &[f64]| match row {
+            [lower, upper] if lower.is_finite() && upper.is_finite() => {
+                format!(", limits = [{lower:?}, {upper:?}]")
+            }
+            _ => String::new(),
+        };
+        Ok(limits.values.chunks_exact(2).map(key).collect())
+    }
+
+    /// The model of a TOML text that begins with this and goes on with `rest`.
+    fn model(&self, rest: &str) -> PyResult<Model> {
+        let text = format!(
+            "poecal_robot = 1\nname = {}\nlength_unit = \"m\"\nangle_unit = \"rad\"\nbase_link = {}\ntip_link = {}\n{rest}",
+            quoted(self.name),
+            quoted(self.base_link),
+            quoted(self.tip_link)
+        );
+        // The place in a text that the user did not write would mislead.
+        let without_place = |error: Error| raise(Error::new(error.kind(), error.message()));
+        let robot = robot_toml::parse(&text, self.name).map_err(without_place)?;
+        Ok(Model { robot, source: ModelSource::Toml, path: self.name.into() })
+    }
+}
+
+/// A text as TOML writes it.
+fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            // Writing to a String cannot fail.
+            c if c.is_control() => drop(write!(out, "\\u{:04X}", u32::from(c))),
+            c => out.push(c),
+        }
+    }
+    out + "\""
+}
+
+/// A pose as a table of TOML.
+fn pose_table(name: &str, pose: &Pose) -> String {
+    let [x, y, z]: [f64; 3] = pose.translation.into();
+    let row = |row: usize| {
+        let at = |column: usize| pose.rotation[(row, column)];
+        format!("[{:?}, {:?}, {:?}]", at(0), at(1), at(2))
+    };
+    format!("[{name}]\nposition = [{x:?}, {y:?}, {z:?}]\nrotation = [{}, {}, {}]\n", row(0), row(1), row(2))
+}
+
+pub(crate) fn from_screws(
+    screws: &Bound<'_, PyAny>,
+    home: &Bound<'_, PyAny>,
+    angular_first: bool,
+    naming: &Naming<'_, '_>,
+) -> PyResult<Model> {
+    let expected = "shape (n, 6): a unit twist a joint";
+    let screws = Numbers::finite(screws, "screws", expected)?.shaped(&[None, Some(6)], "screws", expected)?;
+    let count = screws.rows();
+    let (names, limits) = (naming.joints(count)?, naming.limits(count)?);
+    let mut text = "joint = [\n".to_owned();
+    for ((row, name), limits) in screws.values.chunks_exact(6).zip(&names).zip(&limits) {
+        let (first, last) = row.split_at(3);
+        let (v, w) = if angular_first { (last, first) } else { (first, last) };
+        let kind = if w.iter().all(|part| *part == 0.0) { "prismatic" } else { "revolute" };
+        let name = quoted(name);
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{{ name = {name}, type = \"{kind}\", screw = {{ v = {v:?}, w = {w:?} }}{limits} }},"
+        );
+    }
+    text.push_str("]\n");
+    naming.model(&(text + &pose_table("home", &pose(home, "home")?)))
+}
+
+/// Denavit-Hartenberg parameters as Python gives them.
+pub(crate) struct DhTable<'a, 'py> {
+    pub(crate) a_m: &'a Bound<'py, PyAny>,
+    pub(crate) alpha_rad: &'a Bound<'py, PyAny>,
+    pub(crate) d_m: &'a Bound<'py, PyAny>,
+    pub(crate) theta_rad: &'a Bound<'py, PyAny>,
+    pub(crate) convention: &'a str,
+    pub(crate) kinds: Option<Vec<String>>,
+    pub(crate) base: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) tool: Option<&'a Bound<'py, PyAny>>,
+}
+
+pub(crate) fn from_dh(table: &DhTable<'_, '_>, naming: &Naming<'_, '_>) -> PyResult<Model> {
+    let words = [("standard", "standard_dh"), ("modified", "modified_dh")];
+    let convention = chosen("convention", table.convention, &words)?;
+    let a = Numbers::finite(table.a_m, "a_m", "shape (n,), metres")?.shaped(
+        &[None],
+        "a_m",
+        "shape (n,), metres",
+    )?;
+    let count = a.rows();
+    let expected = format!("shape ({count},) as a_m");
+    let column =
+        |value, name| Numbers::finite(value, name, &expected)?.shaped(&[Some(count)], name, &expected);
+    let columns = [
+        a.values,
+        column(table.alpha_rad, "alpha_rad")?.values,
+        column(table.d_m, "d_m")?.values,
+        column(table.theta_rad, "theta_rad")?.values,
+    ];
+    let kinds = match &table.kinds {
+        Some(kinds) if kinds.len() != count => {
+            return Err(argument(
+                "kinds",
+                format!("found {} kinds, expected one for each of {count} joints", kinds.len()),
+            ));
+        }
+        Some(kinds) => {
+            let words = [("revolute", "revolute"), ("prismatic", "prismatic")];
+            kinds.iter().map(|kind| chosen("kinds", kind, &words)).collect::<PyResult<_>>()?
+        }
+        None => vec!["revolute"; count],
+    };
+    let (names, limits) = (naming.joints(count)?, naming.limits(count)?);
+    let mut text = format!("convention = \"{convention}\"\njoint = [\n");
+    for (row, ((name, kind), limits)) in names.iter().zip(kinds).zip(&limits).enumerate() {
+        let name = quoted(name);
+        let _ = write!(text, "{{ name = {name}, type = \"{kind}\"");
+        for (key, values) in ["a", "alpha", "d", "theta"].iter().zip(&columns) {
+            let _ = write!(text, ", {key} = {:?}", values.get(row).copied().unwrap_or_default());
+        }
+        let _ = writeln!(text, "{limits} }},");
+    }
+    text.push_str("]\n");
+    for (name, place) in [("base", table.base), ("tool", table.tool)] {
+        if let Some(place) = place {
+            text.push_str(&pose_table(name, &pose(place, name)?));
+        }
+    }
+    naming.model(&text)
+}

@@ -1,0 +1,163 @@
+//! `calibrate`.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use poecal::calibration::{CalibrationOptions, Stage, calibrate_with_progress, settle_sets};
+use poecal::io::calibration_file::Inputs;
+use poecal::io::named_files::refuse_fitted;
+use poecal::measurement::{Dataset, Measurement, PoseResidual};
+use poecal::solve;
+use pyo3::prelude::*;
+
+use crate::calibration::Calibration;
+use crate::errors::raise;
+use crate::measurements::Measurements;
+use crate::robot::Robot;
+use crate::words::{
+    formulation, frame as frame_word, from_deg, from_mm, method as method_word, residual as residual_word,
+    robust as robust_word, sigma,
+};
+
+/// Calibrates a robot from measurements.
+///
+/// Parameters
+/// ----------
+/// robot : the robot as delivered
+/// measurements : what was measured of it
+/// frame : the measuring device's frame: "unknown" (it stands anywhere) or "base"
+/// sigma_position_mm, sigma_rotation_deg : standard deviation of each measured component, default estimated from the data
+/// held_out : share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row
+/// seed : seed of that choice (default 1)
+/// robust : what to do about grossly wrong rows: "auto", "off", "huber", "cauchy" or "tukey"
+/// formulation : how errors of the joints are written: "adjoint", "screw", "screw-offsets" or "adjoint-offsets"
+/// residual : how errors of measured frames are written: "tool" or "spatial"
+/// method : "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws)
+/// validate : measurements to judge by: all other rows are fitted
+/// progress : called with what is done next, in words
+///
+/// Raises
+/// ------
+/// ProblemError if there are too few measurements, OptionError for options out of range, SolverError if no finite result is reached.
+#[pyfunction]
+#[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, held_out=None, seed=None,
+                    robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, progress=None))]
+#[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
+pub(crate) fn calibrate(
+    py: Python<'_>,
+    robot: &Robot,
+    measurements: &Measurements,
+    frame: &str,
+    sigma_position_mm: Option<f64>,
+    sigma_rotation_deg: Option<f64>,
+    held_out: Option<f64>,
+    seed: Option<u64>,
+    robust: &str,
+    formulation: &str,
+    residual: &str,
+    method: Option<&str>,
+    validate: Option<&Measurements>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Calibration> {
+    let usual = CalibrationOptions::default().with_formulation(self::formulation(formulation)?);
+    let options = CalibrationOptions {
+        frame: frame_word(frame)?,
+        sigma_position_m: sigma("sigma_position_mm", sigma_position_mm, from_mm)?,
+        sigma_rotation_rad: sigma("sigma_rotation_deg", sigma_rotation_deg, from_deg)?,
+        held_out: held_out.unwrap_or(usual.held_out),
+        seed: seed.unwrap_or(usual.seed),
+        robust: robust_word(robust)?,
+        pose_residual: residual_word(residual)?,
+        solver: solve::Options {
+            method: method.map_or(Ok(usual.solver.method), method_word)?,
+            ..usual.solver
+        },
+        ..usual
+    };
+    let data = rows(py, robot, measurements, validate, held_out, seed)?;
+    warn_of_residual(py, &data, options.pose_residual)?;
+    let inputs = inputs(robot, measurements, validate);
+    let mut raised = None;
+    let mut tell = |stage: Stage| {
+        if let (Some(progress), None) = (&progress, &raised) {
+            raised = Python::attach(|py| progress.call1(py, (stage.words(),)).err());
+        }
+    };
+    let nominal = &robot.model.robot;
+    let mut took = Duration::ZERO;
+    let found = py.detach(|| {
+        let start = Instant::now();
+        let found = calibrate_with_progress(nominal, &data, &options, &mut tell);
+        took = start.elapsed();
+        found
+    });
+    if let Some(raised) = raised {
+        return Err(raised);
+    }
+    let data = match data {
+        Cow::Borrowed(_) => Arc::clone(&measurements.file),
+        Cow::Owned(data) => Arc::new(poecal::io::measurements::MeasurementFile {
+            data,
+            understood: Vec::new(),
+            warnings: Vec::new(),
+        }),
+    };
+    Ok(Calibration::of_fit(robot.same(), found.map_err(raise)?, data, inputs, took))
+}
+
+/// The rows to fit and to hold out, joined and settled.
+fn rows<'a>(
+    py: Python<'_>,
+    robot: &Robot,
+    measurements: &'a Measurements,
+    validate: Option<&Measurements>,
+    held_out: Option<f64>,
+    seed: Option<u64>,
+) -> PyResult<Cow<'a, Dataset>> {
+    measurements.check_robot(robot)?;
+    let mut data = Cow::Borrowed(measurements.data());
+    if let Some(other) = validate {
+        other.check_robot(robot)?;
+        refuse_fitted(&other.data().files, &measurements.data().files).map_err(raise)?;
+        data.to_mut().judged_by(other.data()).map_err(raise)?;
+    }
+    if data.observations.iter().all(|row| row.set.is_none()) {
+        return Ok(data);
+    }
+    let stated_by = match validate {
+        Some(_) => "--validate",
+        None if measurements.source.fit_where => "--fit-where",
+        None => "what each row says of its set",
+    };
+    settle_sets(data.to_mut(), held_out, stated_by).map_err(raise)?;
+    if seed.is_some() {
+        crate::warn(py, &["seed has no effect on which rows are held out: that is stated".to_owned()])?;
+    }
+    Ok(data)
+}
+
+fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: PoseResidual) -> PyResult<()> {
+    let poses = data.observations.iter().any(|row| matches!(row.measurement, Measurement::Pose(_)));
+    if residual == PoseResidual::default() || poses {
+        return Ok(());
+    }
+    let words = residual.word();
+    crate::warn(
+        py,
+        &[format!("residual {words} has no effect: it is about measured frames, and there are points only")],
+    )
+}
+
+/// What was read, as `calibration.json` states it.
+fn inputs(robot: &Robot, measurements: &Measurements, validate: Option<&Measurements>) -> Inputs {
+    let sources = || [Some(measurements), validate].into_iter().flatten().map(|it| &it.source);
+    let mut sha256 = (*robot.sha256).clone();
+    sources().for_each(|source| sha256.extend(source.sha256.clone()));
+    Inputs {
+        model: robot.model.path.display().to_string(),
+        measurements: sources().flat_map(|source| source.names.clone()).collect(),
+        sha256,
+        command: None,
+    }
+}

@@ -1,0 +1,330 @@
+//! A finished calibration.
+
+mod content;
+
+use content::{Found, part};
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use numpy::PyArray2;
+use poecal::io::calibration_file::CalibrationFile;
+use poecal::io::model::{Model, ModelSource};
+use poecal::io::output::{self, Results};
+use poecal::io::predictions::{PredictionFrame, predicted};
+use poecal::io::residuals::Residuals;
+use poecal::report;
+use pyo3::IntoPyObjectExt as _;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+
+use crate::accuracy::{Accuracy, Verdict};
+use crate::arrays::{Joints, pose_array};
+use crate::errors::raise;
+use crate::findings::{Findings, identified};
+use crate::html::Html;
+use crate::measurements::Measurements;
+use crate::pickle;
+use crate::prediction::Prediction;
+use crate::robot::{Robot, poses};
+use crate::words::chosen;
+
+/// A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
+///
+/// `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`; what is not asked for
+/// is not converted.
+#[pyclass(frozen, module = "poecal", name = "Calibration")]
+pub(crate) struct Calibration {
+    /// The robot as delivered, after whose file models are written.
+    nominal: Robot,
+    found: Found,
+    calibrated: OnceLock<Robot>,
+}
+
+/// Where a report goes: among the results or not, or to a file.
+#[derive(FromPyObject)]
+enum ReportPlace {
+    Among(bool),
+    File(PathBuf),
+}
+
+#[pymethods]
+impl Calibration {
+    /// Reads a calibration.json, and the residuals.csv beside it (or `residuals`) if there is one.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, residuals=None))]
+    fn read(path: PathBuf, residuals: Option<PathBuf>) -> PyResult<Self> {
+        let file = CalibrationFile::read(&path).map_err(raise)?;
+        let in_file = |error: poecal::Error| raise(error.in_file(&path));
+        let robot = file.robot().map_err(in_file)?;
+        let nominal = file.nominal_robot().map_err(in_file)?;
+        let beside = path.with_file_name("residuals.csv");
+        let residuals = residuals.or_else(|| beside.is_file().then_some(beside));
+        let residuals = residuals.map(Residuals::read).transpose().map_err(raise)?;
+        let mut summary = report::accuracy_table(&file.accuracy.training, file.accuracy.held_out.as_ref());
+        if let Some(verdict) = &file.verdict {
+            summary.push_str(&format!("\nverdict       {}\n", verdict.level.words()));
+        }
+        let nominal = Robot::new(Model { robot: nominal, source: ModelSource::Toml, path });
+        Ok(Calibration::written(nominal, robot, file, residuals, summary))
+    }
+
+    /// The calibrated robot, with the targets in its tip frame.
+    #[getter]
+    fn robot(&self) -> PyResult<Robot> {
+        Ok(self.calibrated()?.same())
+    }
+
+    /// The robot as delivered.
+    #[getter]
+    fn nominal(&self) -> Robot {
+        self.nominal.same()
+    }
+
+    /// Errors of the nominal, registered and calibrated model on fitted and held-out rows.
+    #[getter]
+    fn accuracy(&self) -> Accuracy {
+        self.errors().into()
+    }
+
+    /// How far it may be used; None of a file that states none.
+    #[getter]
+    fn verdict(&self) -> Option<Verdict> {
+        self.judged().cloned().map(Verdict)
+    }
+
+    /// Whether the fit reached an optimum.
+    #[getter]
+    fn converged(&self) -> bool {
+        self.file().solver.converged
+    }
+
+    /// What makes the result doubtful, and mistakes that the measurements show, a sentence each.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        let file = self.file();
+        file.warnings.iter().chain(file.diagnosis.iter().map(|found| &found.statement)).cloned().collect()
+    }
+
+    /// Pose of the measuring device in the base, shape (4, 4).
+    #[getter]
+    fn base_from_device<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        pose_array(py, &self.file().base_from_device().map_err(raise)?)
+    }
+
+    /// Each joint's correction, its uncertainty and its worth: `corrections` of calibration.json.
+    #[getter]
+    fn corrections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        part(py, &self.file().corrections)
+    }
+
+    /// Errors to expect of predictions: `uncertainty` of calibration.json; None if there are no more residuals than unknowns.
+    #[getter]
+    fn uncertainty<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        part(py, &self.file().uncertainty)
+    }
+
+    /// What the measurements can tell: `identifiability` of calibration.json.
+    #[getter]
+    fn identifiability<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        part(py, &self.file().identifiability)
+    }
+
+    /// The whole calibration.json as dicts and lists.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        part(py, self.file())
+    }
+
+    /// The text of calibration.json.
+    fn to_json(&self) -> PyResult<String> {
+        self.file().to_text().map_err(raise)
+    }
+
+    /// The text of residuals.csv: what each row leaves.
+    fn residuals_csv(&self) -> PyResult<String> {
+        Ok(self.residuals()?.text())
+    }
+
+    /// Writes the results to a folder, as the program does: calibration.json, the calibrated model, residuals.csv and report.html.
+    ///
+    /// All is written or nothing, and the models are read back and compared with the fit. `report` may be False, or another file.
+    /// Gives the names of the files.
+    #[pyo3(signature = (folder, *, force=false, report=None), text_signature = "($self, folder, *, force=False, report=True)")]
+    fn write(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        force: bool,
+        report: Option<ReportPlace>,
+    ) -> PyResult<Vec<String>> {
+        let report = report.unwrap_or(ReportPlace::Among(true));
+        let (file, residuals) = (self.file(), self.residuals()?);
+        let (robot, model) = (self.as_fitted(), &self.nominal.model);
+        let written = py.detach(|| {
+            output::check_folder(&folder, force)?;
+            if let ReportPlace::File(path) = &report {
+                output::check_file(path)?;
+            }
+            let page = match &report {
+                ReportPlace::Among(false) => None,
+                _ => Some(report::calibration_page(file, residuals)?),
+            };
+            let (among, elsewhere) = match &report {
+                ReportPlace::File(path) => (None, page.map(|page| (path, page))),
+                ReportPlace::Among(_) => (page, None),
+            };
+            let results = Results { file: file.clone(), residuals: residuals.clone(), report: among };
+            let written = output::write_robot(&folder, force, model, &robot, results)?;
+            if let Some((path, page)) = elsewhere {
+                output::write_file(path, &page)?;
+            }
+            Ok(written)
+        });
+        let written = written.map_err(raise)?;
+        crate::warn(py, &written.notes)?;
+        Ok(written.files)
+    }
+
+    /// Writes the report, one HTML file, over an old one.
+    fn report(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let (file, residuals) = (self.file(), self.residuals()?);
+        py.detach(|| output::write_file(&path, &report::calibration_page(file, residuals)?)).map_err(raise)
+    }
+
+    /// Where the calibrated tip, or a target, stands.
+    ///
+    /// `joints` is of shape (m, n), radians and metres, or (n,) for one configuration. Gives poses of shape (m, 4, 4), or (4, 4), in
+    /// the `frame` "base" or "device"; with `with_uncertainty` a `Prediction`, with the error to expect of each.
+    #[pyo3(signature = (joints, *, with_uncertainty=false, frame="base", target=None))]
+    fn predict<'py>(
+        &self,
+        py: Python<'py>,
+        joints: &Bound<'py, PyAny>,
+        with_uncertainty: bool,
+        frame: &str,
+        target: Option<&str>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let frame =
+            chosen("frame", frame, &[("base", PredictionFrame::Base), ("device", PredictionFrame::Device)])?;
+        let model = &self.calibrated()?.model;
+        let joints = Joints::of(joints, &model.robot)?;
+        let found = py
+            .detach(|| predicted(model, &joints.readings, frame, target, with_uncertainty))
+            .map_err(raise)?;
+        match found.doubts {
+            Some(doubts) => Prediction::new(found.poses, doubts).into_bound_py_any(py),
+            None => poses(py, &found.poses, joints.single),
+        }
+    }
+
+    /// Judges the calibration by measurements that it did not see; every row counts.
+    ///
+    /// `refit_frame` finds the device's frame anew from them, `refit_tool` the targets.
+    #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false))]
+    fn validate(
+        &self,
+        py: Python<'_>,
+        measurements: &Measurements,
+        refit_frame: bool,
+        refit_tool: bool,
+    ) -> PyResult<Findings> {
+        measurements.check_robot(self.calibrated()?)?;
+        let file = self.file();
+        let data = measurements.data();
+        let judgement = py.detach(|| file.judge(data, refit_frame, refit_tool)).map_err(raise)?;
+        let names = measurements.source.names.join(", ");
+        let text =
+            report::judgement(&self.calibrated()?.model.path.display().to_string(), &names, &judgement);
+        Findings::new(text, &judgement, file.doubt(&judgement).into_iter().collect())
+    }
+
+    /// What measuring the calibrated robot in these configurations would tell; see `identify`.
+    #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown"))]
+    fn identify(
+        &self,
+        py: Python<'_>,
+        joints: &Bound<'_, PyAny>,
+        kind: &str,
+        sigma_position_mm: Option<f64>,
+        sigma_rotation_deg: Option<f64>,
+        frame: &str,
+    ) -> PyResult<Findings> {
+        identified(py, self.calibrated()?, joints, kind, sigma_position_mm, sigma_rotation_deg, frame)
+    }
+
+    /// Seconds that the library took for the fit; None if it was read. What a call took beyond them is Python's.
+    #[getter]
+    fn library_seconds(&self) -> Option<f64> {
+        self.seconds()
+    }
+
+    fn __str__(&self) -> String {
+        self.summary().to_owned()
+    }
+
+    fn __repr__(&self) -> String {
+        let file = self.file();
+        let (set, name) = match &file.accuracy.held_out {
+            Some(set) => (set, "held-out"),
+            None => (&file.accuracy.training, "fitted"),
+        };
+        let verdict = file.verdict.as_ref().map_or("", |verdict| verdict.level.words());
+        format!(
+            "<poecal.Calibration of {}: {:.4} mm (RMS) on {} {name} rows, nominal {:.4} mm; verdict {verdict}>",
+            file.robot.name, set.calibrated.position_mm.rms, set.count, set.nominal.position_mm.rms
+        )
+    }
+
+    fn _repr_html_(&self) -> String {
+        let file = self.file();
+        let mut html = Html::new();
+        if let Some(verdict) = &file.verdict {
+            html.paragraph(&format!(
+                "{}: {} ({})",
+                file.robot.name,
+                verdict.level.words(),
+                verdict.reasons.join("; ")
+            ));
+        }
+        html.head(&["error (RMS)", "rows", "nominal", "registered", "calibrated"]);
+        for (name, set) in
+            [("fitted", Some(&file.accuracy.training)), ("held out", file.accuracy.held_out.as_ref())]
+        {
+            let Some(set) = set else { continue };
+            let models = [&set.nominal, &set.registered, &set.calibrated];
+            let count = set.count.to_string();
+            let [a, b, c] = models.map(|model| format!("{:.4} mm", model.position_mm.rms));
+            html.row(&[&format!("position, {name}"), &count, &a, &b, &c]);
+            let [a, b, c] = models.map(|model| model.rotation_deg.map(|it| format!("{:.4}°", it.rms)));
+            if let (Some(a), Some(b), Some(c)) = (a, b, c) {
+                html.row(&[&format!("rotation, {name}"), &count, &a, &b, &c]);
+            }
+        }
+        for warning in self.warnings() {
+            html.paragraph(&format!("warning: {warning}"));
+        }
+        html.finish()
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        let Ok(other) = other.cast::<Calibration>() else { return false };
+        let other = other.get();
+        let residuals = |it: &Calibration| it.residuals().ok().map(Residuals::text);
+        self.file() == other.file()
+            && self.nominal.model == other.nominal.model
+            && residuals(self) == residuals(other)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let state = self.state()?;
+        pickle::reduce(py, "_calibration", PyBytes::new(py, &pickle::bytes(&state)?))
+    }
+
+    fn __copy__(slf: Bound<'_, Self>) -> Bound<'_, Self> {
+        slf
+    }
+
+    fn __deepcopy__<'py>(slf: Bound<'py, Self>, _memo: &Bound<'_, PyAny>) -> Bound<'py, Self> {
+        slf
+    }
+}

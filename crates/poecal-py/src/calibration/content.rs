@@ -1,0 +1,191 @@
+//! What a calibration holds, and what is made of it when it is asked for.
+
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use poecal::io::calibration_file::{CalibrationFile, Inputs};
+use poecal::io::measurements::MeasurementFile;
+use poecal::io::model::{Model, ModelSource};
+use poecal::io::residuals::Residuals;
+use poecal::report;
+use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::Calibration;
+use crate::errors::{argument, raise};
+use crate::robot::{Robot, RobotState};
+
+/// What all else follows from.
+pub(super) enum Found {
+    /// A calibration that was made just now.
+    Fit(Box<Fit>),
+    /// A calibration of files, or of a pickle.
+    Written(Box<Written>),
+}
+
+/// A calibration that was made just now. What it is written as is made when it is asked for.
+pub(super) struct Fit {
+    calibration: poecal::calibration::Calibration,
+    data: Arc<MeasurementFile>,
+    inputs: Inputs,
+    took: Duration,
+    file: OnceLock<CalibrationFile>,
+    residuals: OnceLock<Residuals>,
+    summary: OnceLock<String>,
+}
+
+/// A calibration of files.
+pub(super) struct Written {
+    /// The calibrated robot with its targets, to the last digit as fitted.
+    robot: poecal::robot::Robot,
+    file: CalibrationFile,
+    residuals: Option<Residuals>,
+    summary: String,
+}
+
+/// What rebuilds a calibration exactly.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct CalibrationState {
+    nominal: RobotState,
+    robot: poecal::robot::Robot,
+    file: String,
+    residuals: Option<String>,
+    summary: String,
+}
+
+/// The name that stands for a file where there is none.
+const UNWRITTEN: &str = "calibration.json";
+
+impl Calibration {
+    /// A calibration that was made just now, of `data`.
+    pub(crate) fn of_fit(
+        nominal: Robot,
+        calibration: poecal::calibration::Calibration,
+        data: Arc<MeasurementFile>,
+        inputs: Inputs,
+        took: Duration,
+    ) -> Self {
+        let fit = Fit {
+            calibration,
+            data,
+            inputs,
+            took,
+            file: OnceLock::new(),
+            residuals: OnceLock::new(),
+            summary: OnceLock::new(),
+        };
+        Calibration { nominal, found: Found::Fit(Box::new(fit)), calibrated: OnceLock::new() }
+    }
+
+    /// A calibration of files.
+    pub(super) fn written(
+        nominal: Robot,
+        robot: poecal::robot::Robot,
+        file: CalibrationFile,
+        residuals: Option<Residuals>,
+        summary: String,
+    ) -> Self {
+        let written = Written { robot, file, residuals, summary };
+        Calibration { nominal, found: Found::Written(Box::new(written)), calibrated: OnceLock::new() }
+    }
+
+    /// The calibration as a state.
+    pub(super) fn state(&self) -> PyResult<CalibrationState> {
+        Ok(CalibrationState {
+            nominal: self.nominal.state()?,
+            robot: self.as_fitted(),
+            file: self.file().to_text().map_err(raise)?,
+            residuals: self.residuals().ok().map(Residuals::text),
+            summary: self.summary().to_owned(),
+        })
+    }
+
+    /// The calibration of a state.
+    pub(crate) fn of_state(state: CalibrationState) -> PyResult<Self> {
+        let CalibrationState { nominal, robot, file, residuals, summary } = state;
+        let file = CalibrationFile::parse(&file, UNWRITTEN).map_err(raise)?;
+        let residuals =
+            residuals.map(|text| Residuals::parse(&text, "residuals.csv")).transpose().map_err(raise)?;
+        Ok(Calibration::written(Robot::of_state(nominal)?, robot, file, residuals, summary))
+    }
+
+    /// What `calibration.json` says.
+    pub(crate) fn file(&self) -> &CalibrationFile {
+        match &self.found {
+            Found::Fit(fit) => fit
+                .file
+                .get_or_init(|| CalibrationFile::new(&fit.calibration, &fit.data.data, fit.inputs.clone())),
+            Found::Written(written) => &written.file,
+        }
+    }
+
+    /// What each row leaves.
+    pub(super) fn residuals(&self) -> PyResult<&Residuals> {
+        match &self.found {
+            Found::Fit(fit) => {
+                Ok(fit.residuals.get_or_init(|| Residuals::of(&fit.data.data, &fit.calibration)))
+            }
+            Found::Written(written) => written.residuals.as_ref().ok_or_else(|| {
+                let message = "found no residuals.csv beside the calibration.json, expected it: name it in Calibration.read";
+                argument("residuals", message)
+            }),
+        }
+    }
+
+    /// The table of the program.
+    pub(super) fn summary(&self) -> &str {
+        match &self.found {
+            Found::Fit(fit) => fit.summary.get_or_init(|| report::summary(&fit.calibration, &fit.data.data)),
+            Found::Written(written) => &written.summary,
+        }
+    }
+
+    /// Seconds that the library took, if the calibration was made just now.
+    pub(super) fn seconds(&self) -> Option<f64> {
+        match &self.found {
+            Found::Fit(fit) => Some(fit.took.as_secs_f64()),
+            Found::Written(_) => None,
+        }
+    }
+
+    /// Errors of the three models; those of a fit need no file.
+    pub(super) fn errors(&self) -> poecal::calibration::Accuracy {
+        match &self.found {
+            Found::Fit(fit) => fit.calibration.accuracy,
+            Found::Written(written) => written.file.accuracy,
+        }
+    }
+
+    /// The verdict, if the file states one.
+    pub(super) fn judged(&self) -> Option<&poecal::calibration::Verdict> {
+        match &self.found {
+            Found::Fit(fit) => Some(&fit.calibration.verdict),
+            Found::Written(written) => written.file.verdict.as_ref(),
+        }
+    }
+
+    /// The calibrated robot with its targets, to the last digit as fitted.
+    pub(super) fn as_fitted(&self) -> poecal::robot::Robot {
+        match &self.found {
+            Found::Fit(fit) => fit.calibration.robot_with_targets(),
+            Found::Written(written) => written.robot.clone(),
+        }
+    }
+
+    /// The calibrated robot as its file says, which every prediction is made by.
+    pub(crate) fn calibrated(&self) -> PyResult<&Robot> {
+        if let Some(robot) = self.calibrated.get() {
+            return Ok(robot);
+        }
+        let file = self.file().clone();
+        let robot = file.robot().map_err(raise)?;
+        let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path: UNWRITTEN.into() };
+        Ok(self.calibrated.get_or_init(|| Robot::new(model)))
+    }
+}
+
+/// A part of a file as Python's dicts and lists.
+pub(super) fn part<'py>(py: Python<'py>, part: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = report::json(part).map_err(raise)?;
+    py.import("json")?.call_method1("loads", (text,))
+}

@@ -1,0 +1,103 @@
+//! `convert`, the schema, and joint readings of files.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use numpy::PyArray2;
+use poecal::io::calibration_file::CalibrationFile;
+use poecal::io::measurements::{self, ColumnMap, ReadOptions};
+use poecal::io::model::{Model, convert as converted};
+use poecal::io::output::write_file;
+use poecal::nearest;
+use poecal::offsets::into_screws;
+use pyo3::prelude::*;
+
+use crate::arrays::table;
+use crate::errors::{argument, raise};
+use crate::robot::{Robot, form};
+
+/// A robot in another form, as a text; written to the file `out` too, over an old one, if one is named.
+///
+/// Parameters
+/// ----------
+/// to : "urdf" (a new one of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says
+/// offset : dict of joint names and what is added to their values, radians or metres
+///     The text has the screws and home pose of the robot with these offsets. Mimic joints that follow a joint stay.
+#[pyfunction]
+#[pyo3(signature = (robot, *, to=None, offset=None, out=None))]
+pub(crate) fn convert(
+    py: Python<'_>,
+    robot: &Robot,
+    to: Option<&str>,
+    offset: Option<BTreeMap<String, f64>>,
+    out: Option<PathBuf>,
+) -> PyResult<String> {
+    let form = form(to, out.as_deref())?;
+    let mut model = Model::clone(&robot.model);
+    if let Some(offset) = offset {
+        let mut notes = Vec::new();
+        model.robot =
+            into_screws(&model.robot, &offsets(&offset, &model.robot, &mut notes)?).map_err(raise)?;
+        crate::warn(py, &notes)?;
+    }
+    let text = py.detach(|| converted(&model, form)).map_err(raise)?;
+    crate::warn(py, &text.notes)?;
+    if let Some(out) = out {
+        write_file(&out, &text.text).map_err(raise)?;
+    }
+    Ok(text.text)
+}
+
+/// The offsets in the order of the joints.
+fn offsets(
+    stated: &BTreeMap<String, f64>,
+    robot: &poecal::robot::Robot,
+    notes: &mut Vec<String>,
+) -> PyResult<Vec<f64>> {
+    let names: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+    for (name, value) in stated {
+        if !names.contains(&name.as_str()) {
+            let hint = nearest(name, names.iter().copied())
+                .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+            let message =
+                format!("found no moving joint `{name}`, expected one of {}{hint}", names.join(", "));
+            return Err(argument("offset", message));
+        }
+        let followers = robot.followers(name);
+        if *value != 0.0 && !followers.is_empty() {
+            notes.push(format!(
+                "offset: joint `{name}` alone is moved, not {}, which follows its reading; if its encoder is off, so are these, by their \
+                 multiplier: state their offsets too",
+                followers.join(", ")
+            ));
+        }
+    }
+    Ok(names.iter().map(|name| stated.get(*name).copied().unwrap_or(0.0)).collect())
+}
+
+/// The JSON Schema of calibration.json, as a text.
+#[pyfunction]
+pub(crate) fn schema() -> String {
+    CalibrationFile::json_schema()
+}
+
+/// Joint readings of a file, shape (m, n), radians and metres, in the order of `robot.reading_names`. Other columns are left alone.
+///
+/// `columns` is a mapping file that says what the columns of other people's files mean.
+#[pyfunction]
+#[pyo3(signature = (path, robot, *, columns=None))]
+pub(crate) fn read_joints<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    robot: &Robot,
+    columns: Option<PathBuf>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let robot = &robot.model.robot;
+    let read = || {
+        let mapping = columns.as_ref().map(ColumnMap::read).transpose()?;
+        measurements::read_joints(&path, robot, &ReadOptions { mapping, ..ReadOptions::default() })
+    };
+    let joints = py.detach(read).map_err(raise)?;
+    crate::warn(py, &joints.warnings)?;
+    table(py, joints.readings, robot.reading_names().len())
+}

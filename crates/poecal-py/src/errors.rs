@@ -1,0 +1,73 @@
+//! The library's errors as Python exceptions.
+
+use poecal::{Error, ErrorKind};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Name of the exception class of a kind of error, in `poecal._errors`.
+fn class_name(kind: ErrorKind) -> &'static str {
+    match kind {
+        ErrorKind::File => "FileError",
+        ErrorKind::Syntax => "FormatError",
+        ErrorKind::Model => "ModelError",
+        ErrorKind::Measurement => "MeasurementError",
+        ErrorKind::Unit => "UnitError",
+        ErrorKind::Option => "OptionError",
+        ErrorKind::Problem => "ProblemError",
+        ErrorKind::Export => "ExportError",
+        ErrorKind::Solver => "SolverError",
+        // Kinds that later versions of the library add.
+        _ => "Error",
+    }
+}
+
+/// The exception of an error of the library.
+pub(crate) fn raise(error: Error) -> PyErr {
+    raise_at_row(error, None)
+}
+
+/// The same for an error of a table in memory, whose row (from 0) is then told instead of a line.
+pub(crate) fn raise_at_row(error: Error, row: Option<usize>) -> PyErr {
+    Python::attach(|py| exception(py, &error, row).unwrap_or_else(|failure| failure))
+}
+
+fn exception(py: Python<'_>, error: &Error, row: Option<usize>) -> PyResult<PyErr> {
+    let class = py.import("poecal._errors")?.getattr(class_name(error.kind()))?;
+    let told = match row {
+        Some(row) => format!("row {row}: {}", error.message()),
+        None => error.to_string(),
+    };
+    let about = PyDict::new(py);
+    about.set_item("row", row)?;
+    if let (Some(place), None) = (error.place(), row) {
+        about.set_item("path", place.path.display().to_string())?;
+        about.set_item("line", place.line)?;
+        about.set_item("column", place.column)?;
+    }
+    Ok(PyErr::from_value(class.call((python_words(&told),), Some(&about))?))
+}
+
+/// An exception for an argument: `name: message`.
+pub(crate) fn argument(name: &str, message: impl std::fmt::Display) -> PyErr {
+    raise(Error::new(ErrorKind::Option, format!("{name}: {message}")))
+}
+
+/// Options of the program by the names that they have here: `--held-out` is `held_out`.
+pub(crate) fn python_words(message: &str) -> String {
+    let mut words = String::with_capacity(message.len());
+    let mut rest = message;
+    while let Some(at) = rest.find("--") {
+        let (before, after) = rest.split_at(at);
+        words.push_str(before);
+        let name = after.trim_start_matches('-');
+        let end = name.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(name.len());
+        let (name, left) = name.split_at(end);
+        if name.is_empty() {
+            words.push_str(after.get(..after.len() - left.len()).unwrap_or_default());
+        } else {
+            words.push_str(&name.replace('-', "_"));
+        }
+        rest = left;
+    }
+    words + rest
+}

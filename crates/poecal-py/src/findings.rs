@@ -1,0 +1,249 @@
+//! What `check`, `identify`, `offsets`, `reproduce` and `Calibration.validate` find.
+
+use std::path::PathBuf;
+
+use poecal::analysis::{self, Session};
+use poecal::calibration::DeviceFrameKnowledge;
+use poecal::io::output;
+use poecal::measurement::Noise;
+use poecal::{forensics, offsets as explanations, report, reproduce as experiments};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+use serde::{Deserialize, Serialize};
+
+use crate::arrays::Joints;
+use crate::calibration::Calibration;
+use crate::errors::raise;
+use crate::html::Html;
+use crate::measurements::Measurements;
+use crate::pickle;
+use crate::robot::Robot;
+use crate::words::{chosen, end, frame as frame_word, from_deg, from_mm, kind as kind_word, sigma};
+
+/// A result: `str` is the program's table, `to_dict` what the program prints with `--json`, and `found["key"]` a part of it.
+#[pyclass(frozen, eq, module = "poecal", name = "Findings")]
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Findings {
+    text: String,
+    json: String,
+    warnings: Vec<String>,
+}
+
+impl Findings {
+    pub(crate) fn new(text: String, found: &impl Serialize, warnings: Vec<String>) -> PyResult<Self> {
+        let warnings = warnings.iter().map(|warning| crate::errors::python_words(warning)).collect();
+        Ok(Findings { text, json: report::json(found).map_err(raise)?, warnings })
+    }
+
+    pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
+        pickle::value(state)
+    }
+}
+
+#[pymethods]
+impl Findings {
+    /// The result as dicts and lists.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("json")?.call_method1("loads", (&self.json,))
+    }
+
+    /// The result as JSON.
+    fn to_json(&self) -> String {
+        self.json.clone()
+    }
+
+    /// What the user should know, a sentence each.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
+    fn __getitem__<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
+        self.to_dict(py)?.get_item(key)
+    }
+
+    fn __str__(&self) -> String {
+        self.text.clone()
+    }
+
+    fn __repr__(&self) -> String {
+        self.text.clone()
+    }
+
+    fn _repr_html_(&self) -> String {
+        let mut html = Html::new();
+        html.lines(&self.text);
+        self.warnings.iter().for_each(|warning| html.paragraph(&format!("warning: {warning}")));
+        html.finish()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        pickle::reduce(py, "_findings", PyBytes::new(py, &pickle::bytes(self)?))
+    }
+}
+
+/// How a model and measurements are understood, and mistakes that they show.
+///
+/// With `frame` "base", mistakes in the device's frame are looked for too.
+#[pyfunction]
+#[pyo3(signature = (robot, measurements=None, *, frame="unknown"))]
+pub(crate) fn check(
+    py: Python<'_>,
+    robot: &Robot,
+    measurements: Option<&Measurements>,
+    frame: &str,
+) -> PyResult<Findings> {
+    let device_free = frame_word(frame)? == DeviceFrameKnowledge::Unknown;
+    if let Some(measurements) = measurements {
+        measurements.check_robot(robot)?;
+    }
+    let file = measurements.map(|measurements| &*measurements.file);
+    let check = py.detach(|| {
+        let options = forensics::Options { device_free, ..forensics::Options::default() };
+        let diagnose = |data| forensics::diagnose(&robot.model.robot, data, &data.all_rows(), &options);
+        let found = file.map_or_else(Vec::new, |file| diagnose(&file.data));
+        report::Check::new(&robot.model, file, &found)
+    });
+    Findings::new(check.text(), &check, file.map_or_else(Vec::new, |file| file.warnings.clone()))
+}
+
+/// What measuring in some configurations would tell, before anything is measured.
+///
+/// Parameters
+/// ----------
+/// joints : array of shape (m, n), radians and metres, in the order of `robot.reading_names`
+/// kind : what the device will see of the tip: "pose", "point", or "mixed" (both in turn)
+/// sigma_position_mm, sigma_rotation_deg : standard deviation of each measured component (default 0.05 mm, 0.01 deg)
+/// frame : the measuring device's frame: "unknown" (it stands anywhere) or "base"
+#[pyfunction]
+#[pyo3(signature = (robot, joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown"))]
+pub(crate) fn identify(
+    py: Python<'_>,
+    robot: &Robot,
+    joints: &Bound<'_, PyAny>,
+    kind: &str,
+    sigma_position_mm: Option<f64>,
+    sigma_rotation_deg: Option<f64>,
+    frame: &str,
+) -> PyResult<Findings> {
+    identified(py, robot, joints, kind, sigma_position_mm, sigma_rotation_deg, frame)
+}
+
+pub(crate) fn identified(
+    py: Python<'_>,
+    robot: &Robot,
+    joints: &Bound<'_, PyAny>,
+    kind: &str,
+    sigma_position_mm: Option<f64>,
+    sigma_rotation_deg: Option<f64>,
+    frame: &str,
+) -> PyResult<Findings> {
+    let model = &robot.model;
+    let joints = Joints::of(joints, &model.robot)?;
+    let usual = Session::default();
+    let session = Session {
+        kind: kind_word(kind)?,
+        noise: Noise {
+            position_m: sigma("sigma_position_mm", sigma_position_mm, from_mm)?
+                .unwrap_or(usual.noise.position_m),
+            rotation_rad: sigma("sigma_rotation_deg", sigma_rotation_deg, from_deg)?
+                .unwrap_or(usual.noise.rotation_rad),
+        },
+        device_free: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
+    };
+    let found = py.detach(|| analysis::identify(&model.robot, &joints.readings, &session)).map_err(raise)?;
+    let report = report::Identify::new(model, &["arrays".to_owned()], &session, &found);
+    Findings::new(report.text(), &report, Vec::new())
+}
+
+/// A robot, or the calibrated one of a calibration.
+#[derive(FromPyObject)]
+pub(crate) enum RobotOrCalibration<'py> {
+    Robot(Bound<'py, Robot>),
+    Calibration(Bound<'py, Calibration>),
+}
+
+/// The joint offsets that explain best how a robot differs from its model, and what they leave.
+///
+/// `actual` is a robot or a calibration. `base` and `tip` say whether these frames are the same in both ("kept") or found with the
+/// offsets ("free"); by default what a calibration found anew is free.
+#[pyfunction]
+#[pyo3(signature = (nominal, actual, *, base=None, tip=None))]
+pub(crate) fn offsets(
+    py: Python<'_>,
+    nominal: &Robot,
+    actual: RobotOrCalibration<'_>,
+    base: Option<&str>,
+    tip: Option<&str>,
+) -> PyResult<Findings> {
+    let actual = match &actual {
+        RobotOrCalibration::Robot(robot) => robot.get().same(),
+        RobotOrCalibration::Calibration(calibration) => calibration.get().calibrated()?.same(),
+    };
+    let (nominal, actual) = (&nominal.model, &actual.model);
+    let base = base.map(|word| end("base", word)).transpose()?;
+    let tip = tip.map(|word| end("tip", word)).transpose()?;
+    let [(base, base_reason), (tip, tip_reason)] = report::offset_ends(base, tip, actual);
+    let options = explanations::Options { base, tip, ..explanations::Options::default() };
+    let explained =
+        py.detach(|| explanations::explain(&nominal.robot, &actual.robot, &options)).map_err(raise)?;
+    let found = report::Offsets::new(nominal, actual, &explained, [base_reason, tip_reason]);
+    let mut warnings = Vec::new();
+    for joint in &nominal.robot.joints {
+        let followers = nominal.robot.followers(&joint.name);
+        if !followers.is_empty() {
+            warnings.push(format!(
+                "joint `{}` is read for {} too: each offset is that of the joint's own value, and an error of this encoder is in all of them",
+                joint.name,
+                followers.join(", ")
+            ));
+        }
+    }
+    Findings::new(found.text(), &found, warnings)
+}
+
+/// Repeats the experiment of a paper and checks its claims ("lou2009"), or shows what gross errors do ("breakdown").
+///
+/// `trials` sessions compare the formulations, or the losses; `starts` random starts each size of error (lou2009). With `out` the
+/// report is written to that folder.
+#[pyfunction]
+#[pyo3(signature = (experiment, *, out=None, force=false, trials=1000, starts=100, seed=1))]
+pub(crate) fn reproduce(
+    py: Python<'_>,
+    experiment: &str,
+    out: Option<PathBuf>,
+    force: bool,
+    trials: u32,
+    starts: u32,
+    seed: u64,
+) -> PyResult<Findings> {
+    #[derive(Clone, Copy)]
+    enum Experiment {
+        Lou2009,
+        Breakdown,
+    }
+    let words = [("lou2009", Experiment::Lou2009), ("breakdown", Experiment::Breakdown)];
+    let experiment = chosen("experiment", experiment, &words)?;
+    let options = experiments::Options { trials: trials as usize, starts: starts as usize, seed };
+    let work = || {
+        if let Some(folder) = &out {
+            output::check_folder(folder, force)?;
+        }
+        let (files, words, json) = match experiment {
+            Experiment::Lou2009 => {
+                let found = experiments::lou2009(&options)?;
+                (report::reproduction_files(&found)?, report::claims(&found), report::json(&found)?)
+            }
+            Experiment::Breakdown => {
+                let found = experiments::breakdown(&options)?;
+                (report::breakdown_files(&found)?, report::breakdown_table(&found), report::json(&found)?)
+            }
+        };
+        if let Some(folder) = &out {
+            output::write_reproduction(folder, force, &files)?;
+        }
+        Ok((words, json))
+    };
+    let (text, json) = py.detach(work).map_err(raise)?;
+    Ok(Findings { text, json, warnings: Vec::new() })
+}

@@ -1,0 +1,201 @@
+//! Measurements of arrays.
+
+use nalgebra::Vector3;
+use poecal::Error;
+use poecal::io::measurements::{Quantity, Unit};
+use poecal::lie::Pose;
+use poecal::measurement::{
+    Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Set, Source,
+};
+use poecal::robot::{JointKind, Robot};
+use pyo3::prelude::*;
+
+use crate::arrays::{Numbers, pose_of};
+use crate::errors::{argument, raise, raise_at_row};
+use crate::words::{chosen, from_deg, from_mm};
+
+/// How far a quaternion may be from unit length, as in files.
+const QUATERNION_TOLERANCE: f64 = 1e-2;
+
+/// Arguments of `Measurements.from_arrays`.
+pub(crate) struct Columns<'a, 'py> {
+    pub(crate) joints: &'a Bound<'py, PyAny>,
+    pub(crate) positions: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) quaternions_xyzw: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) poses: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) targets: Option<Vec<String>>,
+    pub(crate) sets: Option<Vec<Option<String>>>,
+    pub(crate) ids: Option<Vec<String>>,
+    pub(crate) sigma_position_mm: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) sigma_rotation_deg: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) angle_unit: &'a str,
+    pub(crate) length_unit: &'a str,
+}
+
+/// The rows.
+pub(crate) fn dataset(robot: &Robot, columns: &Columns<'_, '_>) -> PyResult<Dataset> {
+    let length =
+        Unit::parse(columns.length_unit, Quantity::Length).map_err(|error| named("length_unit", error))?;
+    let readings = readings(robot, columns, length)?;
+    let names = robot.reading_names();
+    let m = readings.len() / names.len().max(1);
+    let seen = measured(columns, m, length)?;
+    for (name, found) in [
+        ("targets", columns.targets.as_ref().map(Vec::len)),
+        ("sets", columns.sets.as_ref().map(Vec::len)),
+        ("ids", columns.ids.as_ref().map(Vec::len)),
+    ] {
+        if let Some(found) = found.filter(|found| *found != m) {
+            return Err(argument(
+                name,
+                format!("found {found} entries, expected {m}, one for each row of joints"),
+            ));
+        }
+    }
+    let sets = sets(columns)?;
+    let sigma_position_m = sigma("sigma_position_mm", columns.sigma_position_mm, m, from_mm)?;
+    let sigma_rotation_rad = sigma("sigma_rotation_deg", columns.sigma_rotation_deg, m, from_deg)?;
+    let at = |values: &[Option<f64>], row: usize| values.get(row).copied().flatten();
+    let width = names.len();
+    let mut data = Dataset::new(names);
+    for (row, (readings, measurement)) in readings.chunks_exact(width.max(1)).zip(seen).enumerate() {
+        let target = columns.targets.as_ref().and_then(|targets| targets.get(row)).map(String::as_str);
+        let observation = Observation {
+            target: data.target_index(target),
+            measurement,
+            sigma_position_m: at(&sigma_position_m, row),
+            sigma_rotation_rad: at(&sigma_rotation_rad, row),
+            set: sets.get(row).copied().flatten(),
+            source: Source::default(),
+        };
+        data.push_observation(readings, observation).map_err(|error| raise_at_row(error, Some(row)))?;
+    }
+    if data.is_empty() {
+        return Err(argument("joints", "found no row, expected at least one measurement"));
+    }
+    data.ids = columns.ids.clone().unwrap_or_default();
+    Ok(data)
+}
+
+fn named(argument: &str, error: Error) -> PyErr {
+    raise(Error::new(error.kind(), format!("{argument}: {}", error.message())))
+}
+
+/// The readings in SI, row after row.
+fn readings(robot: &Robot, columns: &Columns<'_, '_>, length: Unit) -> PyResult<Vec<f64>> {
+    let angle =
+        Unit::parse(columns.angle_unit, Quantity::Angle).map_err(|error| named("angle_unit", error))?;
+    let names = robot.reading_names();
+    let n = names.len();
+    let expected = format!("shape (m, {n}): in each row {}", names.join(", "));
+    let joints = Numbers::finite(columns.joints, "joints", &expected)?.shaped(
+        &[None, Some(n)],
+        "joints",
+        &expected,
+    )?;
+    let slides = |name: &String| {
+        robot.joints.iter().any(|joint| joint.reading.name == *name && joint.kind == JointKind::Prismatic)
+    };
+    let units: Vec<Unit> = names.iter().map(|name| if slides(name) { length } else { angle }).collect();
+    Ok(joints.values.iter().zip(units.iter().cycle()).map(|(&value, unit)| unit.to_si(value)).collect())
+}
+
+/// What was seen, in SI.
+fn measured(columns: &Columns<'_, '_>, m: usize, length: Unit) -> PyResult<Vec<Measurement>> {
+    match (columns.positions, columns.poses) {
+        (Some(positions), None) => points(positions, columns.quaternions_xyzw, m, length),
+        (None, Some(poses)) if columns.quaternions_xyzw.is_none() => frames(poses, m, length),
+        (None, Some(_)) => Err(argument(
+            "quaternions_xyzw",
+            "found both poses and quaternions_xyzw, expected quaternions beside positions only",
+        )),
+        (Some(_), Some(_)) => {
+            Err(argument("poses", "found both positions and poses, expected one of the two"))
+        }
+        (None, None) => {
+            Err(argument("positions", "found neither positions nor poses, expected one of the two"))
+        }
+    }
+}
+
+fn frames(poses: &Bound<'_, PyAny>, m: usize, length: Unit) -> PyResult<Vec<Measurement>> {
+    let expected = format!("shape ({m}, 4, 4): a pose for each row of joints");
+    let wanted = [Some(m), Some(4), Some(4)];
+    let poses = Numbers::finite(poses, "poses", &expected)?.shaped(&wanted, "poses", &expected)?;
+    let rows = poses.values.chunks_exact(16).enumerate();
+    rows.map(|(row, numbers)| {
+        let pose = pose_of(numbers).map_err(|message| argument("poses", format!("row {row}: {message}")))?;
+        let pose = Pose::new(pose.rotation, pose.translation.map(|value| length.to_si(value)));
+        Ok(Measurement::Pose(PoseMeasurement { pose }))
+    })
+    .collect()
+}
+
+fn points(
+    positions: &Bound<'_, PyAny>,
+    quaternions: Option<&Bound<'_, PyAny>>,
+    m: usize,
+    length: Unit,
+) -> PyResult<Vec<Measurement>> {
+    let expected = format!("shape ({m}, 3): a position for each row of joints");
+    let positions = Numbers::finite(positions, "positions", &expected)?.shaped(
+        &[Some(m), Some(3)],
+        "positions",
+        &expected,
+    )?;
+    let expected = format!("shape ({m}, 4): x, y, z, w of a unit quaternion for each row of joints");
+    let name = "quaternions_xyzw";
+    let quaternions = quaternions
+        .map(|value| Numbers::of(value, name, &expected)?.shaped(&[Some(m), Some(4)], name, &expected))
+        .transpose()?;
+    let rows = positions.values.chunks_exact(3).enumerate();
+    rows.map(|(row, numbers)| {
+        let position = Vector3::from_iterator(numbers.iter().map(|&value| length.to_si(value)));
+        let quaternion = quaternions
+            .as_ref()
+            .and_then(|it| <[f64; 4]>::try_from(it.values.get(4 * row..4 * row + 4)?).ok());
+        let Some(quaternion) = quaternion.filter(|parts| !parts.iter().all(|part| part.is_nan())) else {
+            return Ok(Measurement::Point(PointMeasurement { position }));
+        };
+        let norm = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
+        if norm.is_nan() || (norm - 1.0).abs() > QUATERNION_TOLERANCE {
+            let message = format!(
+                "row {row}: found a quaternion of norm {norm:.4}, expected 1 to within {QUATERNION_TOLERANCE}"
+            );
+            return Err(argument(name, message));
+        }
+        let pose = Pose::from_position_quaternion(position.into(), quaternion);
+        Ok(Measurement::Pose(PoseMeasurement { pose }))
+    })
+    .collect()
+}
+
+fn sets(columns: &Columns<'_, '_>) -> PyResult<Vec<Option<Set>>> {
+    let words = [("fit", Set::Fit), ("held_out", Set::HeldOut)];
+    let stated = columns.sets.iter().flatten();
+    stated.map(|word| word.as_ref().map(|word| chosen("sets", word, &words)).transpose()).collect()
+}
+
+/// The standard deviation of each row, if it states one.
+fn sigma(
+    name: &str,
+    value: Option<&Bound<'_, PyAny>>,
+    m: usize,
+    to_si: fn(f64) -> PyResult<f64>,
+) -> PyResult<Vec<Option<f64>>> {
+    let Some(value) = value else { return Ok(Vec::new()) };
+    let expected = format!("a number, or shape ({m},): one for each row of joints");
+    let mut numbers = Numbers::of(value, name, &expected)?;
+    if let (true, [number]) = (numbers.shape.is_empty(), numbers.values.as_slice()) {
+        numbers = Numbers { values: vec![*number; m], shape: vec![m] };
+    }
+    let numbers = numbers.shaped(&[Some(m)], name, &expected)?;
+    let of_row = |(row, &value): (usize, &f64)| match value {
+        value if value.is_nan() => Ok(None),
+        value if value > 0.0 && value.is_finite() => to_si(value).map(Some),
+        value => {
+            Err(argument(name, format!("row {row}: found {value}, expected a standard deviation above 0")))
+        }
+    };
+    numbers.values.iter().enumerate().map(of_row).collect()
+}

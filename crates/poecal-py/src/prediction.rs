@@ -1,0 +1,66 @@
+//! Predictions with what to expect of them.
+
+use numpy::{PyArray1, PyArray3};
+use poecal::lie::Pose;
+use poecal::uncertainty::PredictedError;
+use pyo3::prelude::*;
+
+use crate::arrays::pose_arrays;
+
+/// Predicted poses of m configurations, and the error to expect of each.
+#[pyclass(frozen, module = "poecal", name = "Prediction")]
+pub(crate) struct Prediction {
+    poses: Vec<Pose>,
+    doubts: Vec<(PredictedError, bool)>,
+}
+
+impl Prediction {
+    pub(crate) fn new(poses: Vec<Pose>, doubts: Vec<(PredictedError, bool)>) -> Self {
+        Prediction { poses, doubts }
+    }
+
+    fn array<'py>(&self, py: Python<'py>, of: impl Fn(&PredictedError) -> f64) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.doubts.iter().map(|(error, _)| of(error)).collect())
+    }
+}
+
+#[pymethods]
+impl Prediction {
+    /// The poses, shape (m, 4, 4), metres.
+    #[getter]
+    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        pose_arrays(py, &self.poses)
+    }
+
+    /// Root mean square distance to expect, shape (m,), metres.
+    #[getter]
+    fn sigma_position_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.array(py, PredictedError::sigma_position_m)
+    }
+
+    /// Root mean square angle to expect, shape (m,), radians.
+    #[getter]
+    fn sigma_rotation_rad<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.array(py, PredictedError::sigma_rotation_rad)
+    }
+
+    /// Distance that is not exceeded in 95 % of all cases, shape (m,), metres.
+    #[getter]
+    fn bound95_position_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.array(py, PredictedError::bound_position_m)
+    }
+
+    /// Whether every joint lies within the range that was sampled, shape (m,).
+    #[getter]
+    fn inside_sampled_range<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_vec(py, self.doubts.iter().map(|(_, inside)| *inside).collect())
+    }
+
+    fn __len__(&self) -> usize {
+        self.poses.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<poecal.Prediction of {} poses>", self.poses.len())
+    }
+}

@@ -1,0 +1,150 @@
+//! Simulated sessions.
+
+use std::path::PathBuf;
+
+use numpy::PyArray2;
+use poecal::calibration::DeviceFrameKnowledge;
+use poecal::io::model::{Model, ModelSource};
+use poecal::io::output::{self, Session};
+use poecal::simulate::{self as simulated, Kind, Simulated};
+use pyo3::prelude::*;
+
+use crate::arrays::pose_array;
+use crate::errors::raise;
+use crate::measurements::Measurements;
+use crate::robot::Robot;
+use crate::words::{frame as frame_word, from_deg, from_mm, kind as kind_word, size};
+
+/// Most rows of a simulation, as of the program.
+const MOST: usize = 10_000_000;
+
+/// A simulated session: the robot as drawn, the one that is really there, and what a device measured of it.
+#[pyclass(frozen, module = "poecal", name = "Simulation")]
+pub(crate) struct Simulation {
+    nominal: Robot,
+    simulation: simulated::Simulation,
+    kind: Kind,
+    made: Simulated,
+    held_out: Option<poecal::measurement::Dataset>,
+    command: String,
+}
+
+#[pymethods]
+impl Simulation {
+    /// The robot as drawn.
+    #[getter]
+    fn nominal(&self) -> Robot {
+        self.nominal.same()
+    }
+
+    /// The robot that was measured.
+    #[getter]
+    fn actual(&self) -> Robot {
+        let robot = self.made.actual.clone();
+        let path = robot.name.clone().into();
+        Robot::new(Model { robot, source: ModelSource::Toml, path })
+    }
+
+    /// What was measured.
+    #[getter]
+    fn measurements(&self) -> Measurements {
+        Measurements::in_memory(self.made.data.clone(), "simulated")
+    }
+
+    /// Further rows, free of noise, to judge a calibration by; None if none were asked for.
+    #[getter]
+    fn held_out(&self) -> Option<Measurements> {
+        self.held_out.clone().map(|data| Measurements::in_memory(data, "simulated, held out"))
+    }
+
+    /// Pose of the base in the measuring device, shape (4, 4).
+    #[getter]
+    fn device_from_base<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        pose_array(py, &self.made.device_from_base)
+    }
+
+    /// Writes both robots, the measurements and the truth to a folder, as the program does. Gives the names of the files.
+    #[pyo3(signature = (folder, *, force=false))]
+    fn write(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<Vec<String>> {
+        let session = Session {
+            simulation: &self.simulation,
+            kind: self.kind,
+            made: &self.made,
+            held_out: self.held_out.as_ref(),
+            command: &self.command,
+        };
+        let model = &self.nominal.model;
+        let written =
+            py.detach(|| output::write_simulation(&folder, force, model, &session)).map_err(raise)?;
+        crate::warn(py, &written.notes)?;
+        Ok(written.files)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<poecal.Simulation of {}: {} rows>", self.made.nominal.name, self.made.data.len())
+    }
+}
+
+/// Simulates a robot with errors and its measurements, for tests and for learning.
+///
+/// Parameters
+/// ----------
+/// robot : the robot to deviate from
+/// kind : what the device sees: "pose", "point", or "mixed" (both in turn)
+/// count : number of measurements
+/// seed : seed of everything random
+/// error_position_mm, error_rotation_deg : distance and angle by which every axis, and the tip, is off
+/// noise_position_mm, noise_rotation_deg : standard deviation of each measured component
+/// frame : where the device stands: "unknown" (anywhere) or "base" (at the robot's base)
+/// held_out_count : number of further measurements, free of noise, to judge a calibration by
+#[pyfunction]
+#[pyo3(signature = (robot, *, kind="pose", count=50, seed=1, error_position_mm=2.0, error_rotation_deg=1.0, noise_position_mm=0.05,
+                    noise_rotation_deg=0.01, frame="unknown", held_out_count=0))]
+#[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
+pub(crate) fn simulate(
+    py: Python<'_>,
+    robot: &Robot,
+    kind: &str,
+    count: usize,
+    seed: u64,
+    error_position_mm: f64,
+    error_rotation_deg: f64,
+    noise_position_mm: f64,
+    noise_rotation_deg: f64,
+    frame: &str,
+    held_out_count: usize,
+) -> PyResult<Simulation> {
+    for (name, number, least) in [("count", count, 1), ("held_out_count", held_out_count, 0)] {
+        if !(least..=MOST).contains(&number) {
+            return Err(crate::errors::argument(name, format!("found {number}, expected {least} to {MOST}")));
+        }
+    }
+    let simulation = simulated::Simulation {
+        error_rotation_rad: size("error_rotation_deg", error_rotation_deg, from_deg)?,
+        error_position_m: size("error_position_mm", error_position_mm, from_mm)?,
+        noise_position_m: size("noise_position_mm", noise_position_mm, from_mm)?,
+        noise_rotation_rad: size("noise_rotation_deg", noise_rotation_deg, from_deg)?,
+        count,
+        seed,
+        device_anywhere: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
+    };
+    let kind = kind_word(kind)?;
+    let nominal = &robot.model.robot;
+    let work = || {
+        let made = simulation.run(nominal, kind)?;
+        let held_out = match held_out_count {
+            0 => None,
+            count => Some(simulation.held_out(&made, kind, count)?),
+        };
+        Ok((made, held_out))
+    };
+    let (made, held_out) = py.detach(work).map_err(raise)?;
+    let command = format!(
+        "poecal.simulate({}, kind=\"{}\", count={count}, seed={seed}, error_position_mm={error_position_mm:?}, \
+         error_rotation_deg={error_rotation_deg:?}, noise_position_mm={noise_position_mm:?}, noise_rotation_deg={noise_rotation_deg:?}, \
+         frame=\"{frame}\", held_out_count={held_out_count})",
+        robot.model.path.display().to_string().replace(char::is_control, "?"),
+        kind.word()
+    );
+    Ok(Simulation { nominal: robot.same(), simulation, kind, made, held_out, command })
+}

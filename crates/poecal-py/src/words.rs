@@ -1,0 +1,92 @@
+//! Arguments that are one of a few words, and numbers with a unit in their name.
+
+use poecal::calibration::{DeviceFrameKnowledge, Loss, Robust};
+use poecal::io::measurements::{Quantity, Unit};
+use poecal::measurement::PoseResidual;
+use poecal::nearest;
+use poecal::offsets::End;
+use poecal::parameters::Formulation;
+use poecal::simulate::Kind;
+use poecal::solve::Method;
+use pyo3::prelude::*;
+
+use crate::errors::{argument, raise};
+
+/// The meaning of `word`, which must be one of these.
+pub(crate) fn chosen<T: Copy>(name: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
+    if let Some((_, meaning)) = words.iter().find(|(known, _)| *known == word) {
+        return Ok(*meaning);
+    }
+    let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
+    let hint = nearest(word, known.iter().copied())
+        .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    Err(argument(name, format!("found `{word}`, expected one of {}{hint}", known.join(", "))))
+}
+
+pub(crate) fn frame(word: &str) -> PyResult<DeviceFrameKnowledge> {
+    chosen("frame", word, &[("unknown", DeviceFrameKnowledge::Unknown), ("base", DeviceFrameKnowledge::Base)])
+}
+
+pub(crate) fn kind(word: &str) -> PyResult<Kind> {
+    chosen("kind", word, &[Kind::Pose, Kind::Point, Kind::Mixed].map(|kind| (kind.word(), kind)))
+}
+
+pub(crate) fn robust(word: &str) -> PyResult<Robust> {
+    let words = [
+        ("auto", Robust::Auto),
+        ("off", Robust::Off),
+        ("huber", Robust::Loss(Loss::Huber)),
+        ("cauchy", Robust::Loss(Loss::Cauchy)),
+        ("tukey", Robust::Loss(Loss::Tukey)),
+    ];
+    chosen("robust", word, &words)
+}
+
+pub(crate) fn formulation(word: &str) -> PyResult<Formulation> {
+    chosen("formulation", word, &Formulation::ALL.map(|it| (it.word(), it)))
+}
+
+pub(crate) fn residual(word: &str) -> PyResult<PoseResidual> {
+    chosen("residual", word, &[PoseResidual::Tool, PoseResidual::Spatial].map(|it| (it.word(), it)))
+}
+
+pub(crate) fn method(word: &str) -> PyResult<Method> {
+    chosen("method", word, &[Method::LevenbergMarquardt, Method::GaussNewton].map(|it| (it.word(), it)))
+}
+
+pub(crate) fn end(name: &str, word: &str) -> PyResult<End> {
+    chosen(name, word, &[End::Free, End::Kept].map(|end| (end.word(), end)))
+}
+
+/// Millimetres in metres.
+pub(crate) fn from_mm(value: f64) -> PyResult<f64> {
+    Ok(Unit::parse("mm", Quantity::Length).map_err(raise)?.to_si(value))
+}
+
+/// Degrees in radians.
+pub(crate) fn from_deg(value: f64) -> PyResult<f64> {
+    Ok(Unit::parse("deg", Quantity::Angle).map_err(raise)?.to_si(value))
+}
+
+/// A standard deviation in SI, if it is given.
+pub(crate) fn sigma(
+    name: &str,
+    value: Option<f64>,
+    to_si: fn(f64) -> PyResult<f64>,
+) -> PyResult<Option<f64>> {
+    match value {
+        Some(value) if !(value > 0.0 && value.is_finite()) => {
+            Err(argument(name, format!("found {value}, expected a standard deviation above 0")))
+        }
+        Some(value) => to_si(value).map(Some),
+        None => Ok(None),
+    }
+}
+
+/// A size of errors or noise in SI.
+pub(crate) fn size(name: &str, value: f64, to_si: fn(f64) -> PyResult<f64>) -> PyResult<f64> {
+    if value >= 0.0 && value.is_finite() {
+        return to_si(value);
+    }
+    Err(argument(name, format!("found {value}, expected a finite number not below 0")))
+}

@@ -1,0 +1,84 @@
+//! A calibration judged by measurements that it did not see.
+
+use super::CalibrationFile;
+use crate::calibration::{Judgement, KeptPart, Promise, Refitted, Subject, judge};
+use crate::error::Result;
+use crate::measurement::Dataset;
+
+/// A device frame that fits leaves errors of the calibration's own size; beyond this many times it, the device was moved.
+const MOVED_DEVICE: f64 = 20.0;
+/// Share of errors inside their 95 % bound below which the promise is broken.
+const BROKEN: f64 = 0.75;
+/// What a calibration of exact data leaves is rounding, below a nanometre.
+const ROUNDING_MM: f64 = 1e-6;
+
+impl CalibrationFile {
+    /// Judges the calibration by measurements, of which every row counts, with the device's frame and the targets found anew as asked.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the measurements are of other targets, or too few for what is found anew;
+    /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file has been changed into no calibration.
+    pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
+        let (calibrated, nominal) = (self.robot()?, self.nominal_robot()?);
+        if !refit_tool {
+            self.check_targets(data)?;
+        }
+        let noise = self.noise()?;
+        // A calibration without uncertainty, or of other targets, promises nothing.
+        let stated = self.uncertainty.is_some() && !refit_tool;
+        let names: Vec<Option<&str>> = data.targets.iter().map(Option::as_deref).collect();
+        let found = if stated { Some(self.uncertainty(&names)?) } else { None };
+        let promise = found.as_ref().map(|(uncertainty, targets)| Promise {
+            uncertainty,
+            targets,
+            noise,
+            noise_is_stated: self.noise_is_stated(),
+            coverage: &self.coverage,
+        });
+        let subject = Subject {
+            calibrated: &calibrated,
+            nominal: &nominal,
+            base_from_device: self.base_from_device()?,
+            frame: self.frame(),
+            noise,
+            refit_frame,
+            refit_tool,
+            promise,
+        };
+        judge(&subject, data)
+    }
+
+    /// What of a judgement the calibration does not explain, in a sentence.
+    #[must_use]
+    pub fn doubt(&self, judgement: &Judgement) -> Option<String> {
+        let own_mm = self.own_position_rms_mm().max(ROUNDING_MM);
+        let rms_mm = judgement.calibrated.position_mm.rms;
+        let kept = judgement.promised.filter(|_| rms_mm > ROUNDING_MM);
+        // Where most errors are as promised, single rows are wrong, and not the device.
+        let mostly = kept.is_some_and(|it| it.position_mm.inside_bound95 > 0.5);
+        let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
+        if !refit_frame && !mostly && rms_mm > MOVED_DEVICE * own_mm {
+            return Some(format!(
+                "the position error is {:.0} times that of the calibration itself ({rms_mm:.2e} mm, {own_mm:.2e} mm): \
+                 if the measuring device was moved, find its frame anew with --refit-frame",
+                rms_mm / own_mm
+            ));
+        }
+        if mostly && rms_mm > MOVED_DEVICE * own_mm {
+            return Some(format!(
+                "most errors are as promised, the largest is {:.2} mm: some measurements are grossly wrong",
+                judgement.calibrated.position_mm.max
+            ));
+        }
+        let kept = kept.filter(|it| it.least_inside() < BROKEN)?;
+        let share = |part: KeptPart| 100.0 * (1.0 - part.inside_bound95);
+        let position = format!("{:.0} % of the position errors", share(kept.position_mm));
+        let rotation =
+            kept.rotation_deg.map(|part| format!(" and {:.0} % of the rotation errors", share(part)));
+        Some(format!(
+            "{position}{} exceed their 95 % bound: the robot, its tool or the measuring device is not as it was calibrated, it is used \
+             outside the sampled range, or orientations are written in another form",
+            rotation.unwrap_or_default()
+        ))
+    }
+}

@@ -1,0 +1,185 @@
+"""The Python package gives what the program gives, to the last digit, and has a place for every option of it."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+import poecal
+import pytest
+from program import ELBOW, ROOT, URDFS, predict, simulated_session, write_table
+from program import poecal as program
+
+POINTS = ROOT / "examples/elbow/points.csv"
+GUIDE = ROOT / "docs/python.md"
+# Options of `poecal calibrate` with the arguments that mean the same.
+RUNS = {
+    "as it is": ([], {}),
+    "noise": (["--sigma-position", "0.05mm", "--sigma-rotation", "0.01deg"], {"sigma_position_mm": 0.05, "sigma_rotation_deg": 0.01}),
+    "held out": (["--held-out", "0.2", "--seed", "7"], {"held_out": 0.2, "seed": 7}),
+    "every row": (["--held-out", "0"], {"held_out": 0}),
+    "robust": (["--robust", "cauchy"], {"robust": "cauchy"}),
+    "free screws": (["--formulation", "screw-offsets"], {"formulation": "screw-offsets"}),
+    "method": (["--method", "gauss-newton"], {"method": "gauss-newton"}),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def poses(tmp_path_factory) -> Path:
+    """A file of exact poses."""
+    joints = {f"joint{i}": np.random.default_rng(3).uniform(-0.6, 1.4, 40) for i in range(1, 7)}
+    return simulated_session(tmp_path_factory.mktemp("session"), joints)[0]
+
+
+def files(folder: Path, leave_out: str) -> dict[str, str]:
+    """Texts of results; without the command, which only the program knows."""
+    texts = {path.name: path.read_text() for path in sorted(folder.iterdir()) if path.name != leave_out}
+    texts["calibration.json"] = re.sub(r'"command": ("[^\n]*"|null)', '"command": …', texts["calibration.json"])
+    return texts
+
+
+@pytest.mark.parametrize("run", RUNS)
+def test_calibrations_have_the_same_figures(run, tmp_path):
+    flags, arguments = RUNS[run]
+    printed = program("calibrate", ELBOW, POINTS, "--out", tmp_path / "program", *flags)
+    robot = poecal.Robot.read(ELBOW)
+    calibration = poecal.calibrate(robot, poecal.Measurements.from_csv(POINTS, robot), **arguments)
+    calibration.write(tmp_path / "package")
+    # The report tells the command.
+    ours, theirs = (files(tmp_path / name, "report.html") for name in ["package", "program"])
+    assert list(ours) == list(theirs) == ["calibrated.urdf", "calibration.json", "residuals.csv"]
+    for name in ours:
+        assert ours[name] == theirs[name], name
+    assert printed.startswith(str(calibration))
+
+
+def test_poses_with_the_papers_residual_have_the_same_figures(poses, tmp_path):
+    flags = ["--residual", "spatial"]
+    program("calibrate", ELBOW, poses, "--out", tmp_path / "program", *flags)
+    robot = poecal.Robot.from_urdf(ELBOW)
+    measured = poecal.Measurements.from_csv([poses], robot)
+    poecal.calibrate(robot, measured, residual="spatial").write(tmp_path / "package", report=False)
+    assert files(tmp_path / "package", "report.html") == files(tmp_path / "program", "report.html")
+
+
+def test_other_files_judge_with_the_same_figures(poses, tmp_path):
+    rows = poses.read_text().splitlines()
+    (tmp_path / "a.csv").write_text("\n".join(rows[:31]) + "\n")
+    (tmp_path / "b.csv").write_text("\n".join([rows[0], *rows[31:]]) + "\n")
+    program("calibrate", ELBOW, tmp_path / "a.csv", "--validate", tmp_path / "b.csv", "--out", tmp_path / "program")
+    robot = poecal.Robot.read(ELBOW)
+    a, b = (poecal.Measurements.from_csv(tmp_path / name, robot) for name in ["a.csv", "b.csv"])
+    calibration = poecal.calibrate(robot, a, validate=b)
+    calibration.write(tmp_path / "package")
+    assert files(tmp_path / "package", "report.html") == files(tmp_path / "program", "report.html")
+    assert calibration.accuracy.held_out.count == 10
+    with pytest.raises(poecal.OptionError, match="found this file to be fitted and in validate"):
+        poecal.calibrate(robot, a, validate=a)
+
+
+def test_reports_are_the_same(tmp_path):
+    program("calibrate", ELBOW, POINTS, "--out", tmp_path / "out")
+    calibration = poecal.Calibration.read(tmp_path / "out/calibration.json")
+    calibration.report(tmp_path / "report.html")
+    assert (tmp_path / "report.html").read_bytes() == (tmp_path / "out/report.html").read_bytes()
+
+
+def test_predictions_judgements_and_foresight_are_the_same(poses, tmp_path):
+    program("calibrate", ELBOW, POINTS, "--out", tmp_path / "out")
+    path = tmp_path / "out/calibration.json"
+    calibration = poecal.Calibration.read(path)
+    joints = np.random.default_rng(5).uniform(-1, 1, (25, 6))
+    table = tmp_path / "joints.csv"
+    write_table(table, {f"joint{i + 1}": joints[:, i] for i in range(6)})
+    assert (poecal.read_joints(table, calibration.robot) == joints).all()
+    for frame in ["base", "device"]:
+        assert (calibration.predict(joints, frame=frame)[:, :3, 3] == predict(path, table, "--frame", frame)[:, :3]).all()
+    rows = program("predict", path, table, "--with-uncertainty").splitlines()[1:]
+    columns = list(zip(*(row.split(",") for row in rows), strict=True))
+    found = calibration.predict(joints, with_uncertainty=True)
+    for column, values in [(7, found.sigma_position_m), (8, found.sigma_rotation_rad), (9, found.bound95_position_m)]:
+        assert [float(cell) for cell in columns[column]] == values.tolist()
+    assert [cell == "true" for cell in columns[10]] == found.inside_sampled_range.tolist()
+
+    measured = poecal.Measurements.from_csv(POINTS, calibration.robot)
+    for flags, arguments in [([], {}), (["--refit-frame", "--refit-tool"], {"refit_frame": True, "refit_tool": True})]:
+        judged = json.loads(program("validate", path, POINTS, "--json", *flags))
+        assert calibration.validate(measured, **arguments).to_dict() == judged
+
+    foreseen = json.loads(program("identify", path, table, "--kind", "point", "--json"))
+    found = calibration.identify(joints, kind="point").to_dict()
+    for theirs in [foreseen, found]:
+        del theirs["files"], theirs["model"]
+    assert found == foreseen
+
+
+def test_checks_offsets_and_forms_are_the_same(tmp_path):
+    robot = poecal.Robot.read(ELBOW)
+    measured = poecal.Measurements.from_csv(POINTS, robot)
+    assert poecal.check(robot, measured).to_json() == program("check", ELBOW, POINTS, "--json")
+    assert program("check", ELBOW, POINTS) == str(poecal.check(robot, measured))
+    program("calibrate", ELBOW, POINTS, "--out", tmp_path / "out")
+    actual = poecal.Robot.read(tmp_path / "out/calibration.json")
+    assert poecal.offsets(robot, actual).to_json() == program("offsets", ELBOW, tmp_path / "out/calibration.json", "--json")
+    kept = ["--base", "kept", "--tip", "free", "--json"]
+    assert poecal.offsets(robot, actual, base="kept", tip="free").to_json() == program("offsets", ELBOW, actual.path, *kept)
+    assert poecal.schema() == program("schema")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", poecal.PoecalWarning)
+        for path in sorted(URDFS.glob("*.urdf")):
+            robot = poecal.Robot.from_urdf(path)
+            for form in ["urdf", "toml"]:
+                assert robot.to_text(form) == program("convert", path, "--to", form)
+        offset = {"joint2": np.radians(0.5)}
+        assert poecal.convert(actual, to="toml", offset=offset) == program("convert", actual.path, "--to", "toml", "--offset", "joint2=0.5deg")
+
+
+def test_simulations_are_the_same(tmp_path):
+    flags = ["--kind", "mixed", "--count", "30", "--seed", "4", "--errors", "0.5deg,1mm", "--noise", "0.02mm,0.02deg", "--held-out-count", "5"]
+    program("simulate", ELBOW, "--out", tmp_path / "program", *flags)
+    options = {"error_position_mm": 1, "error_rotation_deg": 0.5, "noise_position_mm": 0.02, "noise_rotation_deg": 0.02}
+    made = poecal.simulate(poecal.Robot.read(ELBOW), kind="mixed", count=30, seed=4, held_out_count=5, **options)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", poecal.PoecalWarning)
+        made.write(tmp_path / "package")
+    for path in sorted((tmp_path / "program").iterdir()):
+        ours, theirs = ((tmp_path / name / path.name).read_text() for name in ["package", "program"])
+        # The command that makes it again is the program's, or Python's.
+        assert re.sub(r"simulated by.*|\"command\".*", "", ours) == re.sub(r"simulated by.*|\"command\".*", "", theirs), path.name
+
+
+def test_the_wheel_installs_the_program(tmp_path):
+    installed = Path(sys.executable).with_name("poecal")
+    for arguments in [["check", ELBOW, POINTS, "--json"], ["predict", "nowhere"], ["--help"], ["calibrate"], ["convert", ELBOW, "--to", "toml"]]:
+        ours = subprocess.run([installed, *arguments], capture_output=True, text=True, env=os.environ | {"COLUMNS": "100"})
+        theirs = subprocess.run([os.environ["POECAL_PROGRAM"], *arguments], capture_output=True, text=True, env=os.environ | {"COLUMNS": "100"})
+        assert (ours.returncode, ours.stdout, ours.stderr) == (theirs.returncode, theirs.stdout, theirs.stderr)
+
+
+def options_of(command: list[str]) -> set[str]:
+    """The long options that the help of a command names."""
+    words = program(*command, "--help")
+    found = set(re.findall(r"^ +(?:-\w, )?(--[a-z0-9-]+)", words, re.MULTILINE))
+    return found - {"--help", "--version"}
+
+
+def test_the_guide_has_a_place_for_every_option():
+    """Each command and each of its options stands in the table of docs/python.md, with what it is in Python or why it is not."""
+    guide = GUIDE.read_text().split("## The program in Python\n")[1]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in guide.splitlines() if line.startswith("| `")]
+    table = {row[0]: row[1] for row in rows}
+    commands = re.findall(r"^  ([a-z]+) ", program("--help").split("Commands:")[1].split("Options:")[0], re.MULTILINE)
+    commands.remove("help")
+    everywhere = {"--quiet", "--threads"}
+    expected = {f"`{option}`" for option in everywhere}
+    for command in commands:
+        expected.add(f"`poecal {command}`")
+        expected |= {f"`{command} {option}`" for option in options_of([command]) - everywhere}
+    assert expected - set(table) == set(), "options without a place"
+    assert set(table) - expected == set(), "places without an option"
+    for option, place in table.items():
+        assert place.startswith("not in Python") or "`" in place, option
