@@ -87,7 +87,7 @@ fn converted<'py>(
     let array = numpy.call_method1("ascontiguousarray", (array, "float64"))?;
     // A number alone becomes an array of one.
     let array = if value.getattr("__len__").is_err() { array.call_method1("reshape", ((),))? } else { array };
-    array.extract().map_err(Into::into)
+    array.extract()
 }
 
 /// The argument `name` as one pose, an array of shape (4, 4).

@@ -78,23 +78,7 @@ pub(crate) fn calibrate(
     let data = rows(py, robot, measurements, validate, held_out, seed)?;
     warn_of_residual(py, &data, options.pose_residual)?;
     let inputs = inputs(robot, measurements, validate);
-    let mut raised = None;
-    let mut tell = |stage: Stage| {
-        if let (Some(progress), None) = (&progress, &raised) {
-            raised = Python::attach(|py| progress.call1(py, (stage.words(),)).err());
-        }
-    };
-    let nominal = &robot.model.robot;
-    let mut took = Duration::ZERO;
-    let found = py.detach(|| {
-        let start = Instant::now();
-        let found = calibrate_with_progress(nominal, &data, &options, &mut tell);
-        took = start.elapsed();
-        found
-    });
-    if let Some(raised) = raised {
-        return Err(raised);
-    }
+    let (found, took) = fit(py, &robot.model.robot, &data, &options, progress)?;
     let data = match data {
         Cow::Borrowed(_) => Arc::clone(&measurements.file),
         Cow::Owned(data) => Arc::new(poecal::io::measurements::MeasurementFile {
@@ -103,7 +87,35 @@ pub(crate) fn calibrate(
             warnings: Vec::new(),
         }),
     };
-    Ok(Calibration::of_fit(robot.same(), found.map_err(raise)?, data, inputs, took))
+    Ok(Calibration::of_fit(robot.same(), found, data, inputs, took))
+}
+
+/// The fit, without the interpreter's lock, and how long the library took. Warns as the program does.
+fn fit(
+    py: Python<'_>,
+    nominal: &poecal::robot::Robot,
+    data: &Dataset,
+    options: &CalibrationOptions,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(poecal::calibration::Calibration, Duration)> {
+    let mut raised = None;
+    let mut tell = |stage: Stage| {
+        if let (Some(progress), None) = (&progress, &raised) {
+            raised = Python::attach(|py| progress.call1(py, (stage.words(),)).err());
+        }
+    };
+    let (found, took) = py.detach(|| {
+        let start = Instant::now();
+        (calibrate_with_progress(nominal, data, options, &mut tell), start.elapsed())
+    });
+    if let Some(raised) = raised {
+        return Err(raised);
+    }
+    let found = found.map_err(raise)?;
+    let statements = found.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
+    let warnings: Vec<String> = found.warnings.iter().chain(statements).cloned().collect();
+    crate::warn(py, &warnings)?;
+    Ok((found, took))
 }
 
 /// The rows to fit and to hold out, joined and settled.

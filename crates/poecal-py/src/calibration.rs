@@ -20,7 +20,7 @@ use pyo3::types::{PyBytes, PyTuple};
 
 use crate::accuracy::{Accuracy, Verdict};
 use crate::arrays::{Joints, pose_array};
-use crate::errors::raise;
+use crate::errors::{python_words, raise};
 use crate::findings::{Findings, identified};
 use crate::html::Html;
 use crate::measurements::Measurements;
@@ -103,7 +103,8 @@ impl Calibration {
     #[getter]
     fn warnings(&self) -> Vec<String> {
         let file = self.file();
-        file.warnings.iter().chain(file.diagnosis.iter().map(|found| &found.statement)).cloned().collect()
+        let found = file.diagnosis.iter().map(|found| &found.statement);
+        file.warnings.iter().chain(found).map(|warning| python_words(warning)).collect()
     }
 
     /// Pose of the measuring device in the base, shape (4, 4).
@@ -235,7 +236,9 @@ impl Calibration {
         let names = measurements.source.names.join(", ");
         let text =
             report::judgement(&self.calibrated()?.model.path.display().to_string(), &names, &judgement);
-        Findings::new(text, &judgement, file.doubt(&judgement).into_iter().collect())
+        let doubts: Vec<String> = file.doubt(&judgement).into_iter().collect();
+        crate::warn(py, &doubts)?;
+        Findings::new(text, &judgement, doubts)
     }
 
     /// What measuring the calibrated robot in these configurations would tell; see `identify`.

@@ -199,6 +199,7 @@ pub(crate) fn offsets(
             ));
         }
     }
+    crate::warn(py, &warnings)?;
     Findings::new(found.text(), &found, warnings)
 }
 

@@ -20,7 +20,7 @@ mod words;
 
 use pyo3::prelude::*;
 
-/// Warns of what a plain value cannot carry, a sentence each.
+/// Warns as the program does on standard error, a sentence each.
 fn warn(py: Python<'_>, sentences: &[String]) -> PyResult<()> {
     if sentences.is_empty() {
         return Ok(());

@@ -14,7 +14,7 @@ use pyo3::types::{PyBytes, PyTuple};
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::{pose_arrays, table};
-use crate::errors::{argument, raise};
+use crate::errors::{argument, python_words, raise};
 use crate::from_arrays::{Columns, dataset};
 use crate::from_dataframe;
 use crate::html::Html;
@@ -154,6 +154,7 @@ impl Measurements {
             Ok((file, Inputs::checksums(named)?))
         };
         let (file, sha256) = py.detach(read).map_err(raise)?;
+        crate::warn(py, &file.warnings)?;
         let names = paths.iter().map(|path| path.display().to_string()).collect();
         let source = MeasurementSource { names, sha256, fit_where: fit_where.is_some() };
         Ok(Measurements { file: Arc::new(file), source: Arc::new(source) })
@@ -231,6 +232,7 @@ impl Measurements {
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)
         };
         let mut file = py.detach(read).map_err(from_dataframe::raise)?;
+        crate::warn(py, &file.warnings)?;
         // The lines of a text that nobody sees would mislead: rows are told by their number.
         file.data.files.clear();
         file.data.observations.iter_mut().for_each(|row| row.source = Default::default());
@@ -310,7 +312,7 @@ impl Measurements {
     /// What the user should know of the files, a sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        self.file.warnings.clone()
+        self.file.warnings.iter().map(|warning| python_words(warning)).collect()
     }
 
     fn __repr__(&self) -> String {

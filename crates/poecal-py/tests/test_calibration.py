@@ -4,6 +4,7 @@ import copy
 import json
 import pickle
 import threading
+import time
 
 import numpy as np
 import poecal
@@ -151,6 +152,9 @@ def test_mistakes_in_the_input_are_named(made):
     found = poecal.check(elbow(), poecal.Measurements.from_arrays(elbow(), joints=joints, poses=seen.poses))
     assert found["diagnosis"][0]["kind"] == "joint_sign"
     assert poecal.check(elbow())["model"]["name"] == "elbow"
+    with pytest.warns(poecal.PoecalWarning, match="counting joint4 the other way"):
+        calibration = poecal.calibrate(elbow(), poecal.Measurements.from_arrays(elbow(), joints=joints, poses=seen.poses))
+    assert any("joint4" in warning for warning in calibration.warnings)
 
 
 def test_simulations_are_written(made, tmp_path):
@@ -169,8 +173,9 @@ def test_reproductions_are_reported(tmp_path):
     assert (tmp_path / "lou/report.html").is_file()
 
 
-def test_other_threads_go_on(made):
-    """The interpreter is free while the library works: a thread counts as fast as it does alone, or half as fast on one core."""
+def test_other_threads_go_on():
+    """The interpreter is free while the library works: meanwhile a thread counts at a good part of the pace that it has alone."""
+    made = session(count=5000)
     count, stop = 0, threading.Event()
 
     def counting():
@@ -178,16 +183,21 @@ def test_other_threads_go_on(made):
         while not stop.is_set():
             count += 1
 
+    def pace(work) -> float:
+        before, start = count, time.perf_counter()
+        work()
+        return (count - before) / (time.perf_counter() - start)
+
     thread = threading.Thread(target=counting)
-    before = []
     thread.start()
-    poecal.calibrate(made.nominal, made.measurements, progress=lambda _: before.append(count))
-    after = count
+    # The best of some tries, since other work of the machine may take its cores. With the lock held, the thread would get a few
+    # switches of 5 ms in all.
+    alone = max(pace(lambda: time.sleep(0.1)) for _ in range(3))
+    beside = max(pace(lambda: poecal.calibrate(made.nominal, made.measurements)) for _ in range(5))
     stop.set()
     thread.join()
-    print(f"counted {after - before[0]} while calibrating")
-    # While the lock is held, a thread counts nothing.
-    assert after - before[0] > 1000
+    print(f"counted {beside:.2e} a second while calibrating, {alone:.2e} alone")
+    assert beside > 0.2 * alone
 
 
 def test_threads_calibrate_at_once(made):

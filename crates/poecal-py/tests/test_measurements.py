@@ -108,7 +108,8 @@ def test_data_frames_have_the_columns_of_files(library):
     columns |= {"target": ["ball, left"] * 50, "set": ["fit"] * 40 + ["held_out"] * 10, "run": list(range(50)), "id": [f"p{i}" for i in range(50)]}
     columns["sigma_position[mm]"] = [0.05] * 49 + [None]
     frame = library.DataFrame(columns)
-    seen = poecal.Measurements.from_dataframe(frame, elbow())
+    with pytest.warns(poecal.PoecalWarning, match="left alone the columns `run`"):
+        seen = poecal.Measurements.from_dataframe(frame, elbow())
     assert set(seen.targets) == {"ball, left"} and seen.sets.count("held_out") == 10 and seen.ids[7] == "p7"
     assert seen.warnings == ["dataframe: left alone the columns `run`"]
     by_run = poecal.Measurements.from_dataframe(frame, elbow(), fit_where="run=1,2,3")
