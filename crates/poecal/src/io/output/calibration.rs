@@ -59,10 +59,10 @@ pub fn write(
     write_robot(folder, force, model, &calibration.robot_with_targets(), results)
 }
 
-/// [`write`] for a calibrated robot with its targets, where the calibration itself is no longer at hand.
+/// [`write()`] for a calibrated robot with its targets, where the calibration itself is no longer at hand.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_robot(
     folder: &Path,
     force: bool,
