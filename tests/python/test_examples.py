@@ -27,8 +27,9 @@ def test_every_example_has_its_twin():
 
 @pytest.mark.parametrize("name", TWINS)
 def test_twins_print_the_same(name, tmp_path):
-    program = Path(os.environ.get("POECAL_PROGRAM", ROOT / "target/release/poecal"))
-    rust = subprocess.run([program.parent / "examples" / name], capture_output=True, text=True)
+    # `cargo test` builds the examples.
+    folder = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "debug/examples"
+    rust = subprocess.run([folder / name], capture_output=True, text=True)
     assert rust.returncode == 0, rust.stderr
     print(rust.stdout)
     assert run(EXAMPLES / f"{name}.py", tmp_path) == rust.stdout

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use poecal::Error;
-use poecal::io::measurements::{Quantity, Unit};
+use poecal::io::measurements::{LARGEST_NUMBER, Quantity, Unit};
 use poecal::lie::Pose;
 use poecal::measurement::{
     Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Set, Source,
@@ -97,7 +97,21 @@ fn readings(robot: &Robot, columns: &Columns<'_, '_>, length: Unit) -> PyResult<
         robot.joints.iter().any(|joint| joint.reading.name == *name && joint.kind == JointKind::Prismatic)
     };
     let units: Vec<Unit> = names.iter().map(|name| if slides(name) { length } else { angle }).collect();
-    Ok(joints.values.iter().zip(units.iter().cycle()).map(|(&value, unit)| unit.to_si(value)).collect())
+    let readings: Vec<f64> =
+        joints.values.iter().zip(units.iter().cycle()).map(|(&value, unit)| unit.to_si(value)).collect();
+    for (row, values) in readings.chunks_exact(n.max(1)).enumerate() {
+        check_size("joints", row, values)?;
+    }
+    Ok(readings)
+}
+
+/// Refuses numbers that nothing measured can be, which sums of squares would not bear, as files do.
+fn check_size(name: &str, row: usize, si: &[f64]) -> PyResult<()> {
+    let Some(value) = si.iter().find(|value| value.abs() > LARGEST_NUMBER) else { return Ok(()) };
+    let message = format!(
+        "row {row}: found {value:e} (metres or radians), expected at most {LARGEST_NUMBER:e}: correct the number or the unit"
+    );
+    Err(argument(name, message))
 }
 
 /// What was seen, in SI.
@@ -126,6 +140,7 @@ fn frames(poses: &Bound<'_, PyAny>, m: usize, length: Unit) -> PyResult<Vec<Meas
     rows.map(|(row, numbers)| {
         let pose = pose_of(numbers).map_err(|message| argument("poses", format!("row {row}: {message}")))?;
         let pose = Pose::new(pose.rotation, pose.translation.map(|value| length.to_si(value)));
+        check_size("poses", row, pose.translation.as_slice())?;
         Ok(Measurement::Pose(PoseMeasurement { pose }))
     })
     .collect()
@@ -151,6 +166,7 @@ fn points(
     let rows = positions.values.chunks_exact(3).enumerate();
     rows.map(|(row, numbers)| {
         let position = Vector3::from_iterator(numbers.iter().map(|&value| length.to_si(value)));
+        check_size("positions", row, position.as_slice())?;
         let quaternion = quaternions
             .as_ref()
             .and_then(|it| <[f64; 4]>::try_from(it.values.get(4 * row..4 * row + 4)?).ok());

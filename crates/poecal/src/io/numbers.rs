@@ -1,7 +1,7 @@
 //! Numbers in model files.
 
 /// No length of a robot (metres) and no angle (radians) comes near this; larger numbers are slips.
-pub(super) const LARGEST_NUMBER: f64 = 1e6;
+pub const LARGEST_NUMBER: f64 = 1e6;
 
 /// The shortest decimal that reads back as the same number.
 pub(super) fn shortest(number: f64) -> String {

@@ -22,6 +22,7 @@ mod understanding;
 mod units;
 mod write;
 
+pub use super::numbers::LARGEST_NUMBER;
 pub use fit_where::FitWhere;
 pub use joints::{JointsTable, read_joints};
 pub use mapping::ColumnMap;
