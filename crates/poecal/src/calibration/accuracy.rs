@@ -36,11 +36,13 @@ impl Statistic {
         let count = errors.len() as f64;
         let mean = errors.iter().sum::<f64>() / count;
         let rms = (errors.iter().map(|e| e * e).sum::<f64>() / count).sqrt();
-        errors.sort_by(f64::total_cmp);
+        let max = errors.iter().copied().max_by(f64::total_cmp)?;
         let rank = 0.95 * (errors.len() - 1) as f64;
-        let (below, above) = (rank.floor() as usize, rank.ceil() as usize);
-        let p95 = errors[below] + (errors[above] - errors[below]) * (rank - rank.floor());
-        Some(Statistic { mean, rms, p95, max: errors[errors.len() - 1] })
+        let (_, &mut below, beyond) = errors.select_nth_unstable_by(rank.floor() as usize, f64::total_cmp);
+        let above = beyond.iter().copied().min_by(f64::total_cmp).unwrap_or(below);
+        // Nothing of a number beyond, which may be infinite, where the rank is whole.
+        let p95 = if rank.fract() == 0.0 { below } else { below + (above - below) * rank.fract() };
+        Some(Statistic { mean, rms, p95, max })
     }
 }
 

@@ -128,8 +128,8 @@ impl Dataset {
             ));
         }
         let pose = observation.measurement.pose();
-        let finite = readings.iter().chain(pose.translation.iter()).chain(pose.rotation.iter());
-        if !finite.copied().all(f64::is_finite) {
+        let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        if !(finite(readings) && finite(pose.translation.as_slice()) && finite(pose.rotation.as_slice())) {
             return Err(Error::new(
                 ErrorKind::Measurement,
                 "found a number that is not finite, expected finite joint readings and measurements",

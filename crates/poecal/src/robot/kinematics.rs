@@ -39,6 +39,29 @@ impl Robot {
         })
     }
 
+    /// Frames of the joints in the base, `exp(ξ₁θ₁) … exp(ξᵢθᵢ) base_from_joint_i`, at a configuration given as readings (radians, metres;
+    /// order of [`Robot::reading_names`]): what a drawing of the robot needs.
+    ///
+    /// ```
+    /// let robot = poecal::simulate::elbow();
+    /// let frames = robot.joint_poses(&[0.3; 6]);
+    /// // The tip is fixed to the last link.
+    /// let tip = frames[5] * robot.last_joint_from_tip();
+    /// assert!((tip.translation - robot.forward_kinematics(&[0.3; 6]).translation).norm() < 1e-14);
+    /// ```
+    #[must_use]
+    pub fn joint_poses(&self, readings: &[f64]) -> Vec<Pose> {
+        let mut base_from_link = Pose::identity();
+        let values = self.joint_values(readings);
+        let joints = self.joints.iter().zip(values);
+        joints
+            .map(|(joint, value)| {
+                base_from_link = base_from_link * joint.screw.exp(value);
+                base_from_link * joint.frame
+            })
+            .collect()
+    }
+
     /// The rigid motion `T_n = exp(ξ₁θ₁) … exp(ξₙθₙ)` of the last link from its place at zero, for *joint values* θ:
     /// theory.md §2 (6).
     #[must_use]

@@ -212,15 +212,24 @@ fn split_plainly<'a>(line: &'a str, separator: u8, cells: &mut Vec<Cell<'a>>) {
         let after = line.get(start..).unwrap_or_default();
         let end = memchr::memchr(separator, after.as_bytes());
         let piece = end.and_then(|end| after.get(..end)).unwrap_or(after);
-        let trimmed = match separator {
-            b'\t' => piece.trim_start_matches(' '),
-            _ => piece.trim_start(),
-        };
-        let offset = start + piece.len() - trimmed.len();
-        cells.push(Cell { raw: trimmed.trim_end(), offset, escaped: false });
+        if piece.starts_with(is_plain) && piece.ends_with(is_plain) {
+            cells.push(Cell { raw: piece, offset: start, escaped: false });
+        } else {
+            let trimmed = match separator {
+                b'\t' => piece.trim_start_matches(' '),
+                _ => piece.trim_start(),
+            };
+            let offset = start + piece.len() - trimmed.len();
+            cells.push(Cell { raw: trimmed.trim_end(), offset, escaped: false });
+        }
         let Some(end) = end else { return };
         start += end + 1;
     }
+}
+
+/// Whether a character is surely no padding.
+fn is_plain(c: char) -> bool {
+    c.is_ascii_graphic()
 }
 
 /// Byte index of the quote that ends a quoted cell; a doubled quote is part of the text.
