@@ -25,6 +25,7 @@ __all__ = [
     "check",
     "convert",
     "identify",
+    "init",
     "offsets",
     "read_joints",
     "reproduce",
