@@ -21,7 +21,7 @@ use pyo3::types::{PyBytes, PyTuple};
 use crate::accuracy::{Accuracy, Verdict};
 use crate::arrays::{Joints, pose_array};
 use crate::errors::{python_words, raise};
-use crate::findings::{Findings, identified};
+use crate::findings::{self, Findings};
 use crate::html::Html;
 use crate::measurements::Measurements;
 use crate::pickle;
@@ -252,7 +252,7 @@ impl Calibration {
         sigma_rotation_deg: Option<f64>,
         frame: &str,
     ) -> PyResult<Findings> {
-        identified(py, self.calibrated()?, joints, kind, sigma_position_mm, sigma_rotation_deg, frame)
+        findings::identify(py, self.calibrated()?, joints, kind, sigma_position_mm, sigma_rotation_deg, frame)
     }
 
     /// Seconds that the library took for the fit; None if it was read. What a call took beyond them is Python's.

@@ -126,18 +126,6 @@ pub(crate) fn identify(
     sigma_rotation_deg: Option<f64>,
     frame: &str,
 ) -> PyResult<Findings> {
-    identified(py, robot, joints, kind, sigma_position_mm, sigma_rotation_deg, frame)
-}
-
-pub(crate) fn identified(
-    py: Python<'_>,
-    robot: &Robot,
-    joints: &Bound<'_, PyAny>,
-    kind: &str,
-    sigma_position_mm: Option<f64>,
-    sigma_rotation_deg: Option<f64>,
-    frame: &str,
-) -> PyResult<Findings> {
     let model = &robot.model;
     let joints = Joints::of(joints, &model.robot)?;
     let usual = Session::default();

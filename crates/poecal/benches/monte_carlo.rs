@@ -4,6 +4,8 @@
 
 #![allow(clippy::print_stdout, reason = "what it finds is for a program that reads it")]
 
+mod trials;
+
 use std::path::Path;
 use std::time::Instant;
 
@@ -12,19 +14,17 @@ use poecal::calibration::delivered;
 use poecal::estimate::{Estimate, Packed, row_errors};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
-use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement};
 use poecal::parameters::{Formulation, Parameter, TargetFrame};
 use poecal::problem::{Problem, Refit};
 use poecal::robot::Robot;
-use poecal::simulate::random;
 use poecal::solve::{Options, minimize};
 use poecal::{Error, ErrorKind};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
+use trials::{NOISE, disturbed};
 
-const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 5e-4 };
 /// Fits that one thread takes at a time.
 const TOGETHER: usize = 50;
 
@@ -82,16 +82,4 @@ fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(E
         (estimate, summary.iterations)
     };
     trials.par_iter().with_min_len(TOGETHER).map_init(|| refit.clone(), fit).collect()
-}
-
-/// Measurements with noise.
-fn disturbed(data: &Dataset, generator: &mut ChaCha8Rng) -> Vec<Measurement> {
-    let mut disturb = |seen: &Measurement| {
-        let shift = random::normal_vector(generator) * NOISE.position_m;
-        let turn = random::normal_vector(generator) * NOISE.rotation_rad;
-        let seen = seen.pose();
-        let pose = Pose::new(rotation::exp(&turn) * seen.rotation, seen.translation + shift);
-        Measurement::Pose(PoseMeasurement { pose })
-    };
-    data.observations.iter().map(|observation| disturb(&observation.measurement)).collect()
 }

@@ -6,25 +6,26 @@
 
 #![allow(clippy::expect_used, reason = "a benchmark may end in a panic")]
 
+mod trials;
+
 use divan::{Bencher, black_box};
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered, fit_screws};
 use poecal::estimate::Packed;
-use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PoseMeasurement};
+use poecal::measurement::Measurement;
 use poecal::parameters::{Formulation, Parameter, TargetFrame};
 use poecal::problem::{Problem, Refit};
-use poecal::simulate::{Kind, Simulated, Simulation, elbow, random, random_chain};
+use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain};
 use poecal::solve::{Options, minimize};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
+use trials::{NOISE, disturbed};
 
 fn main() {
     divan::main();
 }
 
 const ROWS: [usize; 4] = [50, 500, 5_000, 50_000];
-const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 5e-4 };
 
 fn simulation(count: usize) -> Simulation {
     Simulation {
@@ -104,18 +105,6 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
             .map_init(|| refit.clone(), |refit, measured| refit.fit(measured).1.cost)
             .sum::<f64>()
     });
-}
-
-/// Measurements with further noise.
-fn disturbed(data: &Dataset, generator: &mut ChaCha8Rng) -> Vec<Measurement> {
-    let mut disturb = |seen: &Measurement| {
-        let shift = random::normal_vector(generator) * NOISE.position_m;
-        let turn = random::normal_vector(generator) * NOISE.rotation_rad;
-        let seen = seen.pose();
-        let pose = Pose::new(rotation::exp(&turn) * seen.rotation, seen.translation + shift);
-        Measurement::Pose(PoseMeasurement { pose })
-    };
-    data.observations.iter().map(|observation| disturb(&observation.measurement)).collect()
 }
 
 /// Everything `calibrate` does: starts, noise estimation, fit, gauge, rank, accuracy; device frame unknown, nothing held out.

@@ -7,7 +7,7 @@ use crate::solve::{LeastSquares, Near, Normal, Options, Summary, minimize_near};
 
 /// A problem at its optimum, to be fitted again and again to other measurements in the same configurations (Monte Carlo, bootstrap).
 /// All fits share what is packed and the factorised `JᵀJ` of the first optimum, so that most of them need residuals and gradients
-/// alone; where that does not converge fast, a fit goes the ordinary way, to the same optimum (theory.md §6, *Many rows*).
+/// alone; where that does not converge fast, a fit goes the ordinary way, to the same optimum (theory.md §6, *Few passes*).
 ///
 /// ```
 /// # use nalgebra::Vector3;

@@ -45,7 +45,7 @@ pub(super) fn is_sure(promise: f64, before: f64, end: f64) -> bool {
 /// Cost and gradient are those of the state reached, or what the quadratic model promises of a last step too small to be worth
 /// computing. `JᵀJ` may be that of an earlier state close by, since the last steps do not need it anew, and is
 /// [nearly](LeastSquares::nearly_normal) what it should be: who needs it at the optimum asks for [`LeastSquares::normal`] there
-/// (theory.md §6, *Many rows*).
+/// (theory.md §6, *Few passes*).
 pub fn minimize<P: LeastSquares>(
     problem: &P,
     start: P::State,
@@ -172,16 +172,12 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             return Some(termination);
         }
         let end = self.options.decrement * self.normal.mean_square();
-        let share = trial.predicted / self.promised;
-        if !(share < FAST && share * trial.predicted < SURE * end)
-            || self.iterations >= self.options.iterations
-        {
+        if !is_sure(trial.predicted, self.promised, end) || self.iterations >= self.options.iterations {
             return None;
         }
         self.iterations += 1;
         self.state = self.problem.retract(&self.state, &trial.step);
-        self.normal.cost -= trial.predicted;
-        self.normal.gradient.fill(0.0);
+        self.normal.end(trial.predicted);
         self.trace.push(self.normal.mean_square());
         Some(Termination::Optimum)
     }

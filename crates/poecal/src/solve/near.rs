@@ -54,22 +54,21 @@ pub fn minimize_near<P: LeastSquares>(
         trace.push(normal.mean_square());
         let step = linalg::cholesky_solve(factor, &normal.gradient);
         let promise = 0.5 * linalg::dot(&step, &normal.gradient);
+        let end = options.decrement * normal.mean_square();
         let is_short = linalg::dot(&step, &step).sqrt() < options.step;
-        if is_short || promise < options.decrement * normal.mean_square() {
+        let is_last = is_short || promise < end;
+        if is_last || is_sure(promise, promised, end) {
             normal.gram.clone_from(&near.normal.gram);
+            if !is_last {
+                state = problem.retract(&state, &step);
+                normal.end(promise);
+                trace.push(normal.mean_square());
+            }
             let termination = if is_short { Termination::StepVanished } else { Termination::Optimum };
             let summary = Summary { iterations: trace.len() - 1, termination, trace };
             return (state, normal, summary);
         }
         let next = problem.retract(&state, &step);
-        if is_sure(promise, promised, options.decrement * normal.mean_square()) {
-            normal.gram.clone_from(&near.normal.gram);
-            normal.cost -= promise;
-            normal.gradient.fill(0.0);
-            trace.push(normal.mean_square());
-            let summary = Summary { iterations: trace.len() - 1, termination: Termination::Optimum, trace };
-            return (next, normal, summary);
-        }
         let after =
             problem.gradient(&next).filter(|after| after.cost < normal.cost && promise < FAST * promised);
         let Some(after) = after else { break };

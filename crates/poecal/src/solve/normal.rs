@@ -56,6 +56,12 @@ impl Normal {
         self.residuals += other.residuals;
     }
 
+    /// Cost and gradient as the quadratic model has them after a last full step that promises so much.
+    pub(super) fn end(&mut self, promise: f64) {
+        self.cost -= promise;
+        self.gradient.fill(0.0);
+    }
+
     /// How much less a step makes the cost, by the quadratic model: `gᵀδ - ½ δᵀ JᵀJ δ`.
     #[must_use]
     pub fn promise(&self, step: &[f64]) -> f64 {
