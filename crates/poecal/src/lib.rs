@@ -82,6 +82,7 @@ pub mod robot;
 pub mod simulate;
 pub mod solve;
 pub mod start;
+mod threads;
 pub mod uncertainty;
 
 pub use error::{Error, ErrorKind, Result, nearest};

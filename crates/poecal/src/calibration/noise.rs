@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::CalibrationOptions;
-use crate::estimate::{Chain, Estimate, Linkage, Packed};
+use crate::estimate::{Estimate, Packed, map_predictions};
 use crate::measurement::{Dataset, Noise, Observation};
 
 /// Where the noise came from.
@@ -77,26 +77,25 @@ pub fn estimate_noise(
     told_by_rotations: Option<f64>,
     before: Noise,
 ) -> Option<Noise> {
-    let linkage = Linkage::new(estimate);
     let unit = Noise { position_m: 1.0, rotation_rad: 1.0 };
-    let mut chain = Chain::default();
-    let mut e = [0.0; 6];
+    let squares = map_predictions(data, packed, rows, estimate, |_, observation, predicted| {
+        let model = observation.measurement.residual_model();
+        let mut e = [0.0; 6];
+        model.residual(predicted, &unit, &mut e);
+        let (position, rotation) = e[..model.dim()].split_at(model.rotation_row());
+        [position, rotation].map(|part| (part.iter().map(|e| e * e).sum::<f64>(), part.len()))
+    });
     let (mut position, mut rotation) = (Share::default(), Share::default());
     let mut stated = 0;
-    for &row in rows {
-        let observation = &data.observations[row as usize];
-        let model = observation.measurement.residual_model();
-        chain.evaluate(&linkage, packed, row as usize, observation.target);
-        model.residual(&chain.target, &unit, &mut e);
-        let (split, dim) = (model.rotation_row(), model.dim());
-        for (part, share, is_stated) in [
-            (&e[..split], &mut position, observation.sigma_position_m.is_some()),
-            (&e[split..dim], &mut rotation, observation.sigma_rotation_rad.is_some()),
-        ] {
-            if is_stated {
-                stated += part.len();
+    for (&row, squares) in rows.iter().zip(squares) {
+        let Observation { sigma_position_m, sigma_rotation_rad, .. } = &data.observations[row as usize];
+        let shares = [(&mut position, sigma_position_m), (&mut rotation, sigma_rotation_rad)];
+        for ((squares, count), (share, sigma)) in squares.into_iter().zip(shares) {
+            if sigma.is_some() {
+                stated += count;
             } else {
-                share.add(part);
+                share.squares += squares;
+                share.count += count;
             }
         }
     }
@@ -128,11 +127,6 @@ struct Share {
 }
 
 impl Share {
-    fn add(&mut self, residuals: &[f64]) {
-        self.squares += residuals.iter().map(|e| e * e).sum::<f64>();
-        self.count += residuals.len();
-    }
-
     /// Their standard deviation with so many unknowns taken off; `None` where too little is left beyond `own` to tell.
     fn less(&self, unknowns: f64, own: f64) -> Option<f64> {
         let redundancy = (self.count as f64 - unknowns).max(1.0);

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Estimate, Packed};
+use crate::lanes::Step;
 use crate::lie::Pose;
 use crate::robot::JointKind;
 
@@ -61,8 +62,14 @@ impl Linkage {
         &self.ends[target]
     }
 
+    /// Whether each joint turns, and its step.
+    pub(super) fn turning_steps(&self) -> impl Iterator<Item = (bool, Step)> {
+        let steps = self.kinds.iter().zip(&self.steps);
+        steps.map(|(&kind, pose)| (kind == JointKind::Revolute, Step::from(pose)))
+    }
+
     /// `(θ, cos θ or θ, sin θ or 0)` of a joint with its offset put in.
-    fn joint_value(&self, joint: usize, value: f64, packed: (f64, f64)) -> (f64, f64, f64) {
+    pub(super) fn joint_value(&self, joint: usize, value: f64, packed: (f64, f64)) -> (f64, f64, f64) {
         let Some(&(offset, cosine, sine)) = self.offsets.get(joint) else {
             return (value, packed.0, packed.1);
         };

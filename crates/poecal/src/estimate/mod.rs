@@ -6,10 +6,12 @@
 mod chain;
 mod packing;
 mod row_error;
+mod sight;
 
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
 pub use row_error::{RowError, row_errors};
+pub(crate) use sight::map_predictions;
 
 use nalgebra::Vector3;
 

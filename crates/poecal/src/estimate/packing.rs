@@ -34,41 +34,50 @@ impl Packed {
     /// Packs readings (radians, metres), `width` a row in the order of [`Robot::reading_names`].
     #[must_use]
     pub fn new(robot: &Robot, readings: &[f64], width: usize) -> Self {
-        let indices = robot.reading_indices();
-        let mut values = Vec::with_capacity(readings.len() / width.max(1) * robot.joints.len());
-        for row in readings.chunks_exact(width.max(1)) {
-            for (joint, &index) in robot.joints.iter().zip(&indices) {
-                values.push(joint.reading.value(row[index]));
+        let (indices, width) = (robot.reading_indices(), width.max(1));
+        Packed::fill(robot, readings.len() / width, |first, angles| {
+            let rows = readings[first * width..].chunks_exact(width);
+            for (angles, row) in angles.chunks_exact_mut(indices.len().max(1)).zip(rows) {
+                for ((angle, joint), &index) in angles.iter_mut().zip(&robot.joints).zip(&indices) {
+                    *angle = joint.reading.value(row[index]);
+                }
             }
-        }
-        Packed::pack(robot, values)
+        })
     }
 
     /// Packs joint values (radians, metres), one a joint and row.
     #[must_use]
     pub fn of_values(robot: &Robot, values: &[f64]) -> Self {
-        Packed::pack(robot, values.to_vec())
+        let joints = robot.joints.len().max(1);
+        Packed::fill(robot, values.len() / joints, |first, angles| {
+            angles.copy_from_slice(&values[first * joints..][..angles.len()]);
+        })
     }
 
-    fn pack(robot: &Robot, angles: Vec<f64>) -> Self {
+    /// Packs so many rows, whose joint values from a first row on are `put` where they belong.
+    fn fill(robot: &Robot, rows: usize, put: impl Fn(usize, &mut [f64]) + Sync) -> Self {
         let joints = robot.joints.len();
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
-        let mut values = vec![(0.0, 0.0); angles.len()];
-        let chunk = CHUNK * joints.max(1);
-        let fill = |(values, angles): (&mut [(f64, f64)], &[f64])| {
+        let mut angles = vec![0.0; rows * joints];
+        let mut values = vec![(0.0, 0.0); rows * joints];
+        let fill = |first: usize, angles: &mut [f64], values: &mut [(f64, f64)]| {
+            put(first, angles);
             lanes::cosines_and_sines(Level::best(), angles, values);
             if kinds.contains(&JointKind::Prismatic) {
-                for (index, (packed, &value)) in values.iter_mut().zip(angles).enumerate() {
+                for (index, (packed, &value)) in values.iter_mut().zip(&*angles).enumerate() {
                     if kinds[index % joints] == JointKind::Prismatic {
                         *packed = (value, 0.0);
                     }
                 }
             }
         };
-        if angles.len() <= chunk || rayon::current_num_threads() == 1 {
-            fill((&mut values, &angles));
+        let len = CHUNK * joints.max(1);
+        if rows <= CHUNK || rayon::current_num_threads() == 1 {
+            let chunks = angles.chunks_mut(len).zip(values.chunks_mut(len)).enumerate();
+            chunks.for_each(|(chunk, (angles, values))| fill(chunk * CHUNK, angles, values));
         } else {
-            values.par_chunks_mut(chunk).zip(angles.par_chunks(chunk)).for_each(fill);
+            let chunks = angles.par_chunks_mut(len).zip(values.par_chunks_mut(len)).enumerate();
+            chunks.for_each(|(chunk, (angles, values))| fill(chunk * CHUNK, angles, values));
         }
         Packed { joints, kinds, values, angles }
     }

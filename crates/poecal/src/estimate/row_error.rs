@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Chain, Estimate, Linkage, Packed};
+use super::{Estimate, Packed, map_predictions};
 use crate::lie::rotation;
 use crate::measurement::Dataset;
 
@@ -24,19 +24,13 @@ pub struct RowError {
 /// Errors of an estimate, one a row.
 #[must_use]
 pub fn row_errors(data: &Dataset, packed: &Packed, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
-    let linkage = Linkage::new(estimate);
-    let mut chain = Chain::default();
-    rows.iter()
-        .map(|&row| {
-            let observation = &data.observations[row as usize];
-            let model = observation.measurement.residual_model();
-            chain.evaluate(&linkage, packed, row as usize, observation.target);
-            RowError {
-                position_m: model.position() - chain.target.translation,
-                rotation_rad: model
-                    .orientation()
-                    .map(|measured| rotation::log(&(measured * chain.target.rotation.transpose()))),
-            }
-        })
-        .collect()
+    map_predictions(data, packed, rows, estimate, |_, observation, predicted| {
+        let model = observation.measurement.residual_model();
+        RowError {
+            position_m: model.position() - predicted.translation,
+            rotation_rad: model
+                .orientation()
+                .map(|measured| rotation::log(&(measured * predicted.rotation.transpose()))),
+        }
+    })
 }

@@ -1,12 +1,19 @@
 //! What the kernels are told: an arm's frames, its unknowns, and rows side by side.
 
 use super::vector::{WIDTH, Wide};
+use crate::lie::Pose;
 
 /// A fixed motion: three columns of a rotation, and a translation in metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Step {
     pub(crate) columns: [[f64; 3]; 3],
     pub(crate) translation: [f64; 3],
+}
+
+impl From<&Pose> for Step {
+    fn from(pose: &Pose) -> Self {
+        Step { columns: pose.rotation.data.0, translation: pose.translation.into() }
+    }
 }
 
 /// A joint: whether it turns, and its first shift column and turn, if its axis is unknown.

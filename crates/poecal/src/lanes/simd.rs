@@ -5,7 +5,9 @@ use super::kernel::{self, Arm};
 #[cfg(target_arch = "x86_64")]
 use super::plain::Pair;
 use super::plain::Two;
+use super::plan::Step;
 use super::sincos;
+use super::tip;
 use super::totals::Totals;
 use super::vector::{WIDTH, Wide};
 #[cfg(target_arch = "x86_64")]
@@ -109,6 +111,10 @@ dispatch!(
 dispatch!(
     /// Sums over rows, without products of columns.
     kernel::sum_gradient(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+);
+dispatch!(
+    /// Writes the frames of the last link.
+    tip::last_links(joints: &[(bool, Step)], values: &[[Wide; 2]], out: &mut [[Wide; 4]; 3])
 );
 dispatch!(
     /// Writes `(cos, sin)` of each angle, with the same bits at every level.

@@ -3,15 +3,15 @@
 //! It serves points and poses with minimal screws, targets and a device frame; everything else takes the general path in `mod.rs`,
 //! which is also what this one is tested against.
 
+use super::alike::{Alike, Whitening};
 use super::scatter::Scatter;
 use super::{Layout, Problem};
 use crate::estimate::{Estimate, Linkage};
 use crate::lanes::{self, Arm, JointPlan, Level, Plan, RowData, Rows, Step, Totals};
-use crate::lie::Pose;
-use crate::measurement::{Measurement, Noise, Observation, PoseMeasurement, SpatialPoseMeasurement};
+use crate::measurement::{Measurement, PoseMeasurement, SpatialPoseMeasurement};
 use crate::parameters::Parameter;
 use crate::solve::Normal;
-use rayon::prelude::*;
+use crate::threads;
 use std::cell::RefCell;
 
 /// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
@@ -26,9 +26,6 @@ thread_local! {
     /// Room for a chunk that is not kept.
     static ROWS: RefCell<Rows> = const { RefCell::new(Rows::EMPTY) };
 }
-
-/// Relative difference of two ratios that differ by rounding only.
-const SAME_RATIO: f64 = 1e-14;
 
 /// What is summed over rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,36 +60,14 @@ struct Group {
 impl Fast {
     /// Arranges the rows of a problem; `None` if the general path must serve it.
     pub(super) fn new(problem: &Problem<'_>, level: Level) -> Option<Self> {
-        let mut groups: Vec<Group> = Vec::new();
-        let usual = Whitening::new(problem.noise);
-        let mut at = 0;
-        for &row in &problem.rows {
-            let observation = &problem.data.observations[row as usize];
-            let framed = match problem.measurement(row as usize) {
-                Measurement::Point(_) => false,
-                Measurement::Pose(_) => true,
-                Measurement::SpatialPose(_) => return None,
-            };
-            let target = observation.target;
-            let is_alike = |group: &Group| group.target == target && group.plan.framed == framed;
-            if !groups.get(at).is_some_and(is_alike) {
-                at = groups.iter().position(is_alike).unwrap_or(groups.len());
-            }
-            let ratio = framed.then(|| usual.of(observation, problem.noise).ratio);
-            if let Some(group) = groups.get_mut(at) {
-                group.plan.ratio = group.plan.ratio.zip(ratio).and_then(|(known, ratio)| {
-                    ((ratio - known).abs() <= SAME_RATIO * known).then_some(known)
-                });
-                group.rows.push(row);
-            } else {
-                let mut group = Group::new(problem, target, framed)?;
-                group.plan.ratio = ratio;
-                group.rows.push(row);
-                groups.push(group);
-            }
+        let mut groups = Vec::new();
+        for alike in Alike::sorted(problem)? {
+            let mut group = Group::new(problem, alike.target, alike.framed)?;
+            group.plan.ratio = alike.ratio;
+            group.rows = alike.rows;
+            let scatter = group.scatter(problem.layout.dim());
+            groups.push((group, scatter));
         }
-        let scatters: Vec<Scatter> = groups.iter().map(|group| group.scatter(problem.layout.dim())).collect();
-        let groups = groups.into_iter().zip(scatters).collect();
         let mut fast = Fast { groups, level };
         fast.pack(problem);
         Some(fast)
@@ -114,14 +89,14 @@ impl Fast {
     /// Normal information of all rows; a `JᵀJ` that is not asked for is left empty.
     pub(super) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Sums) -> Normal {
         let linkage = Linkage::new(state);
-        let steps: Vec<Step> = linkage.steps().iter().map(step).collect();
+        let steps: Vec<Step> = linkage.steps().iter().map(Step::from).collect();
         let mut normal = match sums {
             Sums::Gradient => Normal::new(0),
             Sums::All | Sums::Nearly => Normal::new(problem.layout.dim()),
         };
         normal.gradient.resize(problem.layout.dim(), 0.0);
         for (group, scatter) in &self.groups {
-            let end = step(linkage.end(group.target));
+            let end = Step::from(linkage.end(group.target));
             let arm = Arm { plan: &group.plan, steps: &steps, end: &end, nearly: sums == Sums::Nearly };
             let totals = group.sum(problem, self.level, &arm, sums);
             group.put(&totals, &mut normal);
@@ -240,13 +215,7 @@ impl Group {
         let mut total: Option<Totals> = None;
         for first in (0..chunks).step_by(TOGETHER) {
             let together = first..chunks.min(first + TOGETHER);
-            // With one thread there is nobody to hand work to, and no need to wake him.
-            let parts: Vec<Totals> = if rayon::current_num_threads() > 1 {
-                together.into_par_iter().map(chunk).collect()
-            } else {
-                together.map(chunk).collect()
-            };
-            for part in parts {
+            for part in threads::map_parts(together.len(), |index| chunk(first + index)) {
                 match &mut total {
                     Some(total) => total.add(&part),
                     None => total = Some(part),
@@ -287,30 +256,6 @@ fn plan_without_unknowns(problem: &Problem<'_>, framed: bool) -> Plan {
     }
 }
 
-/// What makes a row's residuals comparable.
-#[derive(Clone, Copy)]
-struct Whitening {
-    /// `1/σ` of a position component.
-    weight: f64,
-    /// Position over rotation noise.
-    ratio: f64,
-}
-
-impl Whitening {
-    fn new(noise: Noise) -> Self {
-        Whitening { weight: 1.0 / noise.position_m, ratio: noise.position_m / noise.rotation_rad }
-    }
-
-    /// That of a row, which may state its own noise; `self` is that of the `usual` noise.
-    #[inline(always)]
-    fn of(self, observation: &Observation, usual: Noise) -> Self {
-        match (observation.sigma_position_m, observation.sigma_rotation_rad) {
-            (None, None) => self,
-            _ => Whitening::new(observation.noise_or(usual)),
-        }
-    }
-}
-
 /// Sets rows side by side.
 fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut Rows) {
     let usual = Whitening::new(problem.noise);
@@ -333,8 +278,4 @@ fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, framed: 
         }
     };
     RowData { joints: problem.packed.row(row), position: &position.data.0[0], orientation, weight }
-}
-
-fn step(pose: &Pose) -> Step {
-    Step { columns: pose.rotation.data.0, translation: pose.translation.into() }
 }

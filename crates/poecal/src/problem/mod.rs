@@ -1,5 +1,6 @@
 //! Rows × columns: measurements and parameters meet here and nowhere else. Assembly only, no algorithms.
 
+mod alike;
 mod fast;
 mod layout;
 mod refit;

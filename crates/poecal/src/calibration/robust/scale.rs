@@ -3,7 +3,7 @@
 use super::chi_square;
 use crate::calibration::CalibrationOptions;
 use crate::calibration::noise::{ROUNDING, stated};
-use crate::estimate::{Chain, Estimate, Linkage, Packed};
+use crate::estimate::{Estimate, Packed, map_predictions};
 use crate::measurement::{Dataset, Noise};
 
 /// Squared whitened residual of one part of a row, position or rotation.
@@ -26,27 +26,21 @@ pub(super) fn parts(
     estimate: &Estimate,
     noise: Noise,
 ) -> Vec<Parts> {
-    let linkage = Linkage::new(estimate);
-    let mut chain = Chain::default();
-    let mut e = [0.0; 6];
-    rows.iter()
-        .map(|&row| {
-            let observation = &data.observations[row as usize];
-            let model = observation.measurement.residual_model();
-            chain.evaluate(&linkage, packed, row as usize, observation.target);
-            model.residual(&chain.target, &observation.noise_or(noise), &mut e);
-            let (split, dim) = (model.rotation_row(), model.dim());
-            let part = |e: &[f64], stated: Option<f64>| Part {
-                squares: e.iter().map(|e| e * e).sum(),
-                components: e.len(),
-                stated: stated.is_some(),
-            };
-            [
-                part(&e[..split], observation.sigma_position_m),
-                part(&e[split..dim], observation.sigma_rotation_rad),
-            ]
-        })
-        .collect()
+    map_predictions(data, packed, rows, estimate, |_, observation, predicted| {
+        let model = observation.measurement.residual_model();
+        let mut e = [0.0; 6];
+        model.residual(predicted, &observation.noise_or(noise), &mut e);
+        let (split, dim) = (model.rotation_row(), model.dim());
+        let part = |e: &[f64], stated: Option<f64>| Part {
+            squares: e.iter().map(|e| e * e).sum(),
+            components: e.len(),
+            stated: stated.is_some(),
+        };
+        [
+            part(&e[..split], observation.sigma_position_m),
+            part(&e[split..dim], observation.sigma_rotation_rad),
+        ]
+    })
 }
 
 /// How many times the noise the residuals of each part really are.

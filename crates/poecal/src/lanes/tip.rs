@@ -1,0 +1,31 @@
+//! The chain alone: where the last link is in several rows.
+
+use super::frame::{Frame, turned};
+use super::plan::Step;
+use super::vector::{Vector, WIDTH, Wide};
+
+/// Writes the frame of the last link after all motions, rows of `[x, y, z, origin]`: of each joint, whether it turns, its frame seen
+/// from the one before at zero, and `(cos θ, sin θ)` or `(θ, 0)`.
+#[inline(always)]
+pub(super) fn last_links<V: Vector>(joints: &[(bool, Step)], values: &[[Wide; 2]], out: &mut [[Wide; 4]; 3]) {
+    for part in 0..WIDTH / V::LANES {
+        let mut moved = Frame([[V::splat(0.0); 4]; 3]);
+        for (index, ((turns, step), [cosine, sine])) in joints.iter().zip(values).enumerate() {
+            if index == 0 {
+                moved = Frame::fixed(step);
+            }
+            let (cosine, sine) = (V::load(cosine, part), V::load(sine, part));
+            for row in &mut moved.0 {
+                let [x, y, z, origin] = if index == 0 { *row } else { turned(*row, step) };
+                *row = if *turns {
+                    [x.times_plus(cosine, y * sine), x.times_from(sine, y * cosine), z, origin]
+                } else {
+                    [x, y, z, z.times_plus(cosine, origin)]
+                };
+            }
+        }
+        for (row, out) in moved.0.iter().zip(&mut *out) {
+            row.iter().zip(out).for_each(|(number, out)| number.store(out, part));
+        }
+    }
+}

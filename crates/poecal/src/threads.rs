@@ -1,0 +1,13 @@
+//! Work in parts, side by side where there are several threads.
+
+use rayon::prelude::*;
+
+/// What each of so many parts comes to, in their order whatever the number of threads. One part alone, or one thread, is not worth
+/// waking anybody.
+pub(crate) fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+    if count > 1 && rayon::current_num_threads() > 1 {
+        (0..count).into_par_iter().map(part).collect()
+    } else {
+        (0..count).map(part).collect()
+    }
+}
