@@ -61,12 +61,6 @@ pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     x
 }
 
-/// `J N⁻¹ Jᵀ` (row-major) of a Jacobian of at most eight rows, with N the matrix that was factorised.
-pub(crate) fn hat(factor: &Factor, jacobian: &[f64], rows: usize) -> Vec<f64> {
-    let hat = lanes::hat(Level::best(), factor, jacobian, rows);
-    hat.iter().take(rows).flat_map(|row| row.iter().take(rows).copied()).collect()
-}
-
 /// `aᵀb`.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()

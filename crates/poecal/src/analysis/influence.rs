@@ -1,11 +1,11 @@
 //! How much each row decides its own prediction, and how far it is off when that is allowed for (theory.md §6 (34d), (34e)).
 
-use rayon::prelude::*;
-
 use crate::estimate::Estimate;
+use crate::lanes::{self, Level, Wide};
 use crate::linalg;
-use crate::problem::Problem;
+use crate::problem::{Abreast, Problem};
 use crate::solve::Normal;
+use crate::threads;
 
 /// Rows that one thread takes at a time.
 const CHUNK: usize = 1024;
@@ -42,41 +42,100 @@ pub fn influence(
     scale: impl Fn(u32, usize) -> f64 + Sync,
 ) -> Vec<Influence> {
     let n = normal.dim();
+    let shifts = problem.layout().shifts();
     let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
-    let factor = linalg::cholesky(&normal.gram, n, (ROUNDING * largest).max(f64::MIN_POSITIVE));
-    let chunks: Vec<Vec<Influence>> = rows
-        .par_chunks(CHUNK)
-        .zip(weights.par_chunks(CHUNK))
-        .map(|(rows, weights)| {
-            let mut weights = weights.iter();
-            let mut found = Vec::with_capacity(rows.len());
-            problem.for_rows(estimate, rows, |row, jacobian, residual| {
-                let weight = weights.next().copied().unwrap_or(1.0);
-                let scaled: Vec<f64> = residual.iter().enumerate().map(|(k, e)| e / scale(row, k)).collect();
-                found.push(row_influence(factor.as_ref(), jacobian, &scaled, weight));
-            });
-            found
-        })
-        .collect();
-    chunks.into_iter().flatten().collect()
+    let damping = (ROUNDING * largest).max(f64::MIN_POSITIVE);
+    // Of numbers that are not finite there is none, and no row means anything.
+    let factor = linalg::cholesky(&normal.gram, n, damping).unwrap_or_default();
+    let level = Level::best();
+    let parts = threads::map_parts(rows.len().div_ceil(CHUNK), |part| {
+        let rows = &rows[part * CHUNK..rows.len().min((part + 1) * CHUNK)];
+        let mut weights = weights.get(part * CHUNK..).unwrap_or_default().iter();
+        let mut found = Vec::with_capacity(rows.len());
+        problem.for_rows_abreast(estimate, rows, |rows, abreast| {
+            let Abreast { jacobian, residual, numbers } = abreast;
+            let mut weight = Wide::ZERO;
+            for ((lane, &row), &numbers) in rows.iter().enumerate().zip(&*numbers) {
+                weight.0[lane] = weights.next().copied().unwrap_or(1.0);
+                for (k, residual) in residual.iter_mut().enumerate().take(numbers) {
+                    residual.0[lane] /= scale(row, k);
+                }
+            }
+            let [trace, squared] =
+                lanes::influences(level, &factor, shifts, jacobian, residual, &weight, LEAST_REDUNDANCY);
+            found.extend((0..rows.len()).map(|lane| Influence {
+                leverage: trace.0[lane] / numbers[lane].max(1) as f64,
+                studentized: squared.0[lane].max(0.0).sqrt(),
+            }));
+        });
+        found
+    });
+    parts.into_iter().flatten().collect()
 }
 
-/// Of one row: `H = J N⁻¹ Jᵀ`, and `t² = eᵀ (I - wH)⁻¹ (I + (1 - w)H)⁻¹ e`.
-fn row_influence(
-    factor: Option<&linalg::Factor>,
-    jacobian: &[f64],
-    residual: &[f64],
-    weight: f64,
-) -> Influence {
-    let dim = residual.len();
-    let hat = factor.map_or_else(|| vec![0.0; dim * dim], |factor| linalg::hat(factor, jacobian, dim));
-    let leverage = (0..dim).map(|i| hat[i * dim + i]).sum::<f64>() / dim.max(1) as f64;
-    let solved = |x: Vec<f64>, share: f64, diagonal: f64| {
-        let matrix: Vec<f64> = hat.iter().map(|h| share * h).collect();
-        linalg::cholesky(&matrix, dim, diagonal).map_or(x.clone(), |own| linalg::cholesky_solve(&own, &x))
-    };
-    let left_out = solved(residual.to_vec(), -weight, 1.0 + LEAST_REDUNDANCY);
-    let judged = if weight < 1.0 { solved(left_out, 1.0 - weight, 1.0) } else { left_out };
-    let squared: f64 = residual.iter().zip(&judged).map(|(a, b)| a * b).sum();
-    Influence { leverage, studentized: squared.max(0.0).sqrt() }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::Packed;
+    use crate::lie::Pose;
+    use crate::measurement::{Measurement, Noise, PointMeasurement};
+    use crate::parameters::{Formulation, Parameter, TargetFrame};
+    use crate::simulate::{Kind, Simulation, elbow};
+    use crate::solve::LeastSquares;
+
+    /// The formulas of theory.md as they stand there, one row after the other.
+    fn by_the_book(factor: &linalg::Factor, jacobian: &[f64], residual: &[f64], weight: f64) -> Influence {
+        let (dim, n) = (residual.len(), jacobian.len() / residual.len());
+        let row = |i: usize| &jacobian[i * n..(i + 1) * n];
+        let solved: Vec<Vec<f64>> = (0..dim).map(|i| linalg::cholesky_solve(factor, row(i))).collect();
+        let hat: Vec<f64> = (0..dim * dim).map(|k| linalg::dot(row(k / dim), &solved[k % dim])).collect();
+        let solved = |x: &[f64], share: f64, diagonal: f64| {
+            let matrix: Vec<f64> = hat.iter().map(|h| share * h).collect();
+            linalg::cholesky_solve(&linalg::cholesky(&matrix, dim, diagonal).unwrap(), x)
+        };
+        let left_out = solved(residual, -weight, 1.0 + LEAST_REDUNDANCY);
+        let squared = linalg::dot(residual, &solved(&left_out, 1.0 - weight, 1.0));
+        let leverage = (0..dim).map(|i| hat[i * dim + i]).sum::<f64>() / dim as f64;
+        Influence { leverage, studentized: squared.sqrt() }
+    }
+
+    #[test]
+    fn rows_side_by_side_are_judged_as_each_alone() {
+        let mut made = Simulation { count: 45, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+        // Every third row has a position only: lanes of one block then differ.
+        for observation in made.data.observations.iter_mut().step_by(3) {
+            let position = observation.measurement.pose().translation;
+            observation.measurement = Measurement::Point(PointMeasurement { position });
+        }
+        let (data, robot) = (&made.data, &made.nominal);
+        let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
+        let estimate = Estimate::new(robot, vec![robot.home], Pose::identity());
+        let mut free = Formulation::Adjoint.joint_parameters(&estimate.kinds);
+        free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
+        let rows = data.all_rows();
+        let noise = Noise { position_m: 1e-3, rotation_rad: 1e-2 };
+        let problem = Problem::new(data, &packed, rows.clone(), free, noise, 0.5);
+        let normal = problem.normal(&estimate);
+        let weights: Vec<f64> = rows.iter().map(|row| [1.0, 0.4, 0.0][*row as usize % 3]).collect();
+        let scale = |row: u32, component: usize| 1.0 + f64::from(row % 5) + component as f64;
+        let found = influence(&problem, &estimate, &normal, &rows, &weights, scale);
+
+        let n = normal.dim();
+        let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
+        let factor = linalg::cholesky(&normal.gram, n, ROUNDING * largest).unwrap();
+        let mut expected = Vec::new();
+        problem.for_rows(&estimate, &rows, |row, jacobian, residual| {
+            let scaled: Vec<f64> = residual.iter().enumerate().map(|(k, e)| e / scale(row, k)).collect();
+            expected.push(by_the_book(&factor, jacobian, &scaled, weights[row as usize]));
+        });
+        let mut worst: f64 = 0.0;
+        for (found, expected) in found.iter().zip(&expected) {
+            worst = worst.max((found.leverage - expected.leverage).abs());
+            worst = worst.max((found.studentized / expected.studentized - 1.0).abs());
+        }
+        println!("{} rows, largest difference {worst:.1e}", found.len());
+        assert_eq!(found.len(), expected.len());
+        // Rounding, times the condition of the normal equations' factor.
+        assert!(worst < 1e-9);
+    }
 }

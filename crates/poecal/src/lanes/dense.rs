@@ -3,15 +3,21 @@
 use super::vector::{Vector, WIDTH, Wide};
 
 /// The factor `R` of `RᵀR`: upper, row after row; its diagonal, and what is below it, means nothing.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Factor {
-    n: usize,
+    pub(super) n: usize,
     rows: Vec<Wide>,
     /// Inverses of the diagonal.
-    inverses: Vec<f64>,
+    pub(super) inverses: Vec<f64>,
 }
 
 impl Factor {
+    /// An element above the diagonal.
+    #[inline(always)]
+    pub(super) fn at(&self, row: usize, column: usize) -> f64 {
+        self.rows[row * self.n.div_ceil(WIDTH) + column / WIDTH].0[column % WIDTH]
+    }
+
     /// The least that remained of a diagonal element when those before it were eliminated.
     pub(crate) fn smallest_pivot(&self) -> f64 {
         self.inverses.iter().fold(0.0, |most: f64, &inverse| most.max(inverse)).powi(-2)
@@ -126,35 +132,4 @@ pub(super) fn solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
         x[i] = (x[i] - (sum.sum() + own)) * factor.inverses[i];
         found[block].0[lane] = x[i];
     }
-}
-
-/// `J N⁻¹ Jᵀ` of a Jacobian (row-major) of at most [`WIDTH`] rows, which stand side by side in the lanes.
-#[inline(always)]
-pub(super) fn hat<V: Vector>(factor: &Factor, jacobian: &[f64], rows: usize) -> [[f64; WIDTH]; WIDTH] {
-    let n = factor.n;
-    let mut columns = vec![Wide::ZERO; n];
-    for (lane, row) in jacobian.chunks_exact(n.max(1)).take(rows.min(WIDTH)).enumerate() {
-        columns.iter_mut().zip(row).for_each(|(wide, &value)| wide.0[lane] = value);
-    }
-    let mut hat = [Wide::ZERO; WIDTH];
-    let stride = n.div_ceil(WIDTH);
-    for (i, row) in factor.rows.chunks_exact(stride.max(1)).take(n).enumerate() {
-        let (done, later) = columns.split_at_mut(i + 1);
-        let own = &mut done[i];
-        for part in 0..WIDTH / V::LANES {
-            (V::load(own, part) * V::splat(factor.inverses[i])).store(own, part);
-        }
-        for (j, wide) in (i + 1..).zip(later) {
-            let value = row[j / WIDTH].0[j % WIDTH];
-            for part in 0..WIDTH / V::LANES {
-                V::load(own, part).times_from(V::splat(value), V::load(wide, part)).store(wide, part);
-            }
-        }
-        for (sum, &value) in hat.iter_mut().zip(&own.0[..rows.min(WIDTH)]) {
-            for part in 0..WIDTH / V::LANES {
-                V::load(own, part).times_plus(V::splat(value), V::load(sum, part)).store(sum, part);
-            }
-        }
-    }
-    hat.map(|wide| wide.0)
 }

@@ -2,6 +2,7 @@
 mod dense;
 mod frame;
 mod gram;
+mod influence;
 mod kernel;
 mod plain;
 mod plan;
@@ -15,9 +16,12 @@ mod vector;
 mod x86;
 
 pub(crate) use dense::Factor;
+pub(crate) use influence::NUMBERS;
 pub(crate) use kernel::Arm;
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
 pub use simd::{Level, levels};
-pub(crate) use simd::{cholesky, cosines_and_sines, hat, last_links, solve, sum_gradient, sum_products};
+pub(crate) use simd::{
+    cholesky, cosines_and_sines, influences, last_links, solve, sum_gradient, sum_products,
+};
 pub(crate) use totals::{Tiles, Totals};
 pub(crate) use vector::{WIDTH, Wide};

@@ -1,6 +1,7 @@
 //! Run-time dispatch: the same source compiled for each set of vector instructions. The only unsafe code of the library.
 
 use super::dense::{self, Factor};
+use super::influence::{self, NUMBERS};
 use super::kernel::{self, Arm};
 #[cfg(target_arch = "x86_64")]
 use super::plain::Pair;
@@ -9,7 +10,7 @@ use super::plan::Step;
 use super::sincos;
 use super::tip;
 use super::totals::Totals;
-use super::vector::{WIDTH, Wide};
+use super::vector::Wide;
 #[cfg(target_arch = "x86_64")]
 use super::x86::{Eight, Four};
 
@@ -130,6 +131,13 @@ dispatch!(
     dense::solve(factor: &Factor, x: &mut [f64])
 );
 dispatch!(
-    /// `J N⁻¹ Jᵀ` of a Jacobian (row-major) of at most eight rows.
-    dense::hat(factor: &Factor, jacobian: &[f64], rows: usize) -> [[f64; WIDTH]; WIDTH]
+    /// Trace of each row's block of the hat matrix, and square of its residual in units of its own deviation.
+    influence::influences(
+        factor: &Factor,
+        shifts: usize,
+        jacobian: &mut [[Wide; NUMBERS]],
+        residual: &[Wide; NUMBERS],
+        weight: &Wide,
+        least: f64
+    ) -> [Wide; 2]
 );

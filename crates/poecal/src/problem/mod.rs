@@ -1,5 +1,6 @@
 //! Rows × columns: measurements and parameters meet here and nowhere else. Assembly only, no algorithms.
 
+mod abreast;
 mod alike;
 mod fast;
 mod layout;
@@ -7,6 +8,7 @@ mod refit;
 mod scatter;
 
 pub use crate::lanes::{Level, levels};
+pub(crate) use abreast::Abreast;
 pub use layout::Layout;
 pub use refit::Refit;
 

@@ -1,0 +1,106 @@
+//! What several rows mean to a fit: their blocks of the hat matrix, and their residuals when these are allowed for.
+
+use super::dense::Factor;
+use super::vector::{Vector, WIDTH, Wide};
+
+/// Numbers of a row's residual: three of a position, three of a rotation.
+pub(crate) const NUMBERS: usize = 6;
+
+/// For each of several rows the trace of `H = J N⁻¹ Jᵀ`, and `eᵀ ((1 + least) I - w H)⁻¹ (I + (1 - w) H)⁻¹ e`. The
+/// Jacobian's columns stand one after the other, and are used up; rotations do not see the first `shifts` of them.
+#[inline(always)]
+pub(super) fn influences<V: Vector>(
+    factor: &Factor,
+    shifts: usize,
+    jacobian: &mut [[Wide; NUMBERS]],
+    residual: &[Wide; NUMBERS],
+    weight: &Wide,
+    least: f64,
+) -> [Wide; 2] {
+    let mut found = [Wide::ZERO; 2];
+    let jacobian = &mut jacobian[..factor.n];
+    for part in 0..WIDTH / V::LANES {
+        for i in 0..factor.n {
+            let (done, later) = jacobian.split_at_mut(i);
+            let mut own: [V; NUMBERS] = std::array::from_fn(|k| V::load(&later[0][k], part));
+            let (moved, turned) = done.split_at(shifts.min(i));
+            for (j, column) in moved.iter().enumerate() {
+                let value = V::splat(factor.at(j, i));
+                for (own, wide) in own[..NUMBERS / 2].iter_mut().zip(column) {
+                    *own = V::load(wide, part).times_from(value, *own);
+                }
+            }
+            for (j, column) in turned.iter().enumerate() {
+                let value = V::splat(factor.at(shifts + j, i));
+                for (own, wide) in own.iter_mut().zip(column) {
+                    *own = V::load(wide, part).times_from(value, *own);
+                }
+            }
+            let inverse = V::splat(factor.inverses[i]);
+            for (own, wide) in own.into_iter().zip(&mut later[0]) {
+                (own * inverse).store(wide, part);
+            }
+        }
+        let hat = squared::<V>(jacobian, part);
+        let trace = (1..NUMBERS).fold(hat[0][0], |sum, k| sum + hat[k][k]);
+        trace.store(&mut found[0], part);
+        let weight = V::load(weight, part);
+        let whole = V::splat(1.0);
+        let residual: [V; NUMBERS] = std::array::from_fn(|k| V::load(&residual[k], part));
+        let left_out = solved(&hat, -weight, V::splat(1.0 + least), residual);
+        let judged = solved(&hat, whole - weight, whole, left_out);
+        let sum = (1..NUMBERS).fold(residual[0] * judged[0], |sum, k| residual[k].times_plus(judged[k], sum));
+        sum.store(&mut found[1], part);
+    }
+    found
+}
+
+/// `Σ yᵢ yᵢᵀ` of these columns, its upper triangle.
+#[inline(always)]
+fn squared<V: Vector>(columns: &[[Wide; NUMBERS]], part: usize) -> [[V; NUMBERS]; NUMBERS] {
+    let mut sum = [[V::splat(0.0); NUMBERS]; NUMBERS];
+    for column in columns {
+        let own: [V; NUMBERS] = std::array::from_fn(|k| V::load(&column[k], part));
+        for (k, row) in sum.iter_mut().enumerate() {
+            for l in k..NUMBERS {
+                row[l] = own[k].times_plus(own[l], row[l]);
+            }
+        }
+    }
+    sum
+}
+
+/// Solution of `(diagonal I + share H) x = b`; where rounding leaves a matrix that is not positive definite, that direction counts
+/// for nothing.
+#[inline(always)]
+fn solved<V: Vector>(
+    hat: &[[V; NUMBERS]; NUMBERS],
+    share: V,
+    diagonal: V,
+    mut x: [V; NUMBERS],
+) -> [V; NUMBERS] {
+    let mut rows = hat.map(|row| row.map(|value| value * share));
+    for (k, row) in rows.iter_mut().enumerate() {
+        row[k] = row[k] + diagonal;
+    }
+    let mut inverses = [diagonal; NUMBERS];
+    for k in 0..NUMBERS {
+        inverses[k] = V::splat(1.0).over(rows[k][k], 0.0);
+        let own = rows[k];
+        for l in k + 1..NUMBERS {
+            let factor = own[l] * inverses[k];
+            for (value, own) in rows[l].iter_mut().zip(own).skip(l) {
+                *value = own.times_from(factor, *value);
+            }
+            x[l] = x[k].times_from(factor, x[l]);
+        }
+    }
+    for k in (0..NUMBERS).rev() {
+        let mut sum = x[k];
+        for l in k + 1..NUMBERS {
+            sum = rows[k][l].times_from(x[l], sum);
+        }
+        x[k] = sum * inverses[k];
+    }
+    x
+}
