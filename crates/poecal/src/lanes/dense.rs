@@ -12,10 +12,12 @@ pub(crate) struct Factor {
 }
 
 impl Factor {
-    /// An element above the diagonal.
+    /// The elements of a column from the top; those above the diagonal mean something.
     #[inline(always)]
-    pub(super) fn at(&self, row: usize, column: usize) -> f64 {
-        self.rows[row * self.n.div_ceil(WIDTH) + column / WIDTH].0[column % WIDTH]
+    pub(super) fn column(&self, column: usize) -> impl Iterator<Item = f64> {
+        let (block, lane) = (column / WIDTH, column % WIDTH);
+        let stride = self.n.div_ceil(WIDTH).max(1);
+        self.rows.get(block..).unwrap_or_default().iter().step_by(stride).map(move |wide| wide.0[lane])
     }
 
     /// The least that remained of a diagonal element when those before it were eliminated.

@@ -24,17 +24,17 @@ pub(super) fn influences<V: Vector>(
             let (done, later) = jacobian.split_at_mut(i);
             let mut own: [V; NUMBERS] = std::array::from_fn(|k| V::load(&later[0][k], part));
             let (moved, turned) = done.split_at(shifts.min(i));
-            for (j, column) in moved.iter().enumerate() {
-                let value = V::splat(factor.at(j, i));
-                for (own, wide) in own[..NUMBERS / 2].iter_mut().zip(column) {
-                    *own = V::load(wide, part).times_from(value, *own);
-                }
+            let mut above = factor.column(i);
+            for (column, value) in moved.iter().zip(&mut above) {
+                let value = V::splat(value);
+                own = std::array::from_fn(|k| match own[k] {
+                    own if k < NUMBERS / 2 => V::load(&column[k], part).times_from(value, own),
+                    own => own,
+                });
             }
-            for (j, column) in turned.iter().enumerate() {
-                let value = V::splat(factor.at(shifts + j, i));
-                for (own, wide) in own.iter_mut().zip(column) {
-                    *own = V::load(wide, part).times_from(value, *own);
-                }
+            for (column, value) in turned.iter().zip(above) {
+                let value = V::splat(value);
+                own = std::array::from_fn(|k| V::load(&column[k], part).times_from(value, own[k]));
             }
             let inverse = V::splat(factor.inverses[i]);
             for (own, wide) in own.into_iter().zip(&mut later[0]) {
@@ -62,9 +62,7 @@ fn squared<V: Vector>(columns: &[[Wide; NUMBERS]], part: usize) -> [[V; NUMBERS]
     for column in columns {
         let own: [V; NUMBERS] = std::array::from_fn(|k| V::load(&column[k], part));
         for (k, row) in sum.iter_mut().enumerate() {
-            for l in k..NUMBERS {
-                row[l] = own[k].times_plus(own[l], row[l]);
-            }
+            *row = std::array::from_fn(|l| if l < k { row[l] } else { own[k].times_plus(own[l], row[l]) });
         }
     }
     sum
@@ -89,9 +87,8 @@ fn solved<V: Vector>(
         let own = rows[k];
         for l in k + 1..NUMBERS {
             let factor = own[l] * inverses[k];
-            for (value, own) in rows[l].iter_mut().zip(own).skip(l) {
-                *value = own.times_from(factor, *value);
-            }
+            let row = rows[l];
+            rows[l] = std::array::from_fn(|m| own[m].times_from(factor, row[m]));
             x[l] = x[k].times_from(factor, x[l]);
         }
     }

@@ -69,13 +69,14 @@ pub(super) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
         if clusters[largest].len() < 2 {
             break;
         }
-        let rows = clusters.swap_remove(largest);
-        let here = view.spans(&rows);
+        let mut first = clusters.swap_remove(largest);
+        let here = view.spans(&first);
         let share = |joint: usize| if spans[joint] > 0.0 { here[joint] / spans[joint] } else { 0.0 };
         let widest =
             (0..here.len()).max_by(|&a, &b| share(a).total_cmp(&share(b)).then(b.cmp(&a))).unwrap_or(0);
-        let mut first = view.sorted_by(&rows, widest);
-        let second = first.split_off(first.len() / 2);
+        let middle = first.len() / 2;
+        first.select_nth_unstable_by(middle, |&a, &b| view.by_joint(widest, a, b));
+        let second = first.split_off(middle);
         clusters.push(first);
         clusters.push(second);
     }

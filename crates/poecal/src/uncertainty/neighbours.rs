@@ -15,20 +15,16 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     let pool = sample_rows(view.rows, NEIGHBOURS);
     let errors = view.errors(&pool, view.estimate);
     let spans = view.spans(view.rows);
-    let target = |row: u32| view.data.observations[row as usize].target;
+    let targets: Vec<usize> = pool.iter().map(|&row| view.data.observations[row as usize].target).collect();
     let step = pool.len().div_ceil(PROBES).max(1);
-    let scaled: Vec<f64> = pool.iter().flat_map(|&row| scaled(view, &spans, row)).collect();
-    let joints = scaled.len() / pool.len().max(1);
-    let values = |at: usize| &scaled[at * joints..(at + 1) * joints];
+    let joints = scaled(view, &spans, &pool);
     let (mut position, mut rotation) = (Shared::default(), Shared::default());
-    for (a, &probe) in pool.iter().enumerate().step_by(step) {
+    let mut distances = vec![0.0; pool.len()];
+    for a in (0..pool.len()).step_by(step) {
+        square_distances(&joints, a, &mut distances);
         let mut nearest: Option<(usize, f64)> = None;
-        for (b, &row) in pool.iter().enumerate() {
-            if b == a || target(row) != target(probe) {
-                continue;
-            }
-            let distance = values(a).iter().zip(values(b)).map(|(a, b)| (a - b).powi(2)).sum();
-            if nearest.is_none_or(|(_, least)| distance < least) {
+        for (b, (&distance, &target)) in distances.iter().zip(&targets).enumerate() {
+            if nearest.is_none_or(|(_, least)| distance < least) && b != a && target == targets[a] {
                 nearest = Some((b, distance));
             }
         }
@@ -41,10 +37,21 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     (position.is_significant(), rotation.is_significant())
 }
 
-/// The joint values of a row, each against how far it moves; of joints that do not move, nothing.
-fn scaled(view: &View<'_>, spans: &[f64], row: u32) -> impl Iterator<Item = f64> {
-    let each = view.values(row).iter().zip(spans).filter(|(_, span)| **span > 0.0);
-    each.map(|(value, span)| value / span)
+/// Of each joint that moves its values in some rows, against how far it moves.
+fn scaled(view: &View<'_>, spans: &[f64], rows: &[u32]) -> Vec<Vec<f64>> {
+    let moving = spans.iter().enumerate().filter(|(_, span)| **span > 0.0);
+    moving.map(|(joint, span)| rows.iter().map(|&row| view.values(row)[joint] / span).collect()).collect()
+}
+
+/// Squared distance of all configurations from one, joint after joint: the innermost loop is over rows, side by side.
+fn square_distances(joints: &[Vec<f64>], from: usize, distances: &mut [f64]) {
+    distances.fill(0.0);
+    for values in joints {
+        let here = values[from];
+        for (distance, value) in distances.iter_mut().zip(values) {
+            *distance += (here - value) * (here - value);
+        }
+    }
 }
 
 /// Products of neighbours' residuals.

@@ -1,5 +1,7 @@
 //! A finished fit as the judging of it sees it.
 
+use std::cmp::Ordering;
+
 use crate::analysis::ranges;
 use crate::estimate::{Estimate, Packed, RowError, row_errors};
 use crate::measurement::{Dataset, Noise};
@@ -55,7 +57,12 @@ impl<'a> View<'a> {
     /// Rows in the order of a joint's value.
     pub(super) fn sorted_by(&self, rows: &[u32], joint: usize) -> Vec<u32> {
         let mut sorted = rows.to_vec();
-        sorted.sort_by(|&a, &b| self.values(a)[joint].total_cmp(&self.values(b)[joint]).then(a.cmp(&b)));
+        sorted.sort_unstable_by(|&a, &b| self.by_joint(joint, a, b));
         sorted
+    }
+
+    /// Which of two rows comes first by a joint's value, and then by number.
+    pub(super) fn by_joint(&self, joint: usize, a: u32, b: u32) -> Ordering {
+        self.values(a)[joint].total_cmp(&self.values(b)[joint]).then(a.cmp(&b))
     }
 }
