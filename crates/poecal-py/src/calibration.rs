@@ -12,7 +12,7 @@ use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
-use poecal::io::residuals::Residuals;
+use poecal::io::residuals::{Residuals, Rows};
 use poecal::report;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
@@ -174,7 +174,7 @@ impl Calibration {
                 ReportPlace::File(path) => (None, page.map(|page| (path, page))),
                 ReportPlace::Among(_) => (page, None),
             };
-            let results = Results { file: file.clone(), residuals: residuals.clone(), report: among };
+            let results = Results { file: file.clone(), residuals: Rows::AtHand(residuals), report: among };
             let written = output::write_robot(&folder, force, model, &robot, results)?;
             if let Some((path, page)) = elsewhere {
                 output::write_file(path, &page)?;

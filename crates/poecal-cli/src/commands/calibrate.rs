@@ -11,7 +11,7 @@ use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
 use poecal::io::output::{self, Results};
-use poecal::io::residuals::Residuals;
+use poecal::io::residuals::{Residuals, Rows};
 use poecal::measurement::{Dataset, Measurement, PoseResidual};
 use poecal::{Error, ErrorKind, Result, report, solve};
 
@@ -152,11 +152,11 @@ fn write(
     file: CalibrationFile,
     console: &Console,
 ) -> Result<String> {
-    let residuals = Residuals::of(data, calibration);
-    let page = match arguments.report {
-        Some(ReportPlace::None) => None,
-        _ => Some(report::calibration_page(&file, &residuals)?),
-    };
+    // Without a report nobody needs all rows at once.
+    let residuals =
+        (!matches!(arguments.report, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
+    let page = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
+    let residuals = residuals.as_ref().map_or(Rows::Of(data, calibration), Rows::AtHand);
     let (among, elsewhere) = match &arguments.report {
         Some(ReportPlace::File(path)) => (None, page.map(|page| (path, page))),
         Some(ReportPlace::None) | None => (page, None),

@@ -11,7 +11,7 @@ pub(super) fn shortest(number: f64) -> String {
 
 /// Appends the shortest decimal that reads back as the same number; the fast way for tables.
 pub(super) fn push_number(out: &mut String, number: f64) {
-    let mut buffer = ryu::Buffer::new();
+    let mut buffer = zmij::Buffer::new();
     // Adding zero makes negative zero positive.
     let text = buffer.format(number + 0.0);
     out.push_str(text.strip_suffix(".0").unwrap_or(text));

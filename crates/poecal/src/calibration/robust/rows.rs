@@ -8,7 +8,7 @@ use crate::calibration::fit::{self, Fitted, Task};
 use crate::calibration::{Calibration, SetAccuracy, measurements_words, radian_m};
 use crate::estimate::Packed;
 use crate::measurement::{Dataset, PoseResidual};
-use crate::parameters::Formulation;
+use crate::parameters::{Formulation, Parameter};
 use crate::problem::Problem;
 use crate::solve::{LeastSquares, Normal};
 
@@ -235,6 +235,8 @@ pub(crate) struct RowInfluence<'a> {
     data: Cow<'a, Dataset>,
     packed: Packed,
     weights: Vec<f64>,
+    free: Vec<Parameter>,
+    length_m: f64,
     /// Of the fitted rows; none if there is no row.
     normal: Option<Normal>,
 }
@@ -248,7 +250,10 @@ impl<'a> RowInfluence<'a> {
         };
         let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
         let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
-        let mut made = RowInfluence { calibration, data, packed, weights, normal: None };
+        let Calibration { nominal, fit_rows, models, .. } = calibration;
+        let free = fit::free_parameters(&models.calibrated, &data, fit_rows, Formulation::Adjoint);
+        let length_m = radian_m(nominal, &packed);
+        let mut made = RowInfluence { calibration, data, packed, weights, free, length_m, normal: None };
         if !made.data.is_empty() {
             let problem = made.problem(&calibration.fit_rows).with_weights(&made.weights);
             made.normal = Some(problem.normal(&calibration.models.calibrated));
@@ -262,10 +267,8 @@ impl<'a> RowInfluence<'a> {
     }
 
     fn problem(&self, rows: &[u32]) -> Problem<'_> {
-        let Calibration { nominal, fit_rows, noise, models, .. } = self.calibration;
-        let free = fit::free_parameters(&models.calibrated, &self.data, fit_rows, Formulation::Adjoint);
-        let length_m = radian_m(nominal, &self.packed);
-        Problem::new(&self.data, &self.packed, rows.to_vec(), free, *noise, length_m)
+        let noise = self.calibration.noise;
+        Problem::new(&self.data, &self.packed, rows.to_vec(), self.free.clone(), noise, self.length_m)
     }
 
     /// Of these rows.

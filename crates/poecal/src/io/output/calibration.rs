@@ -7,7 +7,7 @@ use crate::calibration::Calibration;
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::model::Model;
-use crate::io::residuals::Residuals;
+use crate::io::residuals::Rows;
 use crate::robot::Robot;
 
 /// Every name that a calibration may write.
@@ -21,24 +21,24 @@ pub const REPORT: &str = "report.html";
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate};
 /// use poecal::io::calibration_file::{CalibrationFile, Inputs};
-/// use poecal::io::{output::Results, residuals::Residuals};
+/// use poecal::io::{output::Results, residuals::Rows};
 /// use poecal::simulate::{Kind, Simulation, elbow};
 /// let made = Simulation::default().run(&elbow(), Kind::Point)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let results = Results {
 ///     file: CalibrationFile::new(&calibration, &made.data, Inputs::default()),
-///     residuals: Residuals::of(&made.data, &calibration),
+///     residuals: Rows::Of(&made.data, &calibration),
 ///     report: None,
 /// };
-/// assert_eq!(results.residuals.rows.len(), made.data.len());
+/// assert!(matches!(results.residuals, Rows::Of(data, _) if data.len() == made.data.len()));
 /// # Ok::<(), poecal::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct Results {
+#[derive(Clone, Debug)]
+pub struct Results<'a> {
     /// For `calibration.json`.
     pub file: CalibrationFile,
     /// For `residuals.csv`.
-    pub residuals: Residuals,
+    pub residuals: Rows<'a>,
     /// The text of `report.html`, if it is to be written.
     pub report: Option<String>,
 }
@@ -54,7 +54,7 @@ pub fn write(
     force: bool,
     model: &Model,
     calibration: &Calibration,
-    results: Results,
+    results: Results<'_>,
 ) -> Result<Written> {
     write_robot(folder, force, model, &calibration.robot_with_targets(), results)
 }
@@ -68,14 +68,14 @@ pub fn write_robot(
     force: bool,
     model: &Model,
     robot: &Robot,
-    results: Results,
+    results: Results<'_>,
 ) -> Result<Written> {
     check_folder(folder, force)?;
     let mut notes = Vec::new();
     let json = results.file.to_text()?;
     let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, robot)];
     files.extend(robot_files("calibrated", model, robot, &mut notes)?);
-    files.push(NewFile::of_residuals("residuals.csv", results.residuals));
+    files.push(NewFile::of_rows("residuals.csv", results.residuals));
     files.extend(results.report.map(|text| NewFile::new(REPORT, text)));
     write_files(folder, &files, &OWN_NAMES, notes)
 }

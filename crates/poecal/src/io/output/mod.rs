@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use super::model::{Model, ModelSource};
 use super::proof::Difference;
-use super::residuals::Residuals;
+use super::residuals::Rows;
 use super::robot_toml;
 use super::urdf::{self, ChainSelection};
 use crate::error::{Error, ErrorKind, Result};
@@ -50,16 +50,16 @@ pub struct Written {
 }
 
 /// What a file will hold.
-enum Content {
+enum Content<'a> {
     Text(String),
-    /// Written row by row: there may be many.
-    Residuals(Residuals),
+    /// Written some at a time: there may be many.
+    Rows(Rows<'a>),
 }
 
 /// A file to be written.
 struct NewFile<'a> {
     name: String,
-    content: Content,
+    content: Content<'a>,
     /// The robot that the file is a model of, and the link that is its tip there.
     model_of: Option<(&'a Robot, String)>,
 }
@@ -69,8 +69,8 @@ impl<'a> NewFile<'a> {
         NewFile { name: name.to_owned(), content: Content::Text(text), model_of: None }
     }
 
-    fn of_residuals(name: &str, residuals: Residuals) -> Self {
-        NewFile { name: name.to_owned(), content: Content::Residuals(residuals), model_of: None }
+    fn of_rows(name: &str, rows: Rows<'a>) -> Self {
+        NewFile { name: name.to_owned(), content: Content::Rows(rows), model_of: None }
     }
 
     fn of_robot(name: String, text: String, robot: &'a Robot) -> Self {
@@ -80,7 +80,7 @@ impl<'a> NewFile<'a> {
     fn write_to(&self, out: &mut File) -> std::io::Result<()> {
         match &self.content {
             Content::Text(text) => out.write_all(text.as_bytes()),
-            Content::Residuals(residuals) => residuals.write_to(out),
+            Content::Rows(rows) => rows.write_to(out),
         }
     }
 

@@ -1,25 +1,23 @@
 //! `residuals.csv`: what each measurement leaves, row by row.
 
 mod read;
+mod source;
+mod write;
 
-use std::fmt::Write as _;
 use std::io::Write;
 
-use super::numbers::push_number;
-use crate::calibration::{Calibration, RowError, RowInfluence, row_errors};
-use crate::estimate::Estimate;
+use crate::calibration::Calibration;
 use crate::measurement::Dataset;
-use crate::robot::{JointKind, Robot};
+use crate::robot::JointKind;
+use source::RowSource;
+pub use write::Rows;
+use write::in_pieces;
+pub(super) use write::quoted;
 
 /// Columns that every file begins with; a column for each joint reading follows.
 const COLUMNS: &str = "file,line,id,set,target,position_nominal[mm],position_registered[mm],position_calibrated[mm],x[mm],y[mm],z[mm],\
      rotation_nominal[deg],rotation_registered[deg],rotation_calibrated[deg],rx[deg],ry[deg],rz[deg],\
      weight,leverage,studentized,suspected";
-
-/// Bytes that are written at a time, about.
-const PIECE: usize = 1 << 16;
-/// Rows that are worked out at a time.
-const TOGETHER: usize = 8192;
 
 /// Errors of one row by the nominal, registered and calibrated model, and the calibrated model's residual (measured less predicted) by
 /// component in the device's axes.
@@ -113,54 +111,15 @@ impl Residuals {
     /// Of a finished calibration.
     #[must_use]
     pub fn of(data: &Dataset, calibration: &Calibration) -> Self {
-        let mut held_out = vec![false; data.len()];
-        for &row in &calibration.held_out_rows {
-            held_out[row as usize] = true;
+        let source = RowSource::new(data, calibration);
+        let mut all = source.rows(0..0);
+        all.rows.reserve_exact(data.len());
+        all.values.reserve_exact(data.all_readings().len());
+        for some in in_pieces(data.len(), |rows| source.rows(rows)) {
+            all.rows.extend(some.rows);
+            all.values.extend(some.values);
         }
-        let readings: Vec<(String, JointKind)> = data
-            .reading_names()
-            .iter()
-            .map(|name| (name.clone(), kind(&calibration.nominal, name)))
-            .collect();
-        let values = (0..data.len())
-            .flat_map(|row| data.readings(row).iter().zip(&readings))
-            .map(|(&value, &(_, kind))| shown(kind, value))
-            .collect();
-        let models = &calibration.models;
-        let influence = RowInfluence::new(calibration, data);
-        let mut rows = Vec::with_capacity(data.len());
-        for some in data.all_rows().chunks(TOGETHER) {
-            let errors = |estimate: &Estimate| row_errors(data, influence.packed(), some, estimate);
-            let [nominal, registered, calibrated] =
-                [&models.nominal, &models.registered, &models.calibrated].map(errors);
-            let influences = influence.of(some);
-            for (at, &row) in some.iter().enumerate() {
-                let observation = &data.observations[row as usize];
-                let errors = [&nominal[at], &registered[at], &calibrated[at]];
-                rows.push(ResidualRow {
-                    file: observation.source.file as usize,
-                    line: observation.source.line,
-                    id: data.ids.get(row as usize).cloned().unwrap_or_default(),
-                    held_out: held_out[row as usize],
-                    target: observation.target,
-                    position_mm: position_errors(errors),
-                    rotation_deg: rotation_errors(errors),
-                    judged: calibration.robustness.rows.get(row as usize).map(|found| Judged {
-                        weight: found.weight,
-                        leverage: influences[at].leverage,
-                        studentized: influences[at].studentized,
-                        suspected: found.suspected,
-                    }),
-                });
-            }
-        }
-        Residuals {
-            files: data.files.iter().map(|path| path.display().to_string()).collect(),
-            targets: data.targets.iter().map(|name| name.clone().unwrap_or_default()).collect(),
-            readings,
-            rows,
-            values,
-        }
+        all
     }
 
     /// The readings of a row, degrees or millimetres.
@@ -190,45 +149,8 @@ impl Residuals {
     /// # Errors
     /// Those of `out`.
     pub fn write_to(&self, out: &mut dyn Write) -> std::io::Result<()> {
-        let mut text = String::with_capacity(PIECE + PIECE / 4);
-        text.push_str(COLUMNS);
-        for (name, kind) in &self.readings {
-            text.push(',');
-            text.push_str(&quoted(&format!("{name}[{}]", unit(*kind))));
-        }
-        text.push('\n');
-        let files: Vec<_> = self.files.iter().map(|name| quoted(name)).collect();
-        let targets: Vec<_> = self.targets.iter().map(|name| quoted(name)).collect();
-        for (index, row) in self.rows.iter().enumerate() {
-            text.push_str(files.get(row.file).map_or("", |name| name));
-            let _ = write!(text, ",{},", row.line);
-            text.push_str(&quoted(&row.id));
-            text.push_str(if row.held_out { ",held_out," } else { ",fit," });
-            text.push_str(targets.get(row.target).map_or("", |name| name));
-            write_errors(&mut text, Some(&row.position_mm));
-            write_errors(&mut text, row.rotation_deg.as_ref());
-            match &row.judged {
-                Some(Judged { weight, leverage, studentized, suspected }) => {
-                    [*weight, *leverage, *studentized].into_iter().for_each(|number| cell(&mut text, number));
-                    text.push_str(if *suspected { ",1" } else { ",0" });
-                }
-                None => text.push_str(",,,,"),
-            }
-            self.values(index).iter().for_each(|&value| cell(&mut text, value));
-            text.push('\n');
-            if text.len() >= PIECE {
-                out.write_all(text.as_bytes())?;
-                text.clear();
-            }
-        }
-        out.write_all(text.as_bytes())
+        Rows::AtHand(self).write_to(out)
     }
-}
-
-/// What a reading measures, by the joint that it moves.
-fn kind(robot: &Robot, reading: &str) -> JointKind {
-    let joint = robot.joints.iter().find(|joint| joint.reading.name == reading);
-    joint.map_or(JointKind::Revolute, |joint| joint.kind)
 }
 
 /// The unit of a column of readings.
@@ -236,48 +158,5 @@ fn unit(kind: JointKind) -> &'static str {
     match kind {
         JointKind::Revolute => "deg",
         JointKind::Prismatic => "mm",
-    }
-}
-
-/// A reading in the unit of its column.
-fn shown(kind: JointKind, value: f64) -> f64 {
-    match kind {
-        JointKind::Revolute => value.to_degrees(),
-        JointKind::Prismatic => value * 1e3,
-    }
-}
-
-fn position_errors(errors: [&RowError; 3]) -> ModelErrors {
-    ModelErrors {
-        models: errors.map(|error| error.position_m.norm() * 1e3),
-        residual: (errors[2].position_m * 1e3).into(),
-    }
-}
-
-fn rotation_errors(errors: [&RowError; 3]) -> Option<ModelErrors> {
-    let residual = errors[2].rotation_rad?;
-    let turn = |error: &RowError| error.rotation_rad.map_or(f64::NAN, |w| w.norm().to_degrees());
-    Some(ModelErrors { models: errors.map(turn), residual: residual.map(f64::to_degrees).into() })
-}
-
-fn write_errors(out: &mut String, errors: Option<&ModelErrors>) {
-    let Some(errors) = errors else {
-        out.push_str(",,,,,,");
-        return;
-    };
-    errors.models.iter().chain(&errors.residual).for_each(|&value| cell(out, value));
-}
-
-fn cell(out: &mut String, number: f64) {
-    out.push(',');
-    push_number(out, number);
-}
-
-/// A CSV cell, quoted where it must be.
-pub(super) fn quoted(text: &str) -> std::borrow::Cow<'_, str> {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\"")).into()
-    } else {
-        text.into()
     }
 }

@@ -1,0 +1,100 @@
+//! The rows of a finished calibration, worked out some at a time.
+
+use std::ops::Range;
+
+use super::{Judged, ModelErrors, ResidualRow, Residuals};
+use crate::calibration::{Calibration, RowError, RowInfluence, row_errors};
+use crate::estimate::Estimate;
+use crate::measurement::Dataset;
+use crate::robot::{JointKind, Robot};
+
+/// What any row is worked out from.
+pub(super) struct RowSource<'a> {
+    data: &'a Dataset,
+    calibration: &'a Calibration,
+    influence: RowInfluence<'a>,
+    held_out: Vec<bool>,
+    /// Without rows: the names that all of them share.
+    names: Residuals,
+}
+
+impl<'a> RowSource<'a> {
+    pub(super) fn new(data: &'a Dataset, calibration: &'a Calibration) -> Self {
+        let mut held_out = vec![false; data.len()];
+        for &row in &calibration.held_out_rows {
+            held_out[row as usize] = true;
+        }
+        let readings = data.reading_names().iter();
+        let names = Residuals {
+            files: data.files.iter().map(|path| path.display().to_string()).collect(),
+            targets: data.targets.iter().map(|name| name.clone().unwrap_or_default()).collect(),
+            readings: readings.map(|name| (name.clone(), kind(&calibration.nominal, name))).collect(),
+            ..Residuals::default()
+        };
+        RowSource { data, calibration, influence: RowInfluence::new(calibration, data), held_out, names }
+    }
+
+    /// The file's names, and these rows.
+    pub(super) fn rows(&self, range: Range<usize>) -> Residuals {
+        let Calibration { models, robustness, .. } = self.calibration;
+        let indices: Vec<u32> = range.filter_map(|row| u32::try_from(row).ok()).collect();
+        let errors = |estimate: &Estimate| row_errors(self.data, self.influence.packed(), &indices, estimate);
+        let [nominal, registered, calibrated] =
+            [&models.nominal, &models.registered, &models.calibrated].map(errors);
+        let influences = self.influence.of(&indices);
+        let row = |(at, &row): (usize, &u32)| {
+            let row = row as usize;
+            let observation = &self.data.observations[row];
+            let errors = [&nominal[at], &registered[at], &calibrated[at]];
+            ResidualRow {
+                file: observation.source.file as usize,
+                line: observation.source.line,
+                id: self.data.ids.get(row).cloned().unwrap_or_default(),
+                held_out: self.held_out[row],
+                target: observation.target,
+                position_mm: position_errors(errors),
+                rotation_deg: rotation_errors(errors),
+                judged: robustness.rows.get(row).map(|found| Judged {
+                    weight: found.weight,
+                    leverage: influences[at].leverage,
+                    studentized: influences[at].studentized,
+                    suspected: found.suspected,
+                }),
+            }
+        };
+        let readings = indices.iter().flat_map(|&row| self.data.readings(row as usize));
+        let kinds = self.names.readings.iter().map(|(_, kind)| *kind).cycle();
+        Residuals {
+            rows: indices.iter().enumerate().map(row).collect(),
+            values: readings.zip(kinds).map(|(&value, kind)| shown(kind, value)).collect(),
+            ..self.names.clone()
+        }
+    }
+}
+
+/// What a reading measures, by the joint that it moves.
+fn kind(robot: &Robot, reading: &str) -> JointKind {
+    let joint = robot.joints.iter().find(|joint| joint.reading.name == reading);
+    joint.map_or(JointKind::Revolute, |joint| joint.kind)
+}
+
+/// A reading in the unit of its column.
+fn shown(kind: JointKind, value: f64) -> f64 {
+    match kind {
+        JointKind::Revolute => value.to_degrees(),
+        JointKind::Prismatic => value * 1e3,
+    }
+}
+
+fn position_errors(errors: [&RowError; 3]) -> ModelErrors {
+    ModelErrors {
+        models: errors.map(|error| error.position_m.norm() * 1e3),
+        residual: (errors[2].position_m * 1e3).into(),
+    }
+}
+
+fn rotation_errors(errors: [&RowError; 3]) -> Option<ModelErrors> {
+    let residual = errors[2].rotation_rad?;
+    let turn = |error: &RowError| error.rotation_rad.map_or(f64::NAN, |w| w.norm().to_degrees());
+    Some(ModelErrors { models: errors.map(turn), residual: residual.map(f64::to_degrees).into() })
+}

@@ -1,0 +1,143 @@
+//! The text of a `residuals.csv`, made in pieces by all threads and written in the order of the rows.
+
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::io::Write;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::source::RowSource;
+use super::{COLUMNS, Judged, ModelErrors, Residuals, unit};
+use crate::calibration::Calibration;
+use crate::io::numbers::push_number;
+use crate::measurement::Dataset;
+
+/// Rows that one thread works on at a time.
+const PIECE: usize = 256;
+/// Pieces that are held until they are written.
+const TOGETHER: usize = 16;
+/// Bytes of a row, about.
+const ROW: usize = 480;
+
+/// Rows to write.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::io::residuals::{Residuals, Rows};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let mut text = Vec::new();
+/// Rows::Of(&made.data, &calibration).write_to(&mut text)?;
+/// assert_eq!(text, Residuals::of(&made.data, &calibration).text().into_bytes());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub enum Rows<'a> {
+    /// Those at hand.
+    AtHand(&'a Residuals),
+    /// Those of a finished calibration, worked out while they are written: a few at a time, for there may be many.
+    Of(&'a Dataset, &'a Calibration),
+}
+
+impl Rows<'_> {
+    /// Writes the text of the file piece by piece.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_to(self, out: &mut dyn Write) -> std::io::Result<()> {
+        match self {
+            Rows::AtHand(residuals) => {
+                out.write_all(head(residuals).as_bytes())?;
+                in_pieces(residuals.rows.len(), |rows| text(residuals, rows))
+                    .try_for_each(|piece| out.write_all(piece.as_bytes()))
+            }
+            Rows::Of(data, calibration) => {
+                let source = RowSource::new(data, calibration);
+                out.write_all(head(&source.rows(0..0)).as_bytes())?;
+                let worked_out = |rows: Range<usize>| {
+                    let some = source.rows(rows);
+                    text(&some, 0..some.rows.len())
+                };
+                in_pieces(data.len(), worked_out).try_for_each(|piece| out.write_all(piece.as_bytes()))
+            }
+        }
+    }
+}
+
+/// What `make` gives for one range of rows after the other, made by all threads, some at a time.
+pub(super) fn in_pieces<T: Send>(
+    rows: usize,
+    make: impl Fn(Range<usize>) -> T + Sync,
+) -> impl Iterator<Item = T> {
+    (0..rows).step_by(PIECE * TOGETHER).flat_map(move |first| {
+        let begins: Vec<usize> = (first..rows).step_by(PIECE).take(TOGETHER).collect();
+        let one = |&begin: &usize| make(begin..rows.min(begin + PIECE));
+        match begins.as_slice() {
+            [only] => vec![one(only)],
+            _ => begins.par_iter().map(one).collect(),
+        }
+    })
+}
+
+/// The line of column names.
+fn head(residuals: &Residuals) -> String {
+    let mut text = COLUMNS.to_owned();
+    for (name, kind) in &residuals.readings {
+        text.push(',');
+        text.push_str(&quoted(&format!("{name}[{}]", unit(*kind))));
+    }
+    text.push('\n');
+    text
+}
+
+/// The lines of some rows.
+fn text(residuals: &Residuals, range: Range<usize>) -> String {
+    let files: Vec<_> = residuals.files.iter().map(|name| quoted(name)).collect();
+    let targets: Vec<_> = residuals.targets.iter().map(|name| quoted(name)).collect();
+    let mut text = String::with_capacity(range.len() * ROW);
+    for (index, row) in range.clone().zip(residuals.rows.get(range).unwrap_or_default()) {
+        text.push_str(files.get(row.file).map_or("", |name| name));
+        let _ = write!(text, ",{},", row.line);
+        text.push_str(&quoted(&row.id));
+        text.push_str(if row.held_out { ",held_out," } else { ",fit," });
+        text.push_str(targets.get(row.target).map_or("", |name| name));
+        push_errors(&mut text, Some(&row.position_mm));
+        push_errors(&mut text, row.rotation_deg.as_ref());
+        match &row.judged {
+            Some(Judged { weight, leverage, studentized, suspected }) => {
+                [*weight, *leverage, *studentized]
+                    .into_iter()
+                    .for_each(|number| push_cell(&mut text, number));
+                text.push_str(if *suspected { ",1" } else { ",0" });
+            }
+            None => text.push_str(",,,,"),
+        }
+        residuals.values(index).iter().for_each(|&value| push_cell(&mut text, value));
+        text.push('\n');
+    }
+    text
+}
+
+fn push_errors(out: &mut String, errors: Option<&ModelErrors>) {
+    let Some(errors) = errors else {
+        out.push_str(",,,,,,");
+        return;
+    };
+    errors.models.iter().chain(&errors.residual).for_each(|&value| push_cell(out, value));
+}
+
+fn push_cell(out: &mut String, number: f64) {
+    out.push(',');
+    push_number(out, number);
+}
+
+/// A CSV cell, quoted where it must be.
+pub(in crate::io) fn quoted(text: &str) -> Cow<'_, str> {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\"")).into()
+    } else {
+        text.into()
+    }
+}
