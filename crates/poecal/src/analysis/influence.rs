@@ -44,20 +44,22 @@ pub fn influence(
     let n = normal.dim();
     let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
     let factor = linalg::cholesky(&normal.gram, n, (ROUNDING * largest).max(f64::MIN_POSITIVE));
-    let chunks: Vec<Vec<Influence>> = rows
-        .par_chunks(CHUNK)
-        .zip(weights.par_chunks(CHUNK))
-        .map(|(rows, weights)| {
-            let mut weights = weights.iter();
-            let mut found = Vec::with_capacity(rows.len());
-            problem.for_rows(estimate, rows, |row, jacobian, residual| {
-                let weight = weights.next().copied().unwrap_or(1.0);
-                let scaled: Vec<f64> = residual.iter().enumerate().map(|(k, e)| e / scale(row, k)).collect();
-                found.push(row_influence(factor.as_ref(), jacobian, &scaled, weight));
-            });
-            found
-        })
-        .collect();
+    let of = |(rows, weights): (&[u32], &[f64])| {
+        let mut weights = weights.iter();
+        let mut found = Vec::with_capacity(rows.len());
+        problem.for_rows(estimate, rows, |row, jacobian, residual| {
+            let weight = weights.next().copied().unwrap_or(1.0);
+            let scaled: Vec<f64> = residual.iter().enumerate().map(|(k, e)| e / scale(row, k)).collect();
+            found.push(row_influence(factor.as_ref(), jacobian, &scaled, weight));
+        });
+        found
+    };
+    if rows.len() <= CHUNK {
+        // No threads are woken for a single chunk.
+        return of((rows, weights));
+    }
+    let chunks: Vec<Vec<Influence>> =
+        rows.par_chunks(CHUNK).zip(weights.par_chunks(CHUNK)).map(of).collect();
     chunks.into_iter().flatten().collect()
 }
 
