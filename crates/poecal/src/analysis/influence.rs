@@ -58,8 +58,7 @@ pub fn influence(
         // No threads are woken for a single chunk.
         return of((rows, weights));
     }
-    let chunks: Vec<Vec<Influence>> =
-        rows.par_chunks(CHUNK).zip(weights.par_chunks(CHUNK)).map(of).collect();
+    let chunks: Vec<Vec<Influence>> = rows.par_chunks(CHUNK).zip(weights.par_chunks(CHUNK)).map(of).collect();
     chunks.into_iter().flatten().collect()
 }
 

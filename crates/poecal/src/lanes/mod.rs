@@ -17,5 +17,5 @@ pub(crate) use dense::Factor;
 pub(crate) use kernel::Arm;
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
 pub use simd::{Level, levels};
-pub(crate) use simd::{cholesky, cosines_and_sines, hat, solve, sum_gradient, sum_products};
+pub(crate) use simd::{cholesky, cosines_and_sines, hat, inverse, solve, sum_gradient, sum_products};
 pub(crate) use totals::{Tiles, Totals};

@@ -124,6 +124,10 @@ dispatch!(
     dense::solve(factor: &Factor, x: &mut [f64])
 );
 dispatch!(
+    /// The inverse (row-major) of the matrix that was factorised.
+    dense::inverse(factor: &Factor) -> Vec<f64>
+);
+dispatch!(
     /// `J N⁻¹ Jᵀ` of a Jacobian (row-major) of at most eight rows.
     dense::hat(factor: &Factor, jacobian: &[f64], rows: usize) -> [[f64; WIDTH]; WIDTH]
 );

@@ -186,9 +186,8 @@ pub fn write_file(path: &Path, pieces: &[impl AsRef<str>]) -> Result<()> {
     check_file(path)?;
     let name = path.file_name().map_or_else(|| "out".into(), |name| name.to_string_lossy().into_owned());
     let beside = parent(path).join(format!(".{name}.unfinished-{}", std::process::id()));
-    let write = |mut file: File| {
-        pieces.iter().try_for_each(|piece| file.write_all(piece.as_ref().as_bytes()))
-    };
+    let write =
+        |mut file: File| pieces.iter().try_for_each(|piece| file.write_all(piece.as_ref().as_bytes()));
     File::create(&beside).and_then(write).and_then(|()| fs::rename(&beside, path)).map_err(|cause| {
         let _ = fs::remove_file(&beside);
         error(cause)
