@@ -40,7 +40,7 @@ impl Console {
     /// Data into a file, or to standard output.
     pub(crate) fn deliver(&self, text: &str, out: Option<&Path>) -> Result<()> {
         match out {
-            Some(path) => output::write_file(path, text),
+            Some(path) => output::write_file(path, &[text]),
             None => self.data(text),
         }
     }

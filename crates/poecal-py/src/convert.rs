@@ -43,7 +43,7 @@ pub(crate) fn convert(
     let text = py.detach(|| converted(&model, form)).map_err(raise)?;
     crate::warn(py, &text.notes)?;
     if let Some(out) = out {
-        write_file(&out, &text.text).map_err(raise)?;
+        write_file(&out, &[&text.text]).map_err(raise)?;
     }
     Ok(text.text)
 }

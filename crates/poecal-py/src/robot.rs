@@ -313,7 +313,7 @@ impl Robot {
     #[pyo3(signature = (path, *, to=None))]
     fn write(&self, py: Python<'_>, path: PathBuf, to: Option<&str>) -> PyResult<()> {
         let text = self.converted(py, form(to, Some(&path))?)?;
-        write_file(&path, &text).map_err(raise)
+        write_file(&path, &[text]).map_err(raise)
     }
 
     fn __repr__(&self) -> String {

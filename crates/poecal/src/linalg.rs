@@ -61,6 +61,11 @@ pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     x
 }
 
+/// The inverse (row-major) of the matrix that was factorised.
+pub(crate) fn inverse(factor: &Factor) -> Vec<f64> {
+    lanes::inverse(Level::best(), factor)
+}
+
 /// `aᵀb`.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
@@ -127,6 +132,29 @@ mod tests {
         let error = solution.iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         println!("largest error {error:.1e}");
         assert!(error < 1e-12);
+    }
+
+    /// At every level and for every filling of the lanes, column by column what solving gives.
+    #[test]
+    fn the_inverse_is_that_of_solutions() {
+        for level in lanes::levels() {
+            for n in 0..20 {
+                let rows: Vec<f64> =
+                    (0..n * (n + 3)).map(|k| ((k * k * 7 + 3 * k) % 17) as f64 - 8.0).collect();
+                let mut gram = vec![0.0; n * n];
+                add_gram(&mut gram, n, &rows, 0);
+                let factor = lanes::cholesky(level, &gram, n, 1.0).unwrap();
+                let inverse = lanes::inverse(level, &factor);
+                assert_eq!(inverse.len(), n * n);
+                for (k, row) in inverse.chunks(n.max(1)).enumerate() {
+                    let mut unit = vec![0.0; n];
+                    unit[k] = 1.0;
+                    let column = cholesky_solve(&factor, &unit);
+                    let error = row.iter().zip(&column).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                    assert!(error < 1e-13, "{level:?} {n} {k}: {error:e}");
+                }
+            }
+        }
     }
 
     /// The reason for `symmetric_eigen`: an SVD with vectors that is wrong on repeated columns would name wrong directions.

@@ -39,7 +39,7 @@ impl Session {
     }
 
     fn page(&self) -> String {
-        calibration_page(&self.file, &self.residuals()).unwrap()
+        calibration_page(&self.file, &self.residuals()).unwrap().concat()
     }
 }
 

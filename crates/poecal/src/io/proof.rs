@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use crate::lie::rotation;
+use crate::lie::{Pose, rotation};
 use crate::robot::Robot;
 use crate::simulate::Configurations;
 
@@ -25,23 +25,48 @@ impl Difference {
     /// Compares forward kinematics on `count` random configurations within the first robot's limits.
     #[must_use]
     pub fn of(robot: &Robot, other: &Robot, count: usize) -> Self {
-        let mut generator = ChaCha8Rng::seed_from_u64(1);
-        let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
-        let configurations = Configurations::new(robot);
-        let readings: Vec<Vec<f64>> = (0..count).map(|_| configurations.random(&mut generator)).collect();
-        let first = robot.forward_kinematics_of(readings.iter().map(Vec::as_slice));
-        for (a, b) in first.zip(other.forward_kinematics_of(readings.iter().map(Vec::as_slice))) {
-            largest.position_m = larger(largest.position_m, (a.translation - b.translation).norm());
-            let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
-            largest.rotation_rad = larger(largest.rotation_rad, turn);
-        }
-        largest
+        Reference::new(robot, count).difference(other)
     }
 
     /// Whether neither exceeds its bound; not a number exceeds any.
     #[must_use]
     pub fn is_within(&self, position_m: f64, rotation_rad: f64) -> bool {
         self.position_m <= position_m && self.rotation_rad <= rotation_rad
+    }
+}
+
+/// A robot's tip poses on random configurations, which any number of robots may be compared with.
+pub(super) struct Reference<'a> {
+    robot: &'a Robot,
+    configurations: Vec<Vec<f64>>,
+    poses: Vec<Pose>,
+}
+
+impl<'a> Reference<'a> {
+    /// On `count` random configurations within the robot's limits.
+    pub(super) fn new(robot: &'a Robot, count: usize) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(1);
+        let random = Configurations::new(robot);
+        let configurations: Vec<Vec<f64>> = (0..count).map(|_| random.random(&mut generator)).collect();
+        let poses = robot.forward_kinematics_of(configurations.iter().map(Vec::as_slice)).collect();
+        Reference { robot, configurations, poses }
+    }
+
+    /// Whether it is of this very robot.
+    pub(super) fn is_of(&self, robot: &Robot) -> bool {
+        std::ptr::eq(self.robot, robot)
+    }
+
+    /// Largest difference of the other robot's tip poses from these.
+    pub(super) fn difference(&self, other: &Robot) -> Difference {
+        let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
+        let poses = other.forward_kinematics_of(self.configurations.iter().map(Vec::as_slice));
+        for (a, b) in self.poses.iter().zip(poses) {
+            largest.position_m = larger(largest.position_m, (a.translation - b.translation).norm());
+            let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
+            largest.rotation_rad = larger(largest.rotation_rad, turn);
+        }
+        largest
     }
 }
 

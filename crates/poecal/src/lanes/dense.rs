@@ -135,3 +135,26 @@ pub(super) fn solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
         found[block].0[lane] = x[i];
     }
 }
+
+/// The inverse (row-major) of the matrix that was factorised, `Σ rᵀ r` over the rows r of `R⁻ᵀ`.
+#[inline(always)]
+pub(super) fn inverse<V: Vector>(factor: &Factor) -> Vec<f64> {
+    let n = factor.n;
+    let stride = n.div_ceil(WIDTH).max(1);
+    let mut lower = vec![Wide::ZERO; n * stride];
+    let mut inverse = vec![Wide::ZERO; n * stride];
+    for (i, row) in factor.rows.chunks_exact(stride).take(n).enumerate() {
+        let used = i / WIDTH + 1;
+        let (done, later) = lower.split_at_mut((i + 1) * stride);
+        let own = &mut done[i * stride..][..used];
+        own[i / WIDTH].0[i % WIDTH] = 1.0;
+        own.iter_mut().flat_map(|wide| &mut wide.0).for_each(|value| *value *= factor.inverses[i]);
+        for (j, other) in (i + 1..n).zip(later.chunks_exact_mut(stride)) {
+            subtract::<V>(&mut other[..used], own, row[j / WIDTH].0[j % WIDTH]);
+        }
+        for (k, out) in inverse.chunks_exact_mut(stride).take(i + 1).enumerate() {
+            subtract::<V>(&mut out[..used], own, -own[k / WIDTH].0[k % WIDTH]);
+        }
+    }
+    inverse.chunks_exact(stride).flat_map(|row| row.iter().flat_map(|wide| wide.0).take(n)).collect()
+}

@@ -21,7 +21,7 @@ pub(crate) use kernel::Arm;
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
 pub use simd::{Level, levels};
 pub(crate) use simd::{
-    cholesky, cosines_and_sines, influences, last_links, solve, sum_gradient, sum_products,
+    cholesky, cosines_and_sines, influences, inverse, last_links, solve, sum_gradient, sum_products,
 };
 pub(crate) use totals::{Tiles, Totals};
 pub(crate) use vector::{WIDTH, Wide};

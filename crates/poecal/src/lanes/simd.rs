@@ -131,6 +131,10 @@ dispatch!(
     dense::solve(factor: &Factor, x: &mut [f64])
 );
 dispatch!(
+    /// The inverse (row-major) of the matrix that was factorised.
+    dense::inverse(factor: &Factor) -> Vec<f64>
+);
+dispatch!(
     /// Trace of each row's block of the hat matrix, and square of its residual in units of its own deviation.
     influence::influences(
         factor: &Factor,

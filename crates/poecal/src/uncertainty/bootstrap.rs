@@ -4,8 +4,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::clusters::clusters;
-use super::position_information;
 use super::view::View;
+use super::{covariance, factor, position_information};
 use crate::analysis::residual_variance;
 use crate::estimate::sample_rows;
 use crate::linalg;
@@ -52,8 +52,7 @@ pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
         return None;
     }
     let variance = residual_variance(&whole);
-    let floor = super::prior_information(view.length_m) * variance;
-    let factor = linalg::cholesky(&whole.gram, n, floor)?;
+    let factor = factor(&whole.gram, n, variance, view.length_m)?;
     let sample = View { rows: &rows, ..*view };
     let units = clusters(&sample, count);
     let steps: Vec<Vec<f64>> = units
@@ -80,7 +79,7 @@ pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
     let freedom = whole.residuals as f64 / (whole.residuals - n) as f64;
     let units = units.len() as f64;
     let share = rows.len() as f64 / view.rows.len() as f64;
-    let covariance = super::covariance(&whole.gram, n, variance, view.length_m)?;
+    let covariance = covariance(&factor, variance)?;
     let formal: f64 = covariance.iter().zip(&information).map(|(c, q)| c * q).sum();
     Some(Bootstrap {
         drawings: DRAWINGS,

@@ -1,5 +1,8 @@
 //! Neighbouring configurations together: whether errors there are alike, and so no noise.
 
+use nalgebra::DMatrix;
+
+use super::factor;
 use super::view::View;
 use crate::analysis::residual_variance;
 use crate::linalg;
@@ -18,14 +21,15 @@ pub(super) fn inflation(view: &View<'_>, whole: &Normal) -> Option<f64> {
         return None;
     }
     let variance = residual_variance(whole);
-    let factor = linalg::cholesky(&whole.gram, n, super::prior_information(view.length_m) * variance)?;
+    let factor = factor(&whole.gram, n, variance, view.length_m)?;
+    let inverse = DMatrix::from_vec(n, n, linalg::inverse(&factor));
     let count = (whole.residuals / n).clamp(2, CLUSTERS);
     let (mut found, mut expected, mut spread) = (0.0, 0.0, 0.0);
     for cluster in clusters(view, count) {
         let part = view.problem(cluster).normal(view.estimate);
         let solved = linalg::cholesky_solve(&factor, &part.gradient);
         found += solved.iter().zip(&part.gradient).map(|(a, b)| a * b).sum::<f64>();
-        let (mean, square) = share_of(&factor, &part.gram, n);
+        let (mean, square) = share_of(&inverse, &part.gram);
         expected += mean * variance;
         spread += 2.0 * square * variance * variance;
     }
@@ -33,28 +37,13 @@ pub(super) fn inflation(view: &View<'_>, whole: &Normal) -> Option<f64> {
     (ratio.is_finite() && ratio > 1.0 + SIGNIFICANT * spread.sqrt() / expected).then_some(ratio)
 }
 
-/// `tr(D)` and `tr(D²)` of `D = H - H²`, `H = N⁻¹ P`, from the Cholesky factor of N and the upper triangle of P: mean and half the variance
-/// of `gᵀ N⁻¹ g` for a cluster with information P, in white noise of variance 1.
-fn share_of(factor: &linalg::Factor, part: &[f64], n: usize) -> (f64, f64) {
-    let mut h = vec![0.0; n * n];
-    for j in 0..n {
-        let column: Vec<f64> = (0..n).map(|i| part[i.min(j) * n + i.max(j)]).collect();
-        for (i, value) in linalg::cholesky_solve(factor, &column).into_iter().enumerate() {
-            h[i * n + j] = value;
-        }
-    }
-    let mut d = h.clone();
-    for i in 0..n {
-        for k in 0..n {
-            for j in 0..n {
-                d[i * n + j] -= h[i * n + k] * h[k * n + j];
-            }
-        }
-    }
-    let trace = (0..n).map(|i| d[i * n + i]).sum();
-    let of_square =
-        (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).map(|(i, j)| d[i * n + j] * d[j * n + i]).sum();
-    (trace, of_square)
+/// `tr(D)` and `tr(D²)` of `D = H - H²`, `H = N⁻¹ P`, from the inverse of N and the upper triangle of P (row-major): mean and half the
+/// variance of `gᵀ N⁻¹ g` for a cluster with information P, in white noise of variance 1.
+fn share_of(inverse: &DMatrix<f64>, part: &[f64]) -> (f64, f64) {
+    let n = inverse.nrows();
+    let h = inverse * DMatrix::from_fn(n, n, |i, j| part[i.min(j) * n + i.max(j)]);
+    let d = &h - &h * &h;
+    (d.trace(), d.dot(&d.transpose()))
 }
 
 /// About `count` clusters: rows are halved at the median of the joint that moves most in them.

@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::prediction::position_variance;
 use super::view::View;
+use super::{TOGETHER, covariance, factor, motions};
 use crate::analysis::residual_variance;
-use crate::estimate::{Estimate, sample_rows};
+use crate::estimate::{Estimate, Linkage, sample_rows};
 use crate::linalg;
+use crate::problem::Layout;
 use crate::simulate::random;
 use crate::solve::LeastSquares;
 
@@ -189,12 +191,12 @@ impl<'a> Left<'a> {
         let normal = problem.normal(view.estimate);
         let n = problem.dim();
         let variance = residual_variance(&normal);
-        let factor = linalg::cholesky(&normal.gram, n, super::prior_information(view.length_m) * variance)?;
+        let factor = factor(&normal.gram, n, variance, view.length_m)?;
         let step = linalg::cholesky_solve(&factor, &normal.gradient);
         Some(Left {
             view: *view,
             estimate: problem.retract(view.estimate, &step),
-            covariance: super::covariance(&normal.gram, n, variance, view.length_m)?,
+            covariance: covariance(&factor, variance)?,
             gram: normal.gram,
             variance,
         })
@@ -207,13 +209,11 @@ impl<'a> Left<'a> {
         let rest: Vec<f64> = self.gram.iter().zip(&part.gram).map(|(all, part)| all - part).collect();
         let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
         let n = gradient.len();
-        let floor = super::prior_information(self.view.length_m) * self.variance;
-        let factor = linalg::cholesky(&rest, n, floor)?;
+        let factor = factor(&rest, n, self.variance, self.view.length_m)?;
         let without = problem.retract(&self.estimate, &linalg::cholesky_solve(&factor, &gradient));
-        let covariance = super::covariance(&rest, n, self.variance, self.view.length_m)?;
-        let layout = problem.layout();
-        let both: Vec<f64> = covariance.iter().zip(&self.covariance).map(|(a, b)| a + b).collect();
-        let expected = position_variance(&self.view, layout, &self.estimate, rows, &both);
+        let covariance = covariance(&factor, self.variance)?;
+        let both = DMatrix::from_iterator(n, n, covariance.iter().zip(&self.covariance).map(|(a, b)| a + b));
+        let expected = self.position_variance(problem.layout(), rows, &both);
         let mut sums = Sums { rows: rows.len(), expected, ..Sums::default() };
         for error in self.view.errors(rows, &without) {
             sums.position += error.position_m.norm_squared();
@@ -225,5 +225,15 @@ impl<'a> Left<'a> {
         let before = self.view.errors(rows, &self.estimate);
         sums.before = before.iter().map(|error| error.position_m.norm_squared()).sum();
         Some(sums)
+    }
+
+    /// Sum over rows of the variance of the predicted place, square metres.
+    fn position_variance(&self, layout: &Layout, rows: &[u32], covariance: &DMatrix<f64>) -> f64 {
+        let linkage = Linkage::new(&self.estimate);
+        let of = |some: &[u32]| {
+            let motions = motions::<3>(layout, &linkage, self.view.packed, &self.view.with_targets(some));
+            (&motions * covariance).dot(&motions)
+        };
+        rows.chunks(TOGETHER).map(of).sum()
     }
 }

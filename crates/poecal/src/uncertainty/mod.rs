@@ -4,6 +4,7 @@ mod bootstrap;
 mod clusters;
 mod discrepancy;
 mod folds;
+mod motions;
 mod neighbours;
 mod pattern;
 mod prediction;
@@ -16,15 +17,18 @@ pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, bound};
 pub use view::View;
 
-use prediction::propagated;
+use motions::motions;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, Matrix3};
 
 use crate::analysis::PLAUSIBLE;
-use crate::estimate::{Chain, Estimate, Linkage, Packed};
-use crate::linalg;
+use crate::estimate::{Estimate, Linkage, Packed};
+use crate::linalg::{self, Factor};
 use crate::measurement::Noise;
 use crate::problem::Layout;
+
+/// Configurations whose motions are worked out together: enough for a quick product, few enough for the cache.
+const TOGETHER: usize = 32;
 
 /// Covariance of an estimate's unknowns, and what the model does not describe.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +58,8 @@ impl Uncertainty {
         length_m: f64,
         found: &Discrepancy,
     ) -> Option<Self> {
-        let covariance = covariance(gram, layout.dim(), variance * found.inflation, length_m)?;
+        let variance = variance * found.inflation;
+        let covariance = covariance(&factor(gram, layout.dim(), variance, length_m)?, variance)?;
         Some(Uncertainty {
             estimate,
             layout,
@@ -91,32 +96,36 @@ impl Uncertainty {
         packed: &Packed,
     ) -> Vec<PredictedError> {
         let linkage = Linkage::new(&self.estimate);
-        let mut chain = Chain::default();
-        let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); self.layout.dim()];
+        let n = self.layout.dim();
+        let covariance = DMatrix::from_row_slice(n, n, &self.covariance);
         let own = |sigma: f64| Matrix3::identity() * (sigma * sigma);
-        rows.map(|(row, target)| {
-            chain.evaluate(&linkage, packed, row, target);
-            self.layout.target_twists(&chain, target, &mut twists);
-            let (position, rotation) = propagated(&self.covariance, &twists);
-            PredictedError {
-                position: position + own(self.discrepancy.position_m),
-                rotation: rotation + own(self.discrepancy.rotation_rad),
-            }
-        })
-        .collect()
+        let rows: Vec<(usize, usize)> = rows.collect();
+        let mut errors = Vec::with_capacity(rows.len());
+        for some in rows.chunks(TOGETHER) {
+            let motions = motions::<6>(&self.layout, &linkage, packed, some);
+            let spread = &motions * &covariance;
+            let part = |first: usize| -> Matrix3<f64> {
+                let column = |matrix: &DMatrix<f64>, k| matrix.fixed_view::<3, 1>(first, k).into_owned();
+                (0..n).map(|k| column(&motions, k) * column(&spread, k).transpose()).sum()
+            };
+            errors.extend((0..some.len()).map(|at| PredictedError {
+                position: part(6 * at) + own(self.discrepancy.position_m),
+                rotation: part(6 * at + 3) + own(self.discrepancy.rotation_rad),
+            }));
+        }
+        errors
     }
 }
 
-/// `(JᵀJ / variance + I / prior²)⁻¹`, row-major and whole.
-fn covariance(gram: &[f64], n: usize, variance: f64, length_m: f64) -> Option<Vec<f64>> {
-    let variance = variance.max(f64::MIN_POSITIVE);
-    let factor = linalg::cholesky(gram, n, prior_information(length_m) * variance)?;
-    let mut covariance = vec![0.0; n * n];
-    for (k, column) in covariance.chunks_exact_mut(n.max(1)).enumerate() {
-        let mut unit = vec![0.0; n];
-        unit[k] = variance;
-        column.copy_from_slice(&linalg::cholesky_solve(&factor, &unit));
-    }
+/// Factor of `JᵀJ + variance · I / prior²`.
+fn factor(gram: &[f64], n: usize, variance: f64, length_m: f64) -> Option<Factor> {
+    linalg::cholesky(gram, n, prior_information(length_m) * variance)
+}
+
+/// `(JᵀJ / variance + I / prior²)⁻¹` from [`factor`], row-major; `None` if a number is not finite.
+fn covariance(factor: &Factor, variance: f64) -> Option<Vec<f64>> {
+    let mut covariance = linalg::inverse(factor);
+    covariance.iter_mut().for_each(|value| *value *= variance);
     covariance.iter().all(|value| value.is_finite()).then_some(covariance)
 }
 
@@ -124,21 +133,13 @@ fn covariance(gram: &[f64], n: usize, variance: f64, length_m: f64) -> Option<Ve
 fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
     let problem = view.problem(Vec::new());
     let layout = problem.layout();
-    let n = layout.dim();
     let linkage = Linkage::new(view.estimate);
-    let mut chain = Chain::default();
-    let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); n];
-    let mut sum = vec![0.0; n * n];
-    for &row in rows {
-        let target = view.data.observations[row as usize].target;
-        chain.evaluate(&linkage, view.packed, row as usize, target);
-        layout.target_twists(&chain, target, &mut twists);
-        for (out, (a, _)) in sum.chunks_exact_mut(n.max(1)).zip(&twists) {
-            out.iter_mut().zip(&twists).for_each(|(value, (b, _))| *value += a.dot(b));
-        }
+    let mut sum = DMatrix::zeros(layout.dim(), layout.dim());
+    for some in rows.chunks(TOGETHER) {
+        let motions = motions::<3>(layout, &linkage, view.packed, &view.with_targets(some));
+        sum += motions.transpose() * motions;
     }
-    sum.iter_mut().for_each(|value| *value /= rows.len().max(1) as f64);
-    sum
+    (sum / rows.len().max(1) as f64).as_slice().to_vec()
 }
 
 /// Information of the drawing about each scaled unknown, per square metre: it bounds what the data leave open.

@@ -1,11 +1,6 @@
 //! The error to expect of one predicted pose.
 
-use nalgebra::{Matrix3, Vector3};
-
-use super::view::View;
-use crate::estimate::{Chain, Estimate, Linkage};
-use crate::lie::TargetTwist;
-use crate::problem::Layout;
+use nalgebra::Matrix3;
 
 /// Covariances of a predicted target's place (square metres) and turn (square radians), device axes (theory.md §9 (40)).
 ///
@@ -65,40 +60,4 @@ pub fn bound(covariance: &Matrix3<f64>) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
     let quantile = freedom * (1.0 - spread + Z * spread.sqrt()).powi(3);
     (squares / trace * quantile).sqrt()
-}
-
-/// Covariances of place and turn of a target that moves by these twists with unknowns of this covariance (row-major).
-pub(super) fn propagated(covariance: &[f64], twists: &[TargetTwist]) -> (Matrix3<f64>, Matrix3<f64>) {
-    let (mut position, mut rotation) = (Matrix3::zeros(), Matrix3::zeros());
-    for (row, (v, w)) in covariance.chunks_exact(twists.len().max(1)).zip(twists) {
-        let (mut by_v, mut by_w) = (Vector3::zeros(), Vector3::zeros());
-        for (value, (v, w)) in row.iter().zip(twists) {
-            by_v += v * *value;
-            by_w += w * *value;
-        }
-        position += v * by_v.transpose();
-        rotation += w * by_w.transpose();
-    }
-    (position, rotation)
-}
-
-/// Sum over rows of the variance of the predicted place, square metres.
-pub(super) fn position_variance(
-    view: &View<'_>,
-    layout: &Layout,
-    estimate: &Estimate,
-    rows: &[u32],
-    covariance: &[f64],
-) -> f64 {
-    let linkage = Linkage::new(estimate);
-    let mut chain = Chain::default();
-    let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()];
-    rows.iter()
-        .map(|&row| {
-            let target = view.data.observations[row as usize].target;
-            chain.evaluate(&linkage, view.packed, row as usize, target);
-            layout.target_twists(&chain, target, &mut twists);
-            propagated(covariance, &twists).0.trace()
-        })
-        .sum()
 }

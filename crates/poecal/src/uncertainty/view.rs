@@ -43,6 +43,11 @@ impl<'a> View<'a> {
         row_errors(self.data, self.packed, rows, estimate)
     }
 
+    /// Rows with the targets that were seen in them.
+    pub(super) fn with_targets(&self, rows: &[u32]) -> Vec<(usize, usize)> {
+        rows.iter().map(|&row| (row as usize, self.data.observations[row as usize].target)).collect()
+    }
+
     /// Joint values of a row.
     pub(super) fn values(&self, row: u32) -> &'a [f64] {
         self.packed.joint_values(row as usize)

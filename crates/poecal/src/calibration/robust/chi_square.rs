@@ -10,38 +10,35 @@ pub(super) fn median(freedom: usize) -> f64 {
     MEDIANS[freedom.clamp(1, 6) - 1]
 }
 
-/// What is exceeded with a probability of at most 0.1.
+/// What is exceeded with a probability of at most 0.1, by Newton's steps on the logarithm of the tail.
 pub(super) fn upper_quantile(probability: f64, freedom: usize) -> f64 {
-    let (mut below, mut above) = (1.0, 1.0);
-    while survival(above, freedom) > probability && above < 1e4 {
-        above *= 2.0;
-    }
+    let mut x = freedom as f64;
     for _ in 0..60 {
-        let middle = 0.5 * (below + above);
-        if survival(middle, freedom) > probability {
-            below = middle;
-        } else {
-            above = middle;
+        let (survival, density) = upper_tail(x, freedom);
+        let step = (survival / probability).ln() * survival / density;
+        x += step;
+        if step.abs() < 1e-14 * x {
+            break;
         }
     }
-    above
+    x
 }
 
-/// Probability to exceed `x ≥ 1`: `Q(x; ν + 2) = Q(x; ν) + (x/2)^(ν/2) e^(-x/2) / Γ(ν/2 + 1)` from ν = 1 or 2 on.
-fn survival(x: f64, freedom: usize) -> f64 {
+/// Probability to exceed `x ≥ 1`, and the density there: `Q(x; ν + 2) = Q(x; ν) + (x/2)^(ν/2) e^(-x/2) / Γ(ν/2 + 1)` from ν = 1 or 2
+/// on, where what is added is twice the density for ν + 2.
+fn upper_tail(x: f64, freedom: usize) -> (f64, f64) {
     let half = 0.5 * x;
-    let odd = freedom % 2 == 1;
-    let (mut sum, mut term, mut dof) = if odd {
-        (complementary_error(half.sqrt()), (half / PI).sqrt() * 2.0 * (-half).exp(), 1)
+    let (mut sum, mut twice, mut dof) = if freedom % 2 == 1 {
+        (complementary_error(half.sqrt()), (-half).exp() / (PI * half).sqrt(), 1)
     } else {
-        ((-half).exp(), half * (-half).exp(), 2)
+        ((-half).exp(), (-half).exp(), 2)
     };
     while dof < freedom {
-        sum += term;
+        twice *= half / (0.5 * dof as f64);
+        sum += twice;
         dof += 2;
-        term *= half / (0.5 * dof as f64);
     }
-    sum
+    (sum, 0.5 * twice)
 }
 
 /// `erfc(z)` for z ≥ 0.7 by its continued fraction, from the inside.
@@ -71,6 +68,19 @@ mod tests {
             let found = upper_quantile(probability, freedom);
             println!("{probability} {freedom}: {found:.4}, table {table}");
             assert!((found - table).abs() < 6e-4);
+        }
+    }
+
+    #[test]
+    fn quantiles_are_exceeded_as_often_as_asked_for() {
+        for freedom in 1..=6 {
+            for probability in [0.1, 1e-3, 1e-9, 1e-13] {
+                let (survival, _) = upper_tail(upper_quantile(probability, freedom), freedom);
+                let off = (survival / probability - 1.0).abs();
+                println!("{freedom} {probability:e}: {off:.1e}");
+                // A few roundings of the exponential's argument.
+                assert!(off < 1e-13);
+            }
         }
     }
 }

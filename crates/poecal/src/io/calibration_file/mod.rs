@@ -108,38 +108,10 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Syntax`] if it is no calibration of this version.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        let syntax = |error: &serde_json::Error| {
-            let reason = error.to_string();
-            let reason = reason.split(" at line ").next().unwrap_or_default();
-            let found =
-                if error.is_data() { "something that does not fit the schema" } else { "broken JSON" };
-            let message = format!(
-                "found {found} ({reason}), expected a calibration as written by `poecal calibrate`: name a calibration.json"
-            );
-            Error::new(ErrorKind::Syntax, message).at(path, error.line().max(1), error.column().max(1))
-        };
-        let value: serde_json::Value = serde_json::from_str(text).map_err(|error| syntax(&error))?;
-        match value.get("schema").and_then(serde_json::Value::as_str) {
-            Some(SCHEMA) => {}
-            Some(other) => {
-                return Err(Error::new(
-                    ErrorKind::Syntax,
-                    format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version"),
-                )
-                .in_file(path));
-            }
-            None => {
-                return Err(Error::new(
-                    ErrorKind::Syntax,
-                    format!(
-                        "found JSON without the key `schema`, expected a calibration of schema `{SCHEMA}`"
-                    ),
-                )
-                .in_file(path));
-            }
+        match serde_json::from_str::<Self>(text) {
+            Ok(file) if file.schema == SCHEMA => Ok(file),
+            other => Err(refusal(text, other.err(), path.as_ref())),
         }
-        serde_json::from_str(text).map_err(|error| syntax(&error))
     }
 
     /// The text of the file, with a line break at its end.
@@ -202,6 +174,33 @@ impl CalibrationFile {
     pub fn targets(&self) -> &BTreeMap<String, TargetEntry> {
         &self.targets
     }
+}
+
+/// Why a text is no calibration of this version; `error` is what kept it from being read as one.
+fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path) -> Error {
+    let syntax = |error: &serde_json::Error| {
+        let reason = error.to_string();
+        let reason = reason.split(" at line ").next().unwrap_or_default();
+        let found = if error.is_data() { "something that does not fit the schema" } else { "broken JSON" };
+        let message = format!(
+            "found {found} ({reason}), expected a calibration as written by `poecal calibrate`: name a calibration.json"
+        );
+        Error::new(ErrorKind::Syntax, message).at(path, error.line().max(1), error.column().max(1))
+    };
+    let value: serde_json::Value = match serde_json::from_str(text) {
+        Ok(value) => value,
+        Err(error) => return syntax(&error),
+    };
+    let message = match (value.get("schema").and_then(serde_json::Value::as_str), error) {
+        (Some(SCHEMA), Some(error)) => return syntax(&error),
+        (Some(other), _) => {
+            format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version")
+        }
+        (None, _) => {
+            format!("found JSON without the key `schema`, expected a calibration of schema `{SCHEMA}`")
+        }
+    };
+    Error::new(ErrorKind::Syntax, message).in_file(path)
 }
 
 impl From<&Diagnosis> for DiagnosisEntry {

@@ -1,5 +1,6 @@
 //! The results of a calibration.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use super::{NewFile, Written, check_folder, robot_files, write_files};
@@ -13,6 +14,9 @@ use crate::robot::Robot;
 /// Every name that a calibration may write.
 const OWN_NAMES: [&str; 5] =
     ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv", REPORT];
+/// A page in pieces that follow each other, so that those which never change need not be copied.
+pub type Page = Vec<Cow<'static, str>>;
+
 /// The report's name among the results.
 pub const REPORT: &str = "report.html";
 
@@ -39,8 +43,8 @@ pub struct Results<'a> {
     pub file: CalibrationFile,
     /// For `residuals.csv`.
     pub residuals: Rows<'a>,
-    /// The text of `report.html`, if it is to be written.
-    pub report: Option<String>,
+    /// `report.html`, if it is to be written.
+    pub report: Option<Page>,
 }
 
 /// Writes a calibration's files. They are written beside the folder first, read back and compared with the fitted robot on 1,000
@@ -76,6 +80,6 @@ pub fn write_robot(
     let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, robot)];
     files.extend(robot_files("calibrated", model, robot, &mut notes)?);
     files.push(NewFile::of_rows("residuals.csv", results.residuals));
-    files.extend(results.report.map(|text| NewFile::new(REPORT, text)));
+    files.extend(results.report.map(|page| NewFile::of_page(REPORT, page)));
     write_files(folder, &files, &OWN_NAMES, notes)
 }

@@ -6,7 +6,7 @@ mod reproduction;
 mod simulation;
 mod staging;
 
-pub use calibration::{REPORT, Results, write, write_robot};
+pub use calibration::{Page, REPORT, Results, write, write_robot};
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
 pub use simulation::{Session, write_simulation};
@@ -17,7 +17,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::model::{Model, ModelSource};
-use super::proof::Difference;
+use super::proof::{Difference, Reference};
 use super::residuals::Rows;
 use super::robot_toml;
 use super::urdf::{self, ChainSelection};
@@ -52,6 +52,8 @@ pub struct Written {
 /// What a file will hold.
 enum Content<'a> {
     Text(String),
+    /// Written piece by piece.
+    Page(Page),
     /// Written some at a time: there may be many.
     Rows(Rows<'a>),
 }
@@ -69,6 +71,10 @@ impl<'a> NewFile<'a> {
         NewFile { name: name.to_owned(), content: Content::Text(text), model_of: None }
     }
 
+    fn of_page(name: &str, page: Page) -> Self {
+        NewFile { name: name.to_owned(), content: Content::Page(page), model_of: None }
+    }
+
     fn of_rows(name: &str, rows: Rows<'a>) -> Self {
         NewFile { name: name.to_owned(), content: Content::Rows(rows), model_of: None }
     }
@@ -80,33 +86,50 @@ impl<'a> NewFile<'a> {
     fn write_to(&self, out: &mut File) -> std::io::Result<()> {
         match &self.content {
             Content::Text(text) => out.write_all(text.as_bytes()),
+            Content::Page(pieces) => pieces.iter().try_for_each(|piece| out.write_all(piece.as_bytes())),
             Content::Rows(rows) => rows.write_to(out),
         }
     }
 
-    /// Compares the model, read back, with its robot.
-    fn prove(&self, folder: &Path, final_folder: &Path) -> Result<Option<Difference>> {
-        let Some((robot, tip_link)) = &self.model_of else { return Ok(None) };
-        let path = folder.join(&self.name);
+    /// The robot that the file holds, read back from the folder where it lies for now.
+    fn read_back(&self, robot: &Robot, tip_link: &str, folder: &Path, final_folder: &Path) -> Result<Robot> {
         let selection = if self.name.ends_with(".urdf") {
-            ChainSelection { base_link: Some(robot.base_name.clone()), tip_link: Some(tip_link.clone()) }
+            let (base_link, tip_link) = (Some(robot.base_name.clone()), Some(tip_link.to_owned()));
+            ChainSelection { base_link, tip_link }
         } else {
             ChainSelection::default()
         };
-        let read = Model::read(&path, &selection);
-        let model = read.map_err(|error| error.with_path(&final_folder.join(&self.name)))?;
-        let difference = Difference::of(robot, &model.robot, CONFIGURATIONS);
-        if difference.is_within(TOLERANCE, TOLERANCE) {
-            return Ok(Some(difference));
-        }
-        Err(Error::new(
-            ErrorKind::Export,
-            format!(
-                "{} read back differs from its robot by {:.1e} m and {:.1e} rad, expected at most 1e-9: nothing was written",
-                self.name, difference.position_m, difference.rotation_rad
-            ),
-        ))
+        let read = Model::read(folder.join(&self.name), &selection);
+        Ok(read.map_err(|error| error.with_path(&final_folder.join(&self.name)))?.robot)
     }
+}
+
+/// Compares the models among the files, read back, with their robots; gives the largest difference.
+fn prove(files: &[NewFile], folder: &Path, final_folder: &Path) -> Result<Difference> {
+    let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
+    let mut known: Option<Reference> = None;
+    for file in files {
+        let Some((robot, tip_link)) = &file.model_of else { continue };
+        let read = file.read_back(robot, tip_link, folder, final_folder)?;
+        let reference = match known.take() {
+            Some(known) if known.is_of(robot) => known,
+            _ => Reference::new(robot, CONFIGURATIONS),
+        };
+        let difference = reference.difference(&read);
+        known = Some(reference);
+        if !difference.is_within(TOLERANCE, TOLERANCE) {
+            return Err(Error::new(
+                ErrorKind::Export,
+                format!(
+                    "{} read back differs from its robot by {:.1e} m and {:.1e} rad, expected at most 1e-9: nothing was written",
+                    file.name, difference.position_m, difference.rotation_rad
+                ),
+            ));
+        }
+        largest.position_m = largest.position_m.max(difference.position_m);
+        largest.rotation_rad = largest.rotation_rad.max(difference.rotation_rad);
+    }
+    Ok(largest)
 }
 
 /// A robot in the form that `model` was read from: the same URDF text with other values, or else a TOML model and a new URDF.
@@ -141,13 +164,7 @@ fn write_files(folder: &Path, files: &[NewFile], own_names: &[&str], notes: Vec<
     for file in files {
         staging.write(&file.name, |out| file.write_to(out))?;
     }
-    let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
-    for difference in files.iter().map(|file| file.prove(staging.folder(), folder)) {
-        if let Some(difference) = difference? {
-            largest.position_m = largest.position_m.max(difference.position_m);
-            largest.rotation_rad = largest.rotation_rad.max(difference.rotation_rad);
-        }
-    }
+    let largest = prove(files, staging.folder(), folder)?;
     let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
     staging.put_in_place(&names, own_names)?;
     Ok(Written { folder: folder.to_path_buf(), files: names, largest, notes })

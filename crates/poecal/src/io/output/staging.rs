@@ -1,7 +1,7 @@
 //! Files written whole or not at all: beside their place first, then moved.
 
 use std::fs::{self, File};
-use std::io::ErrorKind as ErrorKindIo;
+use std::io::{ErrorKind as ErrorKindIo, Write as _};
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, ErrorKind, Result};
@@ -171,11 +171,11 @@ pub fn check_file(path: &Path) -> Result<()> {
     check_parent(path)
 }
 
-/// Writes one file whole or not at all: beside its place first, then moved.
+/// Writes one file, of pieces of text that follow each other, whole or not at all: beside its place first, then moved.
 ///
 /// # Errors
 /// [`ErrorKind::File`] if it cannot be written.
-pub fn write_file(path: &Path, text: &str) -> Result<()> {
+pub fn write_file(path: &Path, pieces: &[impl AsRef<str>]) -> Result<()> {
     let error = |error: std::io::Error| {
         Error::new(
             ErrorKind::File,
@@ -186,7 +186,9 @@ pub fn write_file(path: &Path, text: &str) -> Result<()> {
     check_file(path)?;
     let name = path.file_name().map_or_else(|| "out".into(), |name| name.to_string_lossy().into_owned());
     let beside = parent(path).join(format!(".{name}.unfinished-{}", std::process::id()));
-    fs::write(&beside, text).and_then(|()| fs::rename(&beside, path)).map_err(|cause| {
+    let write =
+        |mut file: File| pieces.iter().try_for_each(|piece| file.write_all(piece.as_ref().as_bytes()));
+    File::create(&beside).and_then(write).and_then(|()| fs::rename(&beside, path)).map_err(|cause| {
         let _ = fs::remove_file(&beside);
         error(cause)
     })
@@ -195,7 +197,6 @@ pub fn write_file(path: &Path, text: &str) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Write;
 
     fn new_folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("poecal_staging_{name}_{}", std::process::id()));

@@ -13,7 +13,9 @@ pub(super) const MOST_ROWS: usize = 4000;
 const SUSPECTED: usize = 400;
 const WORST: usize = 100;
 /// Digits of numbers that are drawn.
-const DIGITS: usize = 6;
+const DIGITS: i32 = 6;
+/// The largest power of ten that is exact.
+const EXACT: i32 = 22;
 
 #[derive(Serialize)]
 struct Data<'a> {
@@ -169,7 +171,12 @@ impl RowData {
     }
 }
 
-/// As many digits as a picture can show.
+/// As many digits as a picture can show. A whole number of that many digits over a power of ten that is exact rounds as text does.
 fn rounded(value: f64) -> f64 {
-    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
+    let places = (DIGITS - 1).saturating_sub(value.abs().log10().floor() as i32);
+    if !(0..=EXACT).contains(&places) {
+        return format!("{value:.*e}", DIGITS as usize - 1).parse().unwrap_or(value);
+    }
+    let scale = 10_f64.powi(places);
+    (value * scale).round_ties_even() / scale
 }

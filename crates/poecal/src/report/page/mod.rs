@@ -12,6 +12,7 @@ mod trust;
 use crate::calibration::Statistic;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
+use crate::io::output::Page;
 use crate::io::residuals::Residuals;
 use crate::report::plot::escape;
 use crate::robot::JointKind;
@@ -26,7 +27,7 @@ const SAME: f64 = 1e-9;
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
 
 /// The report of a calibration as an HTML page that is complete in itself. All of it can be read without its script, which adds the
-/// robot in three dimensions and charts of the rows.
+/// robot in three dimensions and charts of the rows. In pieces, since most of it is the same for every calibration.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate};
@@ -36,7 +37,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// let made = Simulation::default().run(&elbow(), Kind::Point)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-/// let page = poecal::report::calibration_page(&file, &Residuals::of(&made.data, &calibration))?;
+/// let page = poecal::report::calibration_page(&file, &Residuals::of(&made.data, &calibration))?.concat();
 /// assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<h1>"));
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -44,7 +45,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// # Errors
 /// [`ErrorKind::Problem`] if the residuals are not those of this calibration, [`ErrorKind::Model`] if the file has been changed into no
 /// calibration.
-pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result<String> {
+pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result<Page> {
     check(file, residuals)?;
     let data = data::json(file, residuals)?;
     let title = escape(&format!("Calibration of {}", file.robot.name));
@@ -54,17 +55,24 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
     rows::sections(&mut body, file, residuals);
     trust::sections(&mut body, file);
     method::sections(&mut body, file);
-    let body = body.finish();
-    Ok(format!(
+    let head = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n\
          <meta name=\"generator\" content=\"poecal {}\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <a class=\"skip\" href=\"#main\">Skip to the verdict</a>\n<main id=\"main\">\n{body}</main>\n\
-         <script type=\"application/json\" id=\"report-data\">{data}</script>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n",
+         <a class=\"skip\" href=\"#main\">Skip to the verdict</a>\n<main id=\"main\">\n",
         escape(&file.poecal_version)
-    ))
+    );
+    Ok(vec![
+        head.into(),
+        body.finish().into(),
+        "</main>\n<script type=\"application/json\" id=\"report-data\">".into(),
+        data.into(),
+        "</script>\n<script>\n".into(),
+        SCRIPT.into(),
+        "</script>\n</body>\n</html>\n".into(),
+    ])
 }
 
 /// Refuses residuals of another calibration.

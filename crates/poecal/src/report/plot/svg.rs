@@ -34,6 +34,9 @@ pub(super) enum Anchor {
 
 /// Text for an element or an attribute: nothing in it is markup.
 pub(in crate::report) fn escape(text: &str) -> String {
+    if text.bytes().all(|byte| matches!(byte, b' '..=b'~') && !br#"&<>"'"#.contains(&byte)) {
+        return text.to_owned();
+    }
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
