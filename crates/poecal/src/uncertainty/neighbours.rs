@@ -22,13 +22,13 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     let mut distances = vec![0.0; pool.len()];
     for a in (0..pool.len()).step_by(step) {
         square_distances(&joints, a, &mut distances);
-        let mut nearest: Option<(usize, f64)> = None;
-        for (b, (&distance, &target)) in distances.iter().zip(&targets).enumerate() {
-            if nearest.is_none_or(|(_, least)| distance < least) && b != a && target == targets[a] {
-                nearest = Some((b, distance));
+        let (mut nearest, mut least) = (None, f64::INFINITY);
+        for (b, &distance) in distances.iter().enumerate() {
+            if distance < least && b != a && targets[b] == targets[a] {
+                (nearest, least) = (Some(b), distance);
             }
         }
-        let Some((b, _)) = nearest else { continue };
+        let Some(b) = nearest else { continue };
         position.add(&errors[a].position_m, &errors[b].position_m);
         if let (Some(a), Some(b)) = (&errors[a].rotation_rad, &errors[b].rotation_rad) {
             rotation.add(a, b);
