@@ -22,11 +22,7 @@ use poecal::solve::{Options, minimize};
 use poecal::{Error, ErrorKind};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
-use rayon::prelude::*;
 use trials::{NOISE, disturbed};
-
-/// Fits that one thread takes at a time.
-const TOGETHER: usize = 50;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|it| !it.starts_with("--")).collect();
@@ -77,9 +73,5 @@ fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(E
     let problem = Problem::new(&begun, &packed, begun.all_rows(), free, NOISE, robot.reach_m() / 3.0);
     let (optimum, _, _) = minimize(&problem, start, &Options::default());
     let refit = Refit::new(problem, optimum, Options::default());
-    let fit = |refit: &mut Refit<'_>, measured: &Vec<Measurement>| {
-        let (estimate, _, summary) = refit.fit(measured);
-        (estimate, summary.iterations)
-    };
-    trials.par_iter().with_min_len(TOGETHER).map_init(|| refit.clone(), fit).collect()
+    refit.fit_all(trials, |estimate, _, summary| (estimate, summary.iterations))
 }

@@ -18,7 +18,6 @@ use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain};
 use poecal::solve::{Options, minimize};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
-use rayon::prelude::*;
 use trials::{NOISE, disturbed};
 
 fn main() {
@@ -99,11 +98,7 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
         let problem = Problem::new(&made.data, &packed, rows.clone(), free.clone(), NOISE, length_m);
         let (optimum, _, _) = minimize(&problem, start.clone(), &Options::default());
         let refit = Refit::new(problem, optimum, Options::default());
-        trials
-            .par_iter()
-            .with_min_len(50)
-            .map_init(|| refit.clone(), |refit, measured| refit.fit(measured).1.cost)
-            .sum::<f64>()
+        refit.fit_all(&trials, |_, normal, _| normal.cost).iter().sum::<f64>()
     });
 }
 

@@ -77,7 +77,7 @@ impl Packed {
             chunks.for_each(|(chunk, (angles, values))| fill(chunk * CHUNK, angles, values));
         } else {
             let chunks = angles.par_chunks_mut(len).zip(values.par_chunks_mut(len)).enumerate();
-            chunks.for_each(|(chunk, (angles, values))| fill(chunk * CHUNK, angles, values));
+            chunks.with_max_len(1).for_each(|(chunk, (angles, values))| fill(chunk * CHUNK, angles, values));
         }
         Packed { joints, kinds, values, angles }
     }

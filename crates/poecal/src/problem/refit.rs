@@ -4,6 +4,10 @@ use super::Problem;
 use crate::estimate::Estimate;
 use crate::measurement::Measurement;
 use crate::solve::{LeastSquares, Near, Normal, Options, Summary, minimize_near};
+use crate::threads;
+
+/// Fits that one thread makes one after the other, with a copy of what they share.
+const TOGETHER: usize = 25;
 
 /// A problem at its optimum, to be fitted again and again to other measurements in the same configurations (Monte Carlo, bootstrap).
 /// All fits share what is packed and the factorised `JᵀJ` of the first optimum, so that most of them need residuals and gradients
@@ -34,6 +38,8 @@ use crate::solve::{LeastSquares, Near, Normal, Options, Summary, minimize_near};
 /// let others = [0.0, 1.0, 2.0].map(|reading| seen(reading, 2.0 * place));
 /// let (found, _, _) = refit.fit(&others);
 /// assert!((found.base_from_target[0].translation.x - 0.32).abs() < 1e-12);
+/// let same = refit.fit_all(&[others.to_vec()], |found, _, _| found);
+/// assert_eq!(same, [found]);
 /// # Ok::<(), poecal::Error>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -56,5 +62,23 @@ impl<'a> Refit<'a> {
     pub fn fit(&mut self, measured: &[Measurement]) -> (Estimate, Normal, Summary) {
         self.problem.set_measurements(measured);
         minimize_near(&self.problem, &self.near, &self.options)
+    }
+
+    /// [`Refit::fit`] of each of many trials by all threads, in their order, and what is to be `kept` of each.
+    pub fn fit_all<T: Send>(
+        &self,
+        trials: &[Vec<Measurement>],
+        kept: impl Fn(Estimate, Normal, Summary) -> T + Sync,
+    ) -> Vec<T> {
+        let parts = threads::map_parts(trials.len().div_ceil(TOGETHER), |part| {
+            let mut refit = self.clone();
+            let trials = &trials[part * TOGETHER..trials.len().min((part + 1) * TOGETHER)];
+            let fit = |measured: &Vec<Measurement>| {
+                let (estimate, normal, summary) = refit.fit(measured);
+                kept(estimate, normal, summary)
+            };
+            trials.iter().map(fit).collect::<Vec<T>>()
+        });
+        parts.into_iter().flatten().collect()
     }
 }
