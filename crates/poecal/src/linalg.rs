@@ -1,8 +1,8 @@
 //! Dense linear algebra of the normal equations: accumulation, Cholesky, symmetric eigenvalues. The only file that names nalgebra's
 //! decompositions: `symmetric_eigen` and singular values alone, since its SVD with vectors errs on repeated columns.
 
-pub(crate) use crate::lanes::Factor;
 use crate::lanes::{self, Level};
+pub(crate) use crate::lanes::{Factor, WIDTH, Wide};
 use nalgebra::{DMatrix, Matrix4, Vector3, Vector4};
 
 /// Adds `Σ rows rᵀ r` to the upper triangle of a row-major `n × n` Gram matrix. `rows` holds rows of `n` numbers, of which those
@@ -61,10 +61,33 @@ pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     x
 }
 
-/// `J N⁻¹ Jᵀ` (row-major) of a Jacobian of at most eight rows, with N the matrix that was factorised.
-pub(crate) fn hat(factor: &Factor, jacobian: &[f64], rows: usize) -> Vec<f64> {
-    let hat = lanes::hat(Level::best(), factor, jacobian, rows);
-    hat.iter().take(rows).flat_map(|row| row.iter().take(rows).copied()).collect()
+/// A matrix of at most eight rows, filled up with zeros.
+pub(crate) type Small = [[f64; WIDTH]; WIDTH];
+
+/// `J N⁻¹ Jᵀ` of a Jacobian of at most eight rows, with N the matrix that was factorised; `columns` is room to work in.
+pub(crate) fn hat(factor: &Factor, jacobian: &[f64], columns: &mut Vec<Wide>) -> Small {
+    lanes::hat(Level::best(), factor, jacobian, columns)
+}
+
+/// Solves `A x = b` for a symmetric, positive definite matrix by elimination; `None` if it is not.
+pub(crate) fn solve_small(mut matrix: Small, mut x: [f64; WIDTH]) -> Option<[f64; WIDTH]> {
+    for k in 0..WIDTH {
+        let (row, value) = (matrix[k], x[k]);
+        if row[k].is_nan() || row[k] <= 0.0 {
+            return None;
+        }
+        let inverse = 1.0 / row[k];
+        for i in k + 1..WIDTH {
+            let factor = row[i] * inverse;
+            matrix[i].iter_mut().zip(&row).for_each(|(own, above)| *own -= factor * above);
+            x[i] -= factor * value;
+        }
+    }
+    for k in (0..WIDTH).rev() {
+        let known = dot(&matrix[k][k + 1..], &x[k + 1..]);
+        x[k] = (x[k] - known) / matrix[k][k];
+    }
+    Some(x)
 }
 
 /// `aᵀb`.

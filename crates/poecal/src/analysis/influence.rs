@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::estimate::Estimate;
-use crate::linalg;
+use crate::linalg::{self, Small, WIDTH};
 use crate::problem::Problem;
 use crate::solve::Normal;
 
@@ -49,11 +49,16 @@ pub fn influence(
         .zip(weights.par_chunks(CHUNK))
         .map(|(rows, weights)| {
             let mut weights = weights.iter();
+            let mut columns = Vec::new();
             let mut found = Vec::with_capacity(rows.len());
             problem.for_rows(estimate, rows, |row, jacobian, residual| {
                 let weight = weights.next().copied().unwrap_or(1.0);
-                let scaled: Vec<f64> = residual.iter().enumerate().map(|(k, e)| e / scale(row, k)).collect();
-                found.push(row_influence(factor.as_ref(), jacobian, &scaled, weight));
+                let mut scaled = [0.0; WIDTH];
+                for (k, (scaled, e)) in scaled.iter_mut().zip(residual).enumerate() {
+                    *scaled = e / scale(row, k);
+                }
+                let hat = factor.as_ref().map(|factor| linalg::hat(factor, jacobian, &mut columns));
+                found.push(row_influence(&hat.unwrap_or_default(), &scaled, residual.len(), weight));
             });
             found
         })
@@ -61,22 +66,15 @@ pub fn influence(
     chunks.into_iter().flatten().collect()
 }
 
-/// Of one row: `H = J N⁻¹ Jᵀ`, and `t² = eᵀ (I - wH)⁻¹ (I + (1 - w)H)⁻¹ e`.
-fn row_influence(
-    factor: Option<&linalg::Factor>,
-    jacobian: &[f64],
-    residual: &[f64],
-    weight: f64,
-) -> Influence {
-    let dim = residual.len();
-    let hat = factor.map_or_else(|| vec![0.0; dim * dim], |factor| linalg::hat(factor, jacobian, dim));
-    let leverage = (0..dim).map(|i| hat[i * dim + i]).sum::<f64>() / dim.max(1) as f64;
-    let solved = |x: Vec<f64>, share: f64, diagonal: f64| {
-        let matrix: Vec<f64> = hat.iter().map(|h| share * h).collect();
-        linalg::cholesky(&matrix, dim, diagonal).map_or(x.clone(), |own| linalg::cholesky_solve(&own, &x))
+/// Of one row of `dim` numbers with `H = J N⁻¹ Jᵀ`: `t² = eᵀ (I - wH)⁻¹ (I + (1 - w)H)⁻¹ e`.
+fn row_influence(hat: &Small, residual: &[f64; WIDTH], dim: usize, weight: f64) -> Influence {
+    let leverage = (0..dim).map(|i| hat[i][i]).sum::<f64>() / dim.max(1) as f64;
+    let solved = |x: [f64; WIDTH], share: f64, diagonal: f64| {
+        let mut matrix = hat.map(|row| row.map(|h| share * h));
+        (0..WIDTH).for_each(|i| matrix[i][i] += diagonal);
+        linalg::solve_small(matrix, x).unwrap_or(x)
     };
-    let left_out = solved(residual.to_vec(), -weight, 1.0 + LEAST_REDUNDANCY);
+    let left_out = solved(*residual, -weight, 1.0 + LEAST_REDUNDANCY);
     let judged = if weight < 1.0 { solved(left_out, 1.0 - weight, 1.0) } else { left_out };
-    let squared: f64 = residual.iter().zip(&judged).map(|(a, b)| a * b).sum();
-    Influence { leverage, studentized: squared.max(0.0).sqrt() }
+    Influence { leverage, studentized: linalg::dot(residual, &judged).max(0.0).sqrt() }
 }

@@ -128,33 +128,58 @@ pub(super) fn solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
     }
 }
 
-/// `J N⁻¹ Jᵀ` of a Jacobian (row-major) of at most [`WIDTH`] rows, which stand side by side in the lanes.
+/// `J N⁻¹ Jᵀ` of a Jacobian (row-major) of at most [`WIDTH`] rows, which stand side by side in the lanes; `columns` is room to work in.
 #[inline(always)]
-pub(super) fn hat<V: Vector>(factor: &Factor, jacobian: &[f64], rows: usize) -> [[f64; WIDTH]; WIDTH] {
+pub(super) fn hat<V: Vector>(
+    factor: &Factor,
+    jacobian: &[f64],
+    columns: &mut Vec<Wide>,
+) -> [[f64; WIDTH]; WIDTH] {
     let n = factor.n;
-    let mut columns = vec![Wide::ZERO; n];
-    for (lane, row) in jacobian.chunks_exact(n.max(1)).take(rows.min(WIDTH)).enumerate() {
+    columns.clear();
+    columns.resize(n.next_multiple_of(PANEL), Wide::ZERO);
+    for (lane, row) in jacobian.chunks_exact(n.max(1)).take(WIDTH).enumerate() {
         columns.iter_mut().zip(row).for_each(|(wide, &value)| wide.0[lane] = value);
     }
+    for part in 0..WIDTH / V::LANES {
+        lower_solve_all::<V>(factor, columns, part);
+    }
     let mut hat = [Wide::ZERO; WIDTH];
-    let stride = n.div_ceil(WIDTH);
-    for (i, row) in factor.rows.chunks_exact(stride.max(1)).take(n).enumerate() {
-        let (done, later) = columns.split_at_mut(i + 1);
-        let own = &mut done[i];
-        for part in 0..WIDTH / V::LANES {
-            (V::load(own, part) * V::splat(factor.inverses[i])).store(own, part);
-        }
-        for (j, wide) in (i + 1..).zip(later) {
-            let value = row[j / WIDTH].0[j % WIDTH];
-            for part in 0..WIDTH / V::LANES {
-                V::load(own, part).times_from(V::splat(value), V::load(wide, part)).store(wide, part);
+    for part in 0..WIDTH / V::LANES {
+        let mut sums = [V::splat(0.0); WIDTH];
+        for own in columns.iter() {
+            let wide = V::load(own, part);
+            for (sum, &value) in sums.iter_mut().zip(&own.0) {
+                *sum = wide.times_plus(V::splat(value), *sum);
             }
         }
-        for (sum, &value) in hat.iter_mut().zip(&own.0[..rows.min(WIDTH)]) {
-            for part in 0..WIDTH / V::LANES {
-                V::load(own, part).times_plus(V::splat(value), V::load(sum, part)).store(sum, part);
-            }
-        }
+        sums.into_iter().zip(&mut hat).for_each(|(sum, wide)| sum.store(wide, part));
     }
     hat.map(|wide| wide.0)
+}
+
+/// Solves `Rᵀ X = B` in place for the right sides in one part of the lanes.
+#[inline(always)]
+fn lower_solve_all<V: Vector>(factor: &Factor, columns: &mut [Wide], part: usize) {
+    let stride = factor.n.div_ceil(WIDTH);
+    for i in (0..factor.n).step_by(PANEL) {
+        let (block, lane) = (i / WIDTH, i % WIDTH);
+        let (done, rest) = columns.split_at_mut(i);
+        let mut values: [V; PANEL] = std::array::from_fn(|k| V::load(&rest[k], part));
+        let (above, own) = factor.rows.split_at(i * stride);
+        for (done, row) in done.iter().zip(above.chunks_exact(stride)) {
+            let done = V::load(done, part);
+            for (value, &factor) in values.iter_mut().zip(&row[block].0[lane..lane + PANEL]) {
+                *value = done.times_from(V::splat(factor), *value);
+            }
+        }
+        for (k, &inverse) in factor.inverses[i..].iter().take(PANEL).enumerate() {
+            values[k] = values[k] * V::splat(inverse);
+            let row = &own[k * stride + block].0;
+            for later in k + 1..PANEL {
+                values[later] = values[k].times_from(V::splat(row[lane + later]), values[later]);
+            }
+        }
+        values.into_iter().zip(rest).for_each(|(value, wide)| value.store(wide, part));
+    }
 }

@@ -19,3 +19,4 @@ pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
 pub use simd::{Level, levels};
 pub(crate) use simd::{cholesky, cosines_and_sines, hat, solve, sum_gradient, sum_products};
 pub(crate) use totals::{Tiles, Totals};
+pub(crate) use vector::{WIDTH, Wide};

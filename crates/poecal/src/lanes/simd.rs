@@ -124,6 +124,6 @@ dispatch!(
     dense::solve(factor: &Factor, x: &mut [f64])
 );
 dispatch!(
-    /// `J N⁻¹ Jᵀ` of a Jacobian (row-major) of at most eight rows.
-    dense::hat(factor: &Factor, jacobian: &[f64], rows: usize) -> [[f64; WIDTH]; WIDTH]
+    /// `J N⁻¹ Jᵀ` of a Jacobian (row-major) of at most eight rows; `columns` is room to work in.
+    dense::hat(factor: &Factor, jacobian: &[f64], columns: &mut Vec<Wide>) -> [[f64; WIDTH]; WIDTH]
 );
