@@ -33,7 +33,7 @@ impl Numbers {
     pub(super) fn parse(&mut self, text: &str, line: usize) -> Result<f64, String> {
         // The usual case; all else, `nan` and `inf` too, takes the long way.
         if matches!(self.sign, Some((DecimalSign::Point, _)))
-            && let Ok(value) = text.parse::<f64>()
+            && let Ok(value) = fast_float2::parse::<f64, _>(text)
             && value.is_finite()
         {
             return Ok(value);

@@ -12,7 +12,7 @@ use super::number::Numbers;
 use super::scale::{self, JointWatch};
 use super::spread;
 use super::table::{Row, Table};
-use super::text::read_text;
+use super::text::Blocks;
 use super::understanding::{self, FileUnderstanding};
 use super::{MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result};
@@ -34,7 +34,7 @@ pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) ->
     let mut reader = Reader::new(robot, options, &no_map);
     for path in paths {
         let path = path.as_ref();
-        reader.file(path, &read_text(path, "a measurement file (CSV)")?)?;
+        reader.file(path, Blocks::open(path, "a measurement file (CSV)")?)?;
     }
     reader.finish()
 }
@@ -60,7 +60,7 @@ pub fn parse(
 ) -> Result<MeasurementFile> {
     let no_map = ColumnMap::default();
     let mut reader = Reader::new(robot, options, &no_map);
-    reader.file(path.as_ref(), text)?;
+    reader.file(path.as_ref(), Blocks::new(path.as_ref(), text.as_bytes()))?;
     reader.finish()
 }
 
@@ -98,8 +98,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn file(&mut self, path: &Path, text: &str) -> Result<()> {
-        let mut table = Table::open(path, text, self.map)?;
+    fn file<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
+        let mut table = Table::open(path, blocks, self.map)?;
         let layout = Layout::new(&table.header, self.robot, self.options, self.map)?;
         let mut inputs = InputReader::new(&layout.inputs, Numbers::new(self.map.decimal));
         let mut watch = JointWatch::new(self.robot);
@@ -109,11 +109,13 @@ impl<'a> Reader<'a> {
             self.data.ids.resize(first, String::new());
         }
         let mut rows = 0;
-        while let Some(row) = table.next_row()? {
-            rows += 1;
-            inputs.read(&row)?;
-            watch.observe(&row, &inputs);
-            self.row(&row, &layout, &mut inputs)?;
+        while let Some(mut some) = table.next_block()? {
+            while let Some(row) = some.next()? {
+                rows += 1;
+                inputs.read(&row)?;
+                watch.observe(&row, &inputs);
+                self.row(&row, &layout, &mut inputs)?;
+            }
         }
         if rows == 0 {
             let message = "found a header and no rows, expected at least one measurement";

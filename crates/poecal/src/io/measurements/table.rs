@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::mapping::ColumnMap;
-use super::text::{Cell, Lines, Separator, character_column, split};
+use super::text::{Blocks, Cell, Lines, Separator, character_column, split};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 
 /// A column of the header: `name[unit]`.
@@ -33,44 +33,51 @@ pub(super) struct Row<'t> {
     pub(super) cells: &'t [Cell<'t>],
 }
 
-/// A file being read line by line.
+/// A file being read block by block.
 pub(super) struct Table<'a> {
     pub(super) header: Header<'a>,
     pub(super) separator: Separator,
-    lines: Lines<'a>,
-    cells: Vec<Cell<'a>>,
+    blocks: Blocks<'a>,
+    /// Whether the block at hand, the header's, has yet to give its rows.
+    unread: bool,
+}
+
+/// The rows of a block, one after the other.
+pub(super) struct Rows<'t> {
+    header: &'t Header<'t>,
+    separator: Separator,
+    lines: Lines<'t>,
+    cells: Vec<Cell<'t>>,
 }
 
 impl<'a> Table<'a> {
     /// Reads the header; the separator is the mapping's or recognised.
-    pub(super) fn open(path: &'a Path, text: &'a str, map: &ColumnMap) -> Result<Self> {
-        let mut lines = Lines::new(text, map.skip_lines);
-        let Some((line, header)) = lines.next() else {
-            let message = "found no line with text, expected a header and rows";
-            return Err(Error::new(ErrorKind::Syntax, message).in_file(path));
-        };
-        let separator = map.separator.unwrap_or_else(|| Separator::recognised(header));
-        let mut cells = Vec::new();
-        split_line(path, line, header, separator, &mut cells)?;
-        let header = Header {
-            path,
-            line,
-            cells: cells
-                .iter()
-                .map(|cell| HeaderCell::new(&cell.text(), character_column(header, cell.offset)))
-                .collect(),
-        };
-        if header.cells.iter().all(|cell| cell.text.replace(',', ".").parse::<f64>().is_ok()) {
-            let message = "found a line of numbers, expected a header that names the columns \
-                           (a line that begins with `#` is a comment)";
-            return Err(Error::new(ErrorKind::Syntax, message).at_line(path, line));
+    pub(super) fn open(path: &'a Path, mut blocks: Blocks<'a>, map: &ColumnMap) -> Result<Self> {
+        while blocks.advance()? {
+            let Some((line, text)) = blocks.lines(map.skip_lines).next() else { continue };
+            let separator = map.separator.unwrap_or_else(|| Separator::recognised(text));
+            let header = Header::new(path, line, text, separator)?;
+            return Ok(Table { header, separator, blocks, unread: true });
         }
-        Ok(Table { header, separator, lines, cells })
+        let message = "found no line with text, expected a header and rows";
+        Err(Error::new(ErrorKind::Syntax, message).in_file(path))
     }
 
+    /// The rows of the next block.
+    pub(super) fn next_block(&mut self) -> Result<Option<Rows<'_>>> {
+        if !std::mem::take(&mut self.unread) && !self.blocks.advance()? {
+            return Ok(None);
+        }
+        let Table { header, separator, blocks, .. } = self;
+        let lines = blocks.lines(header.line);
+        Ok(Some(Rows { header, separator: *separator, lines, cells: Vec::new() }))
+    }
+}
+
+impl Rows<'_> {
     /// The next row that is not empty.
-    pub(super) fn next_row(&mut self) -> Result<Option<Row<'_>>> {
-        let Header { path, line: header_line, .. } = self.header;
+    pub(super) fn next(&mut self) -> Result<Option<Row<'_>>> {
+        let Header { path, line: header_line, .. } = *self.header;
         loop {
             let Some((line, text)) = self.lines.next() else { return Ok(None) };
             split_line(path, line, text, self.separator, &mut self.cells)?;
@@ -130,7 +137,20 @@ impl HeaderCell {
     }
 }
 
-impl Header<'_> {
+impl<'a> Header<'a> {
+    fn new(path: &'a Path, line: usize, text: &str, separator: Separator) -> Result<Self> {
+        let mut cells = Vec::new();
+        split_line(path, line, text, separator, &mut cells)?;
+        let cell = |cell: &Cell<'_>| HeaderCell::new(&cell.text(), character_column(text, cell.offset));
+        let cells: Vec<HeaderCell> = cells.iter().map(cell).collect();
+        if cells.iter().all(|cell| cell.text.replace(',', ".").parse::<f64>().is_ok()) {
+            let message = "found a line of numbers, expected a header that names the columns \
+                           (a line that begins with `#` is a comment)";
+            return Err(Error::new(ErrorKind::Syntax, message).at_line(path, line));
+        }
+        Ok(Header { path, line, cells })
+    }
+
     /// Index of the column of this name, which may include the unit as the file writes it.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
         let mut matches =

@@ -1,7 +1,8 @@
 //! The text of a file, its lines and the cells of a line.
 
 use std::borrow::Cow;
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 use serde::Serialize;
@@ -11,6 +12,13 @@ use crate::io::source_text::position;
 
 /// The whole text of a file; `expected` says what it should be.
 pub(super) fn read_text(path: &Path, expected: &str) -> Result<String> {
+    let mut bytes = Vec::new();
+    open(path, expected)?.read_to_end(&mut bytes).map_err(|error| unreadable(path, &error, expected))?;
+    String::from_utf8(bytes)
+        .map_err(|error| not_utf8(path, error.as_bytes(), error.utf8_error().valid_up_to(), 0))
+}
+
+fn open(path: &Path, expected: &str) -> Result<File> {
     let file_error = |found: &str| {
         Error::new(ErrorKind::File, format!("found {found}, expected {expected}; check the name"))
             .in_file(path)
@@ -18,17 +26,87 @@ pub(super) fn read_text(path: &Path, expected: &str) -> Result<String> {
     if path.is_dir() {
         return Err(file_error("a directory"));
     }
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+    File::open(path).map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => file_error("no file of this name"),
-        _ => Error::new(ErrorKind::File, format!("cannot be read ({error}), expected {expected}"))
-            .in_file(path),
-    })?;
-    String::from_utf8(bytes)
-        .map_err(|error| not_utf8(path, error.as_bytes(), error.utf8_error().valid_up_to()))
+        _ => unreadable(path, &error, expected),
+    })
 }
 
-fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
-    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Error {
+    Error::new(ErrorKind::File, format!("cannot be read ({error}), expected {expected}")).in_file(path)
+}
+
+/// Bytes of a file that are held at a time, about.
+const BLOCK: usize = 1 << 18;
+
+/// A text in blocks of whole lines, so that a large file is never held whole.
+pub(super) struct Blocks<'a> {
+    path: &'a Path,
+    source: Box<dyn Read + 'a>,
+    /// The block at hand.
+    text: String,
+    /// What follows it and has been read: no whole line.
+    rest: Vec<u8>,
+    /// What ends a line; none before the first block.
+    newline: Option<u8>,
+    /// Lines before the block at hand.
+    lines: usize,
+}
+
+impl<'a> Blocks<'a> {
+    /// The blocks of a file; `expected` says what it should be.
+    pub(super) fn open(path: &'a Path, expected: &str) -> Result<Self> {
+        Ok(Blocks::new(path, open(path, expected)?))
+    }
+
+    /// The blocks of any text; `path` is for the messages only.
+    pub(super) fn new(path: &'a Path, source: impl Read + 'a) -> Self {
+        let source = Box::new(source);
+        Blocks { path, source, text: String::new(), rest: Vec::new(), newline: None, lines: 0 }
+    }
+
+    /// Reads the next block; false at the end.
+    pub(super) fn advance(&mut self) -> Result<bool> {
+        let newline = self.newline.unwrap_or(b'\n');
+        self.lines += memchr::memchr_iter(newline, self.text.as_bytes()).count();
+        let mut bytes = std::mem::take(&mut self.text).into_bytes();
+        bytes.clear();
+        bytes.append(&mut self.rest);
+        loop {
+            let known = bytes.len();
+            let more = self.source.by_ref().take(BLOCK as u64).read_to_end(&mut bytes);
+            let more = more.map_err(|error| unreadable(self.path, &error, "a table (CSV)"))?;
+            let end = memchr::memrchr(b'\n', bytes.get(known..).unwrap_or_default());
+            if let Some(end) = end {
+                self.rest.extend(bytes.drain(known + end + 1..));
+            }
+            if end.is_some() || more == 0 {
+                break;
+            }
+        }
+        let is_first = self.newline.is_none();
+        if is_first {
+            self.newline = Some(if memchr::memchr(b'\n', &bytes).is_some() { b'\n' } else { b'\r' });
+        }
+        let text = String::from_utf8(bytes);
+        self.text = text.map_err(|error| {
+            not_utf8(self.path, error.as_bytes(), error.utf8_error().valid_up_to(), self.lines)
+        })?;
+        if is_first && self.text.starts_with('\u{feff}') {
+            self.text.remove(0);
+        }
+        Ok(!self.text.is_empty())
+    }
+
+    /// The lines of the block at hand, but for the first `skip` of the file.
+    pub(super) fn lines(&self, skip: usize) -> Lines<'_> {
+        Lines { rest: Some(&self.text), newline: self.newline.unwrap_or(b'\n'), number: self.lines, skip }
+    }
+}
+
+/// The error of bytes that are no text, of which there are `lines` lines before these.
+fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
+    if lines == 0 && (bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff])) {
         let message = "found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`";
         return Error::new(ErrorKind::Syntax, message).in_file(path);
     }
@@ -36,7 +114,7 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
     let found = bytes.get(valid).copied().unwrap_or_default();
     let (line, column) = position(&before, before.len());
     let message = format!("found the byte 0x{found:02X}, expected UTF-8 text; save the file as `CSV UTF-8`");
-    Error::new(ErrorKind::Syntax, message).at(path, line, column)
+    Error::new(ErrorKind::Syntax, message).at(path, lines + line, column)
 }
 
 /// What stands between two cells.
@@ -98,13 +176,6 @@ pub(super) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The lines of a text after the first `skip`.
-    pub(super) fn new(text: &'a str, skip: usize) -> Self {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let newline = if memchr::memchr(b'\n', text.as_bytes()).is_some() { b'\n' } else { b'\r' };
-        Lines { rest: Some(text), newline, number: 0, skip }
-    }
-
     /// The next line, whatever it holds.
     fn line(&mut self) -> Option<&'a str> {
         let rest = self.rest?;
@@ -208,11 +279,13 @@ pub(super) fn split<'a>(
 /// Splits a line without quotes.
 fn split_plainly<'a>(line: &'a str, separator: u8, cells: &mut Vec<Cell<'a>>) {
     let mut start = 0;
-    loop {
-        let after = line.get(start..).unwrap_or_default();
-        let end = memchr::memchr(separator, after.as_bytes());
-        let piece = end.and_then(|end| after.get(..end)).unwrap_or(after);
-        if piece.starts_with(is_plain) && piece.ends_with(is_plain) {
+    for end in memchr::memchr_iter(separator, line.as_bytes()).chain([line.len()]) {
+        let piece = line.get(start..end).unwrap_or_default();
+        // What surely has no padding.
+        if let [first, .., last] | [first @ last] = piece.as_bytes()
+            && first.is_ascii_graphic()
+            && last.is_ascii_graphic()
+        {
             cells.push(Cell { raw: piece, offset: start, escaped: false });
         } else {
             let trimmed = match separator {
@@ -222,14 +295,8 @@ fn split_plainly<'a>(line: &'a str, separator: u8, cells: &mut Vec<Cell<'a>>) {
             let offset = start + piece.len() - trimmed.len();
             cells.push(Cell { raw: trimmed.trim_end(), offset, escaped: false });
         }
-        let Some(end) = end else { return };
-        start += end + 1;
+        start = end + 1;
     }
-}
-
-/// Whether a character is surely no padding.
-fn is_plain(c: char) -> bool {
-    c.is_ascii_graphic()
 }
 
 /// Byte index of the quote that ends a quoted cell; a doubled quote is part of the text.
@@ -256,6 +323,15 @@ mod tests {
 
     fn owned(cells: &[(&str, usize)]) -> Vec<(String, usize)> {
         cells.iter().map(|(text, offset)| ((*text).to_owned(), *offset)).collect()
+    }
+
+    fn lines(text: &str, skip: usize) -> Vec<(usize, String)> {
+        let mut blocks = Blocks::new(Path::new("x.csv"), text.as_bytes());
+        let mut found = Vec::new();
+        while blocks.advance().unwrap() {
+            found.extend(blocks.lines(skip).map(|(number, line)| (number, line.to_owned())));
+        }
+        found
     }
 
     #[test]
@@ -287,9 +363,36 @@ mod tests {
 
     #[test]
     fn blank_lines_and_comments_count_but_are_passed_over() {
-        let lines: Vec<_> = Lines::new("\u{feff}# note\r\n\r\na\r\n  # b\r\nc", 0).collect();
-        assert_eq!(lines, [(3, "a"), (5, "c")]);
-        assert_eq!(Lines::new("title\na", 1).collect::<Vec<_>>(), [(2, "a")]);
-        assert_eq!(Lines::new("a\rb", 0).collect::<Vec<_>>(), [(1, "a"), (2, "b")]);
+        assert_eq!(
+            lines("\u{feff}# note\r\n\r\na\r\n  # b\r\nc", 0),
+            [(3, "a".to_owned()), (5, "c".to_owned())]
+        );
+        assert_eq!(lines("title\na", 1), [(2, "a".to_owned())]);
+        assert_eq!(lines("a\rb", 0), [(1, "a".to_owned()), (2, "b".to_owned())]);
+    }
+
+    #[test]
+    fn lines_are_the_same_however_the_blocks_fall() {
+        for newline in ["\n", "\r\n", "\r"] {
+            for last in ["", newline] {
+                let row = |k: usize| format!("{k},{}µ", "x".repeat(k % 300));
+                let rows: Vec<String> = (1..5000).map(row).collect();
+                let found = lines(&(rows.join(newline) + last), 0);
+                println!(
+                    "{} lines in {} blocks",
+                    found.len(),
+                    found.iter().map(|(_, row)| row.len()).sum::<usize>() / BLOCK + 1
+                );
+                assert!(found.into_iter().eq((1..).zip(rows)));
+            }
+        }
+        let text = "a,b\n".repeat(BLOCK) + "\u{fffd}";
+        let bytes = &text.as_bytes()[..text.len() - 1];
+        let mut blocks = Blocks::new(Path::new("x.csv"), bytes);
+        let error = (0..).find_map(|_| blocks.advance().err()).unwrap();
+        assert!(
+            error.to_string().starts_with(&format!("x.csv:{}:1: found the byte 0xEF", BLOCK + 1)),
+            "{error}"
+        );
     }
 }
