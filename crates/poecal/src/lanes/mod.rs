@@ -5,6 +5,7 @@ mod gram;
 mod kernel;
 mod plain;
 mod plan;
+mod poses;
 mod simd;
 mod sincos;
 mod totals;
@@ -16,6 +17,10 @@ mod x86;
 pub(crate) use dense::Factor;
 pub(crate) use kernel::Arm;
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
+pub(crate) use poses::Exponential;
 pub use simd::{Level, levels};
-pub(crate) use simd::{cholesky, cosines_and_sines, hat, inverse, solve, sum_gradient, sum_products};
+pub(crate) use simd::{
+    cholesky, cosines_and_sines, hat, inverse, product_of_exponentials, solve, sum_gradient, sum_products,
+};
 pub(crate) use totals::{Tiles, Totals};
+pub(crate) use vector::{WIDTH, Wide};
