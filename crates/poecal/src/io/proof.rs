@@ -38,7 +38,8 @@ impl Difference {
 /// A robot's tip poses on random configurations, which any number of robots may be compared with.
 pub(super) struct Reference<'a> {
     robot: &'a Robot,
-    configurations: Vec<Vec<f64>>,
+    /// Readings of one configuration after the other.
+    readings: Vec<f64>,
     poses: Vec<Pose>,
 }
 
@@ -47,9 +48,9 @@ impl<'a> Reference<'a> {
     pub(super) fn new(robot: &'a Robot, count: usize) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(1);
         let random = Configurations::new(robot);
-        let configurations: Vec<Vec<f64>> = (0..count).map(|_| random.random(&mut generator)).collect();
-        let poses = robot.forward_kinematics_of(configurations.iter().map(Vec::as_slice)).collect();
-        Reference { robot, configurations, poses }
+        let readings: Vec<f64> = (0..count).flat_map(|_| random.random(&mut generator)).collect();
+        let poses = robot.forward_kinematics_of(&readings);
+        Reference { robot, readings, poses }
     }
 
     /// Whether it is of this very robot.
@@ -60,7 +61,7 @@ impl<'a> Reference<'a> {
     /// Largest difference of the other robot's tip poses from these.
     pub(super) fn difference(&self, other: &Robot) -> Difference {
         let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
-        let poses = other.forward_kinematics_of(self.configurations.iter().map(Vec::as_slice));
+        let poses = other.forward_kinematics_of(&self.readings);
         for (a, b) in self.poses.iter().zip(poses) {
             largest.position_m = larger(largest.position_m, (a.translation - b.translation).norm());
             let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();

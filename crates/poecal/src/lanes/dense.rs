@@ -136,25 +136,43 @@ pub(super) fn solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
     }
 }
 
-/// The inverse (row-major) of the matrix that was factorised, `Σ rᵀ r` over the rows r of `R⁻ᵀ`.
+/// The inverse (row-major) of the matrix that was factorised: `WᵀW` with `W = R⁻ᵀ`, of which row i ends with column i.
 #[inline(always)]
 pub(super) fn inverse<V: Vector>(factor: &Factor) -> Vec<f64> {
     let n = factor.n;
     let stride = n.div_ceil(WIDTH).max(1);
     let mut lower = vec![Wide::ZERO; n * stride];
-    let mut inverse = vec![Wide::ZERO; n * stride];
-    for (i, row) in factor.rows.chunks_exact(stride).take(n).enumerate() {
-        let used = i / WIDTH + 1;
-        let (done, later) = lower.split_at_mut((i + 1) * stride);
-        let own = &mut done[i * stride..][..used];
+    for (i, &pivot) in factor.inverses.iter().enumerate() {
+        let (done, own) = lower.split_at_mut(i * stride);
         own[i / WIDTH].0[i % WIDTH] = 1.0;
-        own.iter_mut().flat_map(|wide| &mut wide.0).for_each(|value| *value *= factor.inverses[i]);
-        for (j, other) in (i + 1..n).zip(later.chunks_exact_mut(stride)) {
-            subtract::<V>(&mut other[..used], own, row[j / WIDTH].0[j % WIDTH]);
-        }
-        for (k, out) in inverse.chunks_exact_mut(stride).take(i + 1).enumerate() {
-            subtract::<V>(&mut out[..used], own, -own[k / WIDTH].0[k % WIDTH]);
+        for (block, own) in own.iter_mut().enumerate().take(i / WIDTH + 1) {
+            for part in 0..WIDTH / V::LANES {
+                let mut sum = V::load(own, part);
+                let both = done.chunks_exact(stride).zip(factor.rows.chunks_exact(stride));
+                for (row, factor) in both.skip(block * WIDTH) {
+                    let value = V::splat(factor[i / WIDTH].0[i % WIDTH]);
+                    sum = V::load(&row[block], part).times_from(value, sum);
+                }
+                (sum * V::splat(pivot)).store(own, part);
+            }
         }
     }
-    inverse.chunks_exact(stride).flat_map(|row| row.iter().flat_map(|wide| wide.0).take(n)).collect()
+    let mut inverse = vec![0.0; n * n];
+    for i in 0..n {
+        for block in i / WIDTH..stride {
+            let mut wide = Wide::ZERO;
+            for part in 0..WIDTH / V::LANES {
+                let mut sum = V::splat(0.0);
+                for row in lower.chunks_exact(stride).skip(block * WIDTH) {
+                    let value = V::splat(row[i / WIDTH].0[i % WIDTH]);
+                    sum = V::load(&row[block], part).times_plus(value, sum);
+                }
+                sum.store(&mut wide, part);
+            }
+            for (j, &value) in (block * WIDTH..n).zip(&wide.0) {
+                (inverse[i * n + j], inverse[j * n + i]) = (value, value);
+            }
+        }
+    }
+    inverse
 }

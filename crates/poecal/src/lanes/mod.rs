@@ -6,6 +6,7 @@ mod influence;
 mod kernel;
 mod plain;
 mod plan;
+mod poses;
 mod simd;
 mod sincos;
 mod tip;
@@ -19,9 +20,11 @@ pub(crate) use dense::Factor;
 pub(crate) use influence::NUMBERS;
 pub(crate) use kernel::Arm;
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
+pub(crate) use poses::Exponential;
 pub use simd::{Level, levels};
 pub(crate) use simd::{
-    cholesky, cosines_and_sines, influences, inverse, last_links, solve, sum_gradient, sum_products,
+    cholesky, cosines_and_sines, influences, inverse, last_links, product_of_exponentials, solve,
+    sum_gradient, sum_products,
 };
 pub(crate) use totals::{Tiles, Totals};
 pub(crate) use vector::{WIDTH, Wide};

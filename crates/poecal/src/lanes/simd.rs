@@ -7,6 +7,7 @@ use super::kernel::{self, Arm};
 use super::plain::Pair;
 use super::plain::Two;
 use super::plan::Step;
+use super::poses::{self, Exponential};
 use super::sincos;
 use super::tip;
 use super::totals::Totals;
@@ -120,6 +121,10 @@ dispatch!(
 dispatch!(
     /// Writes `(cos, sin)` of each angle, with the same bits at every level.
     sincos::cosines_and_sines(angles: &[f64], out: &mut [(f64, f64)])
+);
+dispatch!(
+    /// The product of the motions of all joints, each with its two factors, with the same bits at every level.
+    poses::product_of_exponentials(joints: &[Exponential], factors: &[[Wide; 2]]) -> [[Wide; 4]; 3]
 );
 dispatch!(
     /// Factor of the symmetric matrix given by its upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that

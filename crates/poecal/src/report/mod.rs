@@ -3,6 +3,7 @@
 mod breakdown;
 mod check;
 mod claims;
+mod fixed;
 mod identify;
 mod judgement;
 mod offsets;

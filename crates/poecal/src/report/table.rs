@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::fixed::Fixed;
 use crate::analysis::{Cause, Identifiability};
 use crate::calibration::{Calibration, Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
 use crate::measurement::{Dataset, PoseResidual};
@@ -136,7 +137,7 @@ pub(super) fn number(value: f64) -> String {
         return format!("{value:.1e}");
     }
     let digits = (3 - value.log10().floor() as i32).clamp(1, 4) as usize;
-    format!("{value:.digits$}")
+    Fixed(value, digits).to_string()
 }
 
 pub(super) fn robot_words(robot: &Robot) -> String {

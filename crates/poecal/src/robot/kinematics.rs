@@ -1,8 +1,10 @@
 //! Forward kinematics by the product of exponentials.
 
+use nalgebra::{Matrix3, Vector3};
+
 use super::Robot;
-use crate::lanes::{self, Level};
-use crate::lie::Pose;
+use crate::lanes::{self, Exponential, Level, WIDTH, Wide};
+use crate::lie::{Pose, Screw, hat};
 
 impl Robot {
     /// Joint values of a configuration given as readings (order of [`Robot::reading_names`]); mimic joints follow their leader:
@@ -23,20 +25,45 @@ impl Robot {
         self.motion(&self.joint_values(readings)) * self.home
     }
 
-    /// [`Robot::forward_kinematics`] of one configuration after the other.
-    pub fn forward_kinematics_of<'a>(
-        &'a self,
-        configurations: impl Iterator<Item = &'a [f64]>,
-    ) -> impl Iterator<Item = Pose> {
+    /// [`Robot::forward_kinematics`] of several configurations, their readings one after the other.
+    #[must_use]
+    pub fn forward_kinematics_of(&self, readings: &[f64]) -> Vec<Pose> {
         let indices = self.reading_indices();
-        let mut values = vec![0.0; self.joints.len()];
-        let mut sines = Sines::default();
-        configurations.map(move |readings| {
-            for ((value, joint), &index) in values.iter_mut().zip(&self.joints).zip(&indices) {
-                *value = joint.reading.value(readings.get(index).copied().unwrap_or(0.0));
+        let width = self.reading_names().len().max(1);
+        let exponentials: Vec<Exponential> =
+            self.joints.iter().map(|joint| exponential(&joint.screw)).collect();
+        let mut values = vec![0.0; self.joints.len() * WIDTH];
+        let mut found = vec![(0.0, 0.0); values.len()];
+        let mut factors = vec![[Wide::ZERO; 2]; self.joints.len()];
+        let mut poses = Vec::with_capacity(readings.len() / width);
+        for some in readings.chunks(WIDTH * width) {
+            let some = some.chunks_exact(width);
+            let count = some.len();
+            for ((joint, &index), values) in
+                self.joints.iter().zip(&indices).zip(values.chunks_exact_mut(WIDTH))
+            {
+                for (value, readings) in values.iter_mut().zip(some.clone()) {
+                    *value = joint.reading.value(readings.get(index).copied().unwrap_or(0.0));
+                }
             }
-            sines.motion(self, &values) * self.home
-        })
+            lanes::cosines_and_sines(Level::best(), &values, &mut found);
+            let each =
+                self.joints.iter().zip(&mut factors).zip(found.chunks(WIDTH).zip(values.chunks(WIDTH)));
+            for ((joint, [first, second]), (found, values)) in each {
+                let slides = joint.screw.is_prismatic();
+                for (lane, (&(cosine, sine), &value)) in found.iter().zip(values).enumerate() {
+                    (first.0[lane], second.0[lane]) =
+                        if slides { (value, 0.0) } else { (sine, 1.0 - cosine) };
+                }
+            }
+            let rows = lanes::product_of_exponentials(Level::best(), &exponentials, &factors);
+            poses.extend((0..count).map(|lane| {
+                let number = |i: usize, j: usize| rows[i][j].0[lane];
+                let translation = Vector3::from_fn(|i, _| number(i, 3));
+                Pose::new(Matrix3::from_fn(number), translation) * self.home
+            }));
+        }
+        poses
     }
 
     /// Frames of the joints in the base, `exp(ξ₁θ₁) … exp(ξᵢθᵢ) base_from_joint_i`, at a configuration given as readings (radians, metres;
@@ -66,29 +93,28 @@ impl Robot {
     /// theory.md §2 (6).
     #[must_use]
     pub fn motion(&self, joint_values: &[f64]) -> Pose {
-        Sines::default().motion(self, joint_values)
-    }
-}
-
-/// Room for joint values and their halves, and `(cos, sin)` of both.
-#[derive(Default)]
-struct Sines {
-    values: Vec<f64>,
-    found: Vec<(f64, f64)>,
-}
-
-impl Sines {
-    /// [`Robot::motion`], all sines at once.
-    fn motion(&mut self, robot: &Robot, joint_values: &[f64]) -> Pose {
-        self.values.clear();
-        self.values.extend_from_slice(joint_values);
-        self.values.extend(joint_values.iter().map(|value| 0.5 * value));
-        self.found.resize(self.values.len(), (0.0, 0.0));
-        lanes::cosines_and_sines(Level::best(), &self.values, &mut self.found);
-        let (whole, halves) = self.found.split_at(joint_values.len());
-        let each = robot.joints.iter().zip(joint_values).zip(whole.iter().zip(halves));
+        let halves = joint_values.iter().map(|value| 0.5 * value);
+        let angles: Vec<f64> = joint_values.iter().copied().chain(halves).collect();
+        let mut found = vec![(0.0, 0.0); angles.len()];
+        lanes::cosines_and_sines(Level::best(), &angles, &mut found);
+        let (whole, halves) = found.split_at(joint_values.len());
+        let each = self.joints.iter().zip(joint_values).zip(whole.iter().zip(halves));
         each.fold(Pose::identity(), |pose, ((joint, &value), ((_, sine), (_, half)))| {
             pose * joint.screw.exp_with(value, *sine, *half)
         })
     }
+}
+
+/// `exp(ξ̂θ) = I + sin θ F + (1 - cos θ) G`, or `I + θ F` of a sliding joint: theory.md §1 (2a).
+fn exponential(screw: &Screw) -> Exponential {
+    let rows = |turn: &Matrix3<f64>, shift: &Vector3<f64>| {
+        std::array::from_fn(|i| [turn[(i, 0)], turn[(i, 1)], turn[(i, 2)], shift[i]])
+    };
+    if screw.is_prismatic() {
+        let none = Matrix3::zeros();
+        return Exponential { first: rows(&none, &screw.v()), second: rows(&none, &Vector3::zeros()) };
+    }
+    let (w, point) = (screw.w(), screw.w().cross(&screw.v()));
+    let (first, second) = (hat(&w), w * w.transpose() - Matrix3::identity());
+    Exponential { first: rows(&first, &-(first * point)), second: rows(&second, &-(second * point)) }
 }

@@ -28,7 +28,7 @@ use crate::measurement::Noise;
 use crate::problem::Layout;
 
 /// Configurations whose motions are worked out together: enough for a quick product, few enough for the cache.
-const TOGETHER: usize = 32;
+const TOGETHER: usize = 16;
 
 /// Covariance of an estimate's unknowns, and what the model does not describe.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +106,9 @@ impl Uncertainty {
             let spread = &motions * &covariance;
             let part = |first: usize| -> Matrix3<f64> {
                 let column = |matrix: &DMatrix<f64>, k| matrix.fixed_view::<3, 1>(first, k).into_owned();
-                (0..n).map(|k| column(&motions, k) * column(&spread, k).transpose()).sum()
+                let mut sum = Matrix3::zeros();
+                (0..n).for_each(|k| sum += column(&motions, k) * column(&spread, k).transpose());
+                sum
             };
             errors.extend((0..some.len()).map(|at| PredictedError {
                 position: part(6 * at) + own(self.discrepancy.position_m),

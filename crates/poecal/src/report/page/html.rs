@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::report::fixed::Fixed;
 use crate::report::plot::escape;
 use crate::report::table::number;
 
@@ -40,7 +41,7 @@ pub(super) fn path(text: &str, key: &str) -> String {
 
 /// A value with decimals and a true minus; what rounds to zero has none.
 pub(super) fn decimal(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
+    let text = Fixed(value, decimals).to_string();
     if text.trim_matches(['-', '0', '.']).is_empty() {
         return text.trim_start_matches('-').to_owned();
     }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::report::fixed::Fixed;
+
 /// A series' colour (Okabe and Ito's, which colour-blind people tell apart), dash and marker.
 struct Style {
     colour: &'static str,
@@ -73,6 +75,17 @@ pub(super) fn wrapped(text: &str, width: f64) -> Vec<String> {
     lines
 }
 
+/// A coordinate.
+fn px(value: f64) -> Fixed {
+    Fixed(value, 2)
+}
+
+/// Points of a line.
+fn joined(points: &[[f64; 2]]) -> String {
+    let points: Vec<String> = points.iter().map(|&[x, y]| format!("{},{}", px(x), px(y))).collect();
+    points.join(" ")
+}
+
 /// An SVG in the making. Coordinates are in px, x to the right and y down.
 pub(super) struct Canvas {
     body: String,
@@ -108,9 +121,9 @@ impl Canvas {
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let text = escape(text);
+        let (text, x, y) = (escape(text), px(x), px(y));
         self.put(format_args!(
-            r##"<text class="{class}" x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" fill="#1f2933"{style}>{text}</text>"##
+            r##"<text class="{class}" x="{x}" y="{y}" text-anchor="{anchor}" fill="#1f2933"{style}>{text}</text>"##
         ));
     }
 
@@ -134,8 +147,9 @@ impl Canvas {
         [to_x, to_y]: [f64; 2],
         dash: &str,
     ) {
+        let [x, y, to_x, to_y] = [x, y, to_x, to_y].map(px);
         self.put(format_args!(
-            r#"<line class="{class}" x1="{x:.2}" y1="{y:.2}" x2="{to_x:.2}" y2="{to_y:.2}" stroke="{colour}"{dash}/>"#
+            r#"<line class="{class}" x1="{x}" y1="{y}" x2="{to_x}" y2="{to_y}" stroke="{colour}"{dash}/>"#
         ));
     }
 
@@ -156,8 +170,7 @@ impl Canvas {
     /// A line through points, in the series' dash.
     pub(super) fn path(&mut self, style: usize, points: &[[f64; 2]]) {
         let dash = STYLES[style % STYLES.len()].dash;
-        let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
-        let points = points.join(" ");
+        let points = joined(points);
         self.put(format_args!(
             r#"<polyline points="{points}" fill="none" stroke-width="1.6" stroke-dasharray="{dash}"/>"#
         ));
@@ -166,8 +179,9 @@ impl Canvas {
     /// A filled box from one corner to the other.
     pub(super) fn bar(&mut self, [left, top]: [f64; 2], [right, bottom]: [f64; 2]) {
         let (left, width, height) = (left.min(right), (right - left).abs().max(1.0), bottom - top);
+        let [left, top, width, height] = [left, top, width, height].map(px);
         self.put(format_args!(
-            r#"<rect x="{left:.2}" y="{top:.2}" width="{width:.2}" height="{height:.2}" stroke="none"/>"#
+            r#"<rect x="{left}" y="{top}" width="{width}" height="{height}" stroke="none"/>"#
         ));
     }
 
@@ -176,12 +190,13 @@ impl Canvas {
         let hollow = if filled { "" } else { r##" class="hollow" fill="#ffffff""## };
         match STYLES[style % STYLES.len()].marker {
             Marker::Circle => {
-                self.put(format_args!(r#"<circle cx="{x:.2}" cy="{y:.2}" r="{radius:.2}"{hollow}/>"#))
+                let [x, y, radius] = [x, y, radius].map(px);
+                self.put(format_args!(r#"<circle cx="{x}" cy="{y}" r="{radius}"{hollow}/>"#));
             }
             Marker::Square => {
-                let (left, top, side) = (x - 0.9 * radius, y - 0.9 * radius, 1.8 * radius);
+                let [left, top, side] = [x - 0.9 * radius, y - 0.9 * radius, 1.8 * radius].map(px);
                 self.put(format_args!(
-                    r#"<rect x="{left:.2}" y="{top:.2}" width="{side:.2}" height="{side:.2}"{hollow}/>"#
+                    r#"<rect x="{left}" y="{top}" width="{side}" height="{side}"{hollow}/>"#
                 ));
             }
             Marker::Triangle => {
@@ -200,8 +215,7 @@ impl Canvas {
     }
 
     fn polygon(&mut self, corners: &[[f64; 2]], hollow: &str) {
-        let corners: Vec<String> = corners.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
-        let corners = corners.join(" ");
+        let corners = joined(corners);
         self.put(format_args!(r#"<polygon points="{corners}"{hollow}/>"#));
     }
 

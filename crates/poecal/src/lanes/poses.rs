@@ -1,0 +1,44 @@
+//! Poses of a tip in several configurations side by side. No product is fused with a sum, so that the bits are the same by all
+//! instructions.
+
+use super::vector::{Vector, WIDTH, Wide};
+
+/// The motion of a joint, `I + f F + g G` with two numbers f and g that depend on its value: three directions and a translation, by rows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exponential {
+    pub(crate) first: [[f64; 4]; 3],
+    pub(crate) second: [[f64; 4]; 3],
+}
+
+/// The product of the motions of all joints, each with its f and g: three directions and a translation, by rows.
+#[inline(always)]
+pub(super) fn product_of_exponentials<V: Vector>(
+    joints: &[Exponential],
+    factors: &[[Wide; 2]],
+) -> [[Wide; 4]; 3] {
+    let mut out = [[Wide::ZERO; 4]; 3];
+    for part in 0..WIDTH / V::LANES {
+        let unit = |i: usize, j: usize| V::splat(f64::from(u8::from(i == j)));
+        let mut rows: [[V; 4]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| unit(i, j)));
+        for (joint, [first, second]) in joints.iter().zip(factors) {
+            let (first, second) = (V::load(first, part), V::load(second, part));
+            let change: [[V; 4]; 3] = std::array::from_fn(|i| {
+                std::array::from_fn(|j| {
+                    first * V::splat(joint.first[i][j]) + second * V::splat(joint.second[i][j])
+                })
+            });
+            for row in &mut rows {
+                let [x, y, z, _] = *row;
+                for (value, ((a, b), c)) in
+                    row.iter_mut().zip(change[0].iter().zip(&change[1]).zip(&change[2]))
+                {
+                    *value = *value + (x * *a + y * *b + z * *c);
+                }
+            }
+        }
+        for (row, out) in rows.iter().zip(&mut out) {
+            row.iter().zip(out).for_each(|(value, out)| value.store(out, part));
+        }
+    }
+    out
+}
