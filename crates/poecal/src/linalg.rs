@@ -69,21 +69,21 @@ pub(crate) fn hat(factor: &Factor, jacobian: &[f64], columns: &mut Vec<Wide>) ->
     lanes::hat(Level::best(), factor, jacobian, columns)
 }
 
-/// Solves `A x = b` for a symmetric, positive definite matrix by elimination; `None` if it is not.
-pub(crate) fn solve_small(mut matrix: Small, mut x: [f64; WIDTH]) -> Option<[f64; WIDTH]> {
-    for k in 0..WIDTH {
+/// Solves `A x = b` for a positive definite matrix of `n` rows by elimination; `None` if it is not.
+pub(crate) fn solve_small(mut matrix: Small, mut x: [f64; WIDTH], n: usize) -> Option<[f64; WIDTH]> {
+    for k in 0..n {
         let (row, value) = (matrix[k], x[k]);
         if row[k].is_nan() || row[k] <= 0.0 {
             return None;
         }
         let inverse = 1.0 / row[k];
-        for i in k + 1..WIDTH {
+        for i in k + 1..n {
             let factor = row[i] * inverse;
             matrix[i].iter_mut().zip(&row).for_each(|(own, above)| *own -= factor * above);
             x[i] -= factor * value;
         }
     }
-    for k in (0..WIDTH).rev() {
+    for k in (0..n).rev() {
         let known = dot(&matrix[k][k + 1..], &x[k + 1..]);
         x[k] = (x[k] - known) / matrix[k][k];
     }

@@ -71,8 +71,8 @@ fn row_influence(hat: &Small, residual: &[f64; WIDTH], dim: usize, weight: f64) 
     let leverage = (0..dim).map(|i| hat[i][i]).sum::<f64>() / dim.max(1) as f64;
     let solved = |x: [f64; WIDTH], share: f64, diagonal: f64| {
         let mut matrix = hat.map(|row| row.map(|h| share * h));
-        (0..WIDTH).for_each(|i| matrix[i][i] += diagonal);
-        linalg::solve_small(matrix, x).unwrap_or(x)
+        (0..dim).for_each(|i| matrix[i][i] += diagonal);
+        linalg::solve_small(matrix, x, dim).unwrap_or(x)
     };
     let left_out = solved(*residual, -weight, 1.0 + LEAST_REDUNDANCY);
     let judged = if weight < 1.0 { solved(left_out, 1.0 - weight, 1.0) } else { left_out };

@@ -169,15 +169,17 @@ fn lower_solve_all<V: Vector>(factor: &Factor, columns: &mut [Wide], part: usize
         let (above, own) = factor.rows.split_at(i * stride);
         for (done, row) in done.iter().zip(above.chunks_exact(stride)) {
             let done = V::load(done, part);
-            for (value, &factor) in values.iter_mut().zip(&row[block].0[lane..lane + PANEL]) {
+            let factors = &row[block].0.as_chunks::<PANEL>().0[lane / PANEL];
+            for (value, &factor) in values.iter_mut().zip(factors) {
                 *value = done.times_from(V::splat(factor), *value);
             }
         }
-        for (k, &inverse) in factor.inverses[i..].iter().take(PANEL).enumerate() {
+        for k in 0..PANEL {
+            let inverse = factor.inverses.get(i + k).copied().unwrap_or(0.0);
             values[k] = values[k] * V::splat(inverse);
-            let row = &own[k * stride + block].0;
+            let factors = &own[k * stride + block].0.as_chunks::<PANEL>().0[lane / PANEL];
             for later in k + 1..PANEL {
-                values[later] = values[k].times_from(V::splat(row[lane + later]), values[later]);
+                values[later] = values[k].times_from(V::splat(factors[later]), values[later]);
             }
         }
         values.into_iter().zip(rest).for_each(|(value, wide)| value.store(wide, part));

@@ -52,7 +52,8 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
         while let Some(row) = rows.next()? {
             inputs.read(&row)?;
             watch.observe(&row, &inputs);
-            joints.readings.extend_from_slice(inputs.readings(&row, layout.inputs.len())?);
+            inputs.take_readings(&row, layout.inputs.len())?;
+            joints.readings.extend_from_slice(inputs.readings());
             joints.rows += 1;
             joints.lines.push(row.line);
             if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {

@@ -165,7 +165,7 @@ impl<'a> Reader<'a> {
     }
 
     fn row(&mut self, row: &Row<'_>, layout: &Layout, inputs: &mut InputReader<'_>) -> Result<()> {
-        inputs.readings(row, self.data.reading_names().len())?;
+        inputs.take_readings(row, self.data.reading_names().len())?;
         let set = self.set(row, layout)?;
         let mut seen = false;
         for target in &layout.targets {
@@ -185,9 +185,8 @@ impl<'a> Reader<'a> {
                     line: u32::try_from(row.line).unwrap_or(u32::MAX),
                 },
             };
-            let readings = inputs.readings(row, self.data.reading_names().len())?;
             self.data
-                .push_observation(readings, observation)
+                .push_observation(inputs.readings(), observation)
                 .map_err(|error| row.error(0, error.message()))?;
             if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
                 self.data.ids.push(cell.text().into_owned());
