@@ -1,5 +1,6 @@
 //! Which rows are fitted, by the value of a column.
 
+use std::borrow::Cow;
 use std::str::FromStr;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -31,7 +32,8 @@ impl FitWhere {
 }
 
 fn number(text: &str) -> Option<f64> {
-    text.parse().or_else(|_| text.replace(',', ".").parse()).ok()
+    let text = if text.contains(',') { Cow::Owned(text.replace(',', ".")) } else { Cow::Borrowed(text) };
+    text.parse().ok()
 }
 
 impl FromStr for FitWhere {

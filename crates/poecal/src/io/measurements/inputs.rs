@@ -29,6 +29,17 @@ impl<'a> InputReader<'a> {
         }
     }
 
+    /// One that goes on after the rows of this one, with ranges of its own.
+    pub(super) fn next(&self) -> Self {
+        InputReader::new(self.inputs, self.numbers.clone())
+    }
+
+    /// Takes in what the next one found.
+    pub(super) fn join(&mut self, next: InputReader<'_>) {
+        self.numbers = next.numbers;
+        self.ranges.iter_mut().zip(next.ranges).for_each(|(range, other)| range.join(other));
+    }
+
     /// Takes in a row's numbers; an empty cell is no number.
     pub(super) fn read(&mut self, row: &Row<'_>) -> Result<()> {
         self.values.clear();
@@ -65,8 +76,8 @@ impl<'a> InputReader<'a> {
         inputs.map(|input| self.value(input))
     }
 
-    /// The first inputs of the current row, which are the joint readings and must be there.
-    pub(super) fn readings(&mut self, row: &Row<'_>, count: usize) -> Result<&[f64]> {
+    /// Takes the first inputs of the current row, which must be there, for its joint readings.
+    pub(super) fn take_readings(&mut self, row: &Row<'_>, count: usize) -> Result<()> {
         self.readings.clear();
         for (input, value) in self.values.iter().take(count).enumerate() {
             match value {
@@ -74,7 +85,12 @@ impl<'a> InputReader<'a> {
                 None => return Err(self.error(row, input, "found an empty cell", "a joint reading")),
             }
         }
-        Ok(&self.readings)
+        Ok(())
+    }
+
+    /// The joint readings taken last.
+    pub(super) fn readings(&self) -> &[f64] {
+        &self.readings
     }
 
     /// An error at the cell of an input: "`found` in column …, expected `expected`".

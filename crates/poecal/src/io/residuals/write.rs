@@ -16,7 +16,7 @@ use crate::measurement::Dataset;
 /// Rows that one thread works on at a time.
 const PIECE: usize = 256;
 /// Pieces that are held until they are written.
-const TOGETHER: usize = 16;
+const TOGETHER: usize = 8;
 /// Bytes of a row, about.
 const ROW: usize = 480;
 
