@@ -49,7 +49,7 @@ impl<'a> Reference<'a> {
         let mut generator = ChaCha8Rng::seed_from_u64(1);
         let random = Configurations::new(robot);
         let readings: Vec<f64> = (0..count).flat_map(|_| random.random(&mut generator)).collect();
-        let poses = robot.forward_kinematics_of(&readings);
+        let poses = robot.forward_kinematics_of(&readings).collect();
         Reference { robot, readings, poses }
     }
 
