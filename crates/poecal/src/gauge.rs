@@ -95,6 +95,11 @@ pub fn null_step(
     base_free: bool,
 ) -> Option<Vec<f64>> {
     let n = layout.dim();
+    // Positive definite even with more than that taken off: nothing is null, and no eigenvalue need be known.
+    let trace: f64 = (0..n).map(|k| gram[k * n + k]).sum();
+    if linalg::cholesky(gram, n, -2.0 * NULL * trace).is_some() {
+        return None;
+    }
     let (values, vectors) = linalg::symmetric_eigen(gram, n);
     let largest = values.last().copied().unwrap_or(0.0);
     let null = values.iter().take_while(|&&value| value <= NULL * largest).count();

@@ -42,15 +42,22 @@ fn forward_kinematics_agrees_with_pinocchio() {
         let robot = urdf.robot();
         assert_eq!((robot.base_name.as_str(), &robot.tip_name), ("base_link", &expected.tip));
         let mut own = (0.0_f64, 0.0_f64);
-        for configuration in &expected.configurations {
-            let reading = |name: &String| expected.readings.iter().position(|known| known == name).unwrap();
-            let readings: Vec<f64> =
-                robot.reading_names().iter().map(|name| configuration.readings[reading(name)]).collect();
-            let tip = robot.forward_kinematics(&readings);
-            let rotation = Matrix3::from_fn(|row, column| configuration.rotation[row][column]);
-            own.0 = own.0.max((tip.translation - Vector3::from(configuration.position_m)).norm());
-            own.1 = own.1.max((tip.rotation - rotation).norm());
+        let reading = |name: &String| expected.readings.iter().position(|known| known == name).unwrap();
+        let readings: Vec<Vec<f64>> = expected
+            .configurations
+            .iter()
+            .map(|it| robot.reading_names().iter().map(|name| it.readings[reading(name)]).collect())
+            .collect();
+        let together = readings.concat();
+        let mut together = robot.forward_kinematics_of(&together);
+        for (configuration, readings) in expected.configurations.iter().zip(&readings) {
+            for tip in [robot.forward_kinematics(readings), together.next().unwrap()] {
+                let rotation = Matrix3::from_fn(|row, column| configuration.rotation[row][column]);
+                own.0 = own.0.max((tip.translation - Vector3::from(configuration.position_m)).norm());
+                own.1 = own.1.max((tip.rotation - rotation).norm());
+            }
         }
+        assert!(together.next().is_none());
         println!("{:20} {:.1e} m, {:.1e} in the rotation matrix", expected.urdf, own.0, own.1);
         largest = (largest.0.max(own.0), largest.1.max(own.1));
     }

@@ -1,6 +1,7 @@
 //! How far a calibration can be trusted: cross-validation, uncertainty of predictions and of each screw, and what each joint's correction
 //! is worth.
 
+use nalgebra::Matrix3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
@@ -15,8 +16,7 @@ use crate::simulate::random;
 use crate::solve::Normal;
 use crate::start::{Registration, register_again};
 use crate::uncertainty::{
-    Bootstrap, CrossValidation, Discrepancy, PredictedError, Uncertainty, View, bootstrap, cross_validate,
-    discrepancy,
+    Bootstrap, CrossValidation, Discrepancy, Uncertainty, View, bootstrap, bound, cross_validate, discrepancy,
 };
 
 /// Random configurations by which the joint range is judged.
@@ -38,11 +38,12 @@ pub struct Expected {
 }
 
 impl Expected {
-    fn of(errors: &[PredictedError]) -> Self {
+    /// From covariances of positions.
+    fn of(errors: &[Matrix3<f64>]) -> Self {
         let count = errors.len().max(1) as f64;
-        let bounds = errors.iter().map(PredictedError::bound_position_m);
+        let bounds = errors.iter().map(bound);
         Expected {
-            sigma_m: (errors.iter().map(|error| error.position.trace()).sum::<f64>() / count).sqrt(),
+            sigma_m: (errors.iter().map(Matrix3::trace).sum::<f64>() / count).sqrt(),
             bound_m: bounds.clone().sum::<f64>() / count,
             worst_bound_m: bounds.fold(0.0, f64::max),
         }
@@ -122,8 +123,8 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     if let Some(uncertainty) = &uncertainty {
         let target = 0;
         measured =
-            Some(Expected::of(&uncertainty.predictions(&Packed::of_values(view.robot, &sampled), target)));
-        let errors = uncertainty.predictions(&Packed::of_values(view.robot, &anywhere), target);
+            Some(Expected::of(&uncertainty.positions(&Packed::of_values(view.robot, &sampled), target)));
+        let errors = uncertainty.positions(&Packed::of_values(view.robot, &anywhere), target);
         range = Some(Expected::of(&errors));
         parts = range_parts(&ranges, &anywhere, &errors);
     }
@@ -186,7 +187,7 @@ fn anywhere(ranges: &[[f64; 2]], seed: u64) -> Vec<f64> {
 }
 
 /// Mean squares of the expected errors by parts of each joint's range.
-fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[PredictedError]) -> Vec<RangePart> {
+fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[Matrix3<f64>]) -> Vec<RangePart> {
     let joints = ranges.len();
     let mut parts = Vec::new();
     for (joint, &[lower, upper]) in ranges.iter().enumerate() {
@@ -200,7 +201,7 @@ fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[PredictedError]) -
                 .iter()
                 .zip(values.chunks_exact(joints))
                 .filter(|(_, values)| (from..=from + width).contains(&values[joint]))
-                .map(|(error, _)| error.position.trace());
+                .map(|(error, _)| error.trace());
             let count = here.clone().count();
             if count > 0 {
                 let sigma_m = (here.sum::<f64>() / count as f64).sqrt();

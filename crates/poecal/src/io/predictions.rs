@@ -113,7 +113,7 @@ pub fn predicted(
         PredictionFrame::Device => device_from_base(model)?,
     };
     let doubts = if with_uncertainty { Some(doubts(model, readings, target)?) } else { None };
-    let poses = model.robot.forward_kinematics_of(readings).into_iter();
+    let poses = model.robot.forward_kinematics_of(readings);
     let poses = poses.map(|base_from_tip| frame_from_base * base_from_tip * tip_from_target).collect();
     Ok(Predicted { poses, doubts })
 }

@@ -48,8 +48,9 @@ impl<'a> Reference<'a> {
     pub(super) fn new(robot: &'a Robot, count: usize) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(1);
         let random = Configurations::new(robot);
-        let readings: Vec<f64> = (0..count).flat_map(|_| random.random(&mut generator)).collect();
-        let poses = robot.forward_kinematics_of(&readings);
+        let mut readings = Vec::new();
+        (0..count).for_each(|_| readings.extend(random.random(&mut generator)));
+        let poses = robot.forward_kinematics_of(&readings).collect();
         Reference { robot, readings, poses }
     }
 

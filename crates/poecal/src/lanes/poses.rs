@@ -42,3 +42,24 @@ pub(super) fn product_of_exponentials<V: Vector>(
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{levels, product_of_exponentials};
+    use super::*;
+
+    #[test]
+    fn every_level_gives_the_same_bits() {
+        let number = |k: usize| ((k * k * 7 + 3 * k) % 17) as f64 / 13.0 - 0.6;
+        let by = |seed: usize| std::array::from_fn(|i| std::array::from_fn(|j| number(seed + 4 * i + j)));
+        let joints: Vec<Exponential> =
+            (0..7).map(|k| Exponential { first: by(12 * k), second: by(91 + 12 * k) }).collect();
+        let factors: Vec<[Wide; 2]> = (0..7)
+            .map(|k| [5, 31].map(|seed| Wide(std::array::from_fn(|lane| number(seed * k + lane)))))
+            .collect();
+        let found = levels().into_iter().map(|level| product_of_exponentials(level, &joints, &factors));
+        let found: Vec<_> =
+            found.map(|rows| rows.map(|row| row.map(|wide| wide.0.map(f64::to_bits)))).collect();
+        assert!(found.iter().all(|bits| bits == &found[0]));
+    }
+}

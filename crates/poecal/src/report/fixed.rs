@@ -8,17 +8,36 @@ pub(super) struct Fixed(pub(super) f64, pub(super) usize);
 impl Display for Fixed {
     /// By whole numbers, which is quick, unless the last digit is hard to tell.
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        /// Digits of the whole number, at most.
+        const MOST: usize = 9;
         const HALF_WAY: f64 = 1e-3;
         let &Fixed(value, decimals) = self;
-        let scale = 10_u32.pow(decimals.min(9) as u32);
-        let scaled = value.abs() * f64::from(scale);
-        let is_plain = scaled < 1e9 && (scaled.fract() - 0.5).abs() > HALF_WAY;
-        if !is_plain || !(1..=9).contains(&decimals) {
+        let scaled = value.abs() * 10_f64.powi(decimals.min(MOST) as i32);
+        let is_plain = scaled < 1e9 - 1.0 && (scaled.fract() - 0.5).abs() > HALF_WAY;
+        if !is_plain || !(1..MOST).contains(&decimals) {
             return write!(f, "{value:.decimals$}");
         }
-        let whole = (scaled + 0.5) as u32;
-        let sign = if value.is_sign_negative() { "-" } else { "" };
-        write!(f, "{sign}{}.{:0decimals$}", whole / scale, whole % scale)
+        let mut rest = (scaled + 0.5) as u32;
+        let mut text = [0; 2 * MOST];
+        let mut start = text.len();
+        let mut push = |byte| {
+            start -= 1;
+            text[start] = byte;
+        };
+        for place in 0..=MOST {
+            if place == decimals {
+                push(b'.');
+            }
+            if place > decimals && rest == 0 {
+                break;
+            }
+            push(b'0' + (rest % 10) as u8);
+            rest /= 10;
+        }
+        if value.is_sign_negative() {
+            push(b'-');
+        }
+        f.write_str(str::from_utf8(&text[start..]).unwrap_or_default())
     }
 }
 

@@ -26,8 +26,7 @@ impl Robot {
     }
 
     /// [`Robot::forward_kinematics`] of several configurations, their readings one after the other.
-    #[must_use]
-    pub fn forward_kinematics_of(&self, readings: &[f64]) -> Vec<Pose> {
+    pub fn forward_kinematics_of(&self, readings: &[f64]) -> impl Iterator<Item = Pose> {
         let indices = self.reading_indices();
         let width = self.reading_names().len().max(1);
         let exponentials: Vec<Exponential> =
@@ -35,8 +34,7 @@ impl Robot {
         let mut values = vec![0.0; self.joints.len() * WIDTH];
         let mut found = vec![(0.0, 0.0); values.len()];
         let mut factors = vec![[Wide::ZERO; 2]; self.joints.len()];
-        let mut poses = Vec::with_capacity(readings.len() / width);
-        for some in readings.chunks(WIDTH * width) {
+        readings.chunks(WIDTH * width).flat_map(move |some| {
             let some = some.chunks_exact(width);
             let count = some.len();
             for ((joint, &index), values) in
@@ -57,13 +55,12 @@ impl Robot {
                 }
             }
             let rows = lanes::product_of_exponentials(Level::best(), &exponentials, &factors);
-            poses.extend((0..count).map(|lane| {
+            (0..count).map(move |lane| {
                 let number = |i: usize, j: usize| rows[i][j].0[lane];
                 let translation = Vector3::from_fn(|i, _| number(i, 3));
                 Pose::new(Matrix3::from_fn(number), translation) * self.home
-            }));
-        }
-        poses
+            })
+        })
     }
 
     /// Frames of the joints in the base, `exp(ξ₁θ₁) … exp(ξᵢθᵢ) base_from_joint_i`, at a configuration given as readings (radians, metres;

@@ -231,7 +231,7 @@ impl<'a> Left<'a> {
     fn position_variance(&self, layout: &Layout, rows: &[u32], covariance: &DMatrix<f64>) -> f64 {
         let linkage = Linkage::new(&self.estimate);
         let of = |some: &[u32]| {
-            let motions = motions::<3>(layout, &linkage, self.view.packed, &self.view.with_targets(some));
+            let motions = motions(layout, &linkage, self.view.packed, &self.view.with_targets(some), 1);
             (&motions * covariance).dot(&motions)
         };
         rows.chunks(TOGETHER).map(of).sum()

@@ -17,7 +17,7 @@ pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, bound};
 pub use view::View;
 
-use motions::motions;
+use motions::{motions, products};
 
 use nalgebra::{DMatrix, Matrix3};
 
@@ -28,7 +28,7 @@ use crate::measurement::Noise;
 use crate::problem::Layout;
 
 /// Configurations whose motions are worked out together: enough for a quick product, few enough for the cache.
-const TOGETHER: usize = 16;
+const TOGETHER: usize = 32;
 
 /// Covariance of an estimate's unknowns, and what the model does not describe.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,27 +95,36 @@ impl Uncertainty {
         rows: impl Iterator<Item = (usize, usize)>,
         packed: &Packed,
     ) -> Vec<PredictedError> {
+        let errors = self.spread::<2>(rows, packed).into_iter();
+        errors.map(|[position, rotation]| PredictedError { position, rotation }).collect()
+    }
+
+    /// [`Uncertainty::predictions`], covariances of the place alone, square metres.
+    pub(crate) fn positions(&self, packed: &Packed, target: usize) -> Vec<Matrix3<f64>> {
+        self.spread::<1>((0..packed.rows()).map(|row| (row, target)), packed).into_flattened()
+    }
+
+    /// Covariances of the place, and of the turn if they are two.
+    fn spread<const PARTS: usize>(
+        &self,
+        rows: impl Iterator<Item = (usize, usize)>,
+        packed: &Packed,
+    ) -> Vec<[Matrix3<f64>; PARTS]> {
         let linkage = Linkage::new(&self.estimate);
         let n = self.layout.dim();
         let covariance = DMatrix::from_row_slice(n, n, &self.covariance);
-        let own = |sigma: f64| Matrix3::identity() * (sigma * sigma);
+        let own = [self.discrepancy.position_m, self.discrepancy.rotation_rad]
+            .map(|sigma| Matrix3::identity() * (sigma * sigma));
         let rows: Vec<(usize, usize)> = rows.collect();
-        let mut errors = Vec::with_capacity(rows.len());
+        let mut found = Vec::with_capacity(rows.len());
         for some in rows.chunks(TOGETHER) {
-            let motions = motions::<6>(&self.layout, &linkage, packed, some);
+            let motions = motions(&self.layout, &linkage, packed, some, PARTS);
             let spread = &motions * &covariance;
-            let part = |first: usize| -> Matrix3<f64> {
-                let column = |matrix: &DMatrix<f64>, k| matrix.fixed_view::<3, 1>(first, k).into_owned();
-                let mut sum = Matrix3::zeros();
-                (0..n).for_each(|k| sum += column(&motions, k) * column(&spread, k).transpose());
-                sum
-            };
-            errors.extend((0..some.len()).map(|at| PredictedError {
-                position: part(6 * at) + own(self.discrepancy.position_m),
-                rotation: part(6 * at + 3) + own(self.discrepancy.rotation_rad),
+            found.extend((0..some.len()).map(|at| {
+                std::array::from_fn(|part| products(&motions, &spread, 3 * (PARTS * at + part)) + own[part])
             }));
         }
-        errors
+        found
     }
 }
 
@@ -138,7 +147,7 @@ fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
     let linkage = Linkage::new(view.estimate);
     let mut sum = DMatrix::zeros(layout.dim(), layout.dim());
     for some in rows.chunks(TOGETHER) {
-        let motions = motions::<3>(layout, &linkage, view.packed, &view.with_targets(some));
+        let motions = motions(layout, &linkage, view.packed, &view.with_targets(some), 1);
         sum += motions.transpose() * motions;
     }
     (sum / rows.len().max(1) as f64).as_slice().to_vec()

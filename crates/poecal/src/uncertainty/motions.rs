@@ -1,30 +1,43 @@
 //! How targets move with the unknowns, several configurations in one matrix.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::estimate::{Chain, Linkage, Packed};
 use crate::problem::Layout;
 
-/// Motions of targets in some `(row of joint values, target)` with each scaled unknown, which has a column: `ROWS` rows a target, 3 of its
-/// place or 6 of its place and its turn.
-pub(super) fn motions<const ROWS: usize>(
+/// Motions of targets in some `(row of joint values, target)` with each scaled unknown, which has a column: three rows a target, or six
+/// with `parts` 2, of its place and of its turn.
+pub(super) fn motions(
     layout: &Layout,
     linkage: &Linkage,
     packed: &Packed,
     rows: &[(usize, usize)],
+    parts: usize,
 ) -> DMatrix<f64> {
     let mut chain = Chain::default();
     let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()];
-    let height = ROWS * rows.len();
+    let height = 3 * parts * rows.len();
     let mut motions = DMatrix::zeros(height, layout.dim());
-    for (at, &(row, target)) in rows.iter().enumerate() {
+    for (place, &(row, target)) in (0..height).step_by(3 * parts).zip(rows) {
         chain.evaluate(linkage, packed, row, target);
         layout.target_twists(&chain, target, &mut twists);
         for (column, (v, w)) in motions.as_mut_slice().chunks_exact_mut(height).zip(&twists) {
-            let (place, turn) = column[ROWS * at..ROWS * (at + 1)].split_at_mut(3);
-            place.copy_from_slice(v.as_slice());
-            turn.copy_from_slice(&w.as_slice()[..ROWS - 3]);
+            column[place..place + 3].copy_from_slice(v.as_slice());
+            if parts > 1 {
+                column[place + 3..place + 6].copy_from_slice(w.as_slice());
+            }
         }
     }
     motions
+}
+
+/// `Σ a bᵀ` over the columns of two matrices, each cut to three rows from `first` on.
+pub(super) fn products(a: &DMatrix<f64>, b: &DMatrix<f64>, first: usize) -> Matrix3<f64> {
+    let cut = |matrix: &DMatrix<f64>, column: usize| {
+        let start = column * matrix.nrows() + first;
+        Vector3::from_column_slice(&matrix.as_slice()[start..start + 3])
+    };
+    let mut sum = Matrix3::zeros();
+    (0..a.ncols()).for_each(|column| sum += cut(a, column) * cut(b, column).transpose());
+    sum
 }

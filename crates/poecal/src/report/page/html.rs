@@ -98,7 +98,8 @@ pub(super) struct Html {
 
 impl Html {
     pub(super) fn new() -> Self {
-        Html { out: String::new() }
+        // Room for most pages without moving.
+        Html { out: String::with_capacity(100_000) }
     }
 
     /// HTML as it stands.
