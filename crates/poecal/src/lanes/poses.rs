@@ -1,6 +1,8 @@
 //! Poses of a tip in several configurations side by side. No product is fused with a sum, so that the bits are the same by all
 //! instructions.
 
+use std::ops::{Add, Mul};
+
 use super::vector::{Vector, WIDTH, Wide};
 
 /// The motion of a joint, `I + f F + g G` with two numbers f and g that depend on its value: three directions and a translation, by rows.
@@ -8,6 +10,26 @@ use super::vector::{Vector, WIDTH, Wide};
 pub(crate) struct Exponential {
     pub(crate) first: [[f64; 4]; 3],
     pub(crate) second: [[f64; 4]; 3],
+}
+
+impl Exponential {
+    /// Moves a pose, by rows, by the joint's motion with these f and g: of one configuration, or of several side by side.
+    #[inline(always)]
+    pub(crate) fn advance<V: Copy + Add<Output = V> + Mul<Output = V>>(
+        &self,
+        rows: &mut [[V; 4]; 3],
+        first: V,
+        second: V,
+        splat: impl Fn(f64) -> V,
+    ) {
+        let change: [[V; 4]; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| first * splat(self.first[i][j]) + second * splat(self.second[i][j]))
+        });
+        for row in rows {
+            let [x, y, z, _] = *row;
+            *row = std::array::from_fn(|j| row[j] + (x * change[0][j] + y * change[1][j] + z * change[2][j]));
+        }
+    }
 }
 
 /// The product of the motions of all joints, each with its f and g: three directions and a translation, by rows.
@@ -21,20 +43,7 @@ pub(super) fn product_of_exponentials<V: Vector>(
         let unit = |i: usize, j: usize| V::splat(f64::from(u8::from(i == j)));
         let mut rows: [[V; 4]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| unit(i, j)));
         for (joint, [first, second]) in joints.iter().zip(factors) {
-            let (first, second) = (V::load(first, part), V::load(second, part));
-            let change: [[V; 4]; 3] = std::array::from_fn(|i| {
-                std::array::from_fn(|j| {
-                    first * V::splat(joint.first[i][j]) + second * V::splat(joint.second[i][j])
-                })
-            });
-            for row in &mut rows {
-                let [x, y, z, _] = *row;
-                for (value, ((a, b), c)) in
-                    row.iter_mut().zip(change[0].iter().zip(&change[1]).zip(&change[2]))
-                {
-                    *value = *value + (x * *a + y * *b + z * *c);
-                }
-            }
+            joint.advance(&mut rows, V::load(first, part), V::load(second, part), V::splat);
         }
         for (row, out) in rows.iter().zip(&mut out) {
             row.iter().zip(out).for_each(|(value, out)| value.store(out, part));

@@ -93,14 +93,10 @@ impl Screw {
     /// `exp(ξ̂ θ)`, lou2009 (1) and theory.md §1 (2a), θ in radians (revolute) or metres (prismatic).
     #[must_use]
     pub fn exp(&self, theta: f64) -> Pose {
-        self.exp_with(theta, theta.sin(), (0.5 * theta).sin())
-    }
-
-    /// [`Screw::exp`] with `sin θ` and `sin ½θ` known.
-    pub(crate) fn exp_with(&self, theta: f64, sine: f64, half: f64) -> Pose {
         if self.is_prismatic() {
             return Pose::from_translation(self.v * theta);
         }
+        let (sine, half) = (theta.sin(), (0.5 * theta).sin());
         let hat_w = super::hat(&self.w);
         // ω̂² = ω ωᵀ - I.
         let turn = hat_w * sine + (self.w * self.w.transpose() - Matrix3::identity()) * (2.0 * half * half);

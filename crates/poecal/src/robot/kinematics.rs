@@ -48,18 +48,12 @@ impl Robot {
             let each =
                 self.joints.iter().zip(&mut factors).zip(found.chunks(WIDTH).zip(values.chunks(WIDTH)));
             for ((joint, [first, second]), (found, values)) in each {
-                let slides = joint.screw.is_prismatic();
-                for (lane, (&(cosine, sine), &value)) in found.iter().zip(values).enumerate() {
-                    (first.0[lane], second.0[lane]) =
-                        if slides { (value, 0.0) } else { (sine, 1.0 - cosine) };
+                for (lane, (&found, &value)) in found.iter().zip(values).enumerate() {
+                    (first.0[lane], second.0[lane]) = factors_of(&joint.screw, value, found);
                 }
             }
             let rows = lanes::product_of_exponentials(Level::best(), &exponentials, &factors);
-            (0..count).map(move |lane| {
-                let number = |i: usize, j: usize| rows[i][j].0[lane];
-                let translation = Vector3::from_fn(|i, _| number(i, 3));
-                Pose::new(Matrix3::from_fn(number), translation) * self.home
-            })
+            (0..count).map(move |lane| pose_of(|i, j| rows[i][j].0[lane]) * self.home)
         })
     }
 
@@ -90,16 +84,27 @@ impl Robot {
     /// theory.md §2 (6).
     #[must_use]
     pub fn motion(&self, joint_values: &[f64]) -> Pose {
-        let halves = joint_values.iter().map(|value| 0.5 * value);
-        let angles: Vec<f64> = joint_values.iter().copied().chain(halves).collect();
-        let mut found = vec![(0.0, 0.0); angles.len()];
-        lanes::cosines_and_sines(Level::best(), &angles, &mut found);
-        let (whole, halves) = found.split_at(joint_values.len());
-        let each = self.joints.iter().zip(joint_values).zip(whole.iter().zip(halves));
-        each.fold(Pose::identity(), |pose, ((joint, &value), ((_, sine), (_, half)))| {
-            pose * joint.screw.exp_with(value, *sine, *half)
-        })
+        let mut found = vec![(0.0, 0.0); joint_values.len()];
+        lanes::cosines_and_sines(Level::best(), joint_values, &mut found);
+        let mut rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+        for ((joint, &value), found) in self.joints.iter().zip(joint_values).zip(found) {
+            let (first, second) = factors_of(&joint.screw, value, found);
+            exponential(&joint.screw).advance(&mut rows, first, second, |number| number);
+        }
+        pose_of(|i, j| rows[i][j])
     }
+}
+
+/// The pose of these rows: three directions and a translation.
+fn pose_of(number: impl Fn(usize, usize) -> f64) -> Pose {
+    let translation = Vector3::from_fn(|i, _| number(i, 3));
+    Pose::new(Matrix3::from_fn(number), translation)
+}
+
+/// The two numbers of a joint's motion that depend on its value: `sin θ` and `1 - cos θ` with `(cos θ, sin θ)` known, or θ of a
+/// sliding joint.
+fn factors_of(screw: &Screw, value: f64, (cosine, sine): (f64, f64)) -> (f64, f64) {
+    if screw.is_prismatic() { (value, 0.0) } else { (sine, 1.0 - cosine) }
 }
 
 /// `exp(ξ̂θ) = I + sin θ F + (1 - cos θ) G`, or `I + θ F` of a sliding joint: theory.md §1 (2a).
