@@ -70,8 +70,8 @@ fn files_are_read_the_same_with_any_number_of_threads() {
         let seen = one.data.observations[row];
         assert_eq!((one.data.ids[row].as_str(), seen.source.line as usize), (cells[0], row + 2));
         assert_eq!(one.data.targets[seen.target].as_deref(), Some(cells[2]));
-        let numbers =
-            one.data.readings(row).iter().copied().chain(seen.measurement.pose().translation.iter().copied());
+        let position = seen.measurement.pose().translation;
+        let numbers = one.data.readings(row).iter().chain(position.iter()).copied();
         assert!(numbers.eq(cells[3..].iter().map(|cell| cell.parse::<f64>().unwrap())));
     }
     for threads in [2, 3, 8] {
