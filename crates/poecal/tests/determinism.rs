@@ -1,5 +1,7 @@
 //! The same input gives the same bits, whatever the number of threads.
 
+#![allow(clippy::unwrap_used)]
+
 use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::io::measurements::{ReadOptions, parse};
 use poecal::io::residuals::{Residuals, Rows};
@@ -43,7 +45,7 @@ const LINES: usize = 20_000;
 fn lines() -> Vec<String> {
     let row = |line: usize| {
         let target = if line < LINES / 2 { "a" } else { ["b", "c", "a"][line % 3] };
-        let set = if line % 10 == 0 { "held_out" } else { "fit" };
+        let set = if line.is_multiple_of(10) { "held_out" } else { "fit" };
         let angle = |joint: usize| {
             ((line * (joint + 3)) % 5000) as f64 / 1000.0 - if line > 15_000 { 4.0 } else { 2.5 }
         };
@@ -71,7 +73,7 @@ fn files_are_read_the_same_with_any_number_of_threads() {
         assert_eq!((one.data.ids[row].as_str(), seen.source.line as usize), (cells[0], row + 2));
         assert_eq!(one.data.targets[seen.target].as_deref(), Some(cells[2]));
         let position = seen.measurement.pose().translation;
-        let numbers = one.data.readings(row).iter().chain(&position).copied();
+        let numbers = one.data.readings(row).iter().chain(position.iter()).copied();
         assert!(numbers.eq(cells[3..].iter().map(|cell| cell.parse::<f64>().unwrap())));
     }
     for threads in [2, 3, 8] {

@@ -103,6 +103,35 @@ mod tests {
     }
 
     #[test]
+    fn the_fast_way_takes_what_the_standard_library_takes() {
+        let mut numbers = Numbers::new(Some(DecimalSign::Point));
+        for text in [
+            "1",
+            "+1",
+            "-0",
+            ".5",
+            "5.",
+            "1e5",
+            "1E-5",
+            "1.e+3",
+            "4.9e-324",
+            "1.7976931348623157e308",
+            "0.1000000000000000055511151231257827",
+        ] {
+            assert_eq!(
+                numbers.parse(text, 1).unwrap().to_bits(),
+                text.parse::<f64>().unwrap().to_bits(),
+                "{text}"
+            );
+        }
+        for text in
+            ["", ".", "-", "e5", "1e", "1e+", "1 ", "1..2", "1e5.0", "1_0", "inf", "nan", "infinity", "1e999"]
+        {
+            assert!(numbers.parse(text, 1).is_err(), "{text}");
+        }
+    }
+
+    #[test]
     fn what_is_no_finite_number_is_refused() {
         for text in
             ["nan", "NaN", "inf", "-infinity", "1e999", "abc", "", "1e", "--1", "0x10", "1_0", "1,234.5"]

@@ -1,9 +1,11 @@
 //! An empty measurement file for a robot, and a table of configurations to measure it in.
 
+use std::fmt::Write as _;
+
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
 
-use super::write::{header, push_decimal, reading_header, reading_units};
+use super::write::{decimal, header, reading_header, reading_units};
 use crate::error::Result;
 use crate::robot::Robot;
 use crate::simulate::{Configurations, Kind};
@@ -66,11 +68,10 @@ pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<Stri
     for row in 1..=count {
         let again = row == 1 || row % ROWS_BETWEEN_VISITS == 0;
         let readings = if again { first.clone() } else { configurations.random(&mut generator) };
-        for (joint, (&value, &unit)) in readings.iter().zip(&units).enumerate() {
-            text.push_str(if joint == 0 { "" } else { "," });
-            push_decimal(&mut text, value, unit, None);
-        }
-        text.push('\n');
+        let cells: Vec<String> =
+            readings.iter().zip(&units).map(|(&value, &unit)| decimal(value, unit, None)).collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{}", cells.join(","));
     }
     Ok(text)
 }

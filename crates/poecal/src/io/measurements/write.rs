@@ -22,23 +22,17 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
     let quaternion_decimals = decimals(noise.rotation_rad / 2.0);
     for (row, observation) in data.observations.iter().enumerate() {
         for (&reading, &unit) in data.readings(row).iter().zip(&units) {
-            push_decimal(&mut out, reading, unit, None);
-            out.push(',');
+            let _ = write!(out, "{},", decimal(reading, unit, None));
         }
         let pose = observation.measurement.pose();
-        for (axis, &length) in pose.translation.iter().enumerate() {
-            out.push_str(if axis == 0 { "" } else { "," });
-            push_decimal(&mut out, length, mm, position_decimals);
-        }
+        let mut measured: Vec<String> =
+            pose.translation.iter().map(|&length| decimal(length, mm, position_decimals)).collect();
         if observation.measurement.sees_orientation() {
-            for part in pose.quaternion_xyzw() {
-                out.push(',');
-                push_decimal(&mut out, part, number, quaternion_decimals);
-            }
+            measured.extend(pose.quaternion_xyzw().map(|part| decimal(part, number, quaternion_decimals)));
         } else if orientations {
-            out.push_str(",,,,");
+            measured.resize(7, String::new());
         }
-        out.push('\n');
+        let _ = writeln!(out, "{}", measured.join(","));
     }
     Ok(out)
 }
@@ -79,69 +73,22 @@ fn decimals(noise: f64) -> Option<usize> {
     (noise > 0.0).then(|| (3.0 - noise.log10()).ceil().clamp(0.0, 17.0) as usize)
 }
 
-/// The powers of ten that a decimal's places stand for.
-const POWERS: [f64; 18] =
-    [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17];
-/// Whole numbers below are exact.
-const EXACT: f64 = 9_007_199_254_740_992.0;
-
-/// Appends a number in a unit: with the decimals asked for (17 at most), else with as many as it takes to read back as the same number.
-pub(super) fn push_decimal(out: &mut String, si: f64, unit: Unit, decimals: Option<usize>) {
+/// A number in a unit: with the decimals asked for, else with as many as it takes to read back as the same number.
+pub(super) fn decimal(si: f64, unit: Unit, decimals: Option<usize>) -> String {
     let value = unit.from_si(si);
-    // The number in so many decimals is a whole number of the last one's steps.
-    let steps = |power: f64| Some((value.abs() * power).round_ties_even()).filter(|steps| *steps < EXACT);
-    let reads_back = |&(count, &power): &(usize, &f64)| {
-        let again = match steps(power) {
-            Some(steps) => Some((steps / power).copysign(value)),
-            None => format!("{value:.count$}").parse().ok(),
-        };
-        again.is_some_and(|again| unit.to_si(again) == si)
-    };
-    let chosen = match decimals {
-        Some(count) => POWERS.get(count).map(|power| (count, power)),
-        None => POWERS.iter().enumerate().find(reads_back),
-    };
-    // Writing to a String cannot fail.
-    let _ = match chosen.map(|(count, &power)| (count, power, steps(power))) {
-        Some((count, power, Some(steps))) => {
-            let (sign, steps, power) =
-                (if value.is_sign_negative() { "-" } else { "" }, steps as u64, power as u64);
-            match count {
-                0 => write!(out, "{sign}{steps}"),
-                _ => write!(out, "{sign}{}.{:0count$}", steps / power, steps % power),
-            }
-        }
-        Some((count, _, None)) => write!(out, "{value:.count$}"),
-        None => write!(out, "{value:?}"),
-    };
+    let with = |count: usize| format!("{value:.count$}");
+    match decimals {
+        Some(count) => with(count),
+        None => (0..=17)
+            .map(with)
+            .find(|text| text.parse().is_ok_and(|again| unit.to_si(again) == si))
+            .unwrap_or_else(|| format!("{value:?}")),
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use rand_chacha::ChaCha8Rng;
-    use rand_core::{Rng, SeedableRng};
-
     use super::*;
-
-    fn decimal(si: f64, unit: Unit, decimals: Option<usize>) -> String {
-        let mut text = String::new();
-        push_decimal(&mut text, si, unit, decimals);
-        text
-    }
-
-    #[test]
-    fn decimals_are_those_of_the_standard_library() {
-        let mut generator = ChaCha8Rng::seed_from_u64(1);
-        let metre = Unit::parse("m", Quantity::Length).unwrap();
-        for count in 0..=17 {
-            for scale in [1e-12, 1e-3, 1.0, 1e4] {
-                let value = scale * (f64::from(generator.next_u32()) - 2e9) / 2e9;
-                assert_eq!(decimal(value, metre, Some(count)), format!("{value:.count$}"));
-            }
-            assert_eq!(decimal(-0.0, metre, Some(count)), format!("{:.count$}", -0.0));
-        }
-        assert_eq!(decimal(0.125, metre, Some(2)), "0.12");
-    }
 
     #[test]
     fn readings_read_back_the_same() {
