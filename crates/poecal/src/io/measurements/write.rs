@@ -133,8 +133,8 @@ mod tests {
     fn decimals_are_those_of_the_standard_library() {
         let mut generator = ChaCha8Rng::seed_from_u64(1);
         let metre = Unit::parse("m", Quantity::Length).unwrap();
-        for count in 0..=17 {
-            for scale in [1e-12, 1e-3, 1.0, 1e4] {
+        for count in 0..=9 {
+            for scale in [1e-12, 1e-3, 1.0, 1e12] {
                 let value = scale * (generator.next_u64() as f64 / 2f64.powi(63) - 1.0);
                 assert_eq!(decimal(value, metre, Some(count)), format!("{value:.count$}"));
             }
