@@ -1,5 +1,7 @@
 //! The same input gives the same bits, whatever the number of threads.
 
+#![allow(clippy::unwrap_used)]
+
 use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::io::measurements::{ReadOptions, parse};
 use poecal::io::residuals::{Residuals, Rows};
@@ -43,7 +45,7 @@ const LINES: usize = 20_000;
 fn lines() -> Vec<String> {
     let row = |line: usize| {
         let target = if line < LINES / 2 { "a" } else { ["b", "c", "a"][line % 3] };
-        let set = if line % 10 == 0 { "held_out" } else { "fit" };
+        let set = if line.is_multiple_of(10) { "held_out" } else { "fit" };
         let angle = |joint: usize| {
             ((line * (joint + 3)) % 5000) as f64 / 1000.0 - if line > 15_000 { 4.0 } else { 2.5 }
         };
