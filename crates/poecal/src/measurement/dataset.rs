@@ -260,14 +260,6 @@ impl Dataset {
         rows.iter().map(|&row| self.observations[row as usize].measurement.residual_model().position())
     }
 
-    /// The rows of another data set of the same readings and files after these; `targets` are the indices that its targets have here.
-    pub(crate) fn append(&mut self, other: Dataset, targets: &[usize]) {
-        self.readings.extend(other.readings);
-        let here = |row: Observation| Observation { target: targets[row.target], ..row };
-        self.observations.extend(other.observations.into_iter().map(here));
-        self.ids.extend(other.ids);
-    }
-
     /// Marks every row as one to fit, and adds the rows of another data set as held out.
     ///
     /// # Errors

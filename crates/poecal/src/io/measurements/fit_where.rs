@@ -1,6 +1,5 @@
 //! Which rows are fitted, by the value of a column.
 
-use std::borrow::Cow;
 use std::str::FromStr;
 
 use crate::error::{Error, ErrorKind, Result};
@@ -32,8 +31,7 @@ impl FitWhere {
 }
 
 fn number(text: &str) -> Option<f64> {
-    let text = if text.contains(',') { Cow::Owned(text.replace(',', ".")) } else { Cow::Borrowed(text) };
-    text.parse().ok()
+    text.parse().or_else(|_| text.replace(',', ".").parse()).ok()
 }
 
 impl FromStr for FitWhere {

@@ -29,17 +29,6 @@ impl<'a> InputReader<'a> {
         }
     }
 
-    /// One that goes on after the rows of this one, with ranges of its own.
-    pub(super) fn next(&self) -> Self {
-        InputReader::new(self.inputs, self.numbers.clone())
-    }
-
-    /// Takes in what the next one found.
-    pub(super) fn join(&mut self, next: InputReader<'_>) {
-        self.numbers = next.numbers;
-        self.ranges.iter_mut().zip(next.ranges).for_each(|(range, other)| range.join(other));
-    }
-
     /// Takes in a row's numbers; an empty cell is no number.
     pub(super) fn read(&mut self, row: &Row<'_>) -> Result<()> {
         self.values.clear();

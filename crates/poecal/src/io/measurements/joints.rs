@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use super::ReadOptions;
-use super::blocks::Blocks;
 use super::inputs::InputReader;
 use super::layout::Layout;
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::scale::JointWatch;
 use super::table::Table;
+use super::text::Blocks;
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Robot;
 
@@ -43,14 +43,12 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
     let path = path.as_ref();
     let no_map = ColumnMap::default();
     let map = options.mapping.as_ref().unwrap_or(&no_map);
-    let mut blocks = Blocks::open(path, "a file of joint readings (CSV)")?;
-    let table = Table::open(path, &mut blocks, map)?;
+    let mut table = Table::open(path, Blocks::open(path, "a file of joint readings (CSV)")?, map)?;
     let layout = Layout::joints(&table.header, robot, map)?;
     let mut inputs = InputReader::new(&layout.inputs, Numbers::new(map.decimal));
     let mut watch = JointWatch::new(robot);
     let mut joints = JointsTable::default();
-    while let Some(block) = blocks.next()? {
-        let mut rows = table.rows(&block);
+    while let Some(mut rows) = table.next_block()? {
         while let Some(row) = rows.next()? {
             inputs.read(&row)?;
             watch.observe(&row, &inputs);

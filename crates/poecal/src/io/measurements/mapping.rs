@@ -8,10 +8,9 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
-use super::blocks::read_text;
 use super::number::DecimalSign;
 use super::orientation::OrientationForm;
-use super::text::Separator;
+use super::text::{Separator, read_text};
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
 

@@ -1,10 +1,9 @@
 //! Measurement files: CSV with one row a configuration and target (docs/file-formats.md, "Measurements").
 //!
-//! Text becomes blocks of lines (`blocks`), cells (`text`), a table with places for messages (`table`), columns with a meaning and a unit
-//! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`) and at last measurements (`part`, [`read()`]), which are
+//! Text becomes lines and cells (`text`), a table with places for messages (`table`), columns with a meaning and a unit
+//! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`) and at last measurements ([`read()`]), which are
 //! judged for their scale (`scale`, `spread`).
 
-mod blocks;
 mod builder;
 mod fit_where;
 mod inputs;
@@ -13,7 +12,6 @@ mod layout;
 mod mapping;
 mod number;
 mod orientation;
-mod part;
 mod read;
 mod scale;
 mod spread;

@@ -13,7 +13,6 @@ pub enum DecimalSign {
 }
 
 /// Reads numbers; the first one with a decimal sign decides which sign the file has.
-#[derive(Clone)]
 pub(super) struct Numbers {
     sign: Option<(DecimalSign, Option<usize>)>,
     buffer: String,
@@ -28,11 +27,6 @@ impl Numbers {
     /// The sign, a point if no number has had one.
     pub(super) fn sign(&self) -> DecimalSign {
         self.sign.map_or(DecimalSign::Point, |(sign, _)| sign)
-    }
-
-    /// Whether the sign is known.
-    pub(super) fn is_settled(&self) -> bool {
-        self.sign.is_some()
     }
 
     /// A finite number, or what was expected.

@@ -1,19 +1,23 @@
 //! Files to measurements.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
+use nalgebra::{Matrix3, Vector3};
 
-use super::blocks::{Block, Blocks};
 use super::inputs::InputReader;
-use super::layout::Layout;
-use super::mapping::ColumnMap;
+use super::layout::{Layout, SetRule, TargetLayout};
+use super::mapping::{ColumnMap, PoseDirection};
 use super::number::Numbers;
-use super::part::{Found, Part};
-use super::table::Table;
+use super::scale::{self, JointWatch};
+use super::spread;
+use super::table::{Row, Table};
+use super::text::Blocks;
 use super::understanding::{self, FileUnderstanding};
-use super::{MeasurementFile, ReadOptions, scale, spread};
+use super::{MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result};
+use crate::lie::Pose;
+use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Set, Source};
 use crate::robot::Robot;
 
 /// Reads measurement files, joined in their order.
@@ -64,9 +68,19 @@ struct Reader<'a> {
     robot: &'a Robot,
     options: &'a ReadOptions,
     map: &'a ColumnMap,
-    found: Found,
+    data: Dataset,
+    target_indices: BTreeMap<String, usize>,
+    naming: Option<Naming>,
+    fit_values_seen: Vec<bool>,
     understood: Vec<FileUnderstanding>,
     warnings: Vec<String>,
+}
+
+/// Whether the first row named its target; all others must do the same.
+struct Naming {
+    named: bool,
+    path: PathBuf,
+    line: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -75,34 +89,40 @@ impl<'a> Reader<'a> {
             robot,
             options,
             map: options.mapping.as_ref().unwrap_or(no_map),
-            found: Found::new(robot),
+            data: Dataset::new(robot.reading_names()),
+            target_indices: BTreeMap::new(),
+            naming: None,
+            fit_values_seen: Vec::new(),
             understood: Vec::new(),
             warnings: Vec::new(),
         }
     }
 
-    fn file<'p>(&mut self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<()> {
-        let table = Table::open(path, &mut blocks, self.map)?;
+    fn file<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
+        let mut table = Table::open(path, blocks, self.map)?;
         let layout = Layout::new(&table.header, self.robot, self.options, self.map)?;
-        let mut found = std::mem::replace(&mut self.found, Found::new(self.robot));
-        let first = found.data.len();
-        found.data.files.push(path.to_path_buf());
+        let mut inputs = InputReader::new(&layout.inputs, Numbers::new(self.map.decimal));
+        let mut watch = JointWatch::new(self.robot);
+        let first = self.data.len();
+        self.data.files.push(path.to_path_buf());
         if layout.id.is_some() {
-            found.data.ids.resize(first, String::new());
+            self.data.ids.resize(first, String::new());
         }
-        let inputs = InputReader::new(&layout.inputs, Numbers::new(self.map.decimal));
-        let file = u32::try_from(self.understood.len()).unwrap_or(u32::MAX);
-        let mut whole = Part::new(self.robot, &layout, file, inputs, found);
-        read_blocks(&mut whole, &table, &mut blocks)?;
-        let Part { found, inputs, watch, rows, .. } = whole;
-        self.found = found;
-        let data = &mut self.found.data;
+        let mut rows = 0;
+        while let Some(mut some) = table.next_block()? {
+            while let Some(row) = some.next()? {
+                rows += 1;
+                inputs.read(&row)?;
+                watch.observe(&row, &inputs);
+                self.row(&row, &layout, &mut inputs)?;
+            }
+        }
         if rows == 0 {
             let message = "found a header and no rows, expected at least one measurement";
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
         }
         self.warnings.extend(watch.finish(path, &layout)?);
-        let new_rows = data.observations.get(first..).unwrap_or_default();
+        let new_rows = self.data.observations.get(first..).unwrap_or_default();
         scale::check_positions(
             path,
             self.robot,
@@ -110,11 +130,11 @@ impl<'a> Reader<'a> {
             scale::unlimited_slides(self.robot, &watch),
             new_rows,
         )?;
-        spread::check(path, &table.header, self.robot, &layout, data, first)?;
+        spread::check(path, &table.header, self.robot, &layout, &self.data, first)?;
         let poses = new_rows.iter().filter(|row| row.measurement.sees_orientation()).count();
         let points = new_rows.len() - poses;
-        if !data.ids.is_empty() {
-            data.ids.resize(data.len(), String::new());
+        if !self.data.ids.is_empty() {
+            self.data.ids.resize(self.data.len(), String::new());
         }
         self.warn_of_ignored(path, &layout);
         self.understood.push(FileUnderstanding {
@@ -144,38 +164,187 @@ impl<'a> Reader<'a> {
         self.warnings.push(format!("{}: left alone the columns {}", path.display(), columns.join(", ")));
     }
 
+    fn row(&mut self, row: &Row<'_>, layout: &Layout, inputs: &mut InputReader<'_>) -> Result<()> {
+        inputs.take_readings(row, self.data.reading_names().len())?;
+        let set = self.set(row, layout)?;
+        let mut seen = false;
+        for target in &layout.targets {
+            let may_be_missing = layout.targets.len() > 1;
+            let Some(measurement) = measurement(row, target, layout.pose, inputs, may_be_missing)? else {
+                continue;
+            };
+            seen = true;
+            let observation = Observation {
+                target: self.target(row, layout, target)?,
+                measurement,
+                sigma_position_m: sigma(row, target.sigma_position, inputs)?,
+                sigma_rotation_rad: sigma(row, target.sigma_rotation, inputs)?,
+                set,
+                source: Source {
+                    file: u32::try_from(self.understood.len()).unwrap_or(u32::MAX),
+                    line: u32::try_from(row.line).unwrap_or(u32::MAX),
+                },
+            };
+            self.data
+                .push_observation(inputs.readings(), observation)
+                .map_err(|error| row.error(0, error.message()))?;
+            if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
+                self.data.ids.push(cell.text().into_owned());
+            }
+        }
+        if !seen {
+            return Err(row.error(0, "found a row without any target's position, expected at least one"));
+        }
+        Ok(())
+    }
+
+    /// The set of a row, if it is stated.
+    fn set(&mut self, row: &Row<'_>, layout: &Layout) -> Result<Option<Set>> {
+        let text = |index: usize| row.cells.get(index).map(|cell| cell.text()).unwrap_or_default();
+        match &layout.set {
+            SetRule::Unstated => Ok(None),
+            SetRule::Words(index) => match text(*index).as_ref() {
+                "" => Ok(None),
+                "fit" => Ok(Some(Set::Fit)),
+                "held_out" => Ok(Some(Set::HeldOut)),
+                other => Err(row
+                    .error(*index, format!("found `{other}` in column `set`, expected `fit` or `held_out`"))),
+            },
+            SetRule::Where(index, rule) => {
+                self.fit_values_seen.resize(rule.values.len(), false);
+                let Some(value) = rule.matching(&text(*index)) else { return Ok(Some(Set::HeldOut)) };
+                if let Some(seen) = self.fit_values_seen.get_mut(value) {
+                    *seen = true;
+                }
+                Ok(Some(Set::Fit))
+            }
+        }
+    }
+
+    /// Index of the row's target. Either all rows name their target or none does.
+    fn target(&mut self, row: &Row<'_>, layout: &Layout, target: &TargetLayout) -> Result<usize> {
+        let cell = layout.target_column.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
+        let name = cell.as_deref().or(target.name.as_deref()).filter(|name| !name.is_empty());
+        let naming = self.naming.get_or_insert_with(|| Naming {
+            named: name.is_some(),
+            path: row.path.to_path_buf(),
+            line: row.line,
+        });
+        if naming.named != name.is_some() {
+            let (found, expected) = match name {
+                Some(name) => (format!("the target `{name}`"), "no name"),
+                None => ("no target name".to_owned(), "one"),
+            };
+            let message = format!(
+                "found {found}, expected {expected} as in {}:{}; all rows name their target or none does \
+                 (an unnamed target is the tip itself)",
+                naming.path.display(),
+                naming.line
+            );
+            return Err(row.error(layout.target_column.unwrap_or(0), message));
+        }
+        let key = name.unwrap_or_default();
+        if let Some(&index) = self.target_indices.get(key) {
+            return Ok(index);
+        }
+        let index = self.target_indices.len();
+        self.target_indices.insert(key.to_owned(), index);
+        self.data.targets.push(name.map(str::to_owned));
+        Ok(index)
+    }
+
     fn finish(self) -> Result<MeasurementFile> {
         let of_map = self.map.set.as_ref().map(|set| (&set.column, &set.fit));
         let rule = self.options.fit_where.as_ref().map(|rule| (&rule.column, &rule.values)).or(of_map);
         if let Some((column, values)) = rule
             && !self.options.ignore_sets
-            && let Some((_, value)) =
-                values.iter().enumerate().find(|(index, _)| self.found.fit_values.get(*index) != Some(&true))
+            && let Some((value, _)) = values.iter().zip(&self.fit_values_seen).find(|(_, seen)| !**seen)
         {
             let message =
                 format!("found no row with `{value}` in column `{column}`, expected at least one to fit");
             let error = Error::new(ErrorKind::Option, message);
-            return Err(match self.found.data.files.as_slice() {
+            return Err(match self.data.files.as_slice() {
                 [only] => error.in_file(only),
                 _ => error,
             });
         }
-        Ok(MeasurementFile { data: self.found.data, understood: self.understood, warnings: self.warnings })
+        Ok(MeasurementFile { data: self.data, understood: self.understood, warnings: self.warnings })
     }
 }
 
-/// Reads the blocks of a file: each thread one at a time, as soon as none depends on the one before.
-fn read_blocks(whole: &mut Part<'_>, table: &Table<'_>, blocks: &mut Blocks<'_>) -> Result<()> {
-    while let Some(first) = blocks.next()? {
-        if !whole.is_settled() {
-            whole.join(whole.read_next(table.rows(&first))?);
-            continue;
+/// What the row says of a target; none if it may be missing and is.
+fn measurement(
+    row: &Row<'_>,
+    target: &TargetLayout,
+    direction: PoseDirection,
+    inputs: &InputReader<'_>,
+    may_be_missing: bool,
+) -> Result<Option<Measurement>> {
+    let position = match inputs.all(target.position) {
+        [Some(x), Some(y), Some(z)] => Vector3::new(x, y, z),
+        [None, None, None] if may_be_missing => return Ok(None),
+        parts => {
+            let empty = parts.iter().position(Option::is_none).unwrap_or(0);
+            let input = target.position.get(empty).copied().unwrap_or(0);
+            return Err(inputs.error(row, input, "found an empty cell", "a position"));
         }
-        let more = (1..rayon::current_num_threads()).map_while(|_| blocks.next().transpose());
-        let together: Vec<Result<Block>> = std::iter::once(Ok(first)).chain(more).collect();
-        let parts: Vec<Result<Part<'_>>> =
-            together.into_par_iter().map(|block| whole.read_next(table.rows(&block?))).collect();
-        parts.into_iter().try_for_each(|part| part.map(|part| whole.join(part)))?;
+    };
+    let measurement = match (orientation(row, target, inputs)?, direction) {
+        (None, PoseDirection::DeviceFromTarget) => Measurement::Point(PointMeasurement { position }),
+        (None, PoseDirection::TargetFromDevice) => {
+            let message = "found a position without orientation, expected both, because the mapping says that \
+                           poses are target_from_device";
+            return Err(row.error(inputs.column(target.position[0]), message));
+        }
+        (Some(rotation), PoseDirection::DeviceFromTarget) => {
+            Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position) })
+        }
+        (Some(rotation), PoseDirection::TargetFromDevice) => {
+            Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position).inverse() })
+        }
+    };
+    Ok(Some(measurement))
+}
+
+/// The measured rotation; none if all its cells are empty.
+fn orientation(
+    row: &Row<'_>,
+    target: &TargetLayout,
+    inputs: &InputReader<'_>,
+) -> Result<Option<Matrix3<f64>>> {
+    let Some((form, columns)) = &target.orientation else { return Ok(None) };
+    let mut values = [0.0; 4];
+    let mut empty = None;
+    let mut given = false;
+    for (slot, &input) in values.iter_mut().zip(columns) {
+        match inputs.value(input) {
+            Some(value) => {
+                *slot = value;
+                given = true;
+            }
+            None => empty = Some(input),
+        }
     }
-    Ok(())
+    match (given, empty) {
+        (false, _) => Ok(None),
+        (true, Some(input)) => {
+            Err(inputs.error(row, input, "found an empty cell", "an orientation that is complete or absent"))
+        }
+        (true, None) => {
+            let first = columns.first().map_or(0, |&input| inputs.column(input));
+            form.rotation(values).map(Some).map_err(|message| row.error(first, message))
+        }
+    }
+}
+
+/// A standard deviation, if the row states it.
+fn sigma(row: &Row<'_>, input: Option<usize>, inputs: &InputReader<'_>) -> Result<Option<f64>> {
+    let Some(input) = input else { return Ok(None) };
+    match inputs.value(input) {
+        Some(value) if value <= 0.0 => {
+            let text = row.cells.get(inputs.column(input)).map_or("", |cell| cell.raw);
+            Err(inputs.error(row, input, &format!("found `{text}`"), "a standard deviation above 0"))
+        }
+        value => Ok(value),
+    }
 }

@@ -80,21 +80,6 @@ impl<'a> JointWatch<'a> {
         }
     }
 
-    /// Takes in what another saw of later rows.
-    pub(super) fn join(&mut self, later: JointWatch<'_>) {
-        self.rows += later.rows;
-        for (one, other) in self.joints.iter_mut().zip(later.joints) {
-            one.lowest = one.lowest.min(other.lowest);
-            one.highest = one.highest.max(other.highest);
-            one.beyond += other.beyond;
-            one.first_lines.extend(other.first_lines);
-            one.first_lines.truncate(NAMED_LINES);
-            if other.extreme > one.extreme {
-                (one.extreme, one.extreme_place) = (other.extreme, other.extreme_place);
-            }
-        }
-    }
-
     /// A warning for each joint beyond its limits.
     ///
     /// # Errors

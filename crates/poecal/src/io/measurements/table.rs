@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use super::blocks::{Block, Blocks, Lines};
 use super::mapping::ColumnMap;
-use super::text::{Cell, Separator, character_column, split};
+use super::text::{Blocks, Cell, Lines, Separator, character_column, split};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 
 /// A column of the header: `name[unit]`.
@@ -34,10 +33,13 @@ pub(super) struct Row<'t> {
     pub(super) cells: &'t [Cell<'t>],
 }
 
-/// How the blocks of a file become rows.
+/// A file being read block by block.
 pub(super) struct Table<'a> {
     pub(super) header: Header<'a>,
     pub(super) separator: Separator,
+    blocks: Blocks<'a>,
+    /// Whether the block at hand, the header's, has yet to give its rows.
+    unread: bool,
 }
 
 /// The rows of a block, one after the other.
@@ -50,22 +52,25 @@ pub(super) struct Rows<'t> {
 
 impl<'a> Table<'a> {
     /// Reads the header; the separator is the mapping's or recognised.
-    pub(super) fn open(path: &'a Path, blocks: &mut Blocks<'_>, map: &ColumnMap) -> Result<Self> {
-        while let Some(block) = blocks.next()? {
-            let Some((line, text)) = block.lines(map.skip_lines).next() else { continue };
+    pub(super) fn open(path: &'a Path, mut blocks: Blocks<'a>, map: &ColumnMap) -> Result<Self> {
+        while blocks.advance()? {
+            let Some((line, text)) = blocks.lines(map.skip_lines).next() else { continue };
             let separator = map.separator.unwrap_or_else(|| Separator::recognised(text));
             let header = Header::new(path, line, text, separator)?;
-            blocks.put_back(block);
-            return Ok(Table { header, separator });
+            return Ok(Table { header, separator, blocks, unread: true });
         }
         let message = "found no line with text, expected a header and rows";
         Err(Error::new(ErrorKind::Syntax, message).in_file(path))
     }
 
-    /// The rows of a block.
-    pub(super) fn rows<'t>(&'t self, block: &'t Block) -> Rows<'t> {
-        let lines = block.lines(self.header.line);
-        Rows { header: &self.header, separator: self.separator, lines, cells: Vec::new() }
+    /// The rows of the next block.
+    pub(super) fn next_block(&mut self) -> Result<Option<Rows<'_>>> {
+        if !std::mem::take(&mut self.unread) && !self.blocks.advance()? {
+            return Ok(None);
+        }
+        let Table { header, separator, blocks, .. } = self;
+        let lines = blocks.lines(header.line);
+        Ok(Some(Rows { header, separator: *separator, lines, cells: Vec::new() }))
     }
 }
 

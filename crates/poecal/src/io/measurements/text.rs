@@ -1,8 +1,121 @@
-//! The cells of a line.
+//! The text of a file, its lines and the cells of a line.
 
 use std::borrow::Cow;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
 
 use serde::Serialize;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::source_text::position;
+
+/// The whole text of a file; `expected` says what it should be.
+pub(super) fn read_text(path: &Path, expected: &str) -> Result<String> {
+    let mut bytes = Vec::new();
+    open(path, expected)?.read_to_end(&mut bytes).map_err(|error| unreadable(path, &error, expected))?;
+    String::from_utf8(bytes)
+        .map_err(|error| not_utf8(path, error.as_bytes(), error.utf8_error().valid_up_to(), 0))
+}
+
+fn open(path: &Path, expected: &str) -> Result<File> {
+    let file_error = |found: &str| {
+        Error::new(ErrorKind::File, format!("found {found}, expected {expected}; check the name"))
+            .in_file(path)
+    };
+    if path.is_dir() {
+        return Err(file_error("a directory"));
+    }
+    File::open(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => file_error("no file of this name"),
+        _ => unreadable(path, &error, expected),
+    })
+}
+
+fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Error {
+    Error::new(ErrorKind::File, format!("cannot be read ({error}), expected {expected}")).in_file(path)
+}
+
+/// Bytes of a file that are held at a time, about.
+const BLOCK: usize = 1 << 18;
+
+/// A text in blocks of whole lines, so that a large file is never held whole.
+pub(super) struct Blocks<'a> {
+    path: &'a Path,
+    source: Box<dyn Read + 'a>,
+    /// The block at hand.
+    text: String,
+    /// What follows it and has been read: no whole line.
+    rest: Vec<u8>,
+    /// What ends a line; none before the first block.
+    newline: Option<u8>,
+    /// Lines before the block at hand.
+    lines: usize,
+}
+
+impl<'a> Blocks<'a> {
+    /// The blocks of a file; `expected` says what it should be.
+    pub(super) fn open(path: &'a Path, expected: &str) -> Result<Self> {
+        Ok(Blocks::new(path, open(path, expected)?))
+    }
+
+    /// The blocks of any text; `path` is for the messages only.
+    pub(super) fn new(path: &'a Path, source: impl Read + 'a) -> Self {
+        let source = Box::new(source);
+        Blocks { path, source, text: String::new(), rest: Vec::new(), newline: None, lines: 0 }
+    }
+
+    /// Reads the next block; false at the end.
+    pub(super) fn advance(&mut self) -> Result<bool> {
+        let newline = self.newline.unwrap_or(b'\n');
+        self.lines += memchr::memchr_iter(newline, self.text.as_bytes()).count();
+        let mut bytes = std::mem::take(&mut self.text).into_bytes();
+        bytes.clear();
+        bytes.append(&mut self.rest);
+        loop {
+            let known = bytes.len();
+            let more = self.source.by_ref().take(BLOCK as u64).read_to_end(&mut bytes);
+            let more = more.map_err(|error| unreadable(self.path, &error, "a table (CSV)"))?;
+            let end = memchr::memrchr(b'\n', bytes.get(known..).unwrap_or_default());
+            if let Some(end) = end {
+                self.rest.extend(bytes.drain(known + end + 1..));
+            }
+            if end.is_some() || more == 0 {
+                break;
+            }
+        }
+        let is_first = self.newline.is_none();
+        if is_first {
+            self.newline = Some(if memchr::memchr(b'\n', &bytes).is_some() { b'\n' } else { b'\r' });
+        }
+        let text = String::from_utf8(bytes);
+        self.text = text.map_err(|error| {
+            not_utf8(self.path, error.as_bytes(), error.utf8_error().valid_up_to(), self.lines)
+        })?;
+        if is_first && self.text.starts_with('\u{feff}') {
+            self.text.remove(0);
+        }
+        Ok(!self.text.is_empty())
+    }
+
+    /// The lines of the block at hand, but for the first `skip` of the file.
+    pub(super) fn lines(&self, skip: usize) -> Lines<'_> {
+        Lines { rest: Some(&self.text), newline: self.newline.unwrap_or(b'\n'), number: self.lines, skip }
+    }
+}
+
+/// The error of bytes that are no text, of which there are `lines` lines before these.
+fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
+    if lines == 0 && (bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff])) {
+        let message = "found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`";
+        return Error::new(ErrorKind::Syntax, message).in_file(path);
+    }
+    let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
+    let found = bytes.get(valid).copied().unwrap_or_default();
+    let (line, column) = position(&before, before.len());
+    let message = format!("found the byte 0x{found:02X}, expected UTF-8 text; save the file as `CSV UTF-8`");
+    Error::new(ErrorKind::Syntax, message).at(path, lines + line, column)
+}
 
 /// What stands between two cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -51,6 +164,40 @@ impl Separator {
             .into_iter()
             .find(unquoted)
             .unwrap_or(Separator::Whitespace)
+    }
+}
+
+/// Lines with their number (from 1) that are neither blank nor a comment (`#`).
+pub(super) struct Lines<'a> {
+    rest: Option<&'a str>,
+    newline: u8,
+    number: usize,
+    skip: usize,
+}
+
+impl<'a> Lines<'a> {
+    /// The next line, whatever it holds.
+    fn line(&mut self) -> Option<&'a str> {
+        let rest = self.rest?;
+        let end = memchr::memchr(self.newline, rest.as_bytes());
+        self.rest = end.and_then(|end| rest.get(end + 1..));
+        Some(end.and_then(|end| rest.get(..end)).unwrap_or(rest))
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (usize, &'a str);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let line = self.line()?;
+            self.number += 1;
+            let line = line.strip_suffix('\r').unwrap_or(line);
+            let content = line.trim_start();
+            if self.number > self.skip && !content.is_empty() && !content.starts_with('#') {
+                return Some((self.number, line));
+            }
+        }
     }
 }
 
@@ -178,6 +325,15 @@ mod tests {
         cells.iter().map(|(text, offset)| ((*text).to_owned(), *offset)).collect()
     }
 
+    fn lines(text: &str, skip: usize) -> Vec<(usize, String)> {
+        let mut blocks = Blocks::new(Path::new("x.csv"), text.as_bytes());
+        let mut found = Vec::new();
+        while blocks.advance().unwrap() {
+            found.extend(blocks.lines(skip).map(|(number, line)| (number, line.to_owned())));
+        }
+        found
+    }
+
     #[test]
     fn cells_keep_their_place() {
         assert_eq!(texts("a, b ,,d", Separator::Comma), owned(&[("a", 0), ("b", 3), ("", 6), ("d", 7)]));
@@ -203,5 +359,40 @@ mod tests {
         assert_eq!(Separator::recognised("\"a;b\",c"), Separator::Comma);
         assert_eq!(Separator::recognised("a\tb c"), Separator::Tab);
         assert_eq!(Separator::recognised("a b"), Separator::Whitespace);
+    }
+
+    #[test]
+    fn blank_lines_and_comments_count_but_are_passed_over() {
+        assert_eq!(
+            lines("\u{feff}# note\r\n\r\na\r\n  # b\r\nc", 0),
+            [(3, "a".to_owned()), (5, "c".to_owned())]
+        );
+        assert_eq!(lines("title\na", 1), [(2, "a".to_owned())]);
+        assert_eq!(lines("a\rb", 0), [(1, "a".to_owned()), (2, "b".to_owned())]);
+    }
+
+    #[test]
+    fn lines_are_the_same_however_the_blocks_fall() {
+        for newline in ["\n", "\r\n", "\r"] {
+            for last in ["", newline] {
+                let row = |k: usize| format!("{k},{}µ", "x".repeat(k % 300));
+                let rows: Vec<String> = (1..5000).map(row).collect();
+                let found = lines(&(rows.join(newline) + last), 0);
+                println!(
+                    "{} lines in {} blocks",
+                    found.len(),
+                    found.iter().map(|(_, row)| row.len()).sum::<usize>() / BLOCK + 1
+                );
+                assert!(found.into_iter().eq((1..).zip(rows)));
+            }
+        }
+        let text = "a,b\n".repeat(BLOCK) + "\u{fffd}";
+        let bytes = &text.as_bytes()[..text.len() - 1];
+        let mut blocks = Blocks::new(Path::new("x.csv"), bytes);
+        let error = (0..).find_map(|_| blocks.advance().err()).unwrap();
+        assert!(
+            error.to_string().starts_with(&format!("x.csv:{}:1: found the byte 0xEF", BLOCK + 1)),
+            "{error}"
+        );
     }
 }

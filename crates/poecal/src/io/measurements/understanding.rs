@@ -80,14 +80,6 @@ impl Range {
         let (min, max) = self.0.unwrap_or((value, value));
         self.0 = Some((min.min(value), max.max(value)));
     }
-
-    /// Takes in another range.
-    pub(super) fn join(&mut self, other: Range) {
-        if let Some((min, max)) = other.0 {
-            self.include(min);
-            self.include(max);
-        }
-    }
 }
 
 /// Our columns and what they were read from.
