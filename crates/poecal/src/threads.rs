@@ -12,3 +12,14 @@ pub(crate) fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync 
         (0..count).map(part).collect()
     }
 }
+
+/// What each run of so many items comes to, in their order; `part` is told which run it is.
+pub(crate) fn map_chunks<S: Sync, T: Send>(
+    items: &[S],
+    size: usize,
+    part: impl Fn(usize, &[S]) -> T + Sync + Send,
+) -> Vec<T> {
+    map_parts(items.len().div_ceil(size), |index| {
+        part(index, &items[index * size..items.len().min((index + 1) * size)])
+    })
+}

@@ -48,8 +48,7 @@ pub fn influence(
     // Of numbers that are not finite there is none, and no row means anything.
     let factor = linalg::cholesky(&normal.gram, n, damping).unwrap_or_default();
     let level = Level::best();
-    let parts = threads::map_parts(rows.len().div_ceil(CHUNK), |part| {
-        let rows = &rows[part * CHUNK..rows.len().min((part + 1) * CHUNK)];
+    let parts = threads::map_chunks(rows, CHUNK, |part, rows| {
         let mut weights = weights.get(part * CHUNK..).unwrap_or_default().iter();
         let mut found = Vec::with_capacity(rows.len());
         problem.for_rows_abreast(estimate, rows, |rows, abreast| {

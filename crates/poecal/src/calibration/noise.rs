@@ -78,7 +78,7 @@ pub fn estimate_noise(
     before: Noise,
 ) -> Option<Noise> {
     let unit = Noise { position_m: 1.0, rotation_rad: 1.0 };
-    let squares = map_predictions(data, packed, rows, estimate, |_, observation, predicted| {
+    let squares = map_predictions(data, packed, rows, estimate, |observation, predicted| {
         let model = observation.measurement.residual_model();
         let mut e = [0.0; 6];
         model.residual(predicted, &unit, &mut e);

@@ -24,7 +24,7 @@ pub struct RowError {
 /// Errors of an estimate, one a row.
 #[must_use]
 pub fn row_errors(data: &Dataset, packed: &Packed, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
-    map_predictions(data, packed, rows, estimate, |_, observation, predicted| {
+    map_predictions(data, packed, rows, estimate, |observation, predicted| {
         let model = observation.measurement.residual_model();
         RowError {
             position_m: model.position() - predicted.translation,

@@ -1,7 +1,5 @@
 //! What an estimate predicts of many rows, several side by side.
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::{Estimate, Linkage, Packed};
 use crate::lanes::{self, Level, Step, WIDTH, Wide};
 use crate::lie::Pose;
@@ -17,27 +15,22 @@ pub(crate) fn map_predictions<T: Send>(
     packed: &Packed,
     rows: &[u32],
     estimate: &Estimate,
-    each: impl Fn(u32, &Observation, &Pose) -> T + Sync,
+    each: impl Fn(&Observation, &Pose) -> T + Sync,
 ) -> Vec<T> {
     let linkage = Linkage::new(estimate);
-    let parts = threads::map_parts(rows.len().div_ceil(CHUNK), |part| {
-        let rows = &rows[part * CHUNK..rows.len().min((part + 1) * CHUNK)];
+    let parts = threads::map_chunks(rows, CHUNK, |_, rows| {
         let mut found = Vec::with_capacity(rows.len());
         let mut side_by_side = SideBySide::new(&linkage);
         for rows in rows.chunks(WIDTH) {
             let last = side_by_side.last_links(packed, rows);
             for (lane, &row) in rows.iter().enumerate() {
                 let observation = &data.observations[row as usize];
-                let target = last(lane) * *linkage.end(observation.target);
-                found.push(each(row, observation, &target));
+                found.push(each(observation, &(last(lane) * *linkage.end(observation.target))));
             }
         }
         found
     });
-    match <[Vec<T>; 1]>::try_from(parts) {
-        Ok([only]) => only,
-        Err(parts) => parts.into_iter().flatten().collect(),
-    }
+    parts.into_iter().flatten().collect()
 }
 
 /// Joint values of [`WIDTH`] rows side by side, and the frames that they lead to.
@@ -73,10 +66,6 @@ impl<'a> SideBySide<'a> {
         }
         lanes::last_links(self.level, &self.joints, &self.values, &mut self.frames);
         let frames = &self.frames;
-        |lane| {
-            let number = |k: usize, column: usize| frames[k][column].0[lane];
-            let rotation = Matrix3::from_fn(number);
-            Pose::new(rotation, Vector3::new(number(0, 3), number(1, 3), number(2, 3)))
-        }
+        |lane| Pose::from_rows(|k, column| frames[k][column].0[lane])
     }
 }

@@ -45,6 +45,12 @@ impl Pose {
         Pose::new(Matrix3::identity(), Vector3::zeros())
     }
 
+    /// The pose of which `number` gives each row's three parts of directions and its part of the translation (metres).
+    pub(crate) fn from_rows(number: impl Fn(usize, usize) -> f64) -> Self {
+        let translation = Vector3::from_fn(|row, _| number(row, 3));
+        Pose::new(Matrix3::from_fn(number), translation)
+    }
+
     /// A pure translation, metres.
     #[must_use]
     pub fn from_translation(translation: Vector3<f64>) -> Self {

@@ -25,10 +25,7 @@ impl Alike {
         if problem.rows.len() <= CHUNK {
             return Alike::of(problem, &problem.rows);
         }
-        let parts = threads::map_parts(problem.rows.len().div_ceil(CHUNK), |part| {
-            let last = problem.rows.len().min((part + 1) * CHUNK);
-            Alike::of(problem, &problem.rows[part * CHUNK..last])
-        });
+        let parts = threads::map_chunks(&problem.rows, CHUNK, |_, rows| Alike::of(problem, rows));
         let mut sorted: Vec<Alike> = Vec::new();
         for other in parts.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten() {
             match sorted.iter_mut().find(|alike| alike.holds(other.target, other.framed)) {

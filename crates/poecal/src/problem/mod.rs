@@ -17,9 +17,9 @@ use crate::lie::TargetTwist;
 use crate::measurement::{Dataset, Measurement, Noise};
 use crate::parameters::{Parameter, Wrench};
 use crate::solve::{LeastSquares, Normal};
+use crate::threads;
 use fast::{Fast, Sums};
 use nalgebra::Vector3;
-use rayon::prelude::*;
 use std::mem::discriminant;
 use std::sync::OnceLock;
 
@@ -192,7 +192,7 @@ impl<'a> Problem<'a> {
         }
         let mut total = Normal::new(self.layout.dim());
         for group in self.rows.chunks(CHUNK * GROUP) {
-            let parts: Vec<Normal> = group.par_chunks(CHUNK).map(&add).collect();
+            let parts = threads::map_chunks(group, CHUNK, |_, rows| add(rows));
             parts.iter().for_each(|part| total.add(part));
         }
         total

@@ -70,9 +70,8 @@ impl<'a> Refit<'a> {
         trials: &[Vec<Measurement>],
         kept: impl Fn(Estimate, Normal, Summary) -> T + Sync,
     ) -> Vec<T> {
-        let parts = threads::map_parts(trials.len().div_ceil(TOGETHER), |part| {
+        let parts = threads::map_chunks(trials, TOGETHER, |_, trials| {
             let mut refit = self.clone();
-            let trials = &trials[part * TOGETHER..trials.len().min((part + 1) * TOGETHER)];
             let fit = |measured: &Vec<Measurement>| {
                 let (estimate, normal, summary) = refit.fit(measured);
                 kept(estimate, normal, summary)

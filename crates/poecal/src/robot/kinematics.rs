@@ -53,7 +53,7 @@ impl Robot {
                 }
             }
             let rows = lanes::product_of_exponentials(Level::best(), &exponentials, &factors);
-            (0..count).map(move |lane| pose_of(|i, j| rows[i][j].0[lane]) * self.home)
+            (0..count).map(move |lane| Pose::from_rows(|i, j| rows[i][j].0[lane]) * self.home)
         })
     }
 
@@ -91,14 +91,8 @@ impl Robot {
             let (first, second) = factors_of(&joint.screw, value, found);
             exponential(&joint.screw).advance(&mut rows, first, second, |number| number);
         }
-        pose_of(|i, j| rows[i][j])
+        Pose::from_rows(|i, j| rows[i][j])
     }
-}
-
-/// The pose of these rows: three directions and a translation.
-fn pose_of(number: impl Fn(usize, usize) -> f64) -> Pose {
-    let translation = Vector3::from_fn(|i, _| number(i, 3));
-    Pose::new(Matrix3::from_fn(number), translation)
 }
 
 /// The two numbers of a joint's motion that depend on its value: `sin θ` and `1 - cos θ` with `(cos θ, sin θ)` known, or θ of a

@@ -26,7 +26,7 @@ pub(super) fn parts(
     estimate: &Estimate,
     noise: Noise,
 ) -> Vec<Parts> {
-    map_predictions(data, packed, rows, estimate, |_, observation, predicted| {
+    map_predictions(data, packed, rows, estimate, |observation, predicted| {
         let model = observation.measurement.residual_model();
         let mut e = [0.0; 6];
         model.residual(predicted, &observation.noise_or(noise), &mut e);

@@ -51,9 +51,7 @@ pub struct Written {
 
 /// What a file will hold.
 enum Content<'a> {
-    Text(String),
-    /// Written piece by piece.
-    Page(Page),
+    Text(Page),
     /// Written some at a time: there may be many.
     Rows(Rows<'a>),
 }
@@ -68,11 +66,11 @@ struct NewFile<'a> {
 
 impl<'a> NewFile<'a> {
     fn new(name: &str, text: String) -> Self {
-        NewFile { name: name.to_owned(), content: Content::Text(text), model_of: None }
+        NewFile { name: name.to_owned(), content: Content::Text(vec![text.into()]), model_of: None }
     }
 
     fn of_page(name: &str, page: Page) -> Self {
-        NewFile { name: name.to_owned(), content: Content::Page(page), model_of: None }
+        NewFile { name: name.to_owned(), content: Content::Text(page), model_of: None }
     }
 
     fn of_rows(name: &str, rows: Rows<'a>) -> Self {
@@ -80,13 +78,16 @@ impl<'a> NewFile<'a> {
     }
 
     fn of_robot(name: String, text: String, robot: &'a Robot) -> Self {
-        NewFile { name, content: Content::Text(text), model_of: Some((robot, robot.tip_name.clone())) }
+        NewFile {
+            name,
+            content: Content::Text(vec![text.into()]),
+            model_of: Some((robot, robot.tip_name.clone())),
+        }
     }
 
     fn write_to(&self, out: &mut File) -> std::io::Result<()> {
         match &self.content {
-            Content::Text(text) => out.write_all(text.as_bytes()),
-            Content::Page(pieces) => pieces.iter().try_for_each(|piece| out.write_all(piece.as_bytes())),
+            Content::Text(pieces) => pieces.iter().try_for_each(|piece| out.write_all(piece.as_bytes())),
             Content::Rows(rows) => rows.write_to(out),
         }
     }
@@ -146,7 +147,7 @@ fn robot_files<'a>(
             let patched = document.patched(robot)?;
             notes.extend(patched.notes);
             let model_of = Some((robot, patched.tip_link));
-            Ok(vec![NewFile { name: urdf, content: Content::Text(patched.text), model_of }])
+            Ok(vec![NewFile { name: urdf, content: Content::Text(vec![patched.text.into()]), model_of }])
         }
         ModelSource::Toml | ModelSource::Calibration(_) => {
             let toml = NewFile::of_robot(format!("{stem}.toml"), robot_toml::write(robot), robot);

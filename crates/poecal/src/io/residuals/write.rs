@@ -5,13 +5,12 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use super::source::RowSource;
 use super::{COLUMNS, Judged, ModelErrors, Residuals, unit};
 use crate::calibration::Calibration;
 use crate::io::numbers::push_number;
 use crate::measurement::Dataset;
+use crate::threads;
 
 /// Rows that one thread works on at a time.
 const PIECE: usize = 256;
@@ -72,12 +71,11 @@ pub(super) fn in_pieces<T: Send>(
     make: impl Fn(Range<usize>) -> T + Sync,
 ) -> impl Iterator<Item = T> {
     (0..rows).step_by(PIECE * TOGETHER).flat_map(move |first| {
-        let begins: Vec<usize> = (first..rows).step_by(PIECE).take(TOGETHER).collect();
-        let one = |&begin: &usize| make(begin..rows.min(begin + PIECE));
-        match begins.as_slice() {
-            [only] => vec![one(only)],
-            _ => begins.par_iter().map(one).collect(),
-        }
+        let pieces = (rows - first).div_ceil(PIECE).min(TOGETHER);
+        threads::map_parts(pieces, |piece| {
+            let begin = first + piece * PIECE;
+            make(begin..rows.min(begin + PIECE))
+        })
     })
 }
 
