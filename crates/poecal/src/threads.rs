@@ -1,6 +1,11 @@
 //! Work in parts, side by side where there are several threads.
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
+
+/// Items that one thread sorts as fast as several.
+const FEW: usize = 8192;
 
 /// What each of so many parts comes to, in their order whatever the number of threads. One part alone, or one thread, is not worth
 /// waking anybody.
@@ -10,6 +15,20 @@ pub(crate) fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync 
         (0..count).into_par_iter().with_max_len(1).map(part).collect()
     } else {
         (0..count).map(part).collect()
+    }
+}
+
+/// Sorts items of which equal ones cannot be told apart.
+pub(crate) fn sort<T: Ord + Send>(items: &mut [T]) {
+    sort_by(items, T::cmp);
+}
+
+/// Sorts items of which no two are equal, or equal ones cannot be told apart.
+pub(crate) fn sort_by<T: Send>(items: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
+    if items.len() > FEW && rayon::current_num_threads() > 1 {
+        items.par_sort_unstable_by(compare);
+    } else {
+        items.sort_unstable_by(compare);
     }
 }
 

@@ -4,6 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::estimate::Packed;
 use crate::robot::{JointKind, Limits, Robot};
+use crate::threads;
+
+/// Rows that one thread looks at together.
+const CHUNK: usize = 8192;
 
 /// The values of a joint that were sampled, beside those that it can take (radians; metres of a sliding joint).
 ///
@@ -93,25 +97,40 @@ fn stragglers(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
     const FEW: usize = 50;
     const GAP: f64 = 0.15;
     let mut values: Vec<f64> = rows.iter().map(|&row| packed.joint_values(row as usize)[joint]).collect();
-    values.sort_by(f64::total_cmp);
-    let (Some(least), Some(most)) = (values.first(), values.last()) else { return 0.0 };
-    let (span, few) = (most - least, values.len() / FEW);
-    if span <= 0.0 || values.len() < FEW {
+    let few = values.len() / FEW;
+    if few == 0 {
+        return 0.0;
+    }
+    // Only the ends need be in order, and one more value at each.
+    values.select_nth_unstable_by(few, f64::total_cmp);
+    values[..=few].sort_unstable_by(f64::total_cmp);
+    let last = values.len() - 1 - few;
+    values[few..].select_nth_unstable_by(last - few, f64::total_cmp);
+    values[last..].sort_unstable_by(f64::total_cmp);
+    let (least, most) = (values[0], values[values.len() - 1]);
+    let span = most - least;
+    if span <= 0.0 {
         return 0.0;
     }
     let is_gap = |pair: &&[f64]| pair[1] - pair[0] > GAP * span;
-    let low = values.windows(2).take(few).rfind(is_gap).map_or(*least, |pair| pair[1]);
-    let high = values.windows(2).rev().take(few).rfind(is_gap).map_or(*most, |pair| pair[0]);
+    let low = values[..=few].windows(2).rfind(is_gap).map_or(least, |pair| pair[1]);
+    let high = values[last..].windows(2).find(is_gap).map_or(most, |pair| pair[0]);
     1.0 - (high - low).max(0.0) / span
 }
 
 /// Smallest and largest value of each joint in some rows.
 pub(crate) fn ranges(joints: usize, packed: &Packed, rows: &[u32]) -> Vec<(f64, f64)> {
-    let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); joints];
-    for &row in rows {
-        for (range, &value) in ranges.iter_mut().zip(packed.joint_values(row as usize)) {
-            *range = (range.0.min(value), range.1.max(value));
+    let none = vec![(f64::INFINITY, f64::NEG_INFINITY); joints];
+    let parts = threads::map_chunks(rows, CHUNK, |_, rows| {
+        let mut ranges = none.clone();
+        for &row in rows {
+            for (range, &value) in ranges.iter_mut().zip(packed.joint_values(row as usize)) {
+                *range = (range.0.min(value), range.1.max(value));
+            }
         }
-    }
-    ranges
+        ranges
+    });
+    parts.into_iter().fold(none.clone(), |whole, part| {
+        whole.into_iter().zip(part).map(|(a, b)| (a.0.min(b.0), a.1.max(b.1))).collect()
+    })
 }

@@ -49,23 +49,25 @@ pub fn influence(
     let factor = linalg::cholesky(&normal.gram, n, damping).unwrap_or_default();
     let level = Level::best();
     let parts = threads::map_chunks(rows, CHUNK, |part, rows| {
-        let mut weights = weights.get(part * CHUNK..).unwrap_or_default().iter();
-        let mut found = Vec::with_capacity(rows.len());
-        problem.for_rows_abreast(estimate, rows, |rows, abreast| {
+        let weights = weights.get(part * CHUNK..).unwrap_or_default();
+        let mut found = vec![Influence { leverage: 0.0, studentized: 0.0 }; rows.len()];
+        problem.for_rows_abreast(estimate, rows, |places, abreast| {
             let Abreast { jacobian, residual, numbers } = abreast;
             let mut weight = Wide::ZERO;
-            for ((lane, &row), &numbers) in rows.iter().enumerate().zip(&*numbers) {
-                weight.0[lane] = weights.next().copied().unwrap_or(1.0);
+            for ((lane, &place), &numbers) in places.iter().enumerate().zip(&*numbers) {
+                weight.0[lane] = weights.get(place as usize).copied().unwrap_or(1.0);
                 for (k, residual) in residual.iter_mut().enumerate().take(numbers) {
-                    residual.0[lane] /= scale(row, k);
+                    residual.0[lane] /= scale(rows[place as usize], k);
                 }
             }
             let [trace, squared] =
                 lanes::influences(level, &factor, shifts, jacobian, residual, &weight, LEAST_REDUNDANCY);
-            found.extend((0..rows.len()).map(|lane| Influence {
-                leverage: trace.0[lane] / numbers[lane].max(1) as f64,
-                studentized: squared.0[lane].max(0.0).sqrt(),
-            }));
+            for (lane, &place) in places.iter().enumerate() {
+                found[place as usize] = Influence {
+                    leverage: trace.0[lane] / numbers[lane].max(1) as f64,
+                    studentized: squared.0[lane].max(0.0).sqrt(),
+                };
+            }
         });
         found
     });

@@ -5,9 +5,12 @@ use nalgebra::Vector3;
 use super::{Calibration, RowError, row_errors};
 use crate::estimate::{Estimate, Packed};
 use crate::measurement::Dataset;
+use crate::threads;
 
 /// Rows of one configuration from which on its scatter is stated; ISO 9283 asks for 30.
 const ROWS: usize = 3;
+/// Rows that one thread looks at together.
+const CHUNK: usize = 4096;
 /// Readings (radians, metres) that differ by no more are of one configuration: what encoders of a robot that came back differ by.
 const SAME: f64 = 1e-4;
 /// Standard deviations that are added to the mean distance, as in ISO 9283.
@@ -70,21 +73,26 @@ fn groups(data: &Dataset) -> Vec<Vec<u32>> {
     let window = SAME * (0..data.reading_names().len()).map(weight).sum::<f64>();
     let mut order: Vec<(usize, f64, u32)> =
         data.all_rows().into_iter().map(|row| (target(row), key(row), row)).collect();
-    order.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+    threads::sort_by(&mut order, |a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
     let same = |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= SAME);
+    // Places of the rows like that at `first`, from there on.
+    let like = |first: usize| {
+        let (target, key, row) = order[first];
+        let near = order[first..].iter().take_while(move |it| it.0 == target && it.1 - key <= window);
+        (first..).zip(near).filter(move |(_, it)| same(row, it.2)).map(|(place, _)| place)
+    };
+    // Hardly any row has enough of them, unless robots were sent back on purpose.
+    let firsts = threads::map_parts(order.len().div_ceil(CHUNK), |chunk| {
+        let places = chunk * CHUNK..order.len().min((chunk + 1) * CHUNK);
+        places.filter(|&first| like(first).nth(ROWS - 1).is_some()).collect::<Vec<_>>()
+    });
     let mut taken = vec![false; order.len()];
     let mut groups = Vec::new();
-    for first in 0..order.len() {
+    for first in firsts.into_iter().flatten() {
         if taken[first] {
             continue;
         }
-        let (target, key, row) = order[first];
-        let near = order[first..].iter().take_while(|it| it.0 == target && it.1 - key <= window);
-        let members: Vec<usize> = (first..)
-            .zip(near)
-            .filter(|&(place, &(_, _, other))| !taken[place] && same(row, other))
-            .map(|(place, _)| place)
-            .collect();
+        let members: Vec<usize> = like(first).filter(|&place| !taken[place]).collect();
         if members.len() >= ROWS {
             members.iter().for_each(|&place| taken[place] = true);
             let mut rows: Vec<u32> = members.iter().map(|&place| order[place].2).collect();

@@ -71,19 +71,13 @@ pub fn settle_sets(data: &mut Dataset, held_out: Option<f64>, stated_by: &str) -
 
 /// A seeded share of the configurations (rows with the same readings are one).
 fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
-    let mut order: Vec<usize> = (0..data.len()).collect();
-    let key = |row: usize| data.readings(row).iter().map(|value| value.to_bits());
-    order.sort_by(|&a, &b| key(a).cmp(key(b)).then(a.cmp(&b)));
-    let mut configuration = vec![0usize; data.len()];
-    let mut configurations: Vec<usize> = Vec::new();
-    for (k, &row) in order.iter().enumerate() {
-        if k == 0 || !key(row).eq(key(order[k - 1])) {
-            // Named by its first row, so that the choice does not depend on the values of the readings.
-            configurations.push(row);
-        }
-        configuration[row] = configurations.last().copied().unwrap_or(row);
+    // Named by its first row, so that the choice does not depend on the values of the readings.
+    let mut configuration = data.all_rows();
+    for group in data.repeated(&data.all_rows()) {
+        group.iter().for_each(|&row| configuration[row as usize] = group[0]);
     }
-    configurations.sort_unstable();
+    let mut configurations: Vec<u32> = data.all_rows();
+    configurations.retain(|&row| configuration[row as usize] == row);
     let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
     random::shuffle(&mut generator, &mut configurations);
     // At least one stays fitted, so that a share too large is refused for what is missing then.
@@ -91,7 +85,7 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     let count = ((options.held_out * configurations.len() as f64).round() as usize).min(most);
     let mut chosen = vec![false; data.len()];
     for &first in &configurations[..count] {
-        chosen[first] = true;
+        chosen[first as usize] = true;
     }
-    configuration.iter().map(|&first| chosen[first]).collect()
+    configuration.iter().map(|&first| chosen[first as usize]).collect()
 }

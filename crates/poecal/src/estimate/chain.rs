@@ -44,10 +44,10 @@ impl Linkage {
             axis_from_base = base_from_axis.inverse();
         }
         let ends = estimate.base_from_target.iter().map(|&target| axis_from_base * target).collect();
-        let offsets = if estimate.joint_offset.iter().all(|&offset| offset == 0.0) {
-            Vec::new()
-        } else {
+        let offsets = if estimate.has_offsets() {
             estimate.joint_offset.iter().map(|&offset| (offset, offset.cos(), offset.sin())).collect()
+        } else {
+            Vec::new()
         };
         Linkage { kinds: estimate.kinds.clone(), steps, ends, offsets }
     }

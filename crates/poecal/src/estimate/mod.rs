@@ -102,11 +102,17 @@ impl Estimate {
         }
     }
 
+    /// Whether any joint has an offset.
+    #[must_use]
+    pub fn has_offsets(&self) -> bool {
+        self.joint_offset.iter().any(|&offset| offset != 0.0)
+    }
+
     /// The same robot without joint offsets: what follows a joint is moved by its offset, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for all j > i, and
     /// the targets likewise. Exact, and no prediction changes (lou2009 equations 11 to 15, docs/theory.md §3 (9)).
     #[must_use]
     pub fn without_offsets(&self) -> Self {
-        if self.joint_offset.iter().all(|&offset| offset == 0.0) {
+        if !self.has_offsets() {
             return self.clone();
         }
         let screws = self.screws();

@@ -24,15 +24,14 @@ pub(super) fn diagnose(
     data: &Dataset,
     rows: &[u32],
 ) -> (Option<Diagnosis>, Option<Diagnosis>) {
-    let key = |row: u32| data.readings(row as usize).iter().map(|value| value.to_bits());
     let target = |row: u32| data.observations[row as usize].target;
     let seen = |row: u32| &data.observations[row as usize].measurement;
-    let mut order = rows.to_vec();
-    order.sort_by(|&a, &b| target(a).cmp(&target(b)).then_with(|| key(a).cmp(key(b))).then(a.cmp(&b)));
-    let same = |a: &u32, b: &u32| target(*a) == target(*b) && key(*a).eq(key(*b));
+    let mut repeats = data.repeated(rows);
+    repeats.iter_mut().for_each(|group| group.sort_by_key(|&row| target(row)));
+    let same = |a: &u32, b: &u32| target(*a) == target(*b);
     let (mut repeated, mut contradicting): (Vec<Pair>, Vec<Pair>) = (Vec::new(), Vec::new());
     let mut furthest_m: f64 = 0.0;
-    for group in order.chunk_by(same) {
+    for group in repeats.iter().flat_map(|group| group.chunk_by(same)) {
         for (k, &row) in group.iter().enumerate().skip(1) {
             let near = &group[k.saturating_sub(NEAR)..k];
             if let Some(&first) = near.iter().find(|&&first| seen(first) == seen(row)) {

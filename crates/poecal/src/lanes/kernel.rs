@@ -2,107 +2,13 @@
 //!
 //! One source for every width of vector: as many rows as a vector has lanes are computed at a time, in blocks of [`WIDTH`].
 
-use std::cell::RefCell;
-
 use super::frame::{Frame, turned};
-use super::gram::{TILE, add_products, sums_len};
+use super::gram::{TILE, add_products};
 use super::plan::{Plan, Step};
 use super::totals::Totals;
 use super::turn::Turn;
 use super::vector::{Vector, Vectors, WIDTH, Wide};
-
-/// Memory of columns that are waiting for their products, in wide numbers: with the sums it just fits the first cache.
-const WAITING: usize = 570;
-/// Fewest and most blocks that wait: with few, the tiles' sums are loaded and stored too often, even if columns fill the second cache.
-const BLOCKS_WAITING: (usize, usize) = (6, 8);
-
-/// What is kept of a joint: its two shift columns and its origin in the rows under way, and the gradient of shifts and tilts.
-#[derive(Clone, Copy)]
-struct Axis {
-    shifts: [[Wide; 3]; 2],
-    origin: [Wide; 3],
-    gradient: [Wide; 4],
-}
-
-impl Axis {
-    const ZERO: Axis =
-        Axis { shifts: [[Wide::ZERO; 3]; 2], origin: [Wide::ZERO; 3], gradient: [Wide::ZERO; 4] };
-}
-
-/// Columns and sums under way.
-struct Work {
-    /// Position rows of each column, block after block.
-    jacobian: Vec<[Wide; 3]>,
-    /// What rotation adds for each turn, likewise: two or three rows a block.
-    turned: Vec<Wide>,
-    axes: Vec<Axis>,
-    products: Vec<Wide>,
-    turned_products: Vec<Wide>,
-    shift_gradient: Vec<Wide>,
-    turn_gradient: Vec<Wide>,
-    square: Wide,
-    /// Blocks that wait at a time.
-    waiting: usize,
-    /// Rows a block of what rotation adds.
-    turned_rows: usize,
-}
-
-impl Default for Work {
-    fn default() -> Self {
-        Work::EMPTY
-    }
-}
-
-impl Work {
-    const EMPTY: Work = Work {
-        jacobian: Vec::new(),
-        turned: Vec::new(),
-        axes: Vec::new(),
-        products: Vec::new(),
-        turned_products: Vec::new(),
-        shift_gradient: Vec::new(),
-        turn_gradient: Vec::new(),
-        square: Wide::ZERO,
-        waiting: 1,
-        turned_rows: 0,
-    };
-
-    /// Makes room for a plan, with all sums at zero.
-    fn begin(&mut self, arm: &Arm<'_>, lanes: usize, full: bool) {
-        let plan = arm.plan;
-        let columns = plan.columns().next_multiple_of(TILE);
-        let turns = plan.turns.len().next_multiple_of(TILE);
-        let rows = plan.turned_rows(arm.nearly);
-        self.turned_rows = rows;
-        let sums = |columns: usize| if full { sums_len(columns, lanes) } else { 0 };
-        self.waiting =
-            if full { (WAITING / (3 * columns).max(1)).clamp(BLOCKS_WAITING.0, BLOCKS_WAITING.1) } else { 1 };
-        restart(&mut self.products, sums(columns));
-        restart(&mut self.turned_products, sums(if rows > 0 { turns } else { 0 }));
-        restart(&mut self.shift_gradient, plan.shifts);
-        restart(&mut self.turn_gradient, plan.turns.len());
-        self.square = Wide::ZERO;
-        self.axes.clear();
-        self.axes.resize(plan.joints.len(), Axis::ZERO);
-        // Columns are written before they are read, but for those that fill up the last tile.
-        if full {
-            self.jacobian.resize(self.waiting * columns, [Wide::ZERO; 3]);
-            self.jacobian[self.waiting * plan.columns()..].fill([Wide::ZERO; 3]);
-            self.turned.resize(rows * self.waiting * turns, Wide::ZERO);
-            self.turned[rows * self.waiting * plan.turns.len()..].fill(Wide::ZERO);
-        }
-    }
-}
-
-fn restart(sums: &mut Vec<Wide>, len: usize) {
-    sums.clear();
-    sums.resize(len, Wide::ZERO);
-}
-
-thread_local! {
-    /// Room for one pass, kept from one to the next.
-    static WORK: RefCell<Work> = const { RefCell::new(Work::EMPTY) };
-}
+use super::work::{Axis, WORK, Work};
 
 /// An arm as it stands: what is unknown of it, its frames at zero, and the way from the last one to the target.
 #[derive(Clone, Copy)]
@@ -133,7 +39,10 @@ fn sum<V: Vector, const FULL: bool>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
     // A pass does not call another, so the room is free; if it were not, there would be another.
     let mut own = WORK.take();
     let work = &mut own;
-    work.begin(arm, V::LANES, FULL);
+    work.begin(arm, FULL);
+    if FULL {
+        work.begin_products(plan, V::LANES);
+    }
     let len = plan.block_len();
     for blocks in blocks.chunks(len * work.waiting) {
         for (filled, block) in blocks.chunks_exact(len).enumerate() {
@@ -218,25 +127,26 @@ struct Seen<V> {
     torque: Vectors<V>,
 }
 
-/// Columns, residuals and gradient of part `part` of a block.
+/// Columns and gradient of part `part` of a block; gives the whitened residuals of position and rotation.
 #[inline(always)]
-fn add_rows<V: Vector, const FULL: bool>(
+pub(super) fn add_rows<V: Vector, const FULL: bool>(
     arm: &Arm<'_>,
     block: &[Wide],
     work: &mut Work,
     filled: usize,
     part: usize,
-) {
+) -> [Vectors<V>; 2] {
+    let none = [Vectors([V::splat(0.0); 3]); 2];
     let Arm { plan, steps, end, .. } = *arm;
     let Work { jacobian, turned, axes, shift_gradient, turn_gradient, square, waiting, .. } = work;
     let rows = work.turned_rows;
-    let Some((noise, rest)) = block.split_first_chunk::<2>() else { return };
-    let Some((position, rest)) = rest.split_first_chunk::<3>() else { return };
+    let Some((noise, rest)) = block.split_first_chunk::<2>() else { return none };
+    let Some((position, rest)) = rest.split_first_chunk::<3>() else { return none };
     let (measured, joints) = rest.split_at(if plan.framed { 9 } else { 0 });
     let (weight, per_length) = (V::load(&noise[0], part), V::splat(1.0 / plan.length_m));
     if !FULL && weight.are_below(f64::MIN_POSITIVE) {
         // Nothing but rows that fill the block.
-        return;
+        return none;
     }
     // Empty without unknowns.
     let columns = jacobian.get_mut(filled..).unwrap_or_default();
@@ -247,7 +157,8 @@ fn add_rows<V: Vector, const FULL: bool>(
     let target = if plan.joints.is_empty() { Frame::fixed(end) } else { last.then(end) };
     let force = (Vectors::load(position, part) - target.origin()).scale(weight);
     let mut squares = force.dot(force);
-    let mut seen = Seen { weight, per_length, force, torque: Vectors([V::splat(0.0); 3]) };
+    let mut residuals = [force, Vectors([V::splat(0.0); 3])];
+    let mut seen = Seen { weight, per_length, force, torque: residuals[1] };
     let mut turn = None;
     if let [x, y, z] = measured.as_chunks::<3>().0 {
         let measured = [Vectors::load(x, part), Vectors::load(y, part), Vectors::load(z, part)];
@@ -255,6 +166,7 @@ fn add_rows<V: Vector, const FULL: bool>(
         let ratio = V::load(&noise[1], part);
         let whitened = found.r.scale(weight * ratio);
         squares = squares + whitened.dot(whitened);
+        residuals[1] = whitened;
         seen.torque = whitened.scale(ratio * per_length);
         turn = Some((found, ratio * per_length));
     }
@@ -265,6 +177,7 @@ fn add_rows<V: Vector, const FULL: bool>(
     if let (true, true, Some((turn, ratio))) = (FULL, rows > 0, turn) {
         batch.add_turned(&turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
     }
+    residuals
 }
 
 impl Batch<'_> {

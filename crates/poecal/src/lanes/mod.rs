@@ -1,4 +1,5 @@
 //! The hot path of a fit: several rows at a time, by vector instructions.
+mod columns;
 mod dense;
 mod frame;
 mod gram;
@@ -13,6 +14,7 @@ mod tip;
 mod totals;
 mod turn;
 mod vector;
+mod work;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -24,7 +26,7 @@ pub(crate) use poses::Exponential;
 pub use simd::{Level, levels};
 pub(crate) use simd::{
     cholesky, cosines_and_sines, influences, inverse, last_links, product_of_exponentials, solve,
-    sum_gradient, sum_products,
+    sum_gradient, sum_products, whitened_columns,
 };
 pub(crate) use totals::{Tiles, Totals};
 pub(crate) use vector::{WIDTH, Wide};

@@ -1,5 +1,6 @@
 //! Run-time dispatch: the same source compiled for each set of vector instructions. The only unsafe code of the library.
 
+use super::columns;
 use super::dense::{self, Factor};
 use super::influence::{self, NUMBERS};
 use super::kernel::{self, Arm};
@@ -113,6 +114,16 @@ dispatch!(
 dispatch!(
     /// Sums over rows, without products of columns.
     kernel::sum_gradient(arm: &Arm<'_>, blocks: &[Wide]) -> Totals
+);
+dispatch!(
+    /// Writes columns and residuals of the rows of one block.
+    columns::whitened_columns(
+        arm: &Arm<'_>,
+        block: &[Wide],
+        places: &[usize],
+        jacobian: &mut [[Wide; NUMBERS]],
+        residual: &mut [Wide; NUMBERS]
+    )
 );
 dispatch!(
     /// Writes the frames of the last link.

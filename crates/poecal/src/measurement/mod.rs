@@ -1,5 +1,6 @@
 //! What an outside device saw. A measurement knows the pose of the target it saw and nothing of joints or parameters.
 
+mod configurations;
 mod dataset;
 mod point;
 mod pose;

@@ -9,13 +9,14 @@ const CHUNK: usize = 8192;
 /// Relative difference of two ratios that differ by rounding only.
 const SAME_RATIO: f64 = 1e-14;
 
-/// Rows that are computed alike, in the problem's order.
+/// Rows that are computed alike, in the order given.
 pub(super) struct Alike {
     pub(super) target: usize,
     /// Whether orientation was measured.
     pub(super) framed: bool,
     /// Position over rotation noise in m/rad, if it is the same in all rows.
     pub(super) ratio: Option<f64>,
+    /// The rows, or their places in what was sorted.
     pub(super) rows: Vec<u32>,
 }
 
@@ -23,9 +24,10 @@ impl Alike {
     /// Sorts the rows of a problem; `None` if one is of a kind that the hot path does not serve.
     pub(super) fn sorted(problem: &Problem<'_>) -> Option<Vec<Alike>> {
         if problem.rows.len() <= CHUNK {
-            return Alike::of(problem, &problem.rows);
+            return Alike::of(problem, &problem.rows, |_, row| row);
         }
-        let parts = threads::map_chunks(&problem.rows, CHUNK, |_, rows| Alike::of(problem, rows));
+        let parts =
+            threads::map_chunks(&problem.rows, CHUNK, |_, rows| Alike::of(problem, rows, |_, row| row));
         let mut sorted: Vec<Alike> = Vec::new();
         for other in parts.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten() {
             match sorted.iter_mut().find(|alike| alike.holds(other.target, other.framed)) {
@@ -39,11 +41,16 @@ impl Alike {
         Some(sorted)
     }
 
-    fn of(problem: &Problem<'_>, rows: &[u32]) -> Option<Vec<Alike>> {
+    /// Sorts some rows of the data; each is held by the name that `name` gives it, told its place among these rows and its number.
+    pub(super) fn of(
+        problem: &Problem<'_>,
+        rows: &[u32],
+        name: impl Fn(u32, u32) -> u32,
+    ) -> Option<Vec<Alike>> {
         let mut sorted: Vec<Alike> = Vec::new();
         let usual = Whitening::new(problem.noise);
         let mut at = 0;
-        for &row in rows {
+        for (place, &row) in (0..).zip(rows) {
             let observation = &problem.data.observations[row as usize];
             let framed = match problem.measurement(row as usize) {
                 Measurement::Point(_) => false,
@@ -59,9 +66,9 @@ impl Alike {
             match sorted.get_mut(at) {
                 Some(alike) => {
                     alike.ratio = same(alike.ratio, ratio);
-                    alike.rows.push(row);
+                    alike.rows.push(name(place, row));
                 }
-                None => sorted.push(Alike { target, framed, ratio, rows: vec![row] }),
+                None => sorted.push(Alike { target, framed, ratio, rows: vec![name(place, row)] }),
             }
         }
         Some(sorted)

@@ -3,13 +3,13 @@
 //! It serves points and poses with minimal screws, targets and a device frame; everything else takes the general path in `mod.rs`,
 //! which is also what this one is tested against.
 
+use super::Problem;
 use super::alike::{Alike, Whitening};
+use super::arrangement::Arrangement;
 use super::scatter::Scatter;
-use super::{Layout, Problem};
 use crate::estimate::{Estimate, Linkage};
-use crate::lanes::{self, Arm, JointPlan, Level, Plan, RowData, Rows, Step, Totals};
+use crate::lanes::{self, Arm, Level, Plan, RowData, Rows, Step, Totals};
 use crate::measurement::{Measurement, PoseMeasurement, SpatialPoseMeasurement};
-use crate::parameters::Parameter;
 use crate::solve::Normal;
 use crate::threads;
 use std::cell::RefCell;
@@ -24,7 +24,7 @@ const KEPT: usize = 2048;
 
 thread_local! {
     /// Room for a chunk that is not kept.
-    static ROWS: RefCell<Rows> = const { RefCell::new(Rows::EMPTY) };
+    pub(super) static ROWS: RefCell<Rows> = const { RefCell::new(Rows::EMPTY) };
 }
 
 /// What is summed over rows.
@@ -47,11 +47,7 @@ pub(super) struct Fast {
 
 #[derive(Clone, Debug)]
 struct Group {
-    target: usize,
-    plan: Plan,
-    /// Places of the plan's shifts and turns in a step.
-    shift_places: Vec<usize>,
-    turn_places: Vec<usize>,
+    arranged: Arrangement,
     rows: Vec<u32>,
     /// Chunks of the rows side by side, if they are kept.
     packed: Vec<Rows>,
@@ -62,11 +58,11 @@ impl Fast {
     pub(super) fn new(problem: &Problem<'_>, level: Level) -> Option<Self> {
         let mut groups = Vec::new();
         for alike in Alike::sorted(problem)? {
-            let mut group = Group::new(problem, alike.target, alike.framed)?;
-            group.plan.ratio = alike.ratio;
-            group.rows = alike.rows;
-            let scatter = group.scatter(problem.layout.dim());
-            groups.push((group, scatter));
+            let mut arranged = Arrangement::new(problem, alike.target, alike.framed)?;
+            arranged.plan.ratio = alike.ratio;
+            let Arrangement { plan, shift_places, turn_places, .. } = &arranged;
+            let scatter = Scatter::new(plan, shift_places, turn_places, problem.layout.dim());
+            groups.push((Group { arranged, rows: alike.rows, packed: Vec::new() }, scatter));
         }
         let mut fast = Fast { groups, level };
         fast.pack(problem);
@@ -78,10 +74,10 @@ impl Fast {
         if problem.rows.len() > KEPT {
             return;
         }
-        for (Group { plan, rows, packed, .. }, _) in &mut self.groups {
+        for (Group { arranged, rows, packed }, _) in &mut self.groups {
             packed.resize_with(rows.len().div_ceil(CHUNK), Rows::default);
             for (rows, packed) in rows.chunks(CHUNK).zip(packed) {
-                pack(problem, plan, rows, packed);
+                pack(problem, &arranged.plan, rows, packed);
             }
         }
     }
@@ -96,8 +92,9 @@ impl Fast {
         };
         normal.gradient.resize(problem.layout.dim(), 0.0);
         for (group, scatter) in &self.groups {
-            let end = Step::from(linkage.end(group.target));
-            let arm = Arm { plan: &group.plan, steps: &steps, end: &end, nearly: sums == Sums::Nearly };
+            let Arrangement { target, plan, .. } = &group.arranged;
+            let end = Step::from(linkage.end(*target));
+            let arm = Arm { plan, steps: &steps, end: &end, nearly: sums == Sums::Nearly };
             let totals = group.sum(problem, self.level, &arm, sums);
             group.put(&totals, &mut normal);
             if sums != Sums::Gradient {
@@ -109,91 +106,6 @@ impl Fast {
 }
 
 impl Group {
-    fn new(problem: &Problem<'_>, target: usize, framed: bool) -> Option<Self> {
-        let mut group = Group {
-            target,
-            plan: plan_without_unknowns(problem, framed),
-            shift_places: Vec::new(),
-            turn_places: Vec::new(),
-            rows: Vec::new(),
-            packed: Vec::new(),
-        };
-        // The kernels' order: device frame, joints, target.
-        group.add_device(&problem.layout)?;
-        group.add_joints(&problem.layout)?;
-        group.plan.tilts = group.turn_places.len();
-        group.add_target(&problem.layout)?;
-        group.plan.shifts = group.shift_places.len();
-        Some(group)
-    }
-
-    fn shift(&mut self, places: &[(usize, f64)]) {
-        self.shift_places.extend(places.iter().map(|&(place, _)| place));
-    }
-
-    /// Turns about the directions of the shifts from `first` on.
-    fn turn(&mut self, places: &[(usize, f64)], first: usize) {
-        self.turn_places.extend(places.iter().map(|&(place, _)| place));
-        self.plan.turns.extend(first..first + places.len());
-    }
-
-    fn add_device(&mut self, layout: &Layout) -> Option<()> {
-        for (parameter, places) in layout.parameters() {
-            if let Parameter::DeviceFrame(device) = parameter {
-                if self.plan.device.is_some() {
-                    return None;
-                }
-                self.plan.device = Some(device.about.into());
-                self.shift(&places[..3]);
-                self.turn(&places[3..], 0);
-            }
-        }
-        Some(())
-    }
-
-    fn add_joints(&mut self, layout: &Layout) -> Option<()> {
-        for (parameter, places) in layout.parameters() {
-            let axis = match parameter {
-                Parameter::ScrewAxis(axis) => axis,
-                Parameter::FreeScrew(_) | Parameter::JointOffset(_) => return None,
-                Parameter::DeviceFrame(_) | Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => continue,
-            };
-            let first = self.shift_places.len();
-            let joint = self.plan.joints.get_mut(axis.joint)?;
-            if joint.columns.is_some() || joint.turns != (places.len() == 4) {
-                return None;
-            }
-            joint.columns = Some((first, self.turn_places.len()));
-            self.shift(&places[..2]);
-            self.turn(&places[2..], first);
-        }
-        Some(())
-    }
-
-    fn add_target(&mut self, layout: &Layout) -> Option<()> {
-        for (parameter, places) in layout.parameters() {
-            let target = match parameter {
-                Parameter::TargetFrame(frame) => frame.target,
-                Parameter::TargetPlace(place) => place.target,
-                _ => continue,
-            };
-            if target != self.target {
-                continue;
-            }
-            if self.plan.place.is_some() {
-                return None;
-            }
-            let first = self.shift_places.len();
-            self.plan.place = Some(first);
-            self.shift(&places[..3]);
-            if places.len() > 3 && self.plan.framed {
-                self.plan.frame = Some(self.turn_places.len());
-                self.turn(&places[3..], first);
-            }
-        }
-        Some(())
-    }
-
     /// Sums over all rows of the group, in the order of its chunks whatever the number of threads.
     fn sum(&self, problem: &Problem<'_>, level: Level, arm: &Arm<'_>, sums: Sums) -> Totals {
         let sum = if sums == Sums::Gradient { lanes::sum_gradient } else { lanes::sum_products };
@@ -202,7 +114,7 @@ impl Group {
             None => {
                 let last = self.rows.len().min((index + 1) * CHUNK);
                 let mut packed = ROWS.take();
-                pack(problem, &self.plan, &self.rows[index * CHUNK..last], &mut packed);
+                pack(problem, &self.arranged.plan, &self.rows[index * CHUNK..last], &mut packed);
                 let totals = sum(level, arm, &packed.blocks);
                 ROWS.set(packed);
                 totals
@@ -226,38 +138,20 @@ impl Group {
         total.unwrap_or_else(|| chunk(0))
     }
 
-    fn scatter(&self, n: usize) -> Scatter {
-        Scatter::new(&self.plan, &self.shift_places, &self.turn_places, n)
-    }
-
     /// Puts cost and gradient of the group into the problem's normal information.
     fn put(&self, totals: &Totals, normal: &mut Normal) {
-        let places = self.shift_places.iter().chain(&self.turn_places);
+        let Arrangement { plan, shift_places, turn_places, .. } = &self.arranged;
+        let places = shift_places.iter().chain(turn_places);
         for (value, &place) in totals.gradient.iter().zip(places) {
             normal.gradient[place] += value;
         }
         normal.cost += totals.cost;
-        normal.residuals += self.rows.len() * if self.plan.framed { 6 } else { 3 };
-    }
-}
-
-fn plan_without_unknowns(problem: &Problem<'_>, framed: bool) -> Plan {
-    Plan {
-        joints: problem.packed.turns().map(|turns| JointPlan { turns, columns: None }).collect(),
-        device: None,
-        place: None,
-        frame: None,
-        shifts: 0,
-        tilts: 0,
-        turns: Vec::new(),
-        length_m: problem.layout.length_m(),
-        framed,
-        ratio: None,
+        normal.residuals += self.rows.len() * if plan.framed { 6 } else { 3 };
     }
 }
 
 /// Sets rows side by side.
-fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut Rows) {
+pub(super) fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut Rows) {
     let usual = Whitening::new(problem.noise);
     packed.pack(plan, rows.len(), |at| row_data(problem, usual, rows[at] as usize, plan.framed));
 }

@@ -2,6 +2,7 @@
 
 mod abreast;
 mod alike;
+mod arrangement;
 mod fast;
 mod layout;
 mod refit;
@@ -257,8 +258,7 @@ impl Block {
 impl Problem<'_> {
     /// The hot path, if it serves this problem in this state.
     fn fast(&self, state: &Estimate) -> Option<&Fast> {
-        let has_offsets = state.joint_offset.iter().any(|&offset| offset != 0.0);
-        self.fast.get_or_init(|| Fast::new(self, self.level)).as_ref().filter(|_| !has_offsets)
+        self.fast.get_or_init(|| Fast::new(self, self.level)).as_ref().filter(|_| !state.has_offsets())
     }
 
     /// [`LeastSquares::normal`] by the general path, which serves every problem: row after row, as measurements and parameters write it.

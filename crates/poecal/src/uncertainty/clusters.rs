@@ -58,16 +58,16 @@ pub(super) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
         if clusters[largest].len() < 2 {
             break;
         }
-        let mut first = clusters.swap_remove(largest);
+        let first = clusters.swap_remove(largest);
         let here = view.spans(&first);
         let share = |joint: usize| if spans[joint] > 0.0 { here[joint] / spans[joint] } else { 0.0 };
         let widest =
             (0..here.len()).max_by(|&a, &b| share(a).total_cmp(&share(b)).then(b.cmp(&a))).unwrap_or(0);
         let middle = first.len() / 2;
-        first.select_nth_unstable_by(middle, |&a, &b| view.by_joint(widest, a, b));
-        let second = first.split_off(middle);
-        clusters.push(first);
-        clusters.push(second);
+        let mut values: Vec<(f64, u32)> = first.iter().map(|&row| (view.values(row)[widest], row)).collect();
+        values.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let (low, high) = values.split_at(middle);
+        clusters.extend([low, high].map(|half| half.iter().map(|&(_, row)| row).collect()));
     }
     clusters.iter_mut().for_each(|cluster| cluster.sort_unstable());
     clusters

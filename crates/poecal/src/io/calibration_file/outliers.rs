@@ -75,6 +75,9 @@ impl OutlierEntry {
     pub fn of(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
         let robustness = &calibration.robustness;
         let rows: Vec<u32> = robustness.suspects().collect();
+        if rows.is_empty() {
+            return Vec::new();
+        }
         let influences = row_influence(calibration, data, &rows);
         let mut rows: Vec<(u32, f64)> =
             rows.into_iter().zip(influences.iter().map(|influence| influence.studentized)).collect();

@@ -119,8 +119,10 @@ pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
     let (mut worst, mut others): (Vec<usize>, Vec<usize>) =
         (0..count).partition(|&row| suspected(row) == Some(true));
     for (rows, most) in [(&mut worst, SUSPECTED), (&mut others, WORST)] {
-        rows.sort_by(|&a, &b| error(b).total_cmp(&error(a)));
-        rows.truncate(most);
+        if rows.len() > most {
+            rows.select_nth_unstable_by(most, |&a, &b| error(b).total_cmp(&error(a)).then(a.cmp(&b)));
+            rows.truncate(most);
+        }
     }
     worst.extend(others);
     let evenly = MOST_ROWS - SUSPECTED - WORST;

@@ -6,7 +6,7 @@ use super::html::{Html, Table, count, decimal, figure};
 use super::{figures, readings_of};
 use crate::calibration::Statistic;
 use crate::io::calibration_file::{CalibrationFile, OutlierSet};
-use crate::io::residuals::{ResidualRow, Residuals};
+use crate::io::residuals::{Judged, ResidualRow, Residuals};
 use crate::report::plot::escape;
 use crate::report::table::number;
 
@@ -200,8 +200,13 @@ fn short<'a>(files: &[String], file: &'a str) -> &'a str {
 fn leverage_table(residuals: &Residuals) -> Option<Table> {
     let judged = residuals.rows.iter().enumerate().filter_map(|(k, row)| Some((k, row.judged?)));
     let mut judged: Vec<_> = judged.filter(|(_, found)| found.leverage.is_finite()).collect();
-    judged.sort_by(|a, b| b.1.leverage.total_cmp(&a.1.leverage));
-    judged.truncate(LEVERAGES);
+    let larger =
+        |a: &(usize, Judged), b: &(usize, Judged)| b.1.leverage.total_cmp(&a.1.leverage).then(a.0.cmp(&b.0));
+    if judged.len() > LEVERAGES {
+        judged.select_nth_unstable_by(LEVERAGES, larger);
+        judged.truncate(LEVERAGES);
+    }
+    judged.sort_unstable_by(larger);
     let mut table = Table::new(
         "Rows of largest leverage",
         2,

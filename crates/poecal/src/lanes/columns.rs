@@ -1,0 +1,41 @@
+//! Jacobian and residuals of some rows, where more is asked of them than sums.
+
+use super::influence::NUMBERS;
+use super::kernel::{Arm, add_rows};
+use super::vector::{Vector, WIDTH, Wide};
+use super::work::WORK;
+
+/// The whitened columns of the rows of one block, each put at its place in `jacobian` (shifts first, then turns), and their whitened
+/// residuals: three numbers of the position, three of the rotation. What a column does not have is left as it is. The plan has no
+/// common ratio, so that the rotations' rows are there.
+#[inline(always)]
+pub(super) fn whitened_columns<V: Vector>(
+    arm: &Arm<'_>,
+    block: &[Wide],
+    places: &[usize],
+    jacobian: &mut [[Wide; NUMBERS]],
+    residual: &mut [Wide; NUMBERS],
+) {
+    let plan = arm.plan;
+    let mut work = WORK.take();
+    work.begin(arm, true);
+    for part in 0..WIDTH / V::LANES {
+        let found = add_rows::<V, true>(arm, block, &mut work, 0, part);
+        for (k, &value) in found.iter().flat_map(|part| &part.0).enumerate() {
+            value.store(&mut residual[k], part);
+        }
+    }
+    let (turned_rows, stride) = (work.turned_rows, work.waiting);
+    for (index, &place) in places.iter().enumerate() {
+        let Some(column) = jacobian.get_mut(place) else { continue };
+        let (position, rotation) = column.split_at_mut(NUMBERS / 2);
+        if index < plan.columns() {
+            position.copy_from_slice(&work.jacobian[index * stride]);
+        }
+        if let Some(turn) = index.checked_sub(plan.shifts) {
+            let first = turn * turned_rows * stride;
+            rotation[..turned_rows].copy_from_slice(&work.turned[first..first + turned_rows]);
+        }
+    }
+    WORK.set(work);
+}

@@ -1,0 +1,111 @@
+//! Room for one pass over rows: columns and sums under way.
+
+use std::cell::RefCell;
+
+use super::gram::{TILE, sums_len};
+use super::kernel::Arm;
+use super::plan::Plan;
+use super::vector::Wide;
+
+/// Memory of columns that are waiting for their products, in wide numbers: with the sums it just fits the first cache.
+const WAITING: usize = 570;
+/// Fewest and most blocks that wait: with few, the tiles' sums are loaded and stored too often, even if columns fill the second cache.
+const BLOCKS_WAITING: (usize, usize) = (6, 8);
+
+/// What is kept of a joint: its two shift columns and its origin in the rows under way, and the gradient of shifts and tilts.
+#[derive(Clone, Copy)]
+pub(super) struct Axis {
+    pub(super) shifts: [[Wide; 3]; 2],
+    pub(super) origin: [Wide; 3],
+    pub(super) gradient: [Wide; 4],
+}
+
+impl Axis {
+    const ZERO: Axis =
+        Axis { shifts: [[Wide::ZERO; 3]; 2], origin: [Wide::ZERO; 3], gradient: [Wide::ZERO; 4] };
+}
+
+/// Columns and sums under way.
+pub(super) struct Work {
+    /// Position rows of each column, block after block.
+    pub(super) jacobian: Vec<[Wide; 3]>,
+    /// What rotation adds for each turn, likewise: two or three rows a block.
+    pub(super) turned: Vec<Wide>,
+    pub(super) axes: Vec<Axis>,
+    pub(super) products: Vec<Wide>,
+    pub(super) turned_products: Vec<Wide>,
+    pub(super) shift_gradient: Vec<Wide>,
+    pub(super) turn_gradient: Vec<Wide>,
+    pub(super) square: Wide,
+    /// Blocks that wait at a time.
+    pub(super) waiting: usize,
+    /// Rows a block of what rotation adds.
+    pub(super) turned_rows: usize,
+}
+
+impl Default for Work {
+    fn default() -> Self {
+        Work::EMPTY
+    }
+}
+
+impl Work {
+    const EMPTY: Work = Work {
+        jacobian: Vec::new(),
+        turned: Vec::new(),
+        axes: Vec::new(),
+        products: Vec::new(),
+        turned_products: Vec::new(),
+        shift_gradient: Vec::new(),
+        turn_gradient: Vec::new(),
+        square: Wide::ZERO,
+        waiting: 1,
+        turned_rows: 0,
+    };
+
+    /// Makes room for a plan's gradient, at zero, and its columns if these are wanted.
+    pub(super) fn begin(&mut self, arm: &Arm<'_>, with_columns: bool) {
+        let plan = arm.plan;
+        restart(&mut self.shift_gradient, plan.shifts);
+        restart(&mut self.turn_gradient, plan.turns.len());
+        self.square = Wide::ZERO;
+        self.axes.clear();
+        self.axes.resize(plan.joints.len(), Axis::ZERO);
+        self.turned_rows = plan.turned_rows(arm.nearly);
+        self.products.clear();
+        self.turned_products.clear();
+        self.waiting = 1;
+        if with_columns {
+            let [columns, turns] = padded(plan);
+            self.waiting = (WAITING / (3 * columns).max(1)).clamp(BLOCKS_WAITING.0, BLOCKS_WAITING.1);
+            // Columns are written before they are read, but for those that fill up the last tile.
+            self.jacobian.resize(self.waiting * columns, [Wide::ZERO; 3]);
+            self.jacobian[self.waiting * plan.columns()..].fill([Wide::ZERO; 3]);
+            let rows = self.turned_rows * self.waiting;
+            self.turned.resize(rows * turns, Wide::ZERO);
+            self.turned[rows * plan.turns.len()..].fill(Wide::ZERO);
+        }
+    }
+
+    /// Makes room for sums of products of columns, at zero.
+    pub(super) fn begin_products(&mut self, plan: &Plan, lanes: usize) {
+        let [columns, turns] = padded(plan);
+        restart(&mut self.products, sums_len(columns, lanes));
+        restart(&mut self.turned_products, if self.turned_rows > 0 { sums_len(turns, lanes) } else { 0 });
+    }
+}
+
+/// Columns of position, and turns, whole tiles of them.
+fn padded(plan: &Plan) -> [usize; 2] {
+    [plan.columns(), plan.turns.len()].map(|count| count.next_multiple_of(TILE))
+}
+
+fn restart(sums: &mut Vec<Wide>, len: usize) {
+    sums.clear();
+    sums.resize(len, Wide::ZERO);
+}
+
+thread_local! {
+    /// Room for one pass, kept from one to the next.
+    pub(super) static WORK: RefCell<Work> = const { RefCell::new(Work::EMPTY) };
+}

@@ -1,0 +1,116 @@
+//! How the unknowns of a problem are arranged for the kernels, for rows of one target and kind.
+
+use super::{Layout, Problem};
+use crate::lanes::{JointPlan, Plan};
+use crate::parameters::Parameter;
+
+/// Rows of one target, with or without orientation: what the kernels are told of the unknowns, and where these stand in a step.
+#[derive(Clone, Debug)]
+pub(super) struct Arrangement {
+    pub(super) target: usize,
+    pub(super) plan: Plan,
+    /// Places of the plan's shifts and turns in a step.
+    pub(super) shift_places: Vec<usize>,
+    pub(super) turn_places: Vec<usize>,
+}
+
+impl Arrangement {
+    /// `None` if the kernels do not serve such unknowns.
+    pub(super) fn new(problem: &Problem<'_>, target: usize, framed: bool) -> Option<Self> {
+        let mut made = Arrangement {
+            target,
+            plan: plan_without_unknowns(problem, framed),
+            shift_places: Vec::new(),
+            turn_places: Vec::new(),
+        };
+        // The kernels' order: device frame, joints, target.
+        made.add_device(&problem.layout)?;
+        made.add_joints(&problem.layout)?;
+        made.plan.tilts = made.turn_places.len();
+        made.add_target(&problem.layout)?;
+        made.plan.shifts = made.shift_places.len();
+        Some(made)
+    }
+
+    fn shift(&mut self, places: &[(usize, f64)]) {
+        self.shift_places.extend(places.iter().map(|&(place, _)| place));
+    }
+
+    /// Turns about the directions of the shifts from `first` on.
+    fn turn(&mut self, places: &[(usize, f64)], first: usize) {
+        self.turn_places.extend(places.iter().map(|&(place, _)| place));
+        self.plan.turns.extend(first..first + places.len());
+    }
+
+    fn add_device(&mut self, layout: &Layout) -> Option<()> {
+        for (parameter, places) in layout.parameters() {
+            if let Parameter::DeviceFrame(device) = parameter {
+                if self.plan.device.is_some() {
+                    return None;
+                }
+                self.plan.device = Some(device.about.into());
+                self.shift(&places[..3]);
+                self.turn(&places[3..], 0);
+            }
+        }
+        Some(())
+    }
+
+    fn add_joints(&mut self, layout: &Layout) -> Option<()> {
+        for (parameter, places) in layout.parameters() {
+            let axis = match parameter {
+                Parameter::ScrewAxis(axis) => axis,
+                Parameter::FreeScrew(_) | Parameter::JointOffset(_) => return None,
+                Parameter::DeviceFrame(_) | Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => continue,
+            };
+            let first = self.shift_places.len();
+            let joint = self.plan.joints.get_mut(axis.joint)?;
+            if joint.columns.is_some() || joint.turns != (places.len() == 4) {
+                return None;
+            }
+            joint.columns = Some((first, self.turn_places.len()));
+            self.shift(&places[..2]);
+            self.turn(&places[2..], first);
+        }
+        Some(())
+    }
+
+    fn add_target(&mut self, layout: &Layout) -> Option<()> {
+        for (parameter, places) in layout.parameters() {
+            let target = match parameter {
+                Parameter::TargetFrame(frame) => frame.target,
+                Parameter::TargetPlace(place) => place.target,
+                _ => continue,
+            };
+            if target != self.target {
+                continue;
+            }
+            if self.plan.place.is_some() {
+                return None;
+            }
+            let first = self.shift_places.len();
+            self.plan.place = Some(first);
+            self.shift(&places[..3]);
+            if places.len() > 3 && self.plan.framed {
+                self.plan.frame = Some(self.turn_places.len());
+                self.turn(&places[3..], first);
+            }
+        }
+        Some(())
+    }
+}
+
+fn plan_without_unknowns(problem: &Problem<'_>, framed: bool) -> Plan {
+    Plan {
+        joints: problem.packed.turns().map(|turns| JointPlan { turns, columns: None }).collect(),
+        device: None,
+        place: None,
+        frame: None,
+        shifts: 0,
+        tilts: 0,
+        turns: Vec::new(),
+        length_m: problem.layout.length_m(),
+        framed,
+        ratio: None,
+    }
+}
