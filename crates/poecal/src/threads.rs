@@ -18,6 +18,14 @@ pub(crate) fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync 
     }
 }
 
+/// What two pieces of work come to, which are done at the same time where there are several threads.
+pub(crate) fn both<A: Send, B: Send>(
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if rayon::current_num_threads() > 1 { rayon::join(first, second) } else { (first(), second()) }
+}
+
 /// Sorts items of which equal ones cannot be told apart.
 pub(crate) fn sort<T: Ord + Send>(items: &mut [T]) {
     sort_by(items, T::cmp);
@@ -41,4 +49,17 @@ pub(crate) fn map_chunks<S: Sync, T: Send>(
     map_parts(items.len().div_ceil(size), |index| {
         part(index, &items[index * size..items.len().min((index + 1) * size)])
     })
+}
+
+/// What each run of so many items comes to, one after the other.
+pub(crate) fn concat_chunks<S: Sync, T: Send>(
+    items: &[S],
+    size: usize,
+    part: impl Fn(usize, &[S]) -> Vec<T> + Sync + Send,
+) -> Vec<T> {
+    let mut parts = map_chunks(items, size, part).into_iter();
+    let Some(mut all) = parts.next() else { return Vec::new() };
+    all.reserve_exact(parts.as_slice().iter().map(Vec::len).sum());
+    parts.for_each(|part| all.extend(part));
+    all
 }

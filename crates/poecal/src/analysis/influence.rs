@@ -48,7 +48,7 @@ pub fn influence(
     // Of numbers that are not finite there is none, and no row means anything.
     let factor = linalg::cholesky(&normal.gram, n, damping).unwrap_or_default();
     let level = Level::best();
-    let parts = threads::map_chunks(rows, CHUNK, |part, rows| {
+    threads::concat_chunks(rows, CHUNK, |part, rows| {
         let weights = weights.get(part * CHUNK..).unwrap_or_default();
         let mut found = vec![Influence { leverage: 0.0, studentized: 0.0 }; rows.len()];
         problem.for_rows_abreast(estimate, rows, |places, abreast| {
@@ -70,8 +70,7 @@ pub fn influence(
             }
         });
         found
-    });
-    parts.into_iter().flatten().collect()
+    })
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub(crate) fn map_predictions<T: Send>(
     each: impl Fn(&Observation, &Pose) -> T + Sync,
 ) -> Vec<T> {
     let linkage = Linkage::new(estimate);
-    let parts = threads::map_chunks(rows, CHUNK, |_, rows| {
+    threads::concat_chunks(rows, CHUNK, |_, rows| {
         let mut found = Vec::with_capacity(rows.len());
         let mut side_by_side = SideBySide::new(&linkage);
         for rows in rows.chunks(WIDTH) {
@@ -29,8 +29,7 @@ pub(crate) fn map_predictions<T: Send>(
             }
         }
         found
-    });
-    parts.into_iter().flatten().collect()
+    })
 }
 
 /// Joint values of [`WIDTH`] rows side by side, and the frames that they lead to.

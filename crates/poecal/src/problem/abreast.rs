@@ -101,9 +101,9 @@ impl Problem<'_> {
         let mut next = 0..;
         self.for_rows(state, rows, |_, jacobian, residual| {
             let lane = places.len();
-            for (k, (row, value)) in jacobian.chunks_exact(n.max(1)).zip(residual).enumerate() {
+            for (k, value) in residual.iter().enumerate() {
                 abreast.residual[k].0[lane] = *value;
-                for (column, value) in abreast.jacobian.iter_mut().zip(row) {
+                for (column, value) in abreast.jacobian.iter_mut().zip(&jacobian[k * n..]) {
                     column[k].0[lane] = *value;
                 }
             }

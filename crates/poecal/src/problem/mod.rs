@@ -258,7 +258,15 @@ impl Block {
 impl Problem<'_> {
     /// The hot path, if it serves this problem in this state.
     fn fast(&self, state: &Estimate) -> Option<&Fast> {
-        self.fast.get_or_init(|| Fast::new(self, self.level)).as_ref().filter(|_| !state.has_offsets())
+        let fast = match self.fast.get() {
+            Some(fast) => fast,
+            None => {
+                // Made before the cell is touched: threads work together here, and one that waits for the others might come by again.
+                let made = Fast::new(self, self.level);
+                self.fast.get_or_init(|| made)
+            }
+        };
+        fast.as_ref().filter(|_| !state.has_offsets())
     }
 
     /// [`LeastSquares::normal`] by the general path, which serves every problem: row after row, as measurements and parameters write it.

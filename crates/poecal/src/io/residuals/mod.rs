@@ -4,6 +4,7 @@ mod read;
 mod source;
 mod write;
 
+use std::convert::Infallible;
 use std::io::Write;
 
 use crate::calibration::Calibration;
@@ -115,10 +116,16 @@ impl Residuals {
         let mut all = source.rows(0..0);
         all.rows.reserve_exact(data.len());
         all.values.reserve_exact(data.all_readings().len());
-        for some in in_pieces(data.len(), |rows| source.rows(rows)) {
-            all.rows.extend(some.rows);
-            all.values.extend(some.values);
-        }
+        // Nothing can fail here.
+        let _: Result<(), Infallible> = in_pieces(
+            data.len(),
+            |rows| source.rows(rows),
+            |some| {
+                all.rows.extend(some.rows);
+                all.values.extend(some.values);
+                Ok(())
+            },
+        );
         all
     }
 
@@ -148,7 +155,7 @@ impl Residuals {
     ///
     /// # Errors
     /// Those of `out`.
-    pub fn write_to(&self, out: &mut dyn Write) -> std::io::Result<()> {
+    pub fn write_to(&self, out: &mut (dyn Write + Send)) -> std::io::Result<()> {
         Rows::AtHand(self).write_to(out)
     }
 }

@@ -45,12 +45,12 @@ impl Rows<'_> {
     ///
     /// # Errors
     /// Those of `out`.
-    pub fn write_to(self, out: &mut dyn Write) -> std::io::Result<()> {
+    pub fn write_to(self, out: &mut (dyn Write + Send)) -> std::io::Result<()> {
         match self {
             Rows::AtHand(residuals) => {
                 out.write_all(head(residuals).as_bytes())?;
-                in_pieces(residuals.rows.len(), |rows| text(residuals, rows))
-                    .try_for_each(|piece| out.write_all(piece.as_bytes()))
+                let make = |rows| text(residuals, rows);
+                in_pieces(residuals.rows.len(), make, |piece| out.write_all(piece.as_bytes()))
             }
             Rows::Of(data, calibration) => {
                 let source = RowSource::new(data, calibration);
@@ -59,24 +59,32 @@ impl Rows<'_> {
                     let some = source.rows(rows);
                     text(&some, 0..some.rows.len())
                 };
-                in_pieces(data.len(), worked_out).try_for_each(|piece| out.write_all(piece.as_bytes()))
+                in_pieces(data.len(), worked_out, |piece| out.write_all(piece.as_bytes()))
             }
         }
     }
 }
 
-/// What `make` gives for one range of rows after the other, made by all threads, some at a time.
-pub(super) fn in_pieces<T: Send>(
+/// Hands over what `make` gives for one range of rows after the other: all threads make some, while those before are taken.
+pub(super) fn in_pieces<T: Send, E: Send>(
     rows: usize,
-    make: impl Fn(Range<usize>) -> T + Sync,
-) -> impl Iterator<Item = T> {
-    (0..rows).step_by(PIECE * TOGETHER).flat_map(move |first| {
+    make: impl Fn(Range<usize>) -> T + Sync + Send,
+    mut take: impl FnMut(T) -> Result<(), E> + Send,
+) -> Result<(), E> {
+    let mut made: Vec<T> = Vec::new();
+    for first in (0..rows).step_by(PIECE * TOGETHER) {
         let pieces = (rows - first).div_ceil(PIECE).min(TOGETHER);
-        threads::map_parts(pieces, |piece| {
-            let begin = first + piece * PIECE;
-            make(begin..rows.min(begin + PIECE))
-        })
-    })
+        let make_some = || {
+            threads::map_parts(pieces, |piece| {
+                let begin = first + piece * PIECE;
+                make(begin..rows.min(begin + PIECE))
+            })
+        };
+        let (taken, next) = threads::both(|| made.into_iter().try_for_each(&mut take), make_some);
+        taken?;
+        made = next;
+    }
+    made.into_iter().try_for_each(take)
 }
 
 /// The line of column names.

@@ -3,6 +3,7 @@
 use crate::io::calibration_file::{CalibrationFile, KindWord};
 use crate::io::residuals::{ResidualRow, Residuals};
 use crate::report::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
+use crate::threads;
 
 /// Points of a distribution.
 const STEPS: usize = 20;
@@ -53,7 +54,7 @@ fn calibrated(row: &ResidualRow) -> f64 {
 
 /// Points (error, share in per cent) of the distribution of some errors.
 fn distribution(mut errors: Vec<f64>) -> Vec<[f64; 2]> {
-    errors.sort_by(f64::total_cmp);
+    threads::sort_by(&mut errors, f64::total_cmp);
     let last = errors.len().saturating_sub(1);
     let steps = STEPS.min(last.max(1));
     let point = |step: usize| {

@@ -9,6 +9,7 @@ use crate::io::calibration_file::{CalibrationFile, OutlierSet};
 use crate::io::residuals::{Judged, ResidualRow, Residuals};
 use crate::report::plot::escape;
 use crate::report::table::number;
+use crate::threads;
 
 /// Suspected rows, rows of large leverage and repeated poses that a table lists at most.
 const LISTED: usize = 50;
@@ -112,30 +113,29 @@ fn component_table(residuals: &Residuals) -> Table {
         Table::new("Residuals by component", 2, &["component", "rows", "number", "mean", "RMS", "largest"]);
     let turned = residuals.rows.iter().any(|row| row.rotation_deg.is_some());
     let parts = if turned { 2 } else { 1 };
-    for (part, component) in (0..parts).flat_map(|part| (0..3).map(move |component| (part, component))) {
+    let rows = threads::map_parts(6 * parts, |index| {
+        let (part, component, (set, held_out)) =
+            (index / 6, index / 2 % 3, [("fitted", false), ("held out", true)][index % 2]);
         let of = |row: &ResidualRow| {
             let errors = if part == 0 { Some(row.position_mm) } else { row.rotation_deg };
             errors.map(|errors| errors.residual[component])
         };
         let name = [["x, mm", "y, mm", "z, mm"], ["about x, °", "about y, °", "about z, °"]][part][component];
-        for (set, held_out) in [("fitted", false), ("held out", true)] {
-            let values: Vec<f64> =
-                residuals.rows.iter().filter(|row| row.held_out == held_out).filter_map(of).collect();
-            let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-            let Some(found) = Statistic::of(values.iter().map(|value| value.abs()).collect()) else {
-                continue;
-            };
-            let sign = if mean < 0.0 { "−" } else { "" };
-            table.rows.push(vec![
-                name.to_owned(),
-                set.to_owned(),
-                values.len().to_string(),
-                format!("{sign}{}", number(mean.abs())),
-                number(found.rms),
-                number(found.max),
-            ]);
-        }
-    }
+        let values: Vec<f64> =
+            residuals.rows.iter().filter(|row| row.held_out == held_out).filter_map(of).collect();
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let found = Statistic::of(values.iter().map(|value| value.abs()).collect())?;
+        let sign = if mean < 0.0 { "−" } else { "" };
+        Some(vec![
+            name.to_owned(),
+            set.to_owned(),
+            values.len().to_string(),
+            format!("{sign}{}", number(mean.abs())),
+            number(found.rms),
+            number(found.max),
+        ])
+    });
+    table.rows.extend(rows.into_iter().flatten());
     table
 }
 
@@ -146,14 +146,16 @@ fn joint_table(residuals: &Residuals) -> Table {
         1,
         &["reading", "from", "to", "rows", "RMS"],
     );
-    for (index, name, unit) in readings_of(residuals) {
-        let value = |row: usize| residuals.values(row).get(index).copied();
+    let readings: Vec<_> = readings_of(residuals).collect();
+    let rows = threads::map_parts(readings.len(), |reading| {
+        let (index, name, unit) = &readings[reading];
+        let value = |row: usize| residuals.values(row).get(*index).copied();
         let values = || (0..residuals.rows.len()).filter_map(value);
         let (least, most) =
             values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
         let width = (most - least) / PARTS as f64;
         if width.is_nan() || width <= 0.0 {
-            continue;
+            return Vec::new();
         }
         let mut sums = [(0usize, 0.0); PARTS];
         for (k, row) in residuals.rows.iter().enumerate() {
@@ -163,12 +165,14 @@ fn joint_table(residuals: &Residuals) -> Table {
                 sum.1 += row.position_mm.models[2].powi(2);
             }
         }
-        for (part, (rows, sum)) in sums.iter().enumerate() {
+        let row = |(part, (rows, sum)): (usize, &(usize, f64))| {
             let end = |part: usize| format!("{} {unit}", decimal(least + width * part as f64, 1));
             let rms = if *rows > 0 { number((sum / *rows as f64).sqrt()) } else { "–".to_owned() };
-            table.rows.push(vec![escape(name), end(part), end(part + 1), rows.to_string(), rms]);
-        }
-    }
+            vec![escape(name), end(part), end(part + 1), rows.to_string(), rms]
+        };
+        sums.iter().enumerate().map(row).collect::<Vec<_>>()
+    });
+    table.rows.extend(rows.into_iter().flatten());
     table
 }
 
