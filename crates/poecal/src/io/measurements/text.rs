@@ -8,6 +8,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::hashes::Hashing;
 use crate::io::source_text::position;
 
 /// The whole text of a file; `expected` says what it should be.
@@ -39,10 +40,16 @@ fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Error {
 /// Bytes of a file that are held at a time, about.
 const BLOCK: usize = 1 << 18;
 
+/// Where a text comes from.
+enum Source<'a> {
+    File(Hashing<File>),
+    Text(&'a [u8]),
+}
+
 /// A text in blocks of whole lines, so that a large file is never held whole.
 pub(super) struct Blocks<'a> {
     path: &'a Path,
-    source: Box<dyn Read + 'a>,
+    source: Source<'a>,
     /// The block at hand.
     text: String,
     /// What follows it and has been read: no whole line.
@@ -56,12 +63,15 @@ pub(super) struct Blocks<'a> {
 impl<'a> Blocks<'a> {
     /// The blocks of a file; `expected` says what it should be.
     pub(super) fn open(path: &'a Path, expected: &str) -> Result<Self> {
-        Ok(Blocks::new(path, open(path, expected)?))
+        Ok(Blocks::of(path, Source::File(Hashing::new(open(path, expected)?))))
     }
 
-    /// The blocks of any text; `path` is for the messages only.
-    pub(super) fn new(path: &'a Path, source: impl Read + 'a) -> Self {
-        let source = Box::new(source);
+    /// The blocks of a text; `path` is for the messages only.
+    pub(super) fn new(path: &'a Path, text: &'a [u8]) -> Self {
+        Blocks::of(path, Source::Text(text))
+    }
+
+    fn of(path: &'a Path, source: Source<'a>) -> Self {
         Blocks { path, source, text: String::new(), rest: Vec::new(), newline: None, lines: 0 }
     }
 
@@ -74,7 +84,10 @@ impl<'a> Blocks<'a> {
         bytes.append(&mut self.rest);
         loop {
             let known = bytes.len();
-            let more = self.source.by_ref().take(BLOCK as u64).read_to_end(&mut bytes);
+            let more = match &mut self.source {
+                Source::File(file) => file.take(BLOCK as u64).read_to_end(&mut bytes),
+                Source::Text(text) => text.take(BLOCK as u64).read_to_end(&mut bytes),
+            };
             let more = more.map_err(|error| unreadable(self.path, &error, "a table (CSV)"))?;
             let end = memchr::memrchr(b'\n', bytes.get(known..).unwrap_or_default());
             if let Some(end) = end {
@@ -96,6 +109,14 @@ impl<'a> Blocks<'a> {
             self.text.remove(0);
         }
         Ok(!self.text.is_empty())
+    }
+
+    /// The checksum of the file as far as it has been read; a text has none.
+    pub(super) fn sha256(&self) -> Option<String> {
+        match &self.source {
+            Source::File(file) => Some(file.sha256()),
+            Source::Text(_) => None,
+        }
     }
 
     /// The lines of the block at hand, but for the first `skip` of the file.
