@@ -1,7 +1,7 @@
 //! How much each row decides its own prediction, and how far it is off when that is allowed for (theory.md §6 (34d), (34e)).
 
 use crate::estimate::Estimate;
-use crate::lanes::{self, Level, Wide};
+use crate::lanes::{self, Wide};
 use crate::linalg;
 use crate::problem::{Abreast, Problem};
 use crate::solve::Normal;
@@ -47,7 +47,7 @@ pub fn influence(
     let damping = (ROUNDING * largest).max(f64::MIN_POSITIVE);
     // Of numbers that are not finite there is none, and no row means anything.
     let factor = linalg::cholesky(&normal.gram, n, damping).unwrap_or_default();
-    let level = Level::best();
+    let level = problem.level();
     threads::concat_chunks(rows, CHUNK, |part, rows| {
         let weights = weights.get(part * CHUNK..).unwrap_or_default();
         let mut found = vec![Influence { leverage: 0.0, studentized: 0.0 }; rows.len()];
@@ -77,11 +77,14 @@ pub fn influence(
 mod tests {
     use super::*;
     use crate::estimate::Packed;
-    use crate::lie::Pose;
-    use crate::measurement::{Measurement, Noise, PointMeasurement};
-    use crate::parameters::{Formulation, Parameter, TargetFrame};
-    use crate::simulate::{Kind, Simulation, elbow};
+    use crate::lanes::levels;
+    use crate::lie::{Pose, rotation};
+    use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement};
+    use crate::parameters::{DeviceFrame, Formulation, Parameter, TargetFrame, TargetPlace};
+    use crate::robot::Robot;
+    use crate::simulate::{Kind, Simulation, elbow, gantry, scara};
     use crate::solve::LeastSquares;
+    use nalgebra::Vector3;
 
     /// The formulas of theory.md as they stand there, one row after the other.
     fn by_the_book(factor: &linalg::Factor, jacobian: &[f64], residual: &[f64], weight: f64) -> Influence {
@@ -99,15 +102,20 @@ mod tests {
         Influence { leverage, studentized: squared.sqrt() }
     }
 
-    #[test]
-    fn rows_side_by_side_are_judged_as_each_alone() {
-        let mut made = Simulation { count: 45, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
-        // Every third row has a position only: lanes of one block then differ.
+    /// Rows of which every third has a position only: lanes of one block then differ.
+    fn mixed(robot: &Robot, count: usize) -> Dataset {
+        let mut made = Simulation { count, ..Simulation::default() }.run(robot, Kind::Pose).unwrap();
         for observation in made.data.observations.iter_mut().step_by(3) {
             let position = observation.measurement.pose().translation;
             observation.measurement = Measurement::Point(PointMeasurement { position });
         }
-        let (data, robot) = (&made.data, &made.nominal);
+        made.data
+    }
+
+    #[test]
+    fn rows_side_by_side_are_judged_as_each_alone_at_every_level() {
+        let robot = &elbow();
+        let data = &mixed(robot, 45);
         let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
         let estimate = Estimate::new(robot, vec![robot.home], Pose::identity());
         let mut free = Formulation::Adjoint.joint_parameters(&estimate.kinds);
@@ -118,7 +126,6 @@ mod tests {
         let normal = problem.normal(&estimate);
         let weights: Vec<f64> = rows.iter().map(|row| [1.0, 0.4, 0.0][*row as usize % 3]).collect();
         let scale = |row: u32, component: usize| 1.0 + f64::from(row % 5) + component as f64;
-        let found = influence(&problem, &estimate, &normal, &rows, &weights, scale);
 
         let n = normal.dim();
         let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
@@ -128,14 +135,80 @@ mod tests {
             let scaled: Vec<f64> = residual.iter().enumerate().map(|(k, e)| e / scale(row, k)).collect();
             expected.push(by_the_book(&factor, jacobian, &scaled, weights[row as usize]));
         });
-        let mut worst: f64 = 0.0;
-        for (found, expected) in found.iter().zip(&expected) {
-            worst = worst.max((found.leverage - expected.leverage).abs());
-            worst = worst.max((found.studentized / expected.studentized - 1.0).abs());
+        for level in levels() {
+            let problem = problem.clone().with_level(level);
+            let found = influence(&problem, &estimate, &normal, &rows, &weights, scale);
+            assert_eq!(found.len(), expected.len());
+            for (found, expected) in found.iter().zip(&expected) {
+                // Rounding, times the condition of the normal equations' factor.
+                assert!((found.leverage - expected.leverage).abs() < 1e-9, "{level:?}");
+                assert!((found.studentized / expected.studentized - 1.0).abs() < 1e-9, "{level:?}");
+            }
         }
-        println!("{} rows, largest difference {worst:.1e}", found.len());
+    }
+
+    /// Rows of two targets, of which some state noise, with residual rotations of this size.
+    fn turned(robot: &Robot, turned_rad: f64) -> Dataset {
+        let mut data = mixed(robot, 67);
+        data.targets = vec![Some("a".to_owned()), Some("b".to_owned())];
+        for (row, observation) in data.observations.iter_mut().enumerate() {
+            observation.target = row % 2;
+            observation.sigma_position_m = (row % 4 == 0).then_some(1e-4 * (1 + row % 5) as f64);
+            if let Measurement::Pose(seen) = &mut observation.measurement {
+                let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turned_rad));
+                seen.pose.rotation = turn * seen.pose.rotation;
+            }
+        }
+        data
+    }
+
+    #[test]
+    fn columns_side_by_side_are_those_of_each_row_at_every_level() {
+        for (robot, turned_rad) in [elbow(), scara(), gantry()].iter().zip([0.01, 0.4, 3.0]) {
+            let data = turned(robot, turned_rad);
+            let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
+            let other = robot.home * Pose::from_translation(Vector3::new(0.1, 0.0, 0.2));
+            let device_from_base = Pose::from_xyz_rpy([0.5, -1.0, 0.2], [0.3, -0.2, 1.2]);
+            let estimate = Estimate::new(robot, vec![robot.home, other], device_from_base);
+            let mut free = Formulation::Adjoint.joint_parameters(&estimate.kinds);
+            free.push(Parameter::DeviceFrame(DeviceFrame { about: Vector3::new(0.3, -0.2, 0.5) }));
+            free.push(Parameter::TargetPlace(TargetPlace { target: 0 }));
+            free.push(Parameter::TargetFrame(TargetFrame { target: 1 }));
+            let rows = data.all_rows();
+            let noise = Noise { position_m: 1e-3, rotation_rad: 1e-2 };
+            let problem = Problem::new(&data, &packed, rows.clone(), free, noise, 0.5);
+            let mut expected = Vec::new();
+            problem.for_rows(&estimate, &rows, |_, jacobian, residual| {
+                expected.push((jacobian.to_vec(), residual.to_vec()));
+            });
+            for level in levels() {
+                let mut seen = 0;
+                problem.clone().with_level(level).for_rows_abreast(&estimate, &rows, |places, abreast| {
+                    for (lane, &place) in places.iter().enumerate() {
+                        let (jacobian, residual) = &expected[place as usize];
+                        assert_eq!(abreast.numbers[lane], residual.len());
+                        let own = |k: usize| abreast.jacobian.iter().map(move |column| column[k].0[lane]);
+                        let own_jacobian: Vec<f64> = (0..residual.len()).flat_map(own).collect();
+                        let own_residual = abreast.residual.map(|wide| wide.0[lane]);
+                        let apart = [
+                            apart(&own_jacobian, jacobian),
+                            apart(&own_residual[..residual.len()], residual),
+                        ];
+                        // Rounding of numbers that come of a few products each.
+                        assert!(apart.iter().all(|&apart| apart < 1e-14), "{level:?} {place}: {apart:?}");
+                        seen += 1;
+                    }
+                });
+                assert_eq!(seen, rows.len());
+            }
+        }
+    }
+
+    /// Distance of numbers from what they should be, relative to these.
+    fn apart(found: &[f64], expected: &[f64]) -> f64 {
+        let norm =
+            |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>().sqrt();
         assert_eq!(found.len(), expected.len());
-        // Rounding, times the condition of the normal equations' factor.
-        assert!(worst < 1e-9);
+        norm(&mut found.iter().zip(expected).map(|(a, b)| a - b)) / norm(&mut expected.iter().copied())
     }
 }

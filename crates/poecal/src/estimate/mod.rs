@@ -5,13 +5,13 @@
 
 mod chain;
 mod packing;
+mod predictions;
 mod row_error;
-mod sight;
 
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
+pub(crate) use predictions::map_predictions;
 pub use row_error::{RowError, row_errors};
-pub(crate) use sight::map_predictions;
 
 use nalgebra::Vector3;
 

@@ -112,6 +112,11 @@ impl<'a> Problem<'a> {
         self
     }
 
+    /// By which instructions the hot path runs.
+    pub(crate) fn level(&self) -> Level {
+        self.level
+    }
+
     /// The same problem with a weight for every row of the data: its noise is divided by the weight's square root, and a weight of
     /// zero leaves it out (theory.md §6 (34b)).
     #[must_use]
