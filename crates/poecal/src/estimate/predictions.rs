@@ -100,9 +100,9 @@ impl<'a> SideBySide<'a> {
     }
 
     fn error(&self, lane: usize, seen: &Observation) -> RowError {
-        let [position_m, rotation_rad] =
-            self.errors.each_ref().map(|error| Vector3::from_fn(|k, _| error[k].0[lane]));
-        RowError { position_m, rotation_rad: seen.measurement.sees_orientation().then_some(rotation_rad) }
+        let vector = |[x, y, z]: &[Wide; 3]| Vector3::new(x.0[lane], y.0[lane], z.0[lane]);
+        let rotation_rad = seen.measurement.sees_orientation().then(|| vector(&self.errors[1]));
+        RowError { position_m: vector(&self.errors[0]), rotation_rad }
     }
 }
 

@@ -12,8 +12,8 @@ pub(crate) type Frames = [[Wide; 3]; 4];
 #[inline(always)]
 pub(super) fn errors<V: Vector>(
     links: &[[Wide; 4]; 3],
-    ends: &Frames,
-    measured: &Frames,
+    [x, y, z, place]: &Frames,
+    [own_x, own_y, own_z, own_place]: &Frames,
     framed: bool,
     out: &mut [[Wide; 3]; 2],
 ) {
@@ -24,18 +24,19 @@ pub(super) fn errors<V: Vector>(
                 *number = V::load(wide, part);
             }
         }
-        let moved = |end: &[Wide; 3], from: Vectors<V>| {
-            let [x, y, z] = Vectors::load(end, part).0;
-            link.column(0).times_plus(x, link.column(1).times_plus(y, link.column(2).times_plus(z, from)))
-        };
-        let nowhere = Vectors([V::splat(0.0); 3]);
-        let [own @ .., place] = measured;
-        (Vectors::load(place, part) - moved(&ends[3], link.origin())).store(&mut out[0], part);
+        let predicted = moved(&link, place, part) + link.origin();
+        (Vectors::load(own_place, part) - predicted).store(&mut out[0], part);
         if framed {
-            let own =
-                [Vectors::load(&own[0], part), Vectors::load(&own[1], part), Vectors::load(&own[2], part)];
-            let predicted = [moved(&ends[0], nowhere), moved(&ends[1], nowhere), moved(&ends[2], nowhere)];
+            let own = [Vectors::load(own_x, part), Vectors::load(own_y, part), Vectors::load(own_z, part)];
+            let predicted = [moved(&link, x, part), moved(&link, y, part), moved(&link, z, part)];
             Turn::new(&own, &predicted).r.store(&mut out[1], part);
         }
     }
+}
+
+/// A vector of the last link in the device's axes.
+#[inline(always)]
+fn moved<V: Vector>(link: &Frame<V>, vector: &[Wide; 3], part: usize) -> Vectors<V> {
+    let [x, y, z] = Vectors::load(vector, part).0;
+    link.column(0).times_plus(x, link.column(1).times_plus(y, link.column(2).scale(z)))
 }
