@@ -1,5 +1,8 @@
 //! Forward kinematics of ten URDFs against Pinocchio (tests/data/fk_reference.py made the reference).
 
+mod largest;
+
+use largest::larger;
 use nalgebra::{Matrix3, Vector3};
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
 use serde::Deserialize;
@@ -53,13 +56,13 @@ fn forward_kinematics_agrees_with_pinocchio() {
         for (configuration, readings) in expected.configurations.iter().zip(&readings) {
             for tip in [robot.forward_kinematics(readings), together.next().unwrap()] {
                 let rotation = Matrix3::from_fn(|row, column| configuration.rotation[row][column]);
-                own.0 = own.0.max((tip.translation - Vector3::from(configuration.position_m)).norm());
-                own.1 = own.1.max((tip.rotation - rotation).norm());
+                own.0 = larger(own.0, (tip.translation - Vector3::from(configuration.position_m)).norm());
+                own.1 = larger(own.1, (tip.rotation - rotation).norm());
             }
         }
         assert!(together.next().is_none());
         println!("{:20} {:.1e} m, {:.1e} in the rotation matrix", expected.urdf, own.0, own.1);
-        largest = (largest.0.max(own.0), largest.1.max(own.1));
+        largest = (larger(largest.0, own.0), larger(largest.1, own.1));
     }
     println!(
         "largest difference from Pinocchio {}: {:.1e} m, {:.1e}",
