@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use rayon::prelude::*;
 
-/// Items that one thread sorts as fast as several.
+/// Items that one thread sorts or looks at as fast as several.
 const FEW: usize = 8192;
 
 /// What each of so many parts comes to, in their order whatever the number of threads. One part alone, or one thread, is not worth
@@ -16,6 +16,15 @@ pub(crate) fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync 
     } else {
         (0..count).map(part).collect()
     }
+}
+
+/// The same of parts that each look at so many items: few of them are not worth waking anybody either.
+pub(crate) fn map_parts_of<T: Send>(
+    items: usize,
+    count: usize,
+    part: impl Fn(usize) -> T + Sync + Send,
+) -> Vec<T> {
+    if items > FEW { map_parts(count, part) } else { (0..count).map(part).collect() }
 }
 
 /// What two pieces of work come to, which are done at the same time where there are several threads.

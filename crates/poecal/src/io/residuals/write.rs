@@ -80,6 +80,10 @@ pub(super) fn in_pieces<T: Send, E: Send>(
                 make(begin..rows.min(begin + PIECE))
             })
         };
+        if made.is_empty() {
+            made = make_some();
+            continue;
+        }
         let (taken, next) = threads::both(|| made.into_iter().try_for_each(&mut take), make_some);
         taken?;
         made = next;

@@ -113,7 +113,7 @@ fn component_table(residuals: &Residuals) -> Table {
         Table::new("Residuals by component", 2, &["component", "rows", "number", "mean", "RMS", "largest"]);
     let turned = residuals.rows.iter().any(|row| row.rotation_deg.is_some());
     let parts = if turned { 2 } else { 1 };
-    let rows = threads::map_parts(6 * parts, |index| {
+    let rows = threads::map_parts_of(residuals.rows.len(), 6 * parts, |index| {
         let (part, component, (set, held_out)) =
             (index / 6, index / 2 % 3, [("fitted", false), ("held out", true)][index % 2]);
         let of = |row: &ResidualRow| {
@@ -147,7 +147,7 @@ fn joint_table(residuals: &Residuals) -> Table {
         &["reading", "from", "to", "rows", "RMS"],
     );
     let readings: Vec<_> = readings_of(residuals).collect();
-    let rows = threads::map_parts(readings.len(), |reading| {
+    let rows = threads::map_parts_of(residuals.rows.len(), readings.len(), |reading| {
         let (index, name, unit) = &readings[reading];
         let value = |row: usize| residuals.values(row).get(*index).copied();
         let values = || (0..residuals.rows.len()).filter_map(value);
