@@ -81,11 +81,9 @@ pub(crate) fn calibrate(
     let (found, took) = fit(py, &robot.model.robot, &data, &options, progress)?;
     let data = match data {
         Cow::Borrowed(_) => Arc::clone(&measurements.file),
-        Cow::Owned(data) => Arc::new(poecal::io::measurements::MeasurementFile {
-            data,
-            understood: Vec::new(),
-            warnings: Vec::new(),
-        }),
+        Cow::Owned(data) => {
+            Arc::new(poecal::io::measurements::MeasurementFile { data, ..Default::default() })
+        }
     };
     Ok(Calibration::of_fit(robot.same(), found, data, inputs, took))
 }

@@ -73,7 +73,7 @@ fn options(
 impl Measurements {
     /// Rows that came from no file.
     pub(crate) fn in_memory(data: Dataset, name: &str) -> Self {
-        let file = MeasurementFile { data, understood: Vec::new(), warnings: Vec::new() };
+        let file = MeasurementFile { data, ..MeasurementFile::default() };
         let source = MeasurementSource { names: vec![name.to_owned()], ..MeasurementSource::default() };
         Measurements { file: Arc::new(file), source: Arc::new(source) }
     }
@@ -102,7 +102,7 @@ impl Measurements {
     pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
         let State { data, warnings, source } = pickle::value(state)?;
         data.check().map_err(raise)?;
-        let file = MeasurementFile { data, understood: Vec::new(), warnings };
+        let file = MeasurementFile { data, warnings, ..MeasurementFile::default() };
         Ok(Measurements { file: Arc::new(file), source: Arc::new(source) })
     }
 
@@ -150,8 +150,9 @@ impl Measurements {
             refuse_repeats(&paths)?;
             let options = options(columns.as_ref(), fit_where, ignore_sets)?;
             let file = measurements::read(&paths, &robot.model.robot, &options)?;
-            let named = paths.iter().chain(&columns).map(PathBuf::as_path);
-            Ok((file, Inputs::checksums(named)?))
+            let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
+            sha256.extend(file.sha256.clone());
+            Ok((file, sha256))
         };
         let (file, sha256) = py.detach(read).map_err(raise)?;
         crate::warn(py, &file.warnings)?;

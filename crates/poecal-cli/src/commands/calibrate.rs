@@ -30,7 +30,8 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
         output::check_file(path)?;
     }
     let model = Model::read(model_path, &arguments.chain.selection())?;
-    let data = read_measurements(arguments, &model, console)?;
+    let (data, inputs) = read_measurements(arguments, &model, console)?;
+    let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments);
     let poses = data.observations.iter().any(|row| matches!(row.measurement, Measurement::Pose(_)));
     if options.pose_residual != PoseResidual::default() && !poses {
@@ -55,7 +56,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     for warning in calibration.warnings.iter().chain(found) {
         console.warning(warning);
     }
-    let file = CalibrationFile::new(&calibration, &data, inputs(arguments, model_path, typed)?);
+    let file = CalibrationFile::new(&calibration, &data, inputs);
     let json = if arguments.json { Some(file.to_text()?) } else { None };
     let words = write(arguments, &model, &data, &calibration, file, console)?;
     timings.end("write");
@@ -90,16 +91,24 @@ fn stated_model(arguments: &Calibrate) -> Result<&Path> {
     }
 }
 
-/// Reads and joins the files; with `--validate`, those rows are held out and all others fitted.
-fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) -> Result<Dataset> {
+/// Reads and joins the files; with `--validate`, those rows are held out and all others fitted. Tells what was read.
+fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) -> Result<(Dataset, Inputs)> {
     refuse_repeats(&arguments.measurements)?;
     refuse_repeats(&arguments.validate)?;
     refuse_fitted(&arguments.validate, &arguments.measurements)?;
     // With --validate the files themselves say what is held out.
     let ignore_sets = !arguments.validate.is_empty();
     let options = ReadOptions { ignore_sets, ..arguments.reading.options()? };
-    let read = |paths: &[PathBuf]| -> Result<Dataset> {
+    let mapping = arguments.reading.columns.columns.iter();
+    let mut inputs = Inputs {
+        model: model.path.display().to_string(),
+        sha256: Inputs::checksums(std::iter::once(&model.path).chain(mapping).map(PathBuf::as_path))?,
+        ..Inputs::default()
+    };
+    let mut read = |paths: &[PathBuf]| -> Result<Dataset> {
         let file = measurements::read(paths, &model.robot, &options)?;
+        inputs.measurements.extend(paths.iter().map(|path| path.display().to_string()));
+        inputs.sha256.extend(file.sha256);
         for warning in &file.warnings {
             console.warning(warning);
         }
@@ -119,7 +128,7 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
     if settle_sets(&mut data, arguments.held_out, stated_by)? && arguments.seed.is_some() {
         console.warning("--seed has no effect on which rows are held out: that is stated");
     }
-    Ok(data)
+    Ok((data, inputs))
 }
 
 fn options(arguments: &Calibrate) -> CalibrationOptions {
@@ -187,11 +196,4 @@ fn write(
         words.push_str(&labelled("report", &path.display().to_string()));
     }
     Ok(words)
-}
-
-fn inputs(arguments: &Calibrate, model: &Path, typed: &[OsString]) -> Result<Inputs> {
-    let files: Vec<PathBuf> = arguments.measurements.iter().chain(&arguments.validate).cloned().collect();
-    let mapping: Vec<PathBuf> = arguments.reading.columns.columns.iter().cloned().collect();
-    let inputs = Inputs::of_files(model, &files, &mapping)?;
-    Ok(Inputs { command: Some(command(typed)), ..inputs })
 }

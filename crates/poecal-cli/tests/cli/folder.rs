@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -52,6 +53,15 @@ impl Folder {
     /// Runs the program here; arguments are separated by blanks.
     pub(crate) fn run(&self, arguments: &str) -> Run {
         Run::new(self.command(arguments).output().unwrap())
+    }
+
+    /// As [`Folder::run`], with a text that comes through a pipe.
+    pub(crate) fn run_with_input(&self, arguments: &str, input: &str) -> Run {
+        let mut command = self.command(arguments);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+        Run::new(child.wait_with_output().unwrap())
     }
 
     /// As [`Folder::run`], for arguments with blanks in them.

@@ -65,6 +65,25 @@ fn the_file_names_what_it_was_made_of_and_how() {
     assert!(hash.len() == 64 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{hash}");
 }
 
+#[cfg(unix)]
+#[test]
+fn what_comes_through_a_pipe_has_its_own_checksum_or_none() {
+    let folder = session(Kind::Point);
+    folder.done("calibrate robot.urdf measurements.csv --out files --report none");
+    let files = calibration(&folder, "files").inputs.sha256;
+    for (words, piped) in [
+        ("calibrate robot.urdf /dev/stdin --out measurements --report none", "measurements.csv"),
+        ("calibrate /dev/stdin measurements.csv --out model --report none", "robot.urdf"),
+    ] {
+        let run = folder.run_with_input(words, &folder.read(piped));
+        assert_eq!(run.code, 0, "{}", run.err);
+    }
+    // Measurements are hashed as they are read; a model would have to be read again.
+    assert_eq!(calibration(&folder, "measurements").inputs.sha256["/dev/stdin"], files["measurements.csv"]);
+    let names: Vec<String> = calibration(&folder, "model").inputs.sha256.into_keys().collect();
+    assert_eq!(names, ["measurements.csv"]);
+}
+
 #[test]
 fn mistakes_are_told() {
     let folder: Folder = session(Kind::Point);

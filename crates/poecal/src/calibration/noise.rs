@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::CalibrationOptions;
-use crate::estimate::{Estimate, Packed, map_predictions};
+use crate::estimate::{Estimate, Packed, map_squares};
 use crate::measurement::{Dataset, Noise, Observation};
 
 /// Where the noise came from.
@@ -77,14 +77,7 @@ pub fn estimate_noise(
     told_by_rotations: Option<f64>,
     before: Noise,
 ) -> Option<Noise> {
-    let unit = Noise { position_m: 1.0, rotation_rad: 1.0 };
-    let squares = map_predictions(data, packed, rows, estimate, |observation, predicted| {
-        let model = observation.measurement.residual_model();
-        let mut e = [0.0; 6];
-        model.residual(predicted, &unit, &mut e);
-        let (position, rotation) = e[..model.dim()].split_at(model.rotation_row());
-        [position, rotation].map(|part| (part.iter().map(|e| e * e).sum::<f64>(), part.len()))
-    });
+    let squares = map_squares(data, packed, rows, estimate, |_, squares| squares);
     let (mut position, mut rotation) = (Share::default(), Share::default());
     let mut stated = 0;
     for (&row, squares) in rows.iter().zip(squares) {

@@ -10,7 +10,7 @@ mod row_error;
 
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
-pub(crate) use predictions::map_predictions;
+pub(crate) use row_error::map_squares;
 pub use row_error::{RowError, row_errors};
 
 use nalgebra::Vector3;

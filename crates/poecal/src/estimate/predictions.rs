@@ -1,7 +1,9 @@
 //! What an estimate predicts of many rows, several side by side.
 
-use super::{Estimate, Linkage, Packed};
-use crate::lanes::{self, Level, Step, WIDTH, Wide};
+use nalgebra::Vector3;
+
+use super::{Estimate, Linkage, Packed, RowError};
+use crate::lanes::{self, Frames, Level, Step, WIDTH, Wide};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Observation};
 use crate::threads;
@@ -9,36 +11,44 @@ use crate::threads;
 /// Rows that one thread takes at a time.
 const CHUNK: usize = 1024;
 
-/// What `each` makes of a row and of the predicted `device_from_target` there, row after row (theory.md §4 (13)).
-pub(crate) fn map_predictions<T: Send>(
+/// What `each` makes of a row: of what was seen in it, of its error in the device's axes, and of the predicted `device_from_target` if it
+/// asks for that (theory.md §4 (13), (16)).
+pub(super) fn map_errors<T: Send>(
     data: &Dataset,
     packed: &Packed,
     rows: &[u32],
     estimate: &Estimate,
-    each: impl Fn(&Observation, &Pose) -> T + Sync,
+    each: impl Fn(&Observation, RowError, &dyn Fn() -> Pose) -> T + Sync,
 ) -> Vec<T> {
     let linkage = Linkage::new(estimate);
     threads::concat_chunks(rows, CHUNK, |_, rows| {
         let mut found = Vec::with_capacity(rows.len());
         let mut side_by_side = SideBySide::new(&linkage);
         for rows in rows.chunks(WIDTH) {
-            let last = side_by_side.last_links(packed, rows);
+            side_by_side.predict(packed, rows);
+            side_by_side.compare(data, rows);
             for (lane, &row) in rows.iter().enumerate() {
                 let observation = &data.observations[row as usize];
-                found.push(each(observation, &(last(lane) * *linkage.end(observation.target))));
+                let predicted = || side_by_side.last_link(lane) * *linkage.end(observation.target);
+                found.push(each(observation, side_by_side.error(lane, observation), &predicted));
             }
         }
         found
     })
 }
 
-/// Joint values of [`WIDTH`] rows side by side, and the frames that they lead to.
+/// [`WIDTH`] rows side by side: joint values, the frames that they lead to, targets predicted there, and what was measured.
 struct SideBySide<'a> {
     linkage: &'a Linkage,
     level: Level,
     joints: Vec<(bool, Step)>,
     values: Vec<[Wide; 2]>,
-    frames: [[Wide; 4]; 3],
+    last_links: [[Wide; 4]; 3],
+    /// The target of each row, and its place in the last link.
+    targets: [Option<usize>; WIDTH],
+    ends: Frames,
+    measured: Frames,
+    errors: [[Wide; 3]; 2],
 }
 
 impl<'a> SideBySide<'a> {
@@ -49,12 +59,16 @@ impl<'a> SideBySide<'a> {
             level: Level::best(),
             values: vec![[Wide::ZERO; 2]; joints.len()],
             joints,
-            frames: [[Wide::ZERO; 4]; 3],
+            last_links: [[Wide::ZERO; 4]; 3],
+            targets: [None; WIDTH],
+            ends: [[Wide::ZERO; 3]; 4],
+            measured: [[Wide::ZERO; 3]; 4],
+            errors: [[Wide::ZERO; 3]; 2],
         }
     }
 
-    /// `device_from_last_link` after all motions, of each of at most [`WIDTH`] rows.
-    fn last_links(&mut self, packed: &Packed, rows: &[u32]) -> impl Fn(usize) -> Pose {
+    /// Finds `device_from_last_link` after all motions, of each of at most [`WIDTH`] rows.
+    fn predict(&mut self, packed: &Packed, rows: &[u32]) {
         for (lane, &row) in rows.iter().enumerate() {
             let values = packed.joint_values(row as usize).iter().zip(packed.row(row as usize));
             for (joint, (wide, (&value, &packed))) in self.values.iter_mut().zip(values).enumerate() {
@@ -63,19 +77,52 @@ impl<'a> SideBySide<'a> {
                 wide[1].0[lane] = sine;
             }
         }
-        lanes::last_links(self.level, &self.joints, &self.values, &mut self.frames);
-        let frames = &self.frames;
-        |lane| Pose::from_rows(|k, column| frames[k][column].0[lane])
+        lanes::last_links(self.level, &self.joints, &self.values, &mut self.last_links);
+    }
+
+    /// Compares what was measured in the same rows with what is predicted.
+    fn compare(&mut self, data: &Dataset, rows: &[u32]) {
+        let mut framed = false;
+        for (lane, &row) in rows.iter().enumerate() {
+            let Observation { target, measurement, .. } = &data.observations[row as usize];
+            put(&mut self.measured, lane, &measurement.pose());
+            framed |= measurement.sees_orientation();
+            if self.targets[lane] != Some(*target) {
+                self.targets[lane] = Some(*target);
+                put(&mut self.ends, lane, self.linkage.end(*target));
+            }
+        }
+        lanes::errors(self.level, &self.last_links, &self.ends, &self.measured, framed, &mut self.errors);
+    }
+
+    fn last_link(&self, lane: usize) -> Pose {
+        Pose::from_rows(|k, column| self.last_links[k][column].0[lane])
+    }
+
+    fn error(&self, lane: usize, seen: &Observation) -> RowError {
+        let vector = |[x, y, z]: &[Wide; 3]| Vector3::new(x.0[lane], y.0[lane], z.0[lane]);
+        let rotation_rad = seen.measurement.sees_orientation().then(|| vector(&self.errors[1]));
+        RowError { position_m: vector(&self.errors[0]), rotation_rad }
+    }
+}
+
+/// Writes one row of several.
+fn put(frames: &mut Frames, lane: usize, pose: &Pose) {
+    let [rotation @ .., place] = frames;
+    for (wide, column) in rotation.iter_mut().flatten().zip(pose.rotation.as_slice()) {
+        wide.0[lane] = *column;
+    }
+    for (wide, number) in place.iter_mut().zip(pose.translation.as_slice()) {
+        wide.0[lane] = *number;
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
-
     use super::*;
     use crate::estimate::Chain;
-    use crate::lie::Screw;
+    use crate::lie::{Screw, rotation};
+    use crate::measurement::{Measurement, PointMeasurement, PoseMeasurement};
     use crate::robot::{Joint, Robot};
 
     const ROWS: u32 = 21;
@@ -99,7 +146,8 @@ mod tests {
         let mut side_by_side = SideBySide { level, ..SideBySide::new(linkage) };
         let mut found = Vec::new();
         for rows in (0..ROWS).collect::<Vec<_>>().chunks(WIDTH) {
-            found.extend((0..rows.len()).map(side_by_side.last_links(packed, rows)));
+            side_by_side.predict(packed, rows);
+            found.extend((0..rows.len()).map(|lane| side_by_side.last_link(lane)));
         }
         found
     }
@@ -134,6 +182,66 @@ mod tests {
                                 "{level:?} {row}: {turned:e}, {moved:e}"
                             );
                         }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn errors_are_those_of_the_formulas_at_every_level() {
+        let readings: Vec<f64> =
+            (0..4 * ROWS).map(|k| f64::from((k * k * 5 + 2 * k) % 29) / 9.0 - 1.6).collect();
+        for robot in robots() {
+            let packed = Packed::new(&robot, &readings, 4);
+            let targets =
+                vec![robot.home, robot.home * Pose::from_xyz_rpy([0.2, 0.0, -0.1], [0.5, 1.0, 2.0])];
+            let device_from_base = Pose::from_xyz_rpy([2.0, -1.0, 0.4], [0.1, 0.2, -2.0]);
+            let linkage = Linkage::new(&Estimate::new(&robot, targets, device_from_base));
+            let mut chain = Chain::default();
+            let mut data = Dataset::new(robot.reading_names());
+            data.targets = vec![Some("a".to_owned()), Some("b".to_owned())];
+            let mut expected = Vec::new();
+            for row in 0..ROWS as usize {
+                let target = row % 3 / 2;
+                chain.evaluate(&linkage, &packed, row, target);
+                // Every seventh is turned by as much as a rotation can be, every fourth a point.
+                let angle = if row % 7 == 6 { 3.0 } else { 1e-3 * row as f64 };
+                let error = RowError {
+                    position_m: Vector3::new(1e-3, 2e-4 * row as f64, -0.5),
+                    rotation_rad: (row % 4 != 3).then(|| Vector3::new(0.6, 0.0, -0.8) * angle),
+                };
+                let position = chain.target.translation + error.position_m;
+                let measurement = match error.rotation_rad {
+                    None => Measurement::Point(PointMeasurement { position }),
+                    Some(turn) => {
+                        let pose = Pose::new(rotation::exp(&turn) * chain.target.rotation, position);
+                        Measurement::Pose(PoseMeasurement { pose })
+                    }
+                };
+                data.push(
+                    &readings[4 * row..4 * row + 4],
+                    data.targets[target].clone().as_deref(),
+                    measurement,
+                )
+                .unwrap();
+                expected.push(error);
+            }
+            for level in lanes::levels() {
+                let mut side_by_side = SideBySide { level, ..SideBySide::new(&linkage) };
+                for rows in data.all_rows().chunks(WIDTH) {
+                    side_by_side.predict(&packed, rows);
+                    side_by_side.compare(&data, rows);
+                    for (lane, &row) in rows.iter().enumerate() {
+                        let found = side_by_side.error(lane, &data.observations[row as usize]);
+                        let expected = expected[row as usize];
+                        assert_eq!(found.rotation_rad.is_some(), expected.rotation_rad.is_some());
+                        let zero = Vector3::zeros();
+                        let turns = [found, expected].map(|it| it.rotation_rad.unwrap_or(zero));
+                        let apart =
+                            (found.position_m - expected.position_m).norm() + (turns[0] - turns[1]).norm();
+                        // Rounding of products of rotations, and of a logarithm near half a turn.
+                        assert!(apart < 1e-14, "{level:?} {row}: {apart:e}");
                     }
                 }
             }

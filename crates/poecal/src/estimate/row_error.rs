@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::{Estimate, Packed, map_predictions};
-use crate::lie::rotation;
-use crate::measurement::Dataset;
+use super::predictions::map_errors;
+use super::{Estimate, Packed};
+use crate::measurement::{Dataset, Measurement, Noise, Observation};
 
 /// Error of one row: measured less predicted, device axes.
 ///
@@ -24,13 +24,33 @@ pub struct RowError {
 /// Errors of an estimate, one a row.
 #[must_use]
 pub fn row_errors(data: &Dataset, packed: &Packed, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
-    map_predictions(data, packed, rows, estimate, |observation, predicted| {
-        let model = observation.measurement.residual_model();
-        RowError {
-            position_m: model.position() - predicted.translation,
-            rotation_rad: model
-                .orientation()
-                .map(|measured| rotation::log(&(measured * predicted.rotation.transpose()))),
-        }
+    map_errors(data, packed, rows, estimate, |_, error, _| error)
+}
+
+/// What `each` makes of a row and of its residual's two parts, position and rotation (m², rad²): the sum of squares, and of how many numbers.
+pub(crate) fn map_squares<T: Send>(
+    data: &Dataset,
+    packed: &Packed,
+    rows: &[u32],
+    estimate: &Estimate,
+    each: impl Fn(&Observation, [(f64, usize); 2]) -> T + Sync,
+) -> Vec<T> {
+    const UNIT: Noise = Noise { position_m: 1.0, rotation_rad: 1.0 };
+    map_errors(data, packed, rows, estimate, |observation, error, predicted| {
+        let squares = match &observation.measurement {
+            Measurement::Point(_) | Measurement::Pose(_) => {
+                let rotation = error.rotation_rad.map_or((0.0, 0), |turn| (turn.norm_squared(), 3));
+                [(error.position_m.norm_squared(), 3), rotation]
+            }
+            // These write their residuals otherwise.
+            other => {
+                let model = other.residual_model();
+                let mut e = [0.0; 6];
+                model.residual(&predicted(), &UNIT, &mut e);
+                let (position, rotation) = e[..model.dim()].split_at(model.rotation_row());
+                [position, rotation].map(|part| (part.iter().map(|e| e * e).sum(), part.len()))
+            }
+        };
+        each(observation, squares)
     })
 }

@@ -2,58 +2,79 @@
 
 use std::fmt::Write as _;
 use std::fs::File;
-use std::io::Read as _;
+use std::io::{self, Read};
 use std::path::Path;
 
 use sha2::{Digest as _, Sha256};
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// Bytes read at a time.
-const PIECE: usize = 1 << 16;
-
-/// SHA-256 of a file, as hexadecimal digits.
+/// SHA-256 of a file, as hexadecimal digits; none of what can be read only once, such as a pipe.
 ///
 /// # Errors
 /// [`ErrorKind::File`] if it cannot be read.
-pub(super) fn sha256(path: &Path) -> Result<String> {
-    let digest = digest(path).map_err(|error| {
+pub(super) fn sha256(path: &Path) -> Result<Option<String>> {
+    if path.metadata().is_ok_and(|found| !found.is_file()) {
+        return Ok(None);
+    }
+    let read = || {
+        let mut file = Hashing::new(File::open(path)?);
+        io::copy(&mut file, &mut io::sink())?;
+        Ok(Some(file.sha256()))
+    };
+    read().map_err(|error: io::Error| {
         let message =
             format!("the file cannot be read ({error}), expected an input file to take the checksum of");
         Error::new(ErrorKind::File, message).in_file(path)
-    })?;
-    let mut digits = String::with_capacity(64);
-    for byte in digest {
-        // Writing to a String cannot fail.
-        let _ = write!(digits, "{byte:02x}");
-    }
-    Ok(digits)
+    })
 }
 
-fn digest(path: &Path) -> std::io::Result<impl IntoIterator<Item = u8>> {
-    let mut file = File::open(path)?;
-    let mut hasher = Sha256::new();
-    let mut piece = vec![0; PIECE];
-    loop {
-        let count = file.read(&mut piece)?;
-        if count == 0 {
-            return Ok(hasher.finalize());
+/// Something that is read, and the checksum of what has been read of it.
+pub(super) struct Hashing<R> {
+    source: R,
+    hasher: Sha256,
+}
+
+impl<R: Read> Hashing<R> {
+    pub(super) fn new(source: R) -> Self {
+        Hashing { source, hasher: Sha256::new() }
+    }
+
+    /// SHA-256 of what has been read, as hexadecimal digits.
+    pub(super) fn sha256(&self) -> String {
+        let mut digits = String::with_capacity(64);
+        for byte in self.hasher.clone().finalize() {
+            // Writing to a String cannot fail.
+            let _ = write!(digits, "{byte:02x}");
         }
-        hasher.update(piece.get(..count).unwrap_or_default());
+        digits
+    }
+}
+
+impl<R: Read> Read for Hashing<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let count = self.source.read(into)?;
+        self.hasher.update(into.get(..count).unwrap_or_default());
+        Ok(count)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::sha256;
+    use super::*;
 
     #[test]
-    fn the_digest_of_abc_is_that_of_the_standard() {
+    fn digests_are_those_of_the_standard() {
+        // FIPS 180-2, appendices B.1 and B.3: three bytes, and more than are read at a time.
+        let cases = [
+            ("abc".to_owned(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"),
+            ("a".repeat(1_000_000), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0"),
+        ];
         let path = std::env::temp_dir().join(format!("poecal_hash_{}", std::process::id()));
-        std::fs::write(&path, "abc").unwrap();
-        let digest = sha256(&path);
+        for (text, expected) in cases {
+            std::fs::write(&path, text).unwrap();
+            assert_eq!(sha256(&path).unwrap().as_deref(), Some(expected));
+        }
         std::fs::remove_file(&path).unwrap();
-        // FIPS 180-2, appendix B.1.
-        assert_eq!(digest.unwrap(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     }
 }

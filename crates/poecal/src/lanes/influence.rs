@@ -77,8 +77,12 @@ fn solved<V: Vector>(
     diagonal: V,
     mut x: [V; NUMBERS],
 ) -> [V; NUMBERS] {
-    let mut rows = hat.map(|row| row.map(|value| value * share));
+    // No `map` of arrays: what it calls is not compiled for the vectors' instructions.
+    let mut rows = *hat;
     for (k, row) in rows.iter_mut().enumerate() {
+        for value in row.iter_mut() {
+            *value = *value * share;
+        }
         row[k] = row[k] + diagonal;
     }
     let mut inverses = [diagonal; NUMBERS];

@@ -1,6 +1,7 @@
 //! The hot path of a fit: several rows at a time, by vector instructions.
 mod columns;
 mod dense;
+mod errors;
 mod frame;
 mod gram;
 mod influence;
@@ -19,13 +20,14 @@ mod work;
 mod x86;
 
 pub(crate) use dense::Factor;
+pub(crate) use errors::Frames;
 pub(crate) use influence::NUMBERS;
 pub(crate) use kernel::Arm;
 pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
 pub(crate) use poses::Exponential;
 pub use simd::{Level, levels};
 pub(crate) use simd::{
-    cholesky, cosines_and_sines, influences, inverse, last_links, product_of_exponentials, solve,
+    cholesky, cosines_and_sines, errors, influences, inverse, last_links, product_of_exponentials, solve,
     sum_gradient, sum_products, whitened_columns,
 };
 pub(crate) use totals::{Tiles, Totals};

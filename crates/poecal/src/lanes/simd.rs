@@ -2,6 +2,7 @@
 
 use super::columns;
 use super::dense::{self, Factor};
+use super::errors::{self, Frames};
 use super::influence::{self, NUMBERS};
 use super::kernel::{self, Arm};
 #[cfg(target_arch = "x86_64")]
@@ -128,6 +129,16 @@ dispatch!(
 dispatch!(
     /// Writes the frames of the last link.
     tip::last_links(joints: &[(bool, Step)], values: &[[Wide; 2]], out: &mut [[Wide; 4]; 3])
+);
+dispatch!(
+    /// Writes errors of position and rotation.
+    errors::errors(
+        links: &[[Wide; 4]; 3],
+        ends: &Frames,
+        measured: &Frames,
+        framed: bool,
+        out: &mut [[Wide; 3]; 2]
+    )
 );
 dispatch!(
     /// Writes `(cos, sin)` of each angle, with the same bits at every level.

@@ -85,13 +85,19 @@ impl Measurement {
     /// Whether orientation was measured, so that the target is a frame and not only a point.
     #[must_use]
     pub fn sees_orientation(&self) -> bool {
-        self.residual_model().orientation().is_some()
+        match self {
+            Measurement::Point(_) => false,
+            Measurement::Pose(_) | Measurement::SpatialPose(_) => true,
+        }
     }
 
     /// The measured `device_from_target`, with the identity where orientation was not measured.
     #[must_use]
     pub fn pose(&self) -> Pose {
-        let model = self.residual_model();
-        Pose::new(model.orientation().unwrap_or_else(nalgebra::Matrix3::identity), model.position())
+        match self {
+            Measurement::Point(point) => Pose::from_translation(point.position),
+            Measurement::Pose(PoseMeasurement { pose })
+            | Measurement::SpatialPose(SpatialPoseMeasurement { pose }) => *pose,
+        }
     }
 }

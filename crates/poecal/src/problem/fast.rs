@@ -8,13 +8,13 @@ use super::alike::{Alike, Whitening};
 use super::arrangement::Arrangement;
 use super::scatter::Scatter;
 use crate::estimate::{Estimate, Linkage};
-use crate::lanes::{self, Arm, Level, Plan, RowData, Rows, Step, Totals};
+use crate::lanes::{self, Arm, Level, Plan, RowData, Rows, Step, Totals, WIDTH};
 use crate::measurement::{Measurement, PoseMeasurement, SpatialPoseMeasurement};
 use crate::solve::Normal;
 use crate::threads;
 use std::cell::RefCell;
 
-/// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
+/// Most rows that one partial sum takes in.
 const CHUNK: usize = 1024;
 /// Partial sums that exist at a time: memory beside the data stays bounded.
 const TOGETHER: usize = 64;
@@ -75,8 +75,9 @@ impl Fast {
             return;
         }
         for (Group { arranged, rows, packed }, _) in &mut self.groups {
-            packed.resize_with(rows.len().div_ceil(CHUNK), Rows::default);
-            for (rows, packed) in rows.chunks(CHUNK).zip(packed) {
+            let size = chunk_size(rows.len());
+            packed.resize_with(rows.len().div_ceil(size), Rows::default);
+            for (rows, packed) in rows.chunks(size).zip(packed) {
                 pack(problem, &arranged.plan, rows, packed);
             }
         }
@@ -109,18 +110,19 @@ impl Group {
     /// Sums over all rows of the group, in the order of its chunks whatever the number of threads.
     fn sum(&self, problem: &Problem<'_>, level: Level, arm: &Arm<'_>, sums: Sums) -> Totals {
         let sum = if sums == Sums::Gradient { lanes::sum_gradient } else { lanes::sum_products };
+        let size = chunk_size(self.rows.len());
         let chunk = |index: usize| match self.packed.get(index) {
             Some(rows) => sum(level, arm, &rows.blocks),
             None => {
-                let last = self.rows.len().min((index + 1) * CHUNK);
+                let last = self.rows.len().min((index + 1) * size);
                 let mut packed = ROWS.take();
-                pack(problem, &self.arranged.plan, &self.rows[index * CHUNK..last], &mut packed);
+                pack(problem, &self.arranged.plan, &self.rows[index * size..last], &mut packed);
                 let totals = sum(level, arm, &packed.blocks);
                 ROWS.set(packed);
                 totals
             }
         };
-        let chunks = self.rows.len().div_ceil(CHUNK);
+        let chunks = self.rows.len().div_ceil(size);
         if chunks <= 1 {
             return chunk(0);
         }
@@ -148,6 +150,12 @@ impl Group {
         normal.cost += totals.cost;
         normal.residuals += self.rows.len() * if plan.framed { 6 } else { 3 };
     }
+}
+
+/// Rows of each partial sum: about as many in each, so that threads are done together, and as many with any number of threads, so that
+/// the result does not depend on it.
+fn chunk_size(rows: usize) -> usize {
+    rows.div_ceil(rows.div_ceil(CHUNK).max(1)).next_multiple_of(WIDTH).max(WIDTH)
 }
 
 /// Sets rows side by side.

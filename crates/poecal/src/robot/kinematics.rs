@@ -95,8 +95,8 @@ impl Robot {
     }
 }
 
-/// The two numbers of a joint's motion that depend on its value: `sin θ` and `1 - cos θ` with `(cos θ, sin θ)` known, or θ of a
-/// sliding joint.
+/// The two numbers of a joint's motion that depend on its value: `sin θ` and `1 - cos θ` with `(cos θ, sin θ)` known, or θ of a sliding
+/// joint. They are added to numbers of about one, so that rounding of `1 - cos θ` at small angles does not show.
 fn factors_of(screw: &Screw, value: f64, (cosine, sine): (f64, f64)) -> (f64, f64) {
     if screw.is_prismatic() { (value, 0.0) } else { (sine, 1.0 - cosine) }
 }

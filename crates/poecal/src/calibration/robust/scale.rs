@@ -3,7 +3,7 @@
 use super::chi_square;
 use crate::calibration::CalibrationOptions;
 use crate::calibration::noise::{ROUNDING, stated};
-use crate::estimate::{Estimate, Packed, map_predictions};
+use crate::estimate::{Estimate, Packed, map_squares};
 use crate::measurement::{Dataset, Noise};
 
 /// Squared whitened residual of one part of a row, position or rotation.
@@ -26,20 +26,14 @@ pub(super) fn parts(
     estimate: &Estimate,
     noise: Noise,
 ) -> Vec<Parts> {
-    map_predictions(data, packed, rows, estimate, |observation, predicted| {
-        let model = observation.measurement.residual_model();
-        let mut e = [0.0; 6];
-        model.residual(predicted, &observation.noise_or(noise), &mut e);
-        let (split, dim) = (model.rotation_row(), model.dim());
-        let part = |e: &[f64], stated: Option<f64>| Part {
-            squares: e.iter().map(|e| e * e).sum(),
-            components: e.len(),
-            stated: stated.is_some(),
+    map_squares(data, packed, rows, estimate, |observation, squares| {
+        let Noise { position_m, rotation_rad } = observation.noise_or(noise);
+        let stated = [observation.sigma_position_m, observation.sigma_rotation_rad];
+        let part = |side: usize, sigma: f64| {
+            let (squares, components) = squares[side];
+            Part { squares: squares / (sigma * sigma), components, stated: stated[side].is_some() }
         };
-        [
-            part(&e[..split], observation.sigma_position_m),
-            part(&e[split..dim], observation.sigma_rotation_rad),
-        ]
+        [part(0, position_m), part(1, rotation_rad)]
     })
 }
 

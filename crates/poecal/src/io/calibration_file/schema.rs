@@ -1,7 +1,7 @@
 //! The keys of `calibration.json`. Lengths in metres and angles in radians unless a key says otherwise.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -96,7 +96,8 @@ pub struct Inputs {
     pub model: String,
     /// The measurement files, as named by the user.
     pub measurements: Vec<String>,
-    /// SHA-256 of each file that was read, by the name that the user gave it.
+    /// SHA-256 of each file that was read, by the name that the user gave it; what is no regular file, such as a pipe, has one only if it
+    /// is of measurements.
     #[serde(default)]
     pub sha256: BTreeMap<String, String>,
     /// The command that makes the same calibration again; null if it was not made by the program.
@@ -105,26 +106,14 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// The inputs with the checksum of each file: model, measurements and `others` (a mapping file).
+    /// The checksum of each file, by its name: of a model or a mapping, those of measurements being told by
+    /// [`MeasurementFile::sha256`](crate::io::measurements::MeasurementFile::sha256). What is no regular file has none.
     ///
     /// # Errors
     /// [`ErrorKind::File`](crate::ErrorKind::File) if a file cannot be read.
-    pub fn of_files(model: &Path, measurements: &[PathBuf], others: &[PathBuf]) -> Result<Self> {
-        let files = std::iter::once(model).chain(measurements.iter().chain(others).map(PathBuf::as_path));
-        Ok(Inputs {
-            model: model.display().to_string(),
-            measurements: measurements.iter().map(|path| path.display().to_string()).collect(),
-            sha256: Inputs::checksums(files)?,
-            command: None,
-        })
-    }
-
-    /// The checksum of each file, by its name.
-    ///
-    /// # Errors
-    /// As [`Inputs::of_files`].
     pub fn checksums<'a>(files: impl Iterator<Item = &'a Path>) -> Result<BTreeMap<String, String>> {
-        files.map(|path| Ok((path.display().to_string(), sha256(path)?))).collect()
+        let named = |path: &Path| Ok(sha256(path)?.map(|sha256| (path.display().to_string(), sha256)));
+        files.filter_map(|path| named(path).transpose()).collect()
     }
 }
 

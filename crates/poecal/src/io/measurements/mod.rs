@@ -34,6 +34,8 @@ pub use understanding::{ColumnUnderstanding, FileUnderstanding, UnitSource};
 pub use units::{Quantity, Unit};
 pub(in crate::io) use write::text;
 
+use std::collections::BTreeMap;
+
 use crate::measurement::Dataset;
 
 /// How to read measurement files.
@@ -73,12 +75,14 @@ pub struct ReadOptions {
 /// assert_eq!(file.understood[0].columns[1].unit, Some("mm"));
 /// # Ok::<(), poecal::Error>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct MeasurementFile {
     /// The rows of all files, in order.
     pub data: Dataset,
     /// How each file was understood.
     pub understood: Vec<FileUnderstanding>,
+    /// SHA-256 of each file, by its name: of the bytes that the rows were read from.
+    pub sha256: BTreeMap<String, String>,
     /// What the user should know, a sentence each.
     pub warnings: Vec<String>,
 }

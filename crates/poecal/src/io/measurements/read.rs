@@ -73,6 +73,7 @@ struct Reader<'a> {
     naming: Option<Naming>,
     fit_values_seen: Vec<bool>,
     understood: Vec<FileUnderstanding>,
+    sha256: BTreeMap<String, String>,
     warnings: Vec<String>,
 }
 
@@ -94,6 +95,7 @@ impl<'a> Reader<'a> {
             naming: None,
             fit_values_seen: Vec::new(),
             understood: Vec::new(),
+            sha256: BTreeMap::new(),
             warnings: Vec::new(),
         }
     }
@@ -117,6 +119,7 @@ impl<'a> Reader<'a> {
                 self.row(&row, &layout, &mut inputs)?;
             }
         }
+        self.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         if rows == 0 {
             let message = "found a header and no rows, expected at least one measurement";
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
@@ -268,7 +271,8 @@ impl<'a> Reader<'a> {
                 _ => error,
             });
         }
-        Ok(MeasurementFile { data: self.data, understood: self.understood, warnings: self.warnings })
+        let Reader { data, understood, sha256, warnings, .. } = self;
+        Ok(MeasurementFile { data, understood, sha256, warnings })
     }
 }
 

@@ -63,6 +63,11 @@ impl<'a> Table<'a> {
         Err(Error::new(ErrorKind::Syntax, message).in_file(path))
     }
 
+    /// The checksum of the file, as far as it has been read.
+    pub(super) fn sha256(&self) -> Option<String> {
+        self.blocks.sha256()
+    }
+
     /// The rows of the next block.
     pub(super) fn next_block(&mut self) -> Result<Option<Rows<'_>>> {
         if !std::mem::take(&mut self.unread) && !self.blocks.advance()? {

@@ -8,6 +8,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::hashes::Hashing;
 use crate::io::source_text::position;
 
 /// The whole text of a file; `expected` says what it should be.
@@ -39,12 +40,18 @@ fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Error {
 /// Bytes of a file that are held at a time, about.
 const BLOCK: usize = 1 << 18;
 
+/// Where a text comes from.
+enum Source<'a> {
+    File(Hashing<File>),
+    Text(&'a [u8]),
+}
+
 /// A text in blocks of whole lines, so that a large file is never held whole.
 pub(super) struct Blocks<'a> {
     path: &'a Path,
     /// What the file should be.
     expected: &'a str,
-    source: Box<dyn Read + 'a>,
+    source: Source<'a>,
     /// Bytes that are read at a time.
     size: usize,
     /// The block at hand.
@@ -60,27 +67,23 @@ pub(super) struct Blocks<'a> {
 impl<'a> Blocks<'a> {
     /// The blocks of a file; `expected` says what it should be.
     pub(super) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
-        Ok(Blocks { expected, ..Blocks::new(path, open(path, expected)?) })
+        let source = Source::File(Hashing::new(open(path, expected)?));
+        Ok(Blocks { expected, ..Blocks::of(path, source, BLOCK) })
     }
 
-    /// The blocks of any text; `path` is for the messages only.
-    pub(super) fn new(path: &'a Path, source: impl Read + 'a) -> Self {
-        Blocks::sized(path, source, BLOCK)
+    /// The blocks of a text; `path` is for the messages only.
+    pub(super) fn new(path: &'a Path, text: &'a [u8]) -> Self {
+        Blocks::sized(path, text, BLOCK)
     }
 
     /// The same, of which so many bytes are read at a time.
-    pub(super) fn sized(path: &'a Path, source: impl Read + 'a, size: usize) -> Self {
-        let (expected, source) = ("a table (CSV)", Box::new(source));
-        Blocks {
-            path,
-            expected,
-            source,
-            size,
-            text: String::new(),
-            rest: Vec::new(),
-            newline: None,
-            lines: 0,
-        }
+    pub(super) fn sized(path: &'a Path, text: &'a [u8], size: usize) -> Self {
+        Blocks::of(path, Source::Text(text), size)
+    }
+
+    fn of(path: &'a Path, source: Source<'a>, size: usize) -> Self {
+        let (expected, text, rest) = ("a table (CSV)", String::new(), Vec::new());
+        Blocks { path, expected, source, size, text, rest, newline: None, lines: 0 }
     }
 
     /// Reads the next block; false at the end.
@@ -92,7 +95,11 @@ impl<'a> Blocks<'a> {
         bytes.append(&mut self.rest);
         loop {
             let known = bytes.len();
-            let more = self.source.by_ref().take(self.size as u64).read_to_end(&mut bytes);
+            let size = self.size as u64;
+            let more = match &mut self.source {
+                Source::File(file) => file.take(size).read_to_end(&mut bytes),
+                Source::Text(text) => text.take(size).read_to_end(&mut bytes),
+            };
             let more = more.map_err(|error| unreadable(self.path, &error, self.expected))?;
             let end = memchr::memrchr(b'\n', bytes.get(known..).unwrap_or_default());
             if let Some(end) = end {
@@ -118,6 +125,14 @@ impl<'a> Blocks<'a> {
             self.text.remove(0);
         }
         Ok(!self.text.is_empty())
+    }
+
+    /// The checksum of the file as far as it has been read; a text has none.
+    pub(super) fn sha256(&self) -> Option<String> {
+        match &self.source {
+            Source::File(file) => Some(file.sha256()),
+            Source::Text(_) => None,
+        }
     }
 
     /// The lines of the block at hand, but for the first `skip` of the file.
@@ -379,17 +394,16 @@ mod tests {
 
     #[test]
     fn a_file_that_fails_while_being_read_is_told() {
-        struct Failing;
-        impl Read for Failing {
-            fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
-                Err(io::Error::other("the disk is gone"))
-            }
-        }
-        let mut blocks =
-            Blocks { expected: "a measurement file (CSV)", ..Blocks::new(Path::new("x.csv"), Failing) };
-        assert_eq!(
-            blocks.advance().unwrap_err().to_string(),
-            "x.csv: cannot be read (the disk is gone), expected a measurement file (CSV)"
+        let path = std::env::temp_dir().join(format!("poecal_text_{}", std::process::id()));
+        // One that may be written only.
+        let source = Source::File(Hashing::new(File::create(&path).unwrap()));
+        let expected = "a measurement file (CSV)";
+        let error =
+            Blocks { expected, ..Blocks::of(&path, source, BLOCK) }.advance().unwrap_err().to_string();
+        std::fs::remove_file(&path).unwrap();
+        assert!(
+            error.contains(": cannot be read (") && error.ends_with("), expected a measurement file (CSV)"),
+            "{error}"
         );
     }
 }
