@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod largest;
+
+use largest::larger;
 use poecal::calibration::{Calibration, CalibrationOptions, calibrate, delivered, radian_m};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::gauge::base_motion;
@@ -52,7 +55,7 @@ fn difference(a: &Estimate, b: &Estimate, data: &Dataset, packed: &Packed) -> (f
 
 fn apart(a: &Pose, b: &Pose, (shift, turn): (f64, f64)) -> (f64, f64) {
     let angle = rotation::log(&(a.rotation * b.rotation.transpose())).norm();
-    (f64::max(shift, (a.translation - b.translation).norm()), f64::max(turn, angle))
+    (larger(shift, (a.translation - b.translation).norm()), larger(turn, angle))
 }
 
 /// What the gauge makes smallest, of the screws: tilts as arcs, and shifts seen from the nominal joint's origin (m²).

@@ -3,6 +3,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod largest;
+
+use largest::larger;
 use nalgebra::{Matrix6, Vector3};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::lie::{Pose, Screw, rotation};
@@ -184,12 +187,12 @@ fn jacobians_agree_with_differences() {
                         }
                         let numeric = row.differences(&estimate, &layout, unknown, step);
                         let floor = ROUNDING / step / RELATIVE;
-                        worst = worst.max(distance(column, &numeric) / norm(column).max(floor));
+                        worst = larger(worst, distance(column, &numeric) / norm(column).max(floor));
                     }
                 }
             }
             println!("{measurement:12} by {name:13} {worst:.1e}");
-            largest = largest.max(worst);
+            largest = larger(largest, worst);
         }
     }
     assert!(largest < RELATIVE, "{largest:e}");
@@ -209,9 +212,9 @@ fn normal_information_is_made_of_the_same_columns() {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut worst: f64 = 0.0;
         for (a, column) in columns.iter().enumerate() {
-            worst = worst.max((normal.gradient[a] - dot(column, &residual)).abs());
+            worst = larger(worst, (normal.gradient[a] - dot(column, &residual)).abs());
             for (b, other) in columns.iter().enumerate().skip(a) {
-                worst = worst.max((normal.gram[a * problem.dim() + b] - dot(column, other)).abs());
+                worst = larger(worst, (normal.gram[a * problem.dim() + b] - dot(column, other)).abs());
             }
         }
         println!("{name:6} {} unknowns: {worst:.1e}", problem.dim());
@@ -254,8 +257,8 @@ fn hessian_error(make: Measure, turn: f64) -> f64 {
         for b in a..problem.dim() {
             let at = a * problem.dim() + b;
             let numeric = second_difference(&problem, &estimate, (a, b), 0.01);
-            worst = worst.max((gram[at] + curvature[at] - numeric).abs());
-            largest = largest.max(numeric.abs());
+            worst = larger(worst, (gram[at] + curvature[at] - numeric).abs());
+            largest = larger(largest, numeric.abs());
         }
     }
     worst / largest

@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod largest;
+
 use std::f64::consts::PI;
 
+use largest::larger;
 use nalgebra::Vector3;
 use poecal::ErrorKind;
 use poecal::lie::{Pose, Screw, rotation};
@@ -47,8 +50,8 @@ fn difference(
             robot.joint_values(&readings).iter().zip(offsets).map(|(v, o)| v + o).collect();
         let tip = *ends[0] * robot.motion(&values) * robot.home * *ends[1];
         let expected = other.forward_kinematics(&readings);
-        largest = largest.max((tip.translation - expected.translation).norm());
-        largest = largest.max(rotation::log(&(tip.rotation * expected.rotation.transpose())).norm());
+        largest = larger(largest, (tip.translation - expected.translation).norm());
+        largest = larger(largest, rotation::log(&(tip.rotation * expected.rotation.transpose())).norm());
     }
     largest
 }
@@ -56,14 +59,14 @@ fn difference(
 /// Largest difference of offsets where they are determined.
 fn offset_error(found: &Explanation, put_in: &[f64]) -> f64 {
     let determined = (0..put_in.len()).filter(|joint| !found.undetermined.contains(joint));
-    determined.map(|joint| (found.offsets[joint] - put_in[joint]).abs()).fold(0.0, f64::max)
+    determined.map(|joint| (found.offsets[joint] - put_in[joint]).abs()).fold(0.0, larger)
 }
 
 /// Largest remainder of screws and home pose.
 fn remainder(found: &Explanation) -> f64 {
     let joints = found.joints.iter().flat_map(|joint| [joint.tilt_rad, joint.shift_m.unwrap_or(0.0)]);
     let home = found.home.iter().flat_map(|home| [home.position_m, home.rotation_rad]);
-    joints.chain(home).fold(0.0, f64::max)
+    joints.chain(home).fold(0.0, larger)
 }
 
 #[test]
@@ -84,12 +87,12 @@ fn offsets_become_screws_and_offsets_again() {
                 same,
                 offset_error(&found, &offsets),
                 remainder(&found),
-                predicted.max(found.with_offsets.max_m),
+                larger(predicted, found.with_offsets.max_m),
             ];
             let words = figures.map(|figure| format!("{figure:.0e}")).join(" ");
             println!("{} ±{angle_deg}°: {words}, not told {:?}", robot.name, found.undetermined);
             assert!(found.undetermined.is_empty(), "{}: {:?}", robot.name, found.undetermined);
-            worst.iter_mut().zip(figures).for_each(|(worst, figure)| *worst = worst.max(figure));
+            worst.iter_mut().zip(figures).for_each(|(worst, figure)| *worst = larger(*worst, figure));
         }
         println!(
             "±{angle_deg}°: f'(θ) = f(θ+δ) {:.1e}, offsets {:.1e}, remainder {:.1e}, prediction {:.1e}",
@@ -123,7 +126,7 @@ fn free_base_and_tip_are_found_too() {
             let last = robot.joints.len() - 1;
             assert!(found.undetermined.contains(&0) && found.undetermined.contains(&last));
             assert!(found.offsets[0].abs() < EXACT && found.offsets[last].abs() < EXACT);
-            worst.iter_mut().zip(figures).for_each(|(worst, figure)| *worst = worst.max(figure));
+            worst.iter_mut().zip(figures).for_each(|(worst, figure)| *worst = larger(*worst, figure));
         }
     }
     println!("offsets {:.1e}, remainder {:.1e}, prediction {:.1e}", worst[0], worst[1], worst[2]);
@@ -186,7 +189,7 @@ fn screw_errors_remain_and_hardly_move_the_offsets() {
             let offsets = random_offsets(&robot, 2.0, &mut generator);
             let actual = error.perturbed(&into_screws(&robot, &offsets).unwrap(), &mut generator);
             let found = explain(&robot, &actual, &Options::default()).unwrap();
-            worst = worst.max(offset_error(&found, &offsets));
+            worst = larger(worst, offset_error(&found, &offsets));
             let tilts = found.joints.iter().map(|joint| joint.tilt_rad);
             let rms = (tilts.map(|tilt| tilt * tilt).sum::<f64>() / offsets.len() as f64).sqrt();
             assert!(rms > 0.2 * error.error_rotation_rad && rms < 2.0 * error.error_rotation_rad, "{rms}");
@@ -217,7 +220,7 @@ fn the_least_minimum_is_found_beside_screw_errors_of_one_degree() {
             let home = found.home.iter().map(|home| (home.rotation_rad, home.position_m));
             let left_m2: f64 =
                 joints.chain(home).map(|(turn, shift)| (length_m * turn).powi(2) + shift.powi(2)).sum();
-            worst = worst.max(left_m2 / put_in_m2 / (robot.joints.len() + 1) as f64);
+            worst = larger(worst, left_m2 / put_in_m2 / (robot.joints.len() + 1) as f64);
             count += 1;
         }
     }

@@ -2,6 +2,11 @@
 
 #![allow(clippy::print_stdout)]
 
+mod formula;
+mod largest;
+
+use formula::{Formula, differences, steps};
+use largest::larger;
 use nalgebra::{DMatrix, Matrix6, Vector3, Vector6};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::lie::{Pose, Twist, hat};
@@ -90,10 +95,10 @@ fn closed_form_is_the_printed_integral() {
                 let integral = quadrature(&Twist::new(xi.v * values[k], xi.w * values[k]));
                 let printed = prefixes[k].adjoint() * integral * values[k];
                 let scale = prefixes[k].adjoint().norm() * integral.norm() * values[k].abs().max(1.0);
-                worst = worst.max((literal.screw_blocks[k] - printed).norm() / scale);
+                worst = larger(worst, (literal.screw_blocks[k] - printed).norm() / scale);
             }
             let home = prefixes[prefixes.len() - 1].adjoint() * quadrature(&robot.home.log());
-            worst = worst.max((literal.home_block - home).norm() / home.norm());
+            worst = larger(worst, (literal.home_block - home).norm() / home.norm());
         }
     }
     println!("Q_k and Q_M against quadrature: {worst:.1e}");
@@ -137,130 +142,13 @@ fn telescoping_jacobian_is_that_of_the_paper() {
                     let expected = telescoping(&robot, &errors, &values, seen);
                     // At a whole turn a joint's block vanishes: what it is a difference of sets the scale.
                     let scale = expected.norm().max(1.0);
-                    worst = worst.max((literal - expected).norm() / scale);
+                    worst = larger(worst, (literal - expected).norm() / scale);
                 }
             }
         }
     }
     println!("literal against telescoping: {worst:.1e}");
     assert!(worst < RELATIVE);
-}
-
-/// Everything that stands in the POE formula: free twists `ξ_i`, joint values, `M` as its logarithm or `exp(Υ) M`, `P_c0`.
-#[derive(Clone)]
-struct Formula {
-    twists: Vec<Twist>,
-    values: Vec<f64>,
-    home: Pose,
-    point: Vector3<f64>,
-}
-
-impl Formula {
-    fn new(robot: &Robot, values: &[f64]) -> Self {
-        Formula {
-            twists: robot.joints.iter().map(|joint| joint.screw.twist()).collect(),
-            values: values.to_vec(),
-            home: robot.home,
-            point: robot.home.translation,
-        }
-    }
-
-    /// The product of exponentials without `M`, lou2009 (2).
-    fn motion(&self) -> Pose {
-        (self.twists.iter().zip(&self.values)).fold(Pose::identity(), |before, (xi, &value)| {
-            before * Pose::exp(&Twist::new(xi.v * value, xi.w * value))
-        })
-    }
-}
-
-/// A change of the formula by a step in one unknown.
-type Step<'a> = Box<dyn Fn(&Formula, f64) -> Formula + 'a>;
-
-fn unit(k: usize, step: f64) -> Vector6<f64> {
-    let mut vector = Vector6::zeros();
-    vector[k] = step;
-    vector
-}
-
-/// The unknowns in the order of lou2009 (7).
-fn steps<'a>(
-    robot: &'a Robot,
-    errors: &'a AdjointErrors,
-    formulation: Formulation,
-    seen: Seen,
-) -> Vec<Step<'a>> {
-    let mut steps: Vec<Step<'a>> = Vec::new();
-    let joints = robot.joints.iter().enumerate();
-    if formulation.has_offsets() {
-        for (i, _) in joints.clone() {
-            steps.push(Box::new(move |at, step| {
-                let mut at = at.clone();
-                at.values[i] += step;
-                at
-            }));
-        }
-    }
-    let free = formulation.has_free_screws();
-    for (i, joint) in joints {
-        for k in 0..if free && joint.screw.is_prismatic() { 3 } else { 6 } {
-            let nominal = joint.screw.twist();
-            let eta = errors.eta[i].to_vector();
-            steps.push(Box::new(move |at, step| {
-                let mut at = at.clone();
-                at.twists[i] = if free {
-                    Twist::from_vector(&(at.twists[i].to_vector() + unit(k, step)))
-                } else {
-                    Pose::exp(&Twist::from_vector(&(eta + unit(k, step)))).transform(&nominal)
-                };
-                at
-            }));
-        }
-    }
-    for k in 0..if seen == Seen::Poses { 6 } else { 3 } {
-        let (home, upsilon) = (robot.home, errors.upsilon.to_vector());
-        steps.push(Box::new(move |at, step| {
-            let mut at = at.clone();
-            at.home = if free {
-                Pose::exp(&Twist::from_vector(&(home.log().to_vector() + unit(k, step))))
-            } else {
-                Pose::exp(&Twist::from_vector(&(upsilon + unit(k, step)))) * home
-            };
-            if seen == Seen::Points {
-                at.point[k] += step;
-            }
-            at
-        }));
-    }
-    steps
-}
-
-/// Central differences of tenth order of the POE formula.
-fn differences(at: &Formula, steps: &[Step<'_>], seen: Seen) -> DMatrix<f64> {
-    const STEP: f64 = 0.01;
-    let weights = [5.0 / 6.0, -5.0 / 21.0, 5.0 / 84.0, -5.0 / 504.0, 1.0 / 1260.0];
-    let here = at.motion();
-    let columns: Vec<Vector6<f64>> = steps
-        .iter()
-        .map(|change| {
-            let mut sum = Vector6::zeros();
-            for (k, weight) in weights.into_iter().enumerate() {
-                for sign in [1.0, -1.0] {
-                    let moved = change(at, sign * STEP * (k + 1) as f64);
-                    let motion = moved.motion();
-                    let difference = match seen {
-                        Seen::Poses => (motion * moved.home * (here * at.home).inverse()).log(),
-                        Seen::Points => {
-                            Twist::new(motion.act(&moved.point) - here.act(&at.point), Vector3::zeros())
-                        }
-                    };
-                    sum += difference.to_vector() * (sign * weight / STEP);
-                }
-            }
-            sum
-        })
-        .collect();
-    let all = DMatrix::from_fn(6, columns.len(), |row, column| columns[column][row]);
-    all.rows(0, if seen == Seen::Poses { 6 } else { 3 }).into_owned()
 }
 
 #[test]
@@ -281,7 +169,7 @@ fn literal_jacobians_are_the_derivatives_of_the_formula() {
                         let at = Formula::new(&errors.apply(&robot), &values);
                         let steps = steps(&robot, &errors, formulation, seen);
                         let numeric = differences(&at, &steps, seen);
-                        worst = worst.max((&literal - &numeric).norm() / numeric.norm());
+                        worst = larger(worst, (&literal - &numeric).norm() / numeric.norm());
                     }
                 }
             }
@@ -318,7 +206,7 @@ fn columns_of_the_solver_are_the_blocks_of_the_paper_seen_at_the_target() {
                 parameter.model().target_twists(&chain, 0, &mut twists);
                 for ((v, w), unknown) in twists.into_iter().zip(unknowns) {
                     let error = (Twist::new(v, w).to_vector() - in_axis.column(unknown)).norm();
-                    worst = worst.max(error / block.norm().max(1.0));
+                    worst = larger(worst, error / block.norm().max(1.0));
                 }
             }
             // The solver moves a point along the target's own axes, the paper along those of the base at zero.
@@ -327,7 +215,7 @@ fn columns_of_the_solver_are_the_blocks_of_the_paper_seen_at_the_target() {
             let mut twists = [(Vector3::zeros(), Vector3::zeros()); 3];
             TargetPlace { target: 0 }.target_twists(&chain, 0, &mut twists);
             for ((v, _), column) in twists.into_iter().zip(own.column_iter()) {
-                worst = worst.max((v - column).norm());
+                worst = larger(worst, (v - column).norm());
             }
         }
     }
@@ -362,13 +250,15 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
                     free.model().target_twists(&chain, 0, &mut twists[..dim]);
                     for (k, &(v, w)) in twists[..dim].iter().enumerate() {
                         let error = (Twist::new(v, w).to_vector() - screw.column(k)).norm();
-                        worst = worst.max(error / screw.norm().max(1.0));
+                        worst = larger(worst, error / screw.norm().max(1.0));
                     }
                     shift.model().target_twists(&chain, 0, &mut twists[..1]);
                     let (v, w) = twists[0];
                     let column = seen * literal.offset_columns[i];
-                    worst =
-                        worst.max((Twist::new(v, w).to_vector() - column).norm() / column.norm().max(1.0));
+                    worst = larger(
+                        worst,
+                        (Twist::new(v, w).to_vector() - column).norm() / column.norm().max(1.0),
+                    );
                 }
             }
         }

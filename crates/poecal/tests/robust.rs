@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod largest;
+
+use largest::larger;
 use poecal::calibration::{
     Calibration, CalibrationOptions, Loss, Robust, calibrate, delivered, radian_m, row_errors, row_influence,
 };
@@ -82,7 +85,7 @@ fn over_sessions(share: f64, robust: Robust, sessions: u64) -> (f64, [usize; 4])
             let [clean, with] = [0, 1].map(|k| all.iter().map(|(errors, _)| errors[k]).sum::<f64>());
             let ratio = (with / clean).sqrt();
             println!("{} {}, {share}: {ratio:.3} times the clean error", robot.name, kind.word());
-            worst = worst.max(ratio);
+            worst = larger(worst, ratio);
             all.iter().for_each(|(_, counts)| (0..4).for_each(|k| total[k] += counts[k]));
         }
     }
@@ -182,7 +185,7 @@ fn registration_survives_three_tenths_of_the_rows_wrong() {
                 let start = delivered(&robot, &data);
                 let found = [register(&registration, &start).0, register_robustly(&registration, &start)];
                 for (worst, estimate) in worst.iter_mut().zip(&found) {
-                    *worst = worst.max(rms_m(&robot, &made.data, &clean, estimate));
+                    *worst = larger(*worst, rms_m(&robot, &made.data, &clean, estimate));
                 }
             }
         }
@@ -215,10 +218,13 @@ fn weights_scale_the_noise_and_zero_leaves_a_row_out() {
     }
     let stated = Problem::new(&data, &packed, kept, free(), noise, 0.5).normal(&start);
     let largest = weighted.gram.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    let worst = (apart(&weighted.gram, &stated.gram) / largest)
-        .max(apart(&weighted.gradient, &stated.gradient) / largest)
-        .max((weighted.cost / stated.cost - 1.0).abs());
+    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, larger);
+    let worst = [
+        apart(&weighted.gram, &stated.gram) / largest,
+        apart(&weighted.gradient, &stated.gradient) / largest,
+        (weighted.cost / stated.cost - 1.0).abs(),
+    ];
+    let worst = worst.into_iter().fold(0.0, larger);
     println!("weights and stated noise differ by {worst:.1e}");
     // Rounding: a noise over the root of a weight, twice in another order.
     assert!(worst < 1e-13 && weighted.residuals == stated.residuals);
@@ -256,7 +262,7 @@ fn studentized_residuals_do_not_depend_on_whether_the_row_was_fitted() {
         data.observations[row].set = Some(Set::HeldOut);
         let held_out = studentized(&data);
         data.observations[row].set = Some(Set::Fit);
-        worst = worst.max((held_out[row].studentized / fitted[row].studentized - 1.0).abs());
+        worst = larger(worst, (held_out[row].studentized / fitted[row].studentized - 1.0).abs());
     }
     println!("studentised residuals differ by at most {:.2} %", 100.0 * worst);
     assert!(worst < 0.05);

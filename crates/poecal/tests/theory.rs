@@ -2,6 +2,9 @@
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
+mod largest;
+
+use largest::larger;
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use poecal::estimate::Estimate;
 use poecal::lie::{Pose, Screw, Twist};
@@ -52,12 +55,12 @@ fn free_screws_are_elementary_in_the_axis_frame() {
             let turning = Matrix3::new(sine, -versine, 0.0, versine, sine, 0.0, 0.0, 0.0, values[i]);
             if joint.screw.is_prismatic() {
                 let shift = free.fixed_view::<3, 3>(0, 0) - Matrix3::identity() * values[i];
-                worst = worst.max(shift.norm());
+                worst = larger(worst, shift.norm());
             } else {
                 let mut expected = Matrix6::zeros();
                 expected.fixed_view_mut::<3, 3>(0, 0).copy_from(&turning);
                 expected.fixed_view_mut::<3, 3>(3, 3).copy_from(&turning);
-                worst = worst.max((free - expected).norm());
+                worst = larger(worst, (free - expected).norm());
             }
         }
     }

@@ -210,3 +210,109 @@ impl Row<'_> {
         Error::new(ErrorKind::Measurement, message).at(self.path, line, column)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PATH: &str = "x.csv";
+    /// More bytes than any text here has, but one.
+    const WHOLE: usize = 1 << 18;
+
+    /// Line number and cells of each row, or what is wrong, when so many bytes are read at a time.
+    fn rows(bytes: &[u8], size: usize) -> std::result::Result<Vec<(usize, Vec<String>)>, String> {
+        let path = Path::new(PATH);
+        let read = || {
+            let mut table = Table::open(path, Blocks::sized(path, bytes, size), &ColumnMap::default())?;
+            let mut found = Vec::new();
+            while let Some(mut rows) = table.next_block()? {
+                while let Some(row) = rows.next()? {
+                    found.push((row.line, row.cells.iter().map(|cell| cell.text().into_owned()).collect()));
+                }
+            }
+            Ok(found)
+        };
+        read().map_err(|error: Error| error.to_string())
+    }
+
+    /// The lines but for the first `skip`, and the number of blocks, when so many bytes are read at a time.
+    fn lines(text: &str, skip: usize, size: usize) -> (Vec<(usize, String)>, usize) {
+        let mut blocks = Blocks::sized(Path::new(PATH), text.as_bytes(), size);
+        let (mut found, mut count) = (Vec::new(), 0);
+        while blocks.advance().unwrap() {
+            count += 1;
+            found.extend(blocks.lines(skip).map(|(number, line)| (number, line.to_owned())));
+        }
+        (found, count)
+    }
+
+    #[test]
+    fn blank_lines_and_comments_count_but_are_passed_over() {
+        assert_eq!(
+            lines("\u{feff}# note\r\n\r\na\r\n  # b\r\nc", 0, WHOLE).0,
+            [(3, "a".to_owned()), (5, "c".to_owned())]
+        );
+        assert_eq!(lines("title\na", 1, WHOLE).0, [(2, "a".to_owned())]);
+        assert_eq!(lines("a\rb", 0, WHOLE).0, [(1, "a".to_owned()), (2, "b".to_owned())]);
+    }
+
+    /// Comments and blank lines, some before all others, a byte order mark, and characters of several bytes.
+    #[test]
+    fn lines_are_the_same_however_the_blocks_fall() {
+        let line = |k: usize| match k {
+            ..40 | 999 => "# µ".to_owned(),
+            _ if k % 7 == 0 => " ".repeat(k % 2),
+            _ => format!("{k},{}€𝄞", "x".repeat(k % 90)),
+        };
+        let rows: Vec<String> = (0..3000).map(line).collect();
+        let told = |(_, row): &(usize, String)| !row.starts_with('#') && !row.trim().is_empty();
+        let expected: Vec<(usize, String)> = (1..).zip(rows.clone()).filter(told).collect();
+        for newline in ["\n", "\r\n", "\r"] {
+            for text in [rows.join(newline), format!("\u{feff}{}{newline}", rows.join(newline))] {
+                for size in [1, 2, 3, 7, 100, 4096, WHOLE] {
+                    let (found, count) = lines(&text, 0, size);
+                    println!("{newline:?}, {size} bytes at a time: {} lines in {count} blocks", found.len());
+                    assert!(found == expected, "{newline:?} {size}");
+                    // A block ends with a line, none of more than 200 bytes; where there is no `\n`, with the text.
+                    let least = if newline == "\r" { 1 } else { text.len() / (size + 200) };
+                    assert!(count >= least, "{newline:?} {size}: {count}");
+                }
+            }
+        }
+    }
+
+    /// Cuts a good file at every byte, and puts every awkward byte at every place.
+    #[test]
+    fn a_damaged_file_is_the_same_table_however_its_blocks_fall() {
+        let good = "\u{feff}# c\r\n\r\n # \u{e9}\r\n\"id\";a[deg];\u{b5}\r\n\"1\";0,5;\u{e9}\r\n\r\n#\r\n2;1;\"q\"\r\n";
+        let (mut tables, mut errors) = (0, 0);
+        let mut attempt = |bytes: &[u8]| {
+            let whole = rows(bytes, WHOLE);
+            for size in [1, 2, 5, 16] {
+                assert_eq!(rows(bytes, size), whole, "{size}: {:?}", String::from_utf8_lossy(bytes));
+            }
+            if whole.is_ok() { tables += 1 } else { errors += 1 }
+        };
+        for at in 0..good.len() {
+            attempt(&good.as_bytes()[..at]);
+            for byte in [b'"', b';', b',', b'\n', b'\r', b'[', b']', b'-', b'#', 0, 0xff] {
+                let mut bytes = good.as_bytes().to_vec();
+                bytes[at] = byte;
+                attempt(&bytes);
+                bytes.insert(at, byte);
+                attempt(&bytes);
+            }
+        }
+        println!("{tables} tables, {errors} errors");
+        assert!(tables > 100 && errors > 100);
+    }
+
+    #[test]
+    fn what_is_no_text_is_named_with_its_place() {
+        let text = "a,b\n".repeat(WHOLE / 2);
+        let of = |rest: &[u8]| rows(&[text.as_bytes(), rest].concat(), WHOLE).unwrap_err();
+        let advice = "expected UTF-8 text; save the file as `CSV UTF-8`";
+        assert_eq!(of(b"1,2\n3,\xef\xbf"), format!("x.csv:131074:3: found the byte 0xEF, {advice}"));
+        assert_eq!(of(b"1,2\n\0"), format!("x.csv:131074:1: found a NUL byte, {advice}"));
+    }
+}

@@ -49,7 +49,11 @@ enum Source<'a> {
 /// A text in blocks of whole lines, so that a large file is never held whole.
 pub(super) struct Blocks<'a> {
     path: &'a Path,
+    /// What the file should be.
+    expected: &'a str,
     source: Source<'a>,
+    /// Bytes that are read at a time.
+    size: usize,
     /// The block at hand.
     text: String,
     /// What follows it and has been read: no whole line.
@@ -62,17 +66,24 @@ pub(super) struct Blocks<'a> {
 
 impl<'a> Blocks<'a> {
     /// The blocks of a file; `expected` says what it should be.
-    pub(super) fn open(path: &'a Path, expected: &str) -> Result<Self> {
-        Ok(Blocks::of(path, Source::File(Hashing::new(open(path, expected)?))))
+    pub(super) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
+        let source = Source::File(Hashing::new(open(path, expected)?));
+        Ok(Blocks { expected, ..Blocks::of(path, source, BLOCK) })
     }
 
     /// The blocks of a text; `path` is for the messages only.
     pub(super) fn new(path: &'a Path, text: &'a [u8]) -> Self {
-        Blocks::of(path, Source::Text(text))
+        Blocks::sized(path, text, BLOCK)
     }
 
-    fn of(path: &'a Path, source: Source<'a>) -> Self {
-        Blocks { path, source, text: String::new(), rest: Vec::new(), newline: None, lines: 0 }
+    /// The same, of which so many bytes are read at a time.
+    pub(super) fn sized(path: &'a Path, text: &'a [u8], size: usize) -> Self {
+        Blocks::of(path, Source::Text(text), size)
+    }
+
+    fn of(path: &'a Path, source: Source<'a>, size: usize) -> Self {
+        let (expected, text, rest) = ("a table (CSV)", String::new(), Vec::new());
+        Blocks { path, expected, source, size, text, rest, newline: None, lines: 0 }
     }
 
     /// Reads the next block; false at the end.
@@ -84,11 +95,12 @@ impl<'a> Blocks<'a> {
         bytes.append(&mut self.rest);
         loop {
             let known = bytes.len();
+            let size = self.size as u64;
             let more = match &mut self.source {
-                Source::File(file) => file.take(BLOCK as u64).read_to_end(&mut bytes),
-                Source::Text(text) => text.take(BLOCK as u64).read_to_end(&mut bytes),
+                Source::File(file) => file.take(size).read_to_end(&mut bytes),
+                Source::Text(text) => text.take(size).read_to_end(&mut bytes),
             };
-            let more = more.map_err(|error| unreadable(self.path, &error, "a table (CSV)"))?;
+            let more = more.map_err(|error| unreadable(self.path, &error, self.expected))?;
             let end = memchr::memrchr(b'\n', bytes.get(known..).unwrap_or_default());
             if let Some(end) = end {
                 self.rest.extend(bytes.drain(known + end + 1..));
@@ -100,6 +112,10 @@ impl<'a> Blocks<'a> {
         let is_first = self.newline.is_none();
         if is_first {
             self.newline = Some(if memchr::memchr(b'\n', &bytes).is_some() { b'\n' } else { b'\r' });
+        }
+        // UTF-8 too, but no text: rather UTF-16 without its mark.
+        if let Some(at) = memchr::memchr(0, &bytes) {
+            return Err(not_utf8(self.path, &bytes, at, self.lines));
         }
         let text = String::from_utf8(bytes);
         self.text = text.map_err(|error| {
@@ -132,9 +148,12 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
         return Error::new(ErrorKind::Syntax, message).in_file(path);
     }
     let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
-    let found = bytes.get(valid).copied().unwrap_or_default();
+    let found = match bytes.get(valid) {
+        None | Some(0) => "a NUL byte".to_owned(),
+        Some(found) => format!("the byte 0x{found:02X}"),
+    };
     let (line, column) = position(&before, before.len());
-    let message = format!("found the byte 0x{found:02X}, expected UTF-8 text; save the file as `CSV UTF-8`");
+    let message = format!("found {found}, expected UTF-8 text; save the file as `CSV UTF-8`");
     Error::new(ErrorKind::Syntax, message).at(path, lines + line, column)
 }
 
@@ -346,15 +365,6 @@ mod tests {
         cells.iter().map(|(text, offset)| ((*text).to_owned(), *offset)).collect()
     }
 
-    fn lines(text: &str, skip: usize) -> Vec<(usize, String)> {
-        let mut blocks = Blocks::new(Path::new("x.csv"), text.as_bytes());
-        let mut found = Vec::new();
-        while blocks.advance().unwrap() {
-            found.extend(blocks.lines(skip).map(|(number, line)| (number, line.to_owned())));
-        }
-        found
-    }
-
     #[test]
     fn cells_keep_their_place() {
         assert_eq!(texts("a, b ,,d", Separator::Comma), owned(&[("a", 0), ("b", 3), ("", 6), ("d", 7)]));
@@ -383,36 +393,16 @@ mod tests {
     }
 
     #[test]
-    fn blank_lines_and_comments_count_but_are_passed_over() {
-        assert_eq!(
-            lines("\u{feff}# note\r\n\r\na\r\n  # b\r\nc", 0),
-            [(3, "a".to_owned()), (5, "c".to_owned())]
-        );
-        assert_eq!(lines("title\na", 1), [(2, "a".to_owned())]);
-        assert_eq!(lines("a\rb", 0), [(1, "a".to_owned()), (2, "b".to_owned())]);
-    }
-
-    #[test]
-    fn lines_are_the_same_however_the_blocks_fall() {
-        for newline in ["\n", "\r\n", "\r"] {
-            for last in ["", newline] {
-                let row = |k: usize| format!("{k},{}µ", "x".repeat(k % 300));
-                let rows: Vec<String> = (1..5000).map(row).collect();
-                let found = lines(&(rows.join(newline) + last), 0);
-                println!(
-                    "{} lines in {} blocks",
-                    found.len(),
-                    found.iter().map(|(_, row)| row.len()).sum::<usize>() / BLOCK + 1
-                );
-                assert!(found.into_iter().eq((1..).zip(rows)));
-            }
-        }
-        let text = "a,b\n".repeat(BLOCK) + "\u{fffd}";
-        let bytes = &text.as_bytes()[..text.len() - 1];
-        let mut blocks = Blocks::new(Path::new("x.csv"), bytes);
-        let error = (0..).find_map(|_| blocks.advance().err()).unwrap();
+    fn a_file_that_fails_while_being_read_is_told() {
+        let path = std::env::temp_dir().join(format!("poecal_text_{}", std::process::id()));
+        // One that may be written only.
+        let source = Source::File(Hashing::new(File::create(&path).unwrap()));
+        let expected = "a measurement file (CSV)";
+        let error =
+            Blocks { expected, ..Blocks::of(&path, source, BLOCK) }.advance().unwrap_err().to_string();
+        std::fs::remove_file(&path).unwrap();
         assert!(
-            error.to_string().starts_with(&format!("x.csv:{}:1: found the byte 0xEF", BLOCK + 1)),
+            error.contains(": cannot be read (") && error.ends_with("), expected a measurement file (CSV)"),
             "{error}"
         );
     }
