@@ -39,7 +39,7 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (b"\xff\xfea\0,\0", "points.csv: found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`"),
     (
-        b"a\0,\0l\0i\0f\0t\0\n\00\0,\01\0\n\0",
+        b"a\0,\0b\0\n\0-\0,\0-\0\n\0",
         "points.csv:1:2: found a NUL byte, expected UTF-8 text; save the file as `CSV UTF-8`",
     ),
     (

@@ -8,9 +8,10 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
+use super::cells::Separator;
 use super::number::DecimalSign;
 use super::orientation::OrientationForm;
-use super::text::{Separator, read_text};
+use super::text::read_text;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
 

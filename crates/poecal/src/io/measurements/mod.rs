@@ -5,6 +5,7 @@
 //! judged for their scale (`scale`, `spread`).
 
 mod builder;
+mod cells;
 mod fit_where;
 mod inputs;
 mod joints;
@@ -23,13 +24,13 @@ mod units;
 mod write;
 
 pub use super::numbers::LARGEST_NUMBER;
+pub use cells::Separator;
 pub use fit_where::FitWhere;
 pub use joints::{JointsTable, read_joints};
 pub use mapping::ColumnMap;
 pub use number::DecimalSign;
 pub use read::{parse, read};
 pub(in crate::io) use template::{plan, template};
-pub use text::Separator;
 pub use understanding::{ColumnUnderstanding, FileUnderstanding, UnitSource};
 pub use units::{Quantity, Unit};
 pub(in crate::io) use write::text;

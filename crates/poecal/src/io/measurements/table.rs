@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use super::cells::{Cell, Separator, character_column, split};
 use super::mapping::ColumnMap;
-use super::text::{Blocks, Cell, Lines, Separator, character_column, split};
+use super::text::{Blocks, Lines};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 
 /// A column of the header: `name[unit]`.
@@ -233,52 +234,6 @@ mod tests {
             Ok(found)
         };
         read().map_err(|error: Error| error.to_string())
-    }
-
-    /// The lines but for the first `skip`, and the number of blocks, when so many bytes are read at a time.
-    fn lines(text: &str, skip: usize, size: usize) -> (Vec<(usize, String)>, usize) {
-        let mut blocks = Blocks::sized(Path::new(PATH), text.as_bytes(), size);
-        let (mut found, mut count) = (Vec::new(), 0);
-        while blocks.advance().unwrap() {
-            count += 1;
-            found.extend(blocks.lines(skip).map(|(number, line)| (number, line.to_owned())));
-        }
-        (found, count)
-    }
-
-    #[test]
-    fn blank_lines_and_comments_count_but_are_passed_over() {
-        assert_eq!(
-            lines("\u{feff}# note\r\n\r\na\r\n  # b\r\nc", 0, WHOLE).0,
-            [(3, "a".to_owned()), (5, "c".to_owned())]
-        );
-        assert_eq!(lines("title\na", 1, WHOLE).0, [(2, "a".to_owned())]);
-        assert_eq!(lines("a\rb", 0, WHOLE).0, [(1, "a".to_owned()), (2, "b".to_owned())]);
-    }
-
-    /// Comments and blank lines, some before all others, a byte order mark, and characters of several bytes.
-    #[test]
-    fn lines_are_the_same_however_the_blocks_fall() {
-        let line = |k: usize| match k {
-            ..40 | 999 => "# µ".to_owned(),
-            _ if k % 7 == 0 => " ".repeat(k % 2),
-            _ => format!("{k},{}€𝄞", "x".repeat(k % 90)),
-        };
-        let rows: Vec<String> = (0..3000).map(line).collect();
-        let told = |(_, row): &(usize, String)| !row.starts_with('#') && !row.trim().is_empty();
-        let expected: Vec<(usize, String)> = (1..).zip(rows.clone()).filter(told).collect();
-        for newline in ["\n", "\r\n", "\r"] {
-            for text in [rows.join(newline), format!("\u{feff}{}{newline}", rows.join(newline))] {
-                for size in [1, 2, 3, 7, 100, 4096, WHOLE] {
-                    let (found, count) = lines(&text, 0, size);
-                    println!("{newline:?}, {size} bytes at a time: {} lines in {count} blocks", found.len());
-                    assert!(found == expected, "{newline:?} {size}");
-                    // A block ends with a line, none of more than 200 bytes; where there is no `\n`, with the text.
-                    let least = if newline == "\r" { 1 } else { text.len() / (size + 200) };
-                    assert!(count >= least, "{newline:?} {size}: {count}");
-                }
-            }
-        }
     }
 
     /// Cuts a good file at every byte, and puts every awkward byte at every place.

@@ -1,11 +1,8 @@
-//! The text of a file, its lines and the cells of a line.
+//! The text of a file and its lines.
 
-use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
-
-use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::hashes::Hashing;
@@ -157,56 +154,6 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
     Error::new(ErrorKind::Syntax, message).at(path, lines + line, column)
 }
 
-/// What stands between two cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Separator {
-    /// `,`
-    Comma,
-    /// `;`
-    Semicolon,
-    /// A tab.
-    Tab,
-    /// Any run of blanks and tabs.
-    Whitespace,
-}
-
-impl Separator {
-    fn matches(self, c: char) -> bool {
-        match self {
-            Separator::Comma => c == ',',
-            Separator::Semicolon => c == ';',
-            Separator::Tab => c == '\t',
-            Separator::Whitespace => c.is_whitespace(),
-        }
-    }
-
-    /// As a byte, unless it is any run of blanks.
-    fn byte(self) -> Option<u8> {
-        match self {
-            Separator::Comma => Some(b','),
-            Separator::Semicolon => Some(b';'),
-            Separator::Tab => Some(b'\t'),
-            Separator::Whitespace => None,
-        }
-    }
-
-    /// The first of semicolon, tab and comma that the header has outside quotes, else whitespace.
-    pub(super) fn recognised(header: &str) -> Self {
-        let unquoted = |separator: &Separator| {
-            let mut quoted = false;
-            header.chars().any(|c| {
-                quoted ^= c == '"';
-                !quoted && separator.matches(c)
-            })
-        };
-        [Separator::Semicolon, Separator::Tab, Separator::Comma]
-            .into_iter()
-            .find(unquoted)
-            .unwrap_or(Separator::Whitespace)
-    }
-}
-
 /// Lines with their number (from 1) that are neither blank nor a comment (`#`).
 pub(super) struct Lines<'a> {
     rest: Option<&'a str>,
@@ -241,155 +188,54 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// One cell: its text without padding and quotes, and where it starts in the line (bytes).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Cell<'a> {
-    /// Text, in which a quote may still be doubled.
-    pub(super) raw: &'a str,
-    /// Byte offset of its first character, the quote if it has one.
-    pub(super) offset: usize,
-    escaped: bool,
-}
-
-impl<'a> Cell<'a> {
-    /// The text as meant.
-    pub(super) fn text(&self) -> Cow<'a, str> {
-        if self.escaped { Cow::Owned(self.raw.replace("\"\"", "\"")) } else { Cow::Borrowed(self.raw) }
-    }
-}
-
-/// Column (from 1, in characters) of a byte offset.
-pub(super) fn character_column(line: &str, offset: usize) -> usize {
-    line.char_indices().take_while(|(index, _)| *index < offset).count() + 1
-}
-
-/// Splits a line into cells.
-///
-/// On failure returns the byte offset and what was found and expected.
-pub(super) fn split<'a>(
-    line: &'a str,
-    separator: Separator,
-    cells: &mut Vec<Cell<'a>>,
-) -> std::result::Result<(), (usize, &'static str)> {
-    cells.clear();
-    if let Some(separator) = separator.byte()
-        && memchr::memchr(b'"', line.as_bytes()).is_none()
-    {
-        split_plainly(line, separator, cells);
-        return Ok(());
-    }
-    let mut rest = line;
-    loop {
-        rest =
-            rest.trim_start_matches(|c: char| c.is_whitespace() && separator != Separator::Tab || c == ' ');
-        if rest.is_empty() && separator == Separator::Whitespace {
-            return Ok(());
-        }
-        let offset = line.len() - rest.len();
-        let (cell, after) = match rest.strip_prefix('"') {
-            Some(quoted) => {
-                let end = closing_quote(quoted).ok_or((
-                    offset,
-                    "found a quote that is not closed on its line, expected a closing `\"`",
-                ))?;
-                let (raw, after) = quoted.split_at(end);
-                (Cell { raw, offset, escaped: raw.contains('"') }, after.strip_prefix('"').unwrap_or(after))
-            }
-            None => {
-                let (raw, after) = rest.split_at(rest.find(|c| separator.matches(c)).unwrap_or(rest.len()));
-                (Cell { raw: raw.trim_end(), offset, escaped: false }, after)
-            }
-        };
-        cells.push(cell);
-        let after = after.trim_start_matches(|c: char| c.is_whitespace() && !separator.matches(c));
-        let mut characters = after.chars();
-        match characters.next() {
-            None => return Ok(()),
-            Some(c) if separator.matches(c) => rest = characters.as_str(),
-            Some(_) => {
-                return Err((
-                    line.len() - after.len(),
-                    "found text after a closing quote, expected a separator",
-                ));
-            }
-        }
-    }
-}
-
-/// Splits a line without quotes.
-fn split_plainly<'a>(line: &'a str, separator: u8, cells: &mut Vec<Cell<'a>>) {
-    let mut start = 0;
-    for end in memchr::memchr_iter(separator, line.as_bytes()).chain([line.len()]) {
-        let piece = line.get(start..end).unwrap_or_default();
-        // What surely has no padding.
-        if let [first, .., last] | [first @ last] = piece.as_bytes()
-            && first.is_ascii_graphic()
-            && last.is_ascii_graphic()
-        {
-            cells.push(Cell { raw: piece, offset: start, escaped: false });
-        } else {
-            let trimmed = match separator {
-                b'\t' => piece.trim_start_matches(' '),
-                _ => piece.trim_start(),
-            };
-            let offset = start + piece.len() - trimmed.len();
-            cells.push(Cell { raw: trimmed.trim_end(), offset, escaped: false });
-        }
-        start = end + 1;
-    }
-}
-
-/// Byte index of the quote that ends a quoted cell; a doubled quote is part of the text.
-fn closing_quote(text: &str) -> Option<usize> {
-    let mut from = 0;
-    loop {
-        let at = from + text.get(from..)?.find('"')?;
-        if !text.get(at + 1..)?.starts_with('"') {
-            return Some(at);
-        }
-        from = at + 2;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn texts(line: &str, separator: Separator) -> Vec<(String, usize)> {
-        let mut cells = Vec::new();
-        split(line, separator, &mut cells).unwrap();
-        cells.iter().map(|cell| (cell.text().into_owned(), cell.offset)).collect()
-    }
-
-    fn owned(cells: &[(&str, usize)]) -> Vec<(String, usize)> {
-        cells.iter().map(|(text, offset)| ((*text).to_owned(), *offset)).collect()
-    }
-
-    #[test]
-    fn cells_keep_their_place() {
-        assert_eq!(texts("a, b ,,d", Separator::Comma), owned(&[("a", 0), ("b", 3), ("", 6), ("d", 7)]));
-        assert_eq!(texts("a;", Separator::Semicolon), owned(&[("a", 0), ("", 2)]));
-        assert_eq!(texts("a\t\t b", Separator::Tab), owned(&[("a", 0), ("", 2), ("b", 4)]));
-        assert_eq!(texts("  1,5 \t 2 ", Separator::Whitespace), owned(&[("1,5", 2), ("2", 8)]));
+    /// The lines but for the first `skip`, and the number of blocks, when so many bytes are read at a time.
+    fn lines(text: &str, skip: usize, size: usize) -> (Vec<(usize, String)>, usize) {
+        let mut blocks = Blocks::sized(Path::new("x.csv"), text.as_bytes(), size);
+        let (mut found, mut count) = (Vec::new(), 0);
+        while blocks.advance().unwrap() {
+            count += 1;
+            found.extend(blocks.lines(skip).map(|(number, line)| (number, line.to_owned())));
+        }
+        (found, count)
     }
 
     #[test]
-    fn quotes_hold_separators_and_doubled_quotes() {
+    fn blank_lines_and_comments_count_but_are_passed_over() {
         assert_eq!(
-            texts("\"a,b\" , \"say \"\"hi\"\"\",\"\"", Separator::Comma),
-            owned(&[("a,b", 0), ("say \"hi\"", 8), ("", 21)])
+            lines("\u{feff}# note\r\n\r\na\r\n  # b\r\nc", 0, BLOCK).0,
+            [(3, "a".to_owned()), (5, "c".to_owned())]
         );
-        let mut cells = Vec::new();
-        assert_eq!(split("a,\"b", Separator::Comma, &mut cells).unwrap_err().0, 2);
-        assert_eq!(split("\"b\"c,d", Separator::Comma, &mut cells).unwrap_err().0, 3);
+        assert_eq!(lines("title\na", 1, BLOCK).0, [(2, "a".to_owned())]);
+        assert_eq!(lines("a\rb", 0, BLOCK).0, [(1, "a".to_owned()), (2, "b".to_owned())]);
     }
 
+    /// Comments and blank lines, some before all others, a byte order mark, and characters of several bytes.
     #[test]
-    fn the_separator_follows_from_the_header() {
-        assert_eq!(Separator::recognised("a;b,c"), Separator::Semicolon);
-        assert_eq!(Separator::recognised("\"a;b\",c"), Separator::Comma);
-        assert_eq!(Separator::recognised("a\tb c"), Separator::Tab);
-        assert_eq!(Separator::recognised("a b"), Separator::Whitespace);
+    fn lines_are_the_same_however_the_blocks_fall() {
+        let line = |k: usize| match k {
+            ..40 | 999 => "# µ".to_owned(),
+            _ if k.is_multiple_of(7) => " ".repeat(k % 2),
+            _ => format!("{k},{}€𝄞", "x".repeat(k % 90)),
+        };
+        let rows: Vec<String> = (0..3000).map(line).collect();
+        let told = |(_, row): &(usize, String)| !row.starts_with('#') && !row.trim().is_empty();
+        let expected: Vec<(usize, String)> = (1..).zip(rows.clone()).filter(told).collect();
+        for newline in ["\n", "\r\n", "\r"] {
+            for text in [rows.join(newline), format!("\u{feff}{}{newline}", rows.join(newline))] {
+                for size in [1, 2, 3, 7, 100, 4096, BLOCK] {
+                    let (found, count) = lines(&text, 0, size);
+                    println!("{newline:?}, {size} bytes at a time: {} lines in {count} blocks", found.len());
+                    assert!(found == expected, "{newline:?} {size}");
+                    // A block ends with a line, none of more than 200 bytes; where there is no `\n`, with the text.
+                    let least = if newline == "\r" { 1 } else { text.len() / (size + 200) };
+                    assert!(count >= least, "{newline:?} {size}: {count}");
+                }
+            }
+        }
     }
 
     #[test]

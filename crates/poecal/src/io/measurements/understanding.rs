@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::cells::Separator;
 use super::layout::{Input, Layout, SetRule, Source};
 use super::mapping::PoseDirection;
 use super::number::DecimalSign;
 use super::table::Header;
-use super::text::Separator;
 
 /// Where a column's unit came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -1,0 +1,207 @@
+//! A line's cells.
+
+use std::borrow::Cow;
+
+use serde::Serialize;
+
+/// What stands between two cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Separator {
+    /// `,`
+    Comma,
+    /// `;`
+    Semicolon,
+    /// A tab.
+    Tab,
+    /// Any run of blanks and tabs.
+    Whitespace,
+}
+
+impl Separator {
+    fn matches(self, c: char) -> bool {
+        match self {
+            Separator::Comma => c == ',',
+            Separator::Semicolon => c == ';',
+            Separator::Tab => c == '\t',
+            Separator::Whitespace => c.is_whitespace(),
+        }
+    }
+
+    /// As a byte, unless it is any run of blanks.
+    fn byte(self) -> Option<u8> {
+        match self {
+            Separator::Comma => Some(b','),
+            Separator::Semicolon => Some(b';'),
+            Separator::Tab => Some(b'\t'),
+            Separator::Whitespace => None,
+        }
+    }
+
+    /// The first of semicolon, tab and comma that the header has outside quotes, else whitespace.
+    pub(super) fn recognised(header: &str) -> Self {
+        let unquoted = |separator: &Separator| {
+            let mut quoted = false;
+            header.chars().any(|c| {
+                quoted ^= c == '"';
+                !quoted && separator.matches(c)
+            })
+        };
+        [Separator::Semicolon, Separator::Tab, Separator::Comma]
+            .into_iter()
+            .find(unquoted)
+            .unwrap_or(Separator::Whitespace)
+    }
+}
+
+/// One cell: its text without padding and quotes, and where it starts in the line (bytes).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Cell<'a> {
+    /// Text, in which a quote may still be doubled.
+    pub(super) raw: &'a str,
+    /// Byte offset of its first character, the quote if it has one.
+    pub(super) offset: usize,
+    escaped: bool,
+}
+
+impl<'a> Cell<'a> {
+    /// The text as meant.
+    pub(super) fn text(&self) -> Cow<'a, str> {
+        if self.escaped { Cow::Owned(self.raw.replace("\"\"", "\"")) } else { Cow::Borrowed(self.raw) }
+    }
+}
+
+/// Column (from 1, in characters) of a byte offset.
+pub(super) fn character_column(line: &str, offset: usize) -> usize {
+    line.char_indices().take_while(|(index, _)| *index < offset).count() + 1
+}
+
+/// Splits a line into cells.
+///
+/// On failure returns the byte offset and what was found and expected.
+pub(super) fn split<'a>(
+    line: &'a str,
+    separator: Separator,
+    cells: &mut Vec<Cell<'a>>,
+) -> std::result::Result<(), (usize, &'static str)> {
+    cells.clear();
+    if let Some(separator) = separator.byte()
+        && memchr::memchr(b'"', line.as_bytes()).is_none()
+    {
+        split_plainly(line, separator, cells);
+        return Ok(());
+    }
+    let mut rest = line;
+    loop {
+        rest =
+            rest.trim_start_matches(|c: char| c.is_whitespace() && separator != Separator::Tab || c == ' ');
+        if rest.is_empty() && separator == Separator::Whitespace {
+            return Ok(());
+        }
+        let offset = line.len() - rest.len();
+        let (cell, after) = match rest.strip_prefix('"') {
+            Some(quoted) => {
+                let end = closing_quote(quoted).ok_or((
+                    offset,
+                    "found a quote that is not closed on its line, expected a closing `\"`",
+                ))?;
+                let (raw, after) = quoted.split_at(end);
+                (Cell { raw, offset, escaped: raw.contains('"') }, after.strip_prefix('"').unwrap_or(after))
+            }
+            None => {
+                let (raw, after) = rest.split_at(rest.find(|c| separator.matches(c)).unwrap_or(rest.len()));
+                (Cell { raw: raw.trim_end(), offset, escaped: false }, after)
+            }
+        };
+        cells.push(cell);
+        let after = after.trim_start_matches(|c: char| c.is_whitespace() && !separator.matches(c));
+        let mut characters = after.chars();
+        match characters.next() {
+            None => return Ok(()),
+            Some(c) if separator.matches(c) => rest = characters.as_str(),
+            Some(_) => {
+                return Err((
+                    line.len() - after.len(),
+                    "found text after a closing quote, expected a separator",
+                ));
+            }
+        }
+    }
+}
+
+/// Splits a line without quotes.
+fn split_plainly<'a>(line: &'a str, separator: u8, cells: &mut Vec<Cell<'a>>) {
+    let mut start = 0;
+    for end in memchr::memchr_iter(separator, line.as_bytes()).chain([line.len()]) {
+        let piece = line.get(start..end).unwrap_or_default();
+        // What surely has no padding.
+        if let [first, .., last] | [first @ last] = piece.as_bytes()
+            && first.is_ascii_graphic()
+            && last.is_ascii_graphic()
+        {
+            cells.push(Cell { raw: piece, offset: start, escaped: false });
+        } else {
+            let trimmed = match separator {
+                b'\t' => piece.trim_start_matches(' '),
+                _ => piece.trim_start(),
+            };
+            let offset = start + piece.len() - trimmed.len();
+            cells.push(Cell { raw: trimmed.trim_end(), offset, escaped: false });
+        }
+        start = end + 1;
+    }
+}
+
+/// Byte index of the quote that ends a quoted cell; a doubled quote is part of the text.
+fn closing_quote(text: &str) -> Option<usize> {
+    let mut from = 0;
+    loop {
+        let at = from + text.get(from..)?.find('"')?;
+        if !text.get(at + 1..)?.starts_with('"') {
+            return Some(at);
+        }
+        from = at + 2;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(line: &str, separator: Separator) -> Vec<(String, usize)> {
+        let mut cells = Vec::new();
+        split(line, separator, &mut cells).unwrap();
+        cells.iter().map(|cell| (cell.text().into_owned(), cell.offset)).collect()
+    }
+
+    fn owned(cells: &[(&str, usize)]) -> Vec<(String, usize)> {
+        cells.iter().map(|(text, offset)| ((*text).to_owned(), *offset)).collect()
+    }
+
+    #[test]
+    fn cells_keep_their_place() {
+        assert_eq!(texts("a, b ,,d", Separator::Comma), owned(&[("a", 0), ("b", 3), ("", 6), ("d", 7)]));
+        assert_eq!(texts("a;", Separator::Semicolon), owned(&[("a", 0), ("", 2)]));
+        assert_eq!(texts("a\t\t b", Separator::Tab), owned(&[("a", 0), ("", 2), ("b", 4)]));
+        assert_eq!(texts("  1,5 \t 2 ", Separator::Whitespace), owned(&[("1,5", 2), ("2", 8)]));
+    }
+
+    #[test]
+    fn quotes_hold_separators_and_doubled_quotes() {
+        assert_eq!(
+            texts("\"a,b\" , \"say \"\"hi\"\"\",\"\"", Separator::Comma),
+            owned(&[("a,b", 0), ("say \"hi\"", 8), ("", 21)])
+        );
+        let mut cells = Vec::new();
+        assert_eq!(split("a,\"b", Separator::Comma, &mut cells).unwrap_err().0, 2);
+        assert_eq!(split("\"b\"c,d", Separator::Comma, &mut cells).unwrap_err().0, 3);
+    }
+
+    #[test]
+    fn the_separator_follows_from_the_header() {
+        assert_eq!(Separator::recognised("a;b,c"), Separator::Semicolon);
+        assert_eq!(Separator::recognised("\"a;b\",c"), Separator::Comma);
+        assert_eq!(Separator::recognised("a\tb c"), Separator::Tab);
+        assert_eq!(Separator::recognised("a b"), Separator::Whitespace);
+    }
+}
