@@ -23,15 +23,18 @@ fn session() -> Simulated {
     simulation.run(&elbow(), Kind::Pose).expect("a simulation of a finite robot")
 }
 
-/// The rows as a file of our own form, every number to its last digit.
-fn table(made: &Simulated) -> String {
+/// The rows as a file of our own form, every number with so many decimals, or else to its last digit.
+fn table(made: &Simulated, decimals: Option<usize>) -> String {
     let mut text = made.data.reading_names().join(",") + ",x,y,z,qx,qy,qz,qw\n";
     for (row, observation) in made.data.observations.iter().enumerate() {
         let pose = observation.measurement.pose();
         let measured = pose.translation.iter().copied().chain(pose.quaternion_xyzw());
         for (column, number) in made.data.readings(row).iter().copied().chain(measured).enumerate() {
             let separator = if column == 0 { "" } else { "," };
-            write!(text, "{separator}{number}").expect("memory");
+            match decimals {
+                Some(decimals) => write!(text, "{separator}{number:.decimals$}").expect("memory"),
+                None => write!(text, "{separator}{number}").expect("memory"),
+            }
         }
         text.push('\n');
     }
@@ -40,8 +43,17 @@ fn table(made: &Simulated) -> String {
 
 #[divan::bench]
 fn read_poses(bencher: Bencher<'_, '_>) {
+    read_text(bencher, None);
+}
+
+#[divan::bench]
+fn read_poses_of_seven_decimals(bencher: Bencher<'_, '_>) {
+    read_text(bencher, Some(7));
+}
+
+fn read_text(bencher: Bencher<'_, '_>, decimals: Option<usize>) {
     let made = session();
-    let text = table(&made);
+    let text = table(&made, decimals);
     let path = std::env::temp_dir().join(format!("poecal_bench_{}.csv", std::process::id()));
     std::fs::write(&path, &text).expect("a folder for temporary files");
     bencher.counter(BytesCount::of_str(&text)).bench_local(|| {
