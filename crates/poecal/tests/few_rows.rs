@@ -1,0 +1,42 @@
+//! A calibration of few rows wakes no thread: what they cost to start is more than all that it does.
+
+#![cfg(target_os = "linux")]
+#![allow(clippy::unwrap_used)]
+
+use poecal::calibration::{CalibrationOptions, calibrate};
+use poecal::io::calibration_file::{CalibrationFile, Inputs};
+use poecal::io::model::{Model, ModelSource};
+use poecal::io::output::{Results, write};
+use poecal::io::residuals::{Residuals, Rows};
+use poecal::report::calibration_page;
+use poecal::simulate::{Kind, Simulation, elbow};
+
+/// Threads of this process.
+fn threads() -> usize {
+    std::fs::read_dir("/proc/self/task").unwrap().count()
+}
+
+// The only test of this file, so that no other one wakes threads meanwhile.
+#[test]
+fn fifty_rows_are_one_threads_work() {
+    let before = threads();
+    for kind in [Kind::Pose, Kind::Point] {
+        let made = Simulation { count: 50, ..Simulation::default() }.run(&elbow(), kind).unwrap();
+        let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+        let residuals = Residuals::of(&made.data, &calibration);
+        let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+        let report = Some(calibration_page(&file, &residuals).unwrap());
+        let model = Model { robot: made.nominal, source: ModelSource::Toml, path: "elbow.toml".into() };
+        let folder = std::env::temp_dir().join(format!("poecal_few_rows_{}", std::process::id()));
+        let results = Results { file, residuals: Rows::AtHand(&residuals), report };
+        write(&folder, true, &model, &calibration, results).unwrap();
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+    assert_eq!(threads(), before);
+    // Many rows show that the count would have told.
+    let many = Simulation { count: 20_000, ..Simulation::default() }.run(&elbow(), Kind::Point).unwrap();
+    calibrate(&many.nominal, &many.data, &CalibrationOptions::default()).unwrap();
+    if std::thread::available_parallelism().is_ok_and(|count| count.get() > 1) {
+        assert!(threads() > before);
+    }
+}
