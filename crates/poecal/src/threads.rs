@@ -35,6 +35,12 @@ pub(crate) fn both<A: Send, B: Send>(
     if rayon::current_num_threads() > 1 { rayon::join(first, second) } else { (first(), second()) }
 }
 
+/// Work on so many items, done by one of the threads that share its parts: where there are many, the others need not be waited for from
+/// outside, part after part.
+pub(crate) fn among_them<T: Send>(items: usize, work: impl FnOnce() -> T + Send) -> T {
+    if items > FEW && rayon::current_num_threads() > 1 { rayon::scope(|_| work()) } else { work() }
+}
+
 /// Sorts items of which equal ones cannot be told apart.
 pub(crate) fn sort<T: Ord + Send>(items: &mut [T]) {
     sort_by(items, T::cmp);

@@ -36,6 +36,7 @@ pub use crate::estimate::{RowError, delivered, radian_m, row_errors};
 use crate::error::Result;
 use crate::measurement::{Dataset, PoseResidual};
 use crate::robot::Robot;
+use crate::threads;
 use steps::Prepared;
 
 /// Calibrates a robot from measurements.
@@ -86,13 +87,14 @@ pub fn calibrate_with_progress(
 ) -> Result<Calibration> {
     let converted =
         (options.pose_residual != PoseResidual::Tool).then(|| data.with_residual(options.pose_residual));
-    let prepared = Prepared::new(robot, converted.as_ref().unwrap_or(data), options)?;
+    let (data, rows) = (converted.as_ref().unwrap_or(data), data.len());
+    let prepared = threads::among_them(rows, || Prepared::new(robot, data, options))?;
     progress(Stage::Registration);
-    let (registered, noise, source) = prepared.register();
+    let (registered, noise, source) = threads::among_them(rows, || prepared.register());
     progress(Stage::Fit);
-    let fit = prepared.fit(&registered, noise, source)?;
+    let fit = threads::among_them(rows, || prepared.fit(&registered, noise, source))?;
     progress(Stage::Analysis);
-    Ok(prepared.assess(registered, fit))
+    Ok(threads::among_them(rows, || prepared.assess(registered, fit)))
 }
 
 /// A number of measurements in words.

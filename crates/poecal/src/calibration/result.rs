@@ -12,6 +12,7 @@ use crate::measurement::{Dataset, Noise, PoseResidual};
 use crate::parameters::Formulation;
 use crate::robot::Robot;
 use crate::solve;
+use crate::threads;
 
 /// A target as calibrated.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,6 +134,10 @@ impl Calibration {
     /// their full weight. It is what solvers are compared by.
     #[must_use]
     pub fn solve_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
+        threads::among_them(data.len(), || self.solved_again(data, options))
+    }
+
+    fn solved_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
         let packed = Packed::new(&self.nominal, data.all_readings(), data.reading_names().len());
         let length_m = radian_m(&self.nominal, &packed);
         let start = match self.frame {
