@@ -7,6 +7,11 @@ use rayon::prelude::*;
 /// Items that one thread sorts or looks at as fast as several.
 const FEW: usize = 8192;
 
+/// Whether there are several threads, and so many items are worth waking them.
+fn are_worth_it(items: usize) -> bool {
+    items > FEW && rayon::current_num_threads() > 1
+}
+
 /// What each of so many parts comes to, in their order whatever the number of threads. One part alone, or one thread, is not worth
 /// waking anybody.
 pub(crate) fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
@@ -38,17 +43,12 @@ pub(crate) fn both<A: Send, B: Send>(
 /// Work on so many items, done by one of the threads that share its parts: where there are many, the others need not be waited for from
 /// outside, part after part.
 pub(crate) fn among_them<T: Send>(items: usize, work: impl FnOnce() -> T + Send) -> T {
-    if items > FEW && rayon::current_num_threads() > 1 { rayon::scope(|_| work()) } else { work() }
-}
-
-/// Sorts items of which equal ones cannot be told apart.
-pub(crate) fn sort<T: Ord + Send>(items: &mut [T]) {
-    sort_by(items, T::cmp);
+    if are_worth_it(items) { rayon::scope(|_| work()) } else { work() }
 }
 
 /// Sorts items of which no two are equal, or equal ones cannot be told apart.
 pub(crate) fn sort_by<T: Send>(items: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
-    if items.len() > FEW && rayon::current_num_threads() > 1 {
+    if are_worth_it(items.len()) {
         items.par_sort_unstable_by(compare);
     } else {
         items.sort_unstable_by(compare);

@@ -130,7 +130,7 @@ pub(crate) fn ranges(joints: usize, packed: &Packed, rows: &[u32]) -> Vec<(f64, 
         }
         ranges
     });
-    parts.into_iter().fold(none.clone(), |whole, part| {
+    parts.into_iter().fold(none, |whole, part| {
         whole.into_iter().zip(part).map(|(a, b)| (a.0.min(b.0), a.1.max(b.1))).collect()
     })
 }

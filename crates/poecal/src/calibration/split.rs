@@ -72,11 +72,11 @@ pub fn settle_sets(data: &mut Dataset, held_out: Option<f64>, stated_by: &str) -
 /// A seeded share of the configurations (rows with the same readings are one).
 fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     // Named by its first row, so that the choice does not depend on the values of the readings.
-    let mut configuration = data.all_rows();
-    for group in data.repeated(&data.all_rows()) {
+    let mut configurations = data.all_rows();
+    let mut configuration = configurations.clone();
+    for group in data.repeated(&configurations) {
         group.iter().for_each(|&row| configuration[row as usize] = group[0]);
     }
-    let mut configurations: Vec<u32> = data.all_rows();
     configurations.retain(|&row| configuration[row as usize] == row);
     let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
     random::shuffle(&mut generator, &mut configurations);

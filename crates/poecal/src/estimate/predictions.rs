@@ -141,6 +141,11 @@ mod tests {
             .map(|joints| Robot::new("test", joints.into_iter().cloned().collect(), home).unwrap())
     }
 
+    /// Readings of all rows, within two radians.
+    fn readings() -> Vec<f64> {
+        (0..4 * ROWS).map(|k| f64::from((k * k * 7 + 3 * k) % 31) / 9.0 - 1.7).collect()
+    }
+
     /// The last links of all rows, as the vector instructions of a level find them.
     fn last_links(level: Level, linkage: &Linkage, packed: &Packed) -> Vec<Pose> {
         let mut side_by_side = SideBySide { level, ..SideBySide::new(linkage) };
@@ -154,8 +159,7 @@ mod tests {
 
     #[test]
     fn last_links_are_where_the_chain_and_forward_kinematics_have_them_at_every_level() {
-        let readings: Vec<f64> =
-            (0..4 * ROWS).map(|k| f64::from((k * k * 7 + 3 * k) % 31) / 9.0 - 1.7).collect();
+        let readings = readings();
         for robot in robots() {
             let packed = Packed::new(&robot, &readings, 4);
             for offsets in [[0.0; 4], [0.3, -0.2, 0.6, 0.1]] {
@@ -190,8 +194,7 @@ mod tests {
 
     #[test]
     fn errors_are_those_of_the_formulas_at_every_level() {
-        let readings: Vec<f64> =
-            (0..4 * ROWS).map(|k| f64::from((k * k * 5 + 2 * k) % 29) / 9.0 - 1.6).collect();
+        let readings = readings();
         for robot in robots() {
             let packed = Packed::new(&robot, &readings, 4);
             let targets =

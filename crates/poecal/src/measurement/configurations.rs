@@ -15,7 +15,7 @@ impl Dataset {
         let mixed =
             |row: u32| bits(row).fold(0, |sum: u64, bits| (sum ^ bits).wrapping_mul(MIXER).rotate_left(29));
         let mut mixtures: Vec<(u64, u32)> = rows.iter().map(|&row| (mixed(row), row)).collect();
-        threads::sort(&mut mixtures);
+        threads::sort_by(&mut mixtures, Ord::cmp);
         let mut groups = Vec::new();
         for alike in mixtures.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
             let mut alike: Vec<u32> = alike.iter().map(|&(_, row)| row).collect();

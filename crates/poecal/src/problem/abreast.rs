@@ -73,15 +73,13 @@ impl Problem<'_> {
         let end = Step::from(linkage.end(arranged.target));
         let plan = &arranged.plan;
         let arm = Arm { plan, steps: &steps, end: &end, nearly: false };
-        let columns: Vec<usize> =
-            arranged.shift_places.iter().chain(&arranged.turn_places).copied().collect();
-        let numbers = if plan.framed { NUMBERS } else { NUMBERS / 2 };
+        let columns: Vec<usize> = arranged.places().collect();
         let own: Vec<u32> = places.iter().map(|&place| rows[place as usize]).collect();
         let mut packed = ROWS.take();
         pack(self, plan, &own, &mut packed);
         for (places, block) in places.chunks(WIDTH).zip(packed.blocks.chunks_exact(plan.block_len())) {
             abreast.clear();
-            abreast.numbers[..places.len()].fill(numbers);
+            abreast.numbers[..places.len()].fill(arranged.numbers());
             let Abreast { jacobian, residual, .. } = abreast;
             lanes::whitened_columns(self.level, &arm, block, &columns, jacobian, residual);
             each(places, abreast);

@@ -1,7 +1,7 @@
 //! How the unknowns of a problem are arranged for the kernels, for rows of one target and kind.
 
 use super::{Layout, Problem};
-use crate::lanes::{JointPlan, Plan};
+use crate::lanes::{JointPlan, NUMBERS, Plan};
 use crate::parameters::Parameter;
 
 /// Rows of one target, with or without orientation: what the kernels are told of the unknowns, and where these stand in a step.
@@ -10,7 +10,7 @@ pub(super) struct Arrangement {
     pub(super) target: usize,
     pub(super) plan: Plan,
     /// Places of the plan's shifts and turns in a step.
-    pub(super) shift_places: Vec<usize>,
+    shift_places: Vec<usize>,
     pub(super) turn_places: Vec<usize>,
 }
 
@@ -30,6 +30,16 @@ impl Arrangement {
         made.add_target(&problem.layout)?;
         made.plan.shifts = made.shift_places.len();
         Some(made)
+    }
+
+    /// Places of the plan's columns in a step: shifts, then turns.
+    pub(super) fn places(&self) -> impl Iterator<Item = usize> {
+        self.shift_places.iter().chain(&self.turn_places).copied()
+    }
+
+    /// Numbers of a row's residual.
+    pub(super) fn numbers(&self) -> usize {
+        if self.plan.framed { NUMBERS } else { NUMBERS / 2 }
     }
 
     fn shift(&mut self, places: &[(usize, f64)]) {

@@ -60,8 +60,7 @@ impl Fast {
         for alike in Alike::sorted(problem)? {
             let mut arranged = Arrangement::new(problem, alike.target, alike.framed)?;
             arranged.plan.ratio = alike.ratio;
-            let Arrangement { plan, shift_places, turn_places, .. } = &arranged;
-            let scatter = Scatter::new(plan, shift_places, turn_places, problem.layout.dim());
+            let scatter = Scatter::new(&arranged, problem.layout.dim());
             groups.push((Group { arranged, rows: alike.rows, packed: Vec::new() }, scatter));
         }
         let mut fast = Fast { groups, level };
@@ -142,13 +141,11 @@ impl Group {
 
     /// Puts cost and gradient of the group into the problem's normal information.
     fn put(&self, totals: &Totals, normal: &mut Normal) {
-        let Arrangement { plan, shift_places, turn_places, .. } = &self.arranged;
-        let places = shift_places.iter().chain(turn_places);
-        for (value, &place) in totals.gradient.iter().zip(places) {
+        for (value, place) in totals.gradient.iter().zip(self.arranged.places()) {
             normal.gradient[place] += value;
         }
         normal.cost += totals.cost;
-        normal.residuals += self.rows.len() * if plan.framed { 6 } else { 3 };
+        normal.residuals += self.rows.len() * self.arranged.numbers();
     }
 }
 

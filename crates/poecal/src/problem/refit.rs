@@ -70,14 +70,13 @@ impl<'a> Refit<'a> {
         trials: &[Vec<Measurement>],
         kept: impl Fn(Estimate, Normal, Summary) -> T + Sync,
     ) -> Vec<T> {
-        let parts = threads::map_chunks(trials, TOGETHER, |_, trials| {
+        threads::concat_chunks(trials, TOGETHER, |_, trials| {
             let mut refit = self.clone();
             let fit = |measured: &Vec<Measurement>| {
                 let (estimate, normal, summary) = refit.fit(measured);
                 kept(estimate, normal, summary)
             };
-            trials.iter().map(fit).collect::<Vec<T>>()
-        });
-        parts.into_iter().flatten().collect()
+            trials.iter().map(fit).collect()
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! Where the sums of the hot path belong in the problem's normal information.
 
-use crate::lanes::{Plan, Tiles, Totals};
+use super::arrangement::Arrangement;
+use crate::lanes::{Tiles, Totals};
 
 /// Places of a group's products, found once for all passes.
 #[derive(Clone, Debug)]
@@ -14,11 +15,12 @@ pub(super) struct Scatter {
 }
 
 impl Scatter {
-    /// For unknowns of a plan at these places of a step of `n` unknowns.
-    pub(super) fn new(plan: &Plan, shift_places: &[usize], turn_places: &[usize], n: usize) -> Self {
+    /// For rows so arranged, in a step of `n` unknowns.
+    pub(super) fn new(arranged: &Arrangement, n: usize) -> Self {
+        let Arrangement { plan, turn_places, .. } = arranged;
         let upper = |a: usize, b: usize| a.min(b) * n + a.max(b);
         let columns = plan.columns();
-        let places: Vec<usize> = shift_places.iter().chain(turn_places).copied().take(columns).collect();
+        let places: Vec<usize> = arranged.places().take(columns).collect();
         let tiles = Tiles::new(columns);
         let mut seen = Vec::with_capacity(columns * (columns + 1) / 2);
         for (a, (&place, left)) in places.iter().zip(&tiles.left).enumerate() {

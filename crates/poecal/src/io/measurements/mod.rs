@@ -1,6 +1,6 @@
 //! Measurement files: CSV with one row a configuration and target (docs/file-formats.md, "Measurements").
 //!
-//! Text becomes lines and cells (`text`), a table with places for messages (`table`), columns with a meaning and a unit
+//! Text becomes lines (`text`) and cells (`cells`), a table with places for messages (`table`), columns with a meaning and a unit
 //! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`) and at last measurements ([`read()`]), which are
 //! judged for their scale (`scale`, `spread`).
 

@@ -71,20 +71,17 @@ pub(super) fn in_pieces<T: Send, E: Send>(
     make: impl Fn(Range<usize>) -> T + Sync + Send,
     mut take: impl FnMut(T) -> Result<(), E> + Send,
 ) -> Result<(), E> {
-    let mut made: Vec<T> = Vec::new();
-    for first in (0..rows).step_by(PIECE * TOGETHER) {
+    let some = |first: usize| {
         let pieces = (rows - first).div_ceil(PIECE).min(TOGETHER);
-        let make_some = || {
-            threads::map_parts(pieces, |piece| {
-                let begin = first + piece * PIECE;
-                make(begin..rows.min(begin + PIECE))
-            })
-        };
-        if made.is_empty() {
-            made = make_some();
-            continue;
-        }
-        let (taken, next) = threads::both(|| made.into_iter().try_for_each(&mut take), make_some);
+        threads::map_parts(pieces, |piece| {
+            let begin = first + piece * PIECE;
+            make(begin..rows.min(begin + PIECE))
+        })
+    };
+    let mut firsts = (0..rows).step_by(PIECE * TOGETHER);
+    let mut made = firsts.next().map(some).unwrap_or_default();
+    for first in firsts {
+        let (taken, next) = threads::both(|| made.into_iter().try_for_each(&mut take), || some(first));
         taken?;
         made = next;
     }

@@ -1,5 +1,7 @@
 //! What the script of the page works on, as JSON.
 
+use std::cmp::Ordering;
+
 use serde::Serialize;
 
 use super::rows::place;
@@ -108,6 +110,14 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
     Ok(text.replace('<', "\\u003c"))
 }
 
+/// Keeps so many items that come first, in any order.
+pub(super) fn keep_first<T>(items: &mut Vec<T>, most: usize, compare: impl FnMut(&T, &T) -> Ordering) {
+    if items.len() > most {
+        items.select_nth_unstable_by(most, compare);
+        items.truncate(most);
+    }
+}
+
 /// The rows that are drawn, in order, and whether each is one of the evenly chosen.
 pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
     let count = residuals.rows.len();
@@ -119,10 +129,7 @@ pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
     let (mut worst, mut others): (Vec<usize>, Vec<usize>) =
         (0..count).partition(|&row| suspected(row) == Some(true));
     for (rows, most) in [(&mut worst, SUSPECTED), (&mut others, WORST)] {
-        if rows.len() > most {
-            rows.select_nth_unstable_by(most, |&a, &b| error(b).total_cmp(&error(a)).then(a.cmp(&b)));
-            rows.truncate(most);
-        }
+        keep_first(rows, most, |&a, &b| error(b).total_cmp(&error(a)).then(a.cmp(&b)));
     }
     worst.extend(others);
     let evenly = MOST_ROWS - SUSPECTED - WORST;

@@ -1,6 +1,6 @@
 //! What the rows leave: charts of them, tables with the same facts, suspected rows, and configurations that were measured several times.
 
-use super::data::{MOST_ROWS, drawn};
+use super::data::{MOST_ROWS, drawn, keep_first};
 use super::first::{position_table, rotation_table};
 use super::html::{Html, Table, count, decimal, figure};
 use super::{figures, readings_of};
@@ -206,10 +206,7 @@ fn leverage_table(residuals: &Residuals) -> Option<Table> {
     let mut judged: Vec<_> = judged.filter(|(_, found)| found.leverage.is_finite()).collect();
     let larger =
         |a: &(usize, Judged), b: &(usize, Judged)| b.1.leverage.total_cmp(&a.1.leverage).then(a.0.cmp(&b.0));
-    if judged.len() > LEVERAGES {
-        judged.select_nth_unstable_by(LEVERAGES, larger);
-        judged.truncate(LEVERAGES);
-    }
+    keep_first(&mut judged, LEVERAGES, larger);
     judged.sort_unstable_by(larger);
     let mut table = Table::new(
         "Rows of largest leverage",
