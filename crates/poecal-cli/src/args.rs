@@ -16,14 +16,16 @@ pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use simulate::{Simulate, SimulatedKind};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use poecal::io::measurements::{ColumnMap, ReadOptions};
 use poecal::io::model::ModelFormat;
+use poecal::io::output::{Existing, FilePlace};
 use poecal::io::predictions::PredictionFrame;
 use poecal::io::urdf::ChainSelection;
 
+use crate::console::Console;
 use crate::quantity::whole;
 
 /// What the program ends with.
@@ -123,6 +125,26 @@ impl Reading {
     }
 }
 
+/// Where a text goes.
+#[derive(Args, Debug)]
+pub(crate) struct OutFile {
+    /// File to write; a device or a pipe is written to as it is [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Write over a file that exists
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+impl OutFile {
+    /// The place, which none of the files that are read may be; none for standard output.
+    pub(crate) fn reserve(&self, inputs: &[&Path], console: &Console) -> poecal::Result<Option<FilePlace>> {
+        let out = self.out.as_deref().filter(|out| *out != Path::new("-"));
+        out.map(|out| FilePlace::reserve(out, Existing::forced(self.force), inputs, &mut console.warner()))
+            .transpose()
+    }
+}
+
 /// Arguments of `poecal validate`.
 #[derive(Args, Debug)]
 pub(crate) struct Validate {
@@ -182,9 +204,8 @@ pub(crate) struct Predict {
     /// Predict this target of the model instead of the tip
     #[arg(long, value_name = "NAME")]
     pub(crate) target: Option<String>,
-    /// File to write, over an old one [default: standard output]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) place: OutFile,
 }
 
 /// Arguments of `poecal check`.
@@ -238,7 +259,6 @@ pub(crate) struct Convert {
     /// (repeatable). Mimic joints that follow it stay: an error of its encoder would move them too
     #[arg(long, value_name = "JOINT=ANGLE|LENGTH")]
     pub(crate) offset: Vec<String>,
-    /// File to write, over an old one [default: standard output]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) place: OutFile,
 }

@@ -1,16 +1,44 @@
 //! Standard output for results, standard error for everything else. On a terminal, colours and lines as wide as it; elsewhere neither.
 
+use std::cell::RefCell;
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal as _, Write as _};
-use std::path::Path;
 use std::time::Duration;
 
 use anstream::{AutoStream, ColorChoice};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use poecal::Result;
-use poecal::io::output;
+use poecal::io::output::FilePlace;
 
-use crate::style;
+use crate::{Said, style};
+
+thread_local! {
+    /// What is said, where it is kept and not printed.
+    static KEPT: RefCell<Option<Said>> = const { RefCell::new(None) };
+}
+
+/// Keeps what is said, if that is wanted; false if it is to be printed.
+fn kept(add: impl FnOnce(&mut Said)) -> bool {
+    KEPT.with_borrow_mut(|kept| kept.as_mut().map(add)).is_some()
+}
+
+/// Does some work, and gives what is said on standard output and standard error.
+pub(crate) fn captured(work: impl FnOnce() -> u8) -> Said {
+    KEPT.replace(Some(Said::default()));
+    let code = work();
+    Said { code, ..KEPT.take().unwrap_or_default() }
+}
+
+/// What clap has to say: help, the version, or a mistake in the use.
+pub(crate) fn usage(error: &clap::Error) {
+    let text = error.render().to_string();
+    let add = |said: &mut Said| {
+        if error.use_stderr() { said.err.push_str(&text) } else { said.out.push_str(&text) }
+    };
+    if !kept(add) {
+        let _ = error.print();
+    }
+}
 
 /// Where the program speaks.
 pub(crate) struct Console {
@@ -24,6 +52,9 @@ impl Console {
 
     /// A result that must arrive whole; only a reader that has gone away (a closed pipe) is no error.
     pub(crate) fn data(&self, text: &str) -> Result<()> {
+        if kept(|said| said.out.push_str(text)) {
+            return Ok(());
+        }
         let mut out = std::io::stdout().lock();
         match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
             Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -38,11 +69,9 @@ impl Console {
     }
 
     /// Data into a file, or to standard output.
-    pub(crate) fn deliver(&self, text: &str, out: Option<&Path>) -> Result<()> {
-        match out {
-            Some(path) => output::write_file(path, &[text]),
-            None => self.data(text),
-        }
+    pub(crate) fn deliver(&self, text: String, place: Option<FilePlace>) -> Result<()> {
+        let Some(place) = place else { return self.data(&text) };
+        place.write(vec![text.into()])
     }
 
     /// A result that `--quiet` suppresses.
@@ -59,6 +88,11 @@ impl Console {
         self.data(&if plain { text } else { style::painted(&text) })
     }
 
+    /// Says warnings as they come.
+    pub(crate) fn warner(&self) -> impl FnMut(String) {
+        |message| self.warning(message)
+    }
+
     pub(crate) fn warning(&self, message: impl Display) {
         if !self.quiet {
             tell("warning:", style::WARNING, &message.to_string());
@@ -67,6 +101,9 @@ impl Console {
 
     /// A line about the run itself, asked for and so never suppressed.
     pub(crate) fn note(&self, line: impl Display) {
+        if kept(|said| said.err.push_str(&format!("{line}\n"))) {
+            return;
+        }
         let _ = writeln!(std::io::stderr().lock(), "{line}");
     }
 
@@ -104,6 +141,9 @@ fn width_of(stream: &impl std::os::windows::io::AsHandle) -> Option<usize> {
 
 /// A message on standard error: one line, or on a terminal as many as its width asks for.
 fn tell(word: &str, style: anstyle::Style, message: &str) {
+    if kept(|said| said.err.push_str(&format!("{word} {message}\n"))) {
+        return;
+    }
     let stderr = std::io::stderr();
     let message = match width_of(&stderr) {
         Some(width) => style::wrapped(message, word.len() + 1, width),

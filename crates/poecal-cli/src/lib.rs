@@ -8,6 +8,7 @@ mod commands;
 mod console;
 mod quantity;
 mod settings;
+mod signals;
 mod style;
 mod timings;
 
@@ -37,9 +38,7 @@ fn usage(error: &clap::Error) -> u8 {
             let option = option.split(' ').next().unwrap_or_default();
             Console::new(false).error(format!("{option}: {sentence}"));
         }
-        _ => {
-            let _ = error.print();
-        }
+        _ => console::usage(error),
     }
     if error.use_stderr() { WRONG } else { DONE }
 }
@@ -65,13 +64,37 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
     }
 }
 
-/// Runs the program.
+/// Runs the program, as all that the process is for.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    ExitCode::from(run_to_code(arguments))
+    ExitCode::from(run_process(arguments))
 }
 
-/// [`run`], with the exit code as a number, for callers that end the process themselves.
-pub fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+/// [`run`], with the exit code as a number, for callers that end the process themselves. A signal that ends the process lets it
+/// clean up first.
+pub fn run_process(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    signals::clean_up_on_signals();
+    let code = run_to_code(arguments);
+    signals::wait_if_ending();
+    code
+}
+
+/// What a run of the program said.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Said {
+    /// The exit code.
+    pub code: u8,
+    /// What went to standard output.
+    pub out: String,
+    /// What went to standard error.
+    pub err: String,
+}
+
+/// Runs the program within a process that does other things, and gives what it says instead of printing it.
+pub fn run_captured(arguments: impl IntoIterator<Item = OsString>) -> Said {
+    console::captured(|| run_to_code(arguments))
+}
+
+fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let typed: Vec<OsString> = arguments.into_iter().collect();
     let (typed, arguments) = match understood(typed) {
         Ok(both) => both,
@@ -99,6 +122,8 @@ pub fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     match result {
         Ok(code) => code,
         Err(error) => {
+            // A run that is being ended fails over what was cleaned up, which is no news.
+            signals::wait_if_ending();
             console.error(&error);
             WRONG
         }

@@ -2,11 +2,12 @@
 
 use std::error::Error as _;
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use clap::error::ContextKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory as _};
+use poecal::io::disk;
 use poecal::io::settings::{Setting, SettingValue, Settings};
 use poecal::{Error, ErrorKind, Result};
 
@@ -17,7 +18,9 @@ const USUAL: &str = "poecal.toml";
 /// The command that reads settings.
 const COMMAND: &str = "calibrate";
 /// Options that are not kept in a file: those of one run of the program.
-const NOT_KEPT: [&str; 6] = ["settings", "json", "timings", "quiet", "threads", "help"];
+const NOT_KEPT: [&str; 7] = ["settings", "json", "timings", "quiet", "threads", "help", "force_own"];
+/// Settings that say where something is written.
+const OUTPUTS: [&str; 2] = ["out", "report"];
 /// Settings that name files, which are seen from the settings' folder.
 const FILES: [&str; 6] = ["model", "measurements", "columns", "validate", "out", "report"];
 
@@ -39,7 +42,7 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
         return Ok(None);
     }
     let path = named.map_or(Path::new(USUAL), PathBuf::as_path);
-    if named.is_none() && !path.exists() {
+    if named.is_none() && disk::here().follow(path).is_err() {
         let message = "found neither a model among the arguments nor this file, expected `poecal calibrate MODEL FILES…`, or settings in \
                        this folder: `poecal init MODEL` writes them";
         return Err(Error::new(ErrorKind::Option, message).in_file(path));
@@ -103,7 +106,9 @@ fn values(arg: &Arg, entry: &Setting, settings: &Settings) -> Result<Vec<OsStrin
         || arg.get_num_args().is_some_and(|range| range.max_values() > 1);
     let texts = match &entry.value {
         SettingValue::Switch(on) if is_switch => {
-            let words = on.then(|| format!("--{}", key.replace('_', "-")).into());
+            // Settings may have come from elsewhere, with a model: they let results go, but nothing else.
+            let option = if key == "force" { "force-own".to_owned() } else { key.replace('_', "-") };
+            let words = on.then(|| format!("--{option}").into());
             return Ok(words.into_iter().collect());
         }
         _ if is_switch => {
@@ -119,6 +124,13 @@ fn values(arg: &Arg, entry: &Setting, settings: &Settings) -> Result<Vec<OsStrin
         }
     };
     let folder = settings.path.parent().unwrap_or(Path::new(""));
+    let escaped = texts.iter().find(|text| OUTPUTS.contains(&key) && leads_out(folder, Path::new(text)));
+    if let Some(text) = escaped {
+        let message = format!(
+            "found the place `{text}` for `{key}`, expected one in the folder of the settings: move it there, or type --{key}"
+        );
+        return Err(settings.error(entry, message));
+    }
     let word = |text: &String| {
         let is_file = FILES.contains(&key) && !(key == "report" && text == "none");
         let value = if is_file { folder.join(text).into_os_string() } else { OsString::from(text) };
@@ -130,6 +142,20 @@ fn values(arg: &Arg, entry: &Setting, settings: &Settings) -> Result<Vec<OsStrin
         word
     };
     Ok(texts.into_iter().map(word).collect())
+}
+
+/// Whether a path leads out of a folder, by itself or by a link on its way.
+fn leads_out(folder: &Path, path: &Path) -> bool {
+    if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
+        return true;
+    }
+    let disk = disk::here();
+    let home = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let Ok(home) = disk.actual(home) else { return true };
+    let whole = home.join(path);
+    // A link that leads nowhere is none that may be followed.
+    let first = whole.ancestors().find(|place| disk.look(place).is_ok());
+    first.is_none_or(|place| disk.actual(place).map_or(true, |actual| !actual.starts_with(&home)))
 }
 
 /// A file's name that clap does not take for an option.

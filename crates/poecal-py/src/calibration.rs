@@ -4,13 +4,13 @@ mod content;
 
 use content::{Found, part};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use numpy::PyArray2;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::model::{Model, ModelSource};
-use poecal::io::output::{self, Results};
+use poecal::io::output::{self, Contents, Existing, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
 use poecal::io::residuals::{Residuals, Rows};
 use poecal::report;
@@ -25,6 +25,7 @@ use crate::findings::{self, Findings};
 use crate::html::Html;
 use crate::measurements::Measurements;
 use crate::pickle;
+use crate::places::{reserved_file, reserved_folder};
 use crate::prediction::Prediction;
 use crate::robot::{Robot, poses};
 use crate::words::chosen;
@@ -161,35 +162,34 @@ impl Calibration {
         let report = report.unwrap_or(ReportPlace::Among(true));
         let (file, residuals) = (self.file(), self.residuals()?);
         let (robot, model) = (self.as_fitted(), &self.nominal.model);
+        let existing = Existing::forced(force);
+        let measured = file.inputs.measurements.iter().map(Path::new);
+        let inputs: Vec<&Path> = std::iter::once(model.path.as_path()).chain(measured).collect();
+        let place = reserved_folder(py, &folder, Contents::Calibration, existing, &inputs)?;
+        let elsewhere = match &report {
+            ReportPlace::File(path) => Some(reserved_file(py, path, existing, &inputs)?),
+            ReportPlace::Among(_) => None,
+        };
         let written = py.detach(|| {
-            output::check_folder(&folder, force)?;
-            if let ReportPlace::File(path) = &report {
-                output::check_file(path)?;
-            }
             let page = match &report {
                 ReportPlace::Among(false) => None,
                 _ => Some(report::calibration_page(file, residuals)?),
             };
-            let (among, elsewhere) = match &report {
-                ReportPlace::File(path) => (None, page.map(|page| (path, page))),
-                ReportPlace::Among(_) => (page, None),
-            };
-            let results = Results { file: file.clone(), residuals: Rows::AtHand(residuals), report: among };
-            let written = output::write_robot(&folder, force, model, &robot, results)?;
-            if let Some((path, page)) = elsewhere {
-                output::write_file(path, &page)?;
-            }
-            Ok(written)
+            let results = Results { file: file.clone(), residuals: Rows::AtHand(residuals), report: page };
+            output::write_robot(place, elsewhere, model, &robot, results)
         });
         let written = written.map_err(raise)?;
         crate::warn(py, &written.notes)?;
         Ok(written.files)
     }
 
-    /// Writes the report, one HTML file, over an old one.
-    fn report(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+    /// Writes the report, one HTML file; over a file that is no report of poecal only with `force`.
+    #[pyo3(signature = (path, *, force=false))]
+    fn report(&self, py: Python<'_>, path: PathBuf, force: bool) -> PyResult<()> {
         let (file, residuals) = (self.file(), self.residuals()?);
-        py.detach(|| output::write_file(&path, &report::calibration_page(file, residuals)?)).map_err(raise)
+        let existing = if force { Existing::Replaced } else { Existing::Own };
+        let place = reserved_file(py, &path, existing, &[])?;
+        py.detach(|| place.write(report::calibration_page(file, residuals)?)).map_err(raise)
     }
 
     /// Where the calibrated tip, or a target, stands.

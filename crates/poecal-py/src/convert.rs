@@ -7,13 +7,14 @@ use numpy::PyArray2;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::measurements::{self, ColumnMap, ReadOptions};
 use poecal::io::model::{Model, convert as converted};
-use poecal::io::output::write_file;
+use poecal::io::output::Existing;
 use poecal::nearest;
 use poecal::offsets::into_screws;
 use pyo3::prelude::*;
 
 use crate::arrays::table;
 use crate::errors::{argument, raise};
+use crate::places::reserved_file;
 use crate::robot::{Robot, form};
 
 /// A robot in another form, as a text; written to the file `out` too, over an old one, if one is named.
@@ -24,15 +25,18 @@ use crate::robot::{Robot, form};
 /// offset : dict of joint names and what is added to their values, radians or metres
 ///     The text has the screws and home pose of the robot with these offsets. Mimic joints that follow a joint stay.
 #[pyfunction]
-#[pyo3(signature = (robot, *, to=None, offset=None, out=None))]
+#[pyo3(signature = (robot, *, to=None, offset=None, out=None, force=false))]
 pub(crate) fn convert(
     py: Python<'_>,
     robot: &Robot,
     to: Option<&str>,
     offset: Option<BTreeMap<String, f64>>,
     out: Option<PathBuf>,
+    force: bool,
 ) -> PyResult<String> {
     let form = form(to, out.as_deref())?;
+    let reserved = |out| reserved_file(py, out, Existing::forced(force), &[&robot.model.path]);
+    let place = out.as_deref().map(reserved).transpose()?;
     let mut model = Model::clone(&robot.model);
     if let Some(offset) = offset {
         let mut notes = Vec::new();
@@ -42,8 +46,8 @@ pub(crate) fn convert(
     }
     let text = py.detach(|| converted(&model, form)).map_err(raise)?;
     crate::warn(py, &text.notes)?;
-    if let Some(out) = out {
-        write_file(&out, &[&text.text]).map_err(raise)?;
+    if let Some(place) = place {
+        place.write(vec![text.text.clone().into()]).map_err(raise)?;
     }
     Ok(text.text)
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use poecal::analysis::{self, Session};
 use poecal::calibration::DeviceFrameKnowledge;
-use poecal::io::output;
+use poecal::io::output::{self, Contents, Existing};
 use poecal::measurement::Noise;
 use poecal::{forensics, offsets as explanations, report, reproduce as experiments};
 use pyo3::prelude::*;
@@ -17,6 +17,7 @@ use crate::errors::raise;
 use crate::html::Html;
 use crate::measurements::Measurements;
 use crate::pickle;
+use crate::places::reserved_folder;
 use crate::robot::Robot;
 use crate::words::{chosen, end, frame as frame_word, from_deg, from_mm, kind as kind_word, sigma};
 
@@ -214,10 +215,10 @@ pub(crate) fn reproduce(
     let words = [("lou2009", Experiment::Lou2009), ("breakdown", Experiment::Breakdown)];
     let experiment = chosen("experiment", experiment, &words)?;
     let options = experiments::Options { trials: trials as usize, starts: starts as usize, seed };
+    let reserved =
+        |folder: &PathBuf| reserved_folder(py, folder, Contents::Reproduction, Existing::forced(force), &[]);
+    let place = out.as_ref().map(reserved).transpose()?;
     let work = || {
-        if let Some(folder) = &out {
-            output::check_folder(folder, force)?;
-        }
         let (files, words, json) = match experiment {
             Experiment::Lou2009 => {
                 let found = experiments::lou2009(&options)?;
@@ -228,11 +229,10 @@ pub(crate) fn reproduce(
                 (report::breakdown_files(&found)?, report::breakdown_table(&found), report::json(&found)?)
             }
         };
-        if let Some(folder) = &out {
-            output::write_reproduction(folder, force, &files)?;
-        }
-        Ok((words, json))
+        let written = place.map(|place| output::write_reproduction(place, &files)).transpose()?;
+        Ok((words, json, written.map(|written| written.notes).unwrap_or_default()))
     };
-    let (text, json) = py.detach(work).map_err(raise)?;
+    let (text, json, notes) = py.detach(work).map_err(raise)?;
+    crate::warn(py, &notes)?;
     Ok(Findings { text, json, warnings: Vec::new() })
 }

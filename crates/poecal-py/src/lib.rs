@@ -13,6 +13,7 @@ mod from_dataframe;
 mod html;
 mod measurements;
 mod pickle;
+mod places;
 mod prediction;
 mod project;
 mod robot;
@@ -82,7 +83,7 @@ mod _poecal {
     /// Runs the program `poecal` with these arguments, the program's name first; gives its exit code.
     #[pyfunction]
     fn run_program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
-        py.detach(|| poecal_cli::run_to_code(arguments))
+        py.detach(|| poecal_cli::run_process(arguments))
     }
 
     #[pyfunction]

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use numpy::{PyArray2, PyArray3, PyArrayMethods as _};
 use poecal::io::calibration_file::Inputs;
 use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
-use poecal::io::output::write_file;
+use poecal::io::output::Existing;
 use poecal::io::predictions::{PredictionFrame, predicted};
 use poecal::io::robot_toml;
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
@@ -25,6 +25,7 @@ use crate::build::{DhTable, Naming, from_dh, from_screws};
 use crate::errors::{argument, raise};
 use crate::html::Html;
 use crate::pickle;
+use crate::places::reserved_file;
 use crate::words::chosen;
 
 /// A serial robot: joints with screws, and a home pose. It never changes.
@@ -309,11 +310,12 @@ impl Robot {
         self.converted(py, form(Some(to), None)?)
     }
 
-    /// Writes the model to a file, over an old one: as `to` says, or else the extension.
-    #[pyo3(signature = (path, *, to=None))]
-    fn write(&self, py: Python<'_>, path: PathBuf, to: Option<&str>) -> PyResult<()> {
-        let text = self.converted(py, form(to, Some(&path))?)?;
-        write_file(&path, &[text]).map_err(raise)
+    /// Writes the model to a file, as `to` says, or else the extension; over one that exists only with `force`.
+    #[pyo3(signature = (path, *, to=None, force=false))]
+    fn write(&self, py: Python<'_>, path: PathBuf, to: Option<&str>, force: bool) -> PyResult<()> {
+        let form = form(to, Some(&path))?;
+        let place = reserved_file(py, &path, Existing::forced(force), &[])?;
+        place.write(vec![self.converted(py, form)?.into()]).map_err(raise)
     }
 
     fn __repr__(&self) -> String {

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use numpy::PyArray2;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::model::{Model, ModelSource};
-use poecal::io::output::{self, Session};
+use poecal::io::output::{self, Contents, Existing, Session};
 use poecal::simulate::{self as simulated, Kind, Simulated};
 use pyo3::prelude::*;
 
 use crate::arrays::pose_array;
 use crate::errors::raise;
 use crate::measurements::Measurements;
+use crate::places::reserved_folder;
 use crate::robot::Robot;
 use crate::words::{frame as frame_word, from_deg, from_mm, kind as kind_word, size};
 
@@ -74,8 +75,9 @@ impl Simulation {
             command: &self.command,
         };
         let model = &self.nominal.model;
-        let written =
-            py.detach(|| output::write_simulation(&folder, force, model, &session)).map_err(raise)?;
+        let existing = Existing::forced(force);
+        let place = reserved_folder(py, &folder, Contents::Simulation, existing, &[&model.path])?;
+        let written = py.detach(|| output::write_simulation(place, model, &session)).map_err(raise)?;
         crate::warn(py, &written.notes)?;
         Ok(written.files)
     }

@@ -6,7 +6,7 @@
 use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::model::{Model, ModelSource};
-use poecal::io::output::{Results, write};
+use poecal::io::output::{Contents, Existing, FolderPlace, Results, write};
 use poecal::io::residuals::{Residuals, Rows};
 use poecal::report::calibration_page;
 use poecal::simulate::{Kind, Simulation, elbow};
@@ -29,7 +29,8 @@ fn fifty_rows_are_one_threads_work() {
         let model = Model { robot: made.nominal, source: ModelSource::Toml, path: "elbow.toml".into() };
         let folder = std::env::temp_dir().join(format!("poecal_few_rows_{}", std::process::id()));
         let results = Results { file, residuals: Rows::AtHand(&residuals), report };
-        write(&folder, true, &model, &calibration, results).unwrap();
+        let place = FolderPlace::reserve(&folder, Contents::Calibration, Existing::Replaced, &[], &mut |_| ());
+        write(place.unwrap(), None, &model, &calibration, results).unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
     }
     assert_eq!(threads(), before);

@@ -8,7 +8,7 @@ mod findings;
 
 use files::Folder;
 use findings::findings;
-use poecal::io::output::write_reproduction;
+use poecal::io::output::{Contents, Existing, FolderPlace, write_reproduction};
 use poecal::report::reproduction_files;
 use poecal::reproduce::Reproduction;
 
@@ -212,13 +212,14 @@ fn a_second_run_replaces_the_first_and_leaves_other_files() {
     let folder = Folder::new();
     let out = folder.path("out");
     let files = reproduction_files(&findings()).unwrap();
-    let written = write_reproduction(&out, false, &files).unwrap();
+    let place = |existing| FolderPlace::reserve(&out, Contents::Reproduction, existing, &[], &mut |_| ());
+    let written = write_reproduction(place(Existing::Kept).unwrap(), &files).unwrap();
     assert_eq!(written.files.len(), files.len());
     std::fs::write(out.join("mine.svg"), "mine").unwrap();
-    let error = write_reproduction(&out, false, &files).unwrap_err();
+    let error = place(Existing::Kept).unwrap_err();
     assert!(error.to_string().contains("--force"), "{error}");
     let fewer = reproduction_files(&empty()).unwrap();
-    write_reproduction(&out, true, &fewer).unwrap();
+    write_reproduction(place(Existing::Replaced).unwrap(), &fewer).unwrap();
     let names =
         std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<String> = names.filter(|name| name != "mine.svg").collect();

@@ -1,9 +1,10 @@
 //! Arguments of `poecal calibrate`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use poecal::calibration::{Level, Loss, Robust};
+use poecal::io::output::Existing;
 use poecal::measurement::PoseResidual;
 use poecal::parameters::Formulation;
 use poecal::solve::Method;
@@ -155,9 +156,12 @@ pub(crate) struct Calibrate {
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "poecal-out")]
     pub(crate) out: PathBuf,
-    /// Overwrite results in an existing folder
+    /// Overwrite results in an existing folder, and a report that exists
     #[arg(long)]
     pub(crate) force: bool,
+    /// Overwrite them where poecal wrote them: what `force` in the settings comes to
+    #[arg(long, hide = true)]
+    pub(crate) force_own: bool,
     /// File for the report, or `none` [default: report.html among the results]
     #[arg(long, value_name = "FILE|none")]
     pub(crate) report: Option<ReportPlace>,
@@ -170,6 +174,20 @@ pub(crate) struct Calibrate {
     /// Print where the time went, as a line of JSON on standard error; the solve is repeated for that
     #[arg(long)]
     pub(crate) timings: bool,
+}
+
+impl Calibrate {
+    /// What may become of results that exist.
+    pub(crate) fn existing(&self) -> Existing {
+        if self.force_own && !self.force { Existing::Own } else { Existing::forced(self.force) }
+    }
+
+    /// Every file that is read.
+    pub(crate) fn inputs(&self) -> Vec<&Path> {
+        let mapping = self.reading.columns.columns.iter();
+        let files = self.model.iter().chain(&self.measurements).chain(&self.validate).chain(&self.settings);
+        files.chain(mapping).map(PathBuf::as_path).collect()
+    }
 }
 
 /// The verdicts that can be asked for.

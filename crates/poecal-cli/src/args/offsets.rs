@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use poecal::offsets;
 
-use super::Chain;
+use super::{Chain, OutFile};
 
 /// Whether a frame is the same in both models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -43,7 +43,6 @@ pub(crate) struct Offsets {
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,
-    /// File to write, over an old one [default: standard output]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) place: OutFile,
 }

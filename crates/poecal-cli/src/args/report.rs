@@ -30,7 +30,10 @@ pub(crate) struct Report {
     /// residuals.csv, where it lies elsewhere
     #[arg(long, value_name = "FILE")]
     pub(crate) residuals: Option<PathBuf>,
-    /// File to write, over an old one [default: report.html beside the calibration]
+    /// File to write, a new one or a report of poecal [default: report.html beside the calibration]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// Write over any file that exists
+    #[arg(long)]
+    pub(crate) force: bool,
 }

@@ -10,7 +10,7 @@ use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
-use poecal::io::output::{self, Results};
+use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
 use poecal::io::residuals::{Residuals, Rows};
 use poecal::measurement::{Dataset, Measurement, PoseResidual};
 use poecal::{Error, ErrorKind, Result, report, solve};
@@ -25,10 +25,7 @@ use crate::{DONE, NOT_CONVERGED, WORSE};
 pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<u8> {
     let mut timings = Timings::start();
     let model_path = stated_model(arguments)?;
-    output::check_folder(&arguments.out, arguments.force)?;
-    if let Some(ReportPlace::File(path)) = &arguments.report {
-        output::check_file(path)?;
-    }
+    let places = Places::reserve(arguments, console)?;
     let model = Model::read(model_path, &arguments.chain.selection())?;
     let (data, inputs) = read_measurements(arguments, &model, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
@@ -58,7 +55,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     }
     let file = CalibrationFile::new(&calibration, &data, inputs);
     let json = if arguments.json { Some(file.to_text()?) } else { None };
-    let words = write(arguments, &model, &data, &calibration, file, console)?;
+    let words = write(places, &arguments.report, (&model, &data, &calibration), file, console)?;
     timings.end("write");
     if arguments.timings {
         console.note(timings.line(|| calibration.solve_again(&data, &options)));
@@ -152,26 +149,47 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
     }
 }
 
+/// Where results go.
+struct Places {
+    folder: FolderPlace,
+    /// Of a report that does not lie among the results.
+    report: Option<FilePlace>,
+}
+
+impl Places {
+    fn reserve(arguments: &Calibrate, console: &Console) -> Result<Self> {
+        let (existing, inputs) = (arguments.existing(), arguments.inputs());
+        let folder = FolderPlace::reserve(
+            &arguments.out,
+            Contents::Calibration,
+            existing,
+            &inputs,
+            &mut console.warner(),
+        )?;
+        let report = match &arguments.report {
+            Some(ReportPlace::File(path)) => {
+                Some(FilePlace::reserve(path, existing, &inputs, &mut console.warner())?)
+            }
+            Some(ReportPlace::None) | None => None,
+        };
+        Ok(Places { folder, report })
+    }
+}
+
 /// Writes the results; says where.
 fn write(
-    arguments: &Calibrate,
-    model: &Model,
-    data: &Dataset,
-    calibration: &Calibration,
+    places: Places,
+    place: &Option<ReportPlace>,
+    (model, data, calibration): (&Model, &Dataset, &Calibration),
     file: CalibrationFile,
     console: &Console,
 ) -> Result<String> {
     // Without a report nobody needs all rows at once.
-    let residuals =
-        (!matches!(arguments.report, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
-    let page = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
+    let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
+    let report = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
     let residuals = residuals.as_ref().map_or(Rows::Of(data, calibration), Rows::AtHand);
-    let (among, elsewhere) = match &arguments.report {
-        Some(ReportPlace::File(path)) => (None, page.map(|page| (path, page))),
-        Some(ReportPlace::None) | None => (page, None),
-    };
-    let results = Results { file, residuals, report: among };
-    let written = output::write(&arguments.out, arguments.force, model, calibration, results)?;
+    let results = Results { file, residuals, report };
+    let written = output::write(places.folder, places.report, model, calibration, results)?;
     for note in &written.notes {
         console.warning(note);
     }
@@ -186,12 +204,11 @@ fn write(
             written.largest.rotation_rad
         ),
     );
-    let report = written.files.iter().find(|name| *name == output::REPORT);
-    let mut report = report.map(|name| written.folder.join(name));
-    if let Some((path, page)) = elsewhere {
-        output::write_file(path, &page)?;
-        report = Some(path.clone());
-    }
+    let among = written.files.iter().find(|name| *name == output::REPORT);
+    let report = match place {
+        Some(ReportPlace::File(path)) => Some(path.clone()),
+        Some(ReportPlace::None) | None => among.map(|name| written.folder.join(name)),
+    };
     if let Some(path) = report {
         words.push_str(&labelled("report", &path.display().to_string()));
     }

@@ -13,6 +13,7 @@ use crate::quantity::signed;
 
 pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
     let form = form(arguments)?;
+    let place = arguments.place.reserve(&[&arguments.model], console)?;
     let mut model = Model::read(&arguments.model, &arguments.chain.selection())?;
     if !arguments.offset.is_empty() {
         let offsets = offsets(&arguments.offset, &model.robot)?;
@@ -33,7 +34,7 @@ pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
     for note in &converted.notes {
         console.warning(note);
     }
-    console.deliver(&converted.text, arguments.out.as_deref())?;
+    console.deliver(converted.text, place)?;
     Ok(DONE)
 }
 
@@ -74,9 +75,9 @@ fn unknown_joint(name: &str, robot: &Robot) -> String {
 }
 
 fn form(arguments: &Convert) -> Result<ModelFormat> {
-    let named = arguments.out.as_ref().and_then(ModelFormat::of_path);
+    let named = arguments.place.out.as_ref().and_then(ModelFormat::of_path);
     arguments.to.map(ModelFormat::from).or(named).ok_or_else(|| {
-        let message = match &arguments.out {
+        let message = match &arguments.place.out {
             Some(out) => format!(
                 "found no form in the name `{}`, expected .urdf or .toml, or --to urdf|toml",
                 out.display()

@@ -13,6 +13,7 @@ use crate::args::Offsets;
 use crate::console::Console;
 
 pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
+    let place = arguments.place.reserve(&[&arguments.nominal, &arguments.actual], console)?;
     let selection = arguments.chain.selection();
     let nominal = Model::read(&arguments.nominal, &selection)?;
     // Other forms than URDF have one chain only; a calibration beside a URDF that has several is compared with the chain chosen there.
@@ -38,8 +39,8 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
     }
     let found = report::Offsets::new(&nominal, &actual, &explanation, [base_reason, tip_reason]);
     let text = if arguments.json { report::json(&found)? } else { found.text() };
-    if arguments.json || arguments.out.is_some() {
-        console.deliver(&text, arguments.out.as_deref())?;
+    if arguments.json || place.is_some() {
+        console.deliver(text, place)?;
     } else {
         console.say(&text)?;
     }

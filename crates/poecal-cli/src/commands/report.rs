@@ -1,7 +1,7 @@
 //! `poecal report`: the report of a finished calibration, made again from its files.
 
 use poecal::io::calibration_file::CalibrationFile;
-use poecal::io::output;
+use poecal::io::output::{self, Existing, FilePlace};
 use poecal::io::residuals::Residuals;
 use poecal::{Result, report as text};
 
@@ -13,12 +13,13 @@ use crate::style::labelled;
 pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
     let beside = |name: &str| arguments.calibration.with_file_name(name);
     let out = arguments.out.clone().unwrap_or_else(|| beside(output::REPORT));
-    output::check_file(&out)?;
-    let file = CalibrationFile::read(&arguments.calibration)?;
     let path = arguments.residuals.clone().unwrap_or_else(|| beside("residuals.csv"));
+    let existing = if arguments.force { Existing::Replaced } else { Existing::Own };
+    let place = FilePlace::reserve(&out, existing, &[&arguments.calibration, &path], &mut console.warner())?;
+    let file = CalibrationFile::read(&arguments.calibration)?;
     let residuals = Residuals::read(&path)?;
     let page = text::calibration_page(&file, &residuals).map_err(|error| error.in_file(&path))?;
-    output::write_file(&out, &page)?;
+    place.write(page)?;
     console.say(&labelled("written", &out.display().to_string()))?;
     Ok(DONE)
 }

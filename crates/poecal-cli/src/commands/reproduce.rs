@@ -1,6 +1,6 @@
 //! `poecal reproduce`: the experiment of a paper and what became of its claims, or what gross errors do.
 
-use poecal::io::output;
+use poecal::io::output::{self, Contents, Existing, FolderPlace};
 use poecal::reproduce::{Options, breakdown, lou2009};
 use poecal::{Result, report};
 
@@ -10,7 +10,9 @@ use crate::console::Console;
 use crate::style::labelled;
 
 pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> {
-    output::check_folder(&arguments.out, arguments.force)?;
+    let existing = Existing::forced(arguments.force);
+    let place =
+        FolderPlace::reserve(&arguments.out, Contents::Reproduction, existing, &[], &mut console.warner())?;
     let options = Options {
         trials: arguments.trials as usize,
         starts: arguments.starts as usize,
@@ -26,7 +28,7 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> 
     };
     bar.finish_and_clear();
     let (files, words) = found?;
-    let written = output::write_reproduction(&arguments.out, arguments.force, &files)?;
+    let written = output::write_reproduction(place, &files)?;
     console.say(&words)?;
     console
         .say(&labelled("written", &format!("{}\n{}", written.folder.display(), written.files.join(", "))))?;

@@ -2,7 +2,7 @@
 
 use poecal::Result;
 use poecal::io::model::Model;
-use poecal::io::output::{self, Session};
+use poecal::io::output::{self, Contents, Existing, FolderPlace, Session};
 use poecal::simulate::{Kind, Simulation};
 
 use crate::DONE;
@@ -11,7 +11,14 @@ use crate::console::Console;
 use crate::style::labelled;
 
 pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
-    output::check_folder(&arguments.out, arguments.force)?;
+    let existing = Existing::forced(arguments.force);
+    let place = FolderPlace::reserve(
+        &arguments.out,
+        Contents::Simulation,
+        existing,
+        &[&arguments.model],
+        &mut console.warner(),
+    )?;
     let model = Model::read(&arguments.model, &arguments.chain.selection())?;
     let simulation = Simulation {
         error_rotation_rad: arguments.errors.angle_rad,
@@ -36,7 +43,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         held_out: held_out.as_ref(),
         command: &command,
     };
-    let written = output::write_simulation(&arguments.out, arguments.force, &model, &session)?;
+    let written = output::write_simulation(place, &model, &session)?;
     for note in &written.notes {
         console.warning(note);
     }

@@ -9,6 +9,8 @@ mod folder;
 mod identify;
 mod init;
 mod offsets;
+#[cfg(unix)]
+mod places;
 mod report;
 mod reproduce;
 mod session;

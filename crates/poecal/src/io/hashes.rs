@@ -1,12 +1,13 @@
 //! Checksums of input files, by which a reader can tell that a result came from the files at hand.
 
 use std::fmt::Write as _;
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use sha2::{Digest as _, Sha256};
 
+use super::disk::{self, FoundKind};
+use super::source::is_standard_input;
 use crate::error::{Error, ErrorKind, Result};
 
 /// SHA-256 of a file, as hexadecimal digits; none of what can be read only once, such as a pipe.
@@ -14,11 +15,12 @@ use crate::error::{Error, ErrorKind, Result};
 /// # Errors
 /// [`ErrorKind::File`] if it cannot be read.
 pub(super) fn sha256(path: &Path) -> Result<Option<String>> {
-    if path.metadata().is_ok_and(|found| !found.is_file()) {
+    let disk = disk::here();
+    if is_standard_input(path) || disk.follow(path).is_ok_and(|found| found.kind != FoundKind::File) {
         return Ok(None);
     }
     let read = || {
-        let mut file = Hashing::new(File::open(path)?);
+        let mut file = Hashing::new(disk.open(path)?);
         io::copy(&mut file, &mut io::sink())?;
         Ok(Some(file.sha256()))
     };

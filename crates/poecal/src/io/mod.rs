@@ -1,6 +1,7 @@
 //! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.
 
 pub mod calibration_file;
+pub mod disk;
 mod hashes;
 pub mod measurements;
 mod mimic;
@@ -13,6 +14,7 @@ mod proof;
 pub mod residuals;
 pub mod robot_toml;
 pub mod settings;
+mod source;
 mod source_text;
 pub mod urdf;
 

@@ -3,12 +3,22 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use super::disk::{self, Disk};
 use crate::error::{Error, ErrorKind, Result};
 
 /// The one path of the file that a path leads to. One that leads nowhere stays as it is, for reading it to complain about.
 #[must_use]
 pub fn actual(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+    disk::here().actual(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Whether two paths lead to one file, by links or second names too.
+pub(super) fn are_same(disk: &dyn Disk, one: &Path, other: &Path) -> bool {
+    let (Ok(one_found), Ok(other_found)) = (disk.follow(one), disk.follow(other)) else { return false };
+    match (one_found.identity, other_found.identity) {
+        (Some(one), Some(other)) => one == other,
+        _ => disk.actual(one).ok() == disk.actual(other).ok(),
+    }
 }
 
 /// Refuses a measurement file that is named twice: the same rows twice are not more data.

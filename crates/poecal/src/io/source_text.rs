@@ -1,24 +1,26 @@
 //! Text files: reading them whole, and turning byte offsets into lines and columns.
 
+use std::io::Read as _;
 use std::path::Path;
 
+use super::source;
 use crate::error::{Error, ErrorKind, Result};
 
 /// The text of a file. `expected` names what the file should be, for the messages.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if it is a directory, missing, unreadable, empty or not UTF-8.
+/// [`ErrorKind::File`] if it is a directory, missing, unreadable, too large, empty or not UTF-8.
 pub(super) fn read(path: &Path, expected: &str) -> Result<String> {
+    read_up_to(path, expected, source::LARGEST_TEXT)
+}
+
+/// [`read()`], of a file that may be larger than others.
+pub(super) fn read_up_to(path: &Path, expected: &str, largest: u64) -> Result<String> {
     let file_error = |message: String| Error::new(ErrorKind::File, message).in_file(path);
-    if path.is_dir() {
-        return Err(file_error(format!("found a directory, expected {expected}")));
-    }
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            file_error(format!("found no such file, expected {expected}: check the path"))
-        }
-        _ => file_error(format!("the file cannot be read ({error}), expected {expected}")),
-    })?;
+    let mut bytes = Vec::new();
+    source::open(path, expected, largest)?
+        .read_to_end(&mut bytes)
+        .map_err(|error| source::unreadable(path, &error, expected))?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let (line, column) = position(&String::from_utf8_lossy(error.as_bytes()), valid);

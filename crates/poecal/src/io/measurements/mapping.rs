@@ -11,9 +11,9 @@ use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 use super::cells::Separator;
 use super::number::DecimalSign;
 use super::orientation::OrientationForm;
-use super::text::read_text;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::source_text;
 
 /// How a file's columns become ours, read from a TOML file (docs/file-formats.md, "Mapping file").
 ///
@@ -137,7 +137,7 @@ impl ColumnMap {
     /// [`ErrorKind::File`] if it cannot be read, else as [`ColumnMap::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        ColumnMap::parse(&read_text(path, "a column mapping (TOML)")?, path)
+        ColumnMap::parse(&source_text::read(path, "a column mapping (TOML)")?, path)
     }
 
     /// A mapping from its TOML text; `path` is what messages call it.

@@ -1,45 +1,22 @@
 //! The text of a file and its lines.
 
-use std::fs::File;
-use std::io::{self, Read};
+use std::io::Read;
 use std::path::Path;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::hashes::Hashing;
+use crate::io::source::{self, Input, LARGEST_TABLE, unreadable};
 use crate::io::source_text::position;
-
-/// The whole text of a file; `expected` says what it should be.
-pub(super) fn read_text(path: &Path, expected: &str) -> Result<String> {
-    let mut bytes = Vec::new();
-    open(path, expected)?.read_to_end(&mut bytes).map_err(|error| unreadable(path, &error, expected))?;
-    String::from_utf8(bytes)
-        .map_err(|error| not_utf8(path, error.as_bytes(), error.utf8_error().valid_up_to(), 0))
-}
-
-fn open(path: &Path, expected: &str) -> Result<File> {
-    let file_error = |found: &str| {
-        Error::new(ErrorKind::File, format!("found {found}, expected {expected}; check the name"))
-            .in_file(path)
-    };
-    if path.is_dir() {
-        return Err(file_error("a directory"));
-    }
-    File::open(path).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => file_error("no file of this name"),
-        _ => unreadable(path, &error, expected),
-    })
-}
-
-fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Error {
-    Error::new(ErrorKind::File, format!("cannot be read ({error}), expected {expected}")).in_file(path)
-}
 
 /// Bytes of a file that are held at a time, about.
 const BLOCK: usize = 1 << 18;
 
+/// Bytes of a line, at most.
+const LONGEST_LINE: usize = 16 << 20;
+
 /// Where a text comes from.
 enum Source<'a> {
-    File(Hashing<File>),
+    File(Hashing<Input>),
     Text(&'a [u8]),
 }
 
@@ -64,7 +41,7 @@ pub(super) struct Blocks<'a> {
 impl<'a> Blocks<'a> {
     /// The blocks of a file; `expected` says what it should be.
     pub(super) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
-        let source = Source::File(Hashing::new(open(path, expected)?));
+        let source = Source::File(Hashing::new(source::open(path, expected, LARGEST_TABLE)?));
         Ok(Blocks { expected, ..Blocks::of(path, source, BLOCK) })
     }
 
@@ -102,8 +79,14 @@ impl<'a> Blocks<'a> {
             if let Some(end) = end {
                 self.rest.extend(bytes.drain(known + end + 1..));
             }
-            if end.is_some() || more == 0 {
+            let is_text = memchr::memchr(0, bytes.get(known..).unwrap_or_default()).is_none();
+            if end.is_some() || more == 0 || !is_text {
                 break;
+            }
+            if bytes.len() > LONGEST_LINE {
+                let message =
+                    format!("found a line longer than {} MiB, expected a table (CSV)", LONGEST_LINE >> 20);
+                return Err(Error::new(ErrorKind::Syntax, message).at_line(self.path, self.lines + 1));
             }
         }
         let is_first = self.newline.is_none();

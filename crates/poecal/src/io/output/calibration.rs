@@ -1,9 +1,8 @@
 //! The results of a calibration.
 
 use std::borrow::Cow;
-use std::path::Path;
 
-use super::{NewFile, Written, check_folder, robot_files, write_files};
+use super::{FilePlace, FolderPlace, NewFile, Written, robot_files, write_files};
 use crate::calibration::Calibration;
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
@@ -12,7 +11,7 @@ use crate::io::residuals::Rows;
 use crate::robot::Robot;
 
 /// Every name that a calibration may write.
-const OWN_NAMES: [&str; 5] =
+pub(super) const OWN_NAMES: [&str; 5] =
     ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv", REPORT];
 /// A page in pieces that follow each other, so that those which never change need not be copied.
 pub type Page = Vec<Cow<'static, str>>;
@@ -47,20 +46,20 @@ pub struct Results<'a> {
     pub report: Option<Page>,
 }
 
-/// Writes a calibration's files. They are written beside the folder first, read back and compared with the fitted robot on 1,000
-/// configurations, and only then put in place.
+/// Writes a calibration's files. They are written to a staging folder first, read back and compared with the fitted robot on 1,000
+/// configurations, and only then put in place. The report goes to the place `elsewhere` if there is one.
 ///
 /// # Errors
 /// [`ErrorKind::File`](crate::ErrorKind::File) if something cannot be written; [`ErrorKind::Export`](crate::ErrorKind::Export) if
 /// a file read back differs from the fit by more than 1e-9 m or rad. Nothing is left behind then.
 pub fn write(
-    folder: &Path,
-    force: bool,
+    place: FolderPlace,
+    elsewhere: Option<FilePlace>,
     model: &Model,
     calibration: &Calibration,
     results: Results<'_>,
 ) -> Result<Written> {
-    write_robot(folder, force, model, &calibration.robot_with_targets(), results)
+    write_robot(place, elsewhere, model, &calibration.robot_with_targets(), results)
 }
 
 /// [`write()`] for a calibrated robot with its targets, where the calibration itself is no longer at hand.
@@ -68,18 +67,19 @@ pub fn write(
 /// # Errors
 /// As [`write()`].
 pub fn write_robot(
-    folder: &Path,
-    force: bool,
+    place: FolderPlace,
+    elsewhere: Option<FilePlace>,
     model: &Model,
     robot: &Robot,
     results: Results<'_>,
 ) -> Result<Written> {
-    check_folder(folder, force)?;
     let mut notes = Vec::new();
     let json = results.file.to_text()?;
     let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, robot)];
     files.extend(robot_files("calibrated", model, robot, &mut notes)?);
     files.push(NewFile::of_rows("residuals.csv", results.residuals));
-    files.extend(results.report.map(|page| NewFile::of_page(REPORT, page)));
-    write_files(folder, &files, &OWN_NAMES, notes)
+    let mut report = results.report;
+    let elsewhere = elsewhere.and_then(|file| report.take().map(|page| (file, page)));
+    files.extend(report.map(|page| NewFile::of_page(REPORT, page)));
+    write_files(place, &files, elsewhere, notes)
 }

@@ -1,18 +1,29 @@
-//! Output folders: written whole or not at all, and every robot model in them proven equal to the one it is of.
+//! Output files and folders: written whole or not at all, and every robot model in them proven equal to the one it is of.
+//!
+//! A place is reserved before the work ([`FolderPlace`], [`FilePlace`]). Files go into a staging folder (`staging.rs`), are read
+//! back from there and put in place together (`exchange.rs`, `journal.rs`). What an interrupted run leaves, the next run settles
+//! (`leftovers.rs`), or a signal's handler at once ([`clean_up`]).
 
 mod calibration;
+mod exchange;
+mod file;
+mod interrupted;
+mod journal;
+mod leftovers;
+mod place;
 mod project;
 mod reproduction;
 mod simulation;
 mod staging;
 
 pub use calibration::{Page, REPORT, Results, write, write_robot};
+pub use file::FilePlace;
+pub use interrupted::clean_up;
+pub use place::{Contents, Existing, FolderPlace};
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
 pub use simulation::{Session, write_simulation};
-pub use staging::{check_file, check_folder, write_file};
 
-use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +34,6 @@ use super::robot_toml;
 use super::urdf::{self, ChainSelection};
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Robot;
-use staging::Staging;
 
 /// Configurations on which written models are compared with their robot.
 const CONFIGURATIONS: usize = 1000;
@@ -85,7 +95,7 @@ impl<'a> NewFile<'a> {
         }
     }
 
-    fn write_to(&self, out: &mut File) -> std::io::Result<()> {
+    fn write_to(&self, out: &mut (dyn Write + Send)) -> std::io::Result<()> {
         match &self.content {
             Content::Text(pieces) => pieces.iter().try_for_each(|piece| out.write_all(piece.as_bytes())),
             Content::Rows(rows) => rows.write_to(out),
@@ -158,15 +168,30 @@ fn robot_files<'a>(
     }
 }
 
-/// Writes the files beside the folder first, proves the models among them, and only then puts all in place. Of `own_names`, those
-/// that an earlier run left and this one does not write go, so that a folder never mixes two runs.
-fn write_files(folder: &Path, files: &[NewFile], own_names: &[&str], notes: Vec<String>) -> Result<Written> {
-    let staging = Staging::new(folder)?;
+/// Writes the files to their staging folder, proves the models among them, and only then puts all in place, `elsewhere` too. Own
+/// files of an earlier run that this one does not write go, so that a folder never mixes two runs.
+fn write_files(
+    mut place: FolderPlace,
+    files: &[NewFile],
+    elsewhere: Option<(FilePlace, Page)>,
+    mut notes: Vec<String>,
+) -> Result<Written> {
     for file in files {
-        staging.write(&file.name, |out| file.write_to(out))?;
+        place.stage(file)?;
     }
-    let largest = prove(files, staging.folder(), folder)?;
+    let folder = place.named.clone();
+    let largest = prove(files, &place.new_files(), &folder)?;
     let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
-    staging.put_in_place(&names, own_names)?;
-    Ok(Written { folder: folder.to_path_buf(), files: names, largest, notes })
+    let elsewhere = elsewhere.map(|(mut file, page)| file.stage(page).map(|()| file)).transpose()?;
+    let _undisturbed = interrupted::undisturbed();
+    let put = elsewhere.map(FilePlace::put).transpose()?;
+    match place.put(&names) {
+        Ok(said) => notes.extend(said),
+        Err(error) => {
+            put.into_iter().for_each(file::Put::take_back);
+            return Err(error);
+        }
+    }
+    put.into_iter().for_each(file::Put::finish);
+    Ok(Written { folder, files: names, largest, notes })
 }

@@ -2,15 +2,17 @@
 
 use std::path::Path;
 
-use super::staging::check_parent;
-use super::{NewFile, Written, write_files};
-use crate::error::{Error, ErrorKind, Result};
+use super::{Contents, Existing, FolderPlace, NewFile, Written, write_files};
+use crate::error::Result;
 use crate::io::measurements::{plan, template};
 use crate::io::model::{Model, ModelSource};
 use crate::io::source_text;
 use crate::io::urdf::ChainSelection;
 use crate::simulate::Kind;
 
+/// Every name that a project may have.
+pub(super) const OWN_NAMES: [&str; 7] =
+    ["robot.urdf", "robot.toml", "robot.json", "measurements.csv", "joints.csv", "poecal.toml", "README.md"];
 const SETTINGS: &str = include_str!("project/poecal.toml");
 const README: &str = include_str!("project/README.md");
 
@@ -96,18 +98,12 @@ const ROTATION_NOISE: &str =
 /// may have filled them in.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if one of the files exists or cannot be written; [`ErrorKind::Model`] if a joint has the name of a measured
+/// [`ErrorKind::File`](crate::ErrorKind::File) if one of the files exists or cannot be written;
+/// [`ErrorKind::Model`](crate::ErrorKind::Model) if a joint has the name of a measured
 /// column. Nothing is left behind then.
 pub fn write_project(folder: &Path, project: &Project) -> Result<Written> {
-    if folder.exists() && !folder.is_dir() {
-        let message = "found a file, expected a folder for the project: choose another with --out";
-        return Err(Error::new(ErrorKind::File, message).in_file(folder));
-    }
-    check_parent(folder)?;
-    let files = project.files()?;
-    if let Some(taken) = files.iter().map(|file| folder.join(&file.name)).find(|path| path.exists()) {
-        let message = "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out";
-        return Err(Error::new(ErrorKind::File, message).in_file(taken));
-    }
-    write_files(folder, &files, &[], Vec::new())
+    let mut notes = Vec::new();
+    let place =
+        FolderPlace::reserve(folder, Contents::Project, Existing::Kept, &[], &mut |note| notes.push(note))?;
+    write_files(place, &project.files()?, None, notes)
 }

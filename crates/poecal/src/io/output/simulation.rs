@@ -1,10 +1,8 @@
 //! A simulated session as files: both robots, the measurements and the truth.
 
-use std::path::Path;
-
 use serde::Serialize;
 
-use super::{NewFile, Written, check_folder, robot_files, write_files};
+use super::{FolderPlace, NewFile, Written, robot_files, write_files};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::{FrameEntry, FrameWord, JointEntry, PoseEntry, RobotEntry};
 use crate::io::measurements;
@@ -16,7 +14,7 @@ use crate::simulate::{Kind, Simulated, Simulation};
 const SCHEMA: &str = "poecal-truth-1";
 
 /// Every name that a simulated session may write.
-const OWN_NAMES: [&str; 7] = [
+pub(super) const OWN_NAMES: [&str; 7] = [
     "nominal.urdf",
     "nominal.toml",
     "actual.urdf",
@@ -109,8 +107,7 @@ impl TruthFile {
 /// # Errors
 /// [`ErrorKind::File`] if something cannot be written; [`ErrorKind::Export`] if a model read back differs by more than 1e-9 m or
 /// rad. Nothing is left behind then.
-pub fn write_simulation(folder: &Path, force: bool, model: &Model, session: &Session) -> Result<Written> {
-    check_folder(folder, force)?;
+pub fn write_simulation(place: FolderPlace, model: &Model, session: &Session) -> Result<Written> {
     let Session { simulation, made, command, .. } = session;
     let noise =
         Noise { position_m: simulation.noise_position_m, rotation_rad: simulation.noise_rotation_rad };
@@ -129,5 +126,5 @@ pub fn write_simulation(folder: &Path, force: bool, model: &Model, session: &Ses
         files.push(NewFile::new("held_out.csv", text));
     }
     files.push(NewFile::new("truth.json", TruthFile::new(session).to_text()?));
-    write_files(folder, &files, &OWN_NAMES, notes)
+    write_files(place, &files, None, notes)
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{COLUMNS, Judged, ModelErrors, ResidualRow, Residuals, unit};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::source::LARGEST_TABLE;
 use crate::io::source_text;
 use crate::robot::JointKind;
 
@@ -17,7 +18,7 @@ impl Residuals {
     /// [`ErrorKind::File`] if it cannot be read, [`ErrorKind::Syntax`] if it is no `residuals.csv` of this version.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        Self::parse(&source_text::read(path, EXPECTED)?, path)
+        Self::parse(&source_text::read_up_to(path, EXPECTED, LARGEST_TABLE)?, path)
     }
 
     /// Reads the text of a file.

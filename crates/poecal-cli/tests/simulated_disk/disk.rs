@@ -1,0 +1,553 @@
+//! A disk in memory that fails as it is told, and forgets what was not synced when the power goes.
+//!
+//! Names are kept as a journaling file system keeps them: in the order in which they changed. A folder that is synced has all its
+//! changes so far kept, with all that came before them; of later ones as many as chance wills are lost, the last ones first. The
+//! bytes of a file that was not synced are anything afterwards: all there, none, some, or zeros.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsString;
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use poecal::io::disk::{Disk, Found, FoundKind, Lock, Output};
+
+/// The folder that relative paths begin in.
+const HERE: &str = "/work";
+/// What a run gets from then on when the machine has stopped.
+const STOPPED: &str = "the machine has stopped";
+
+/// Small numbers by chance (splitmix64).
+#[derive(Clone, Debug)]
+pub(crate) struct Chance(pub(crate) u64);
+
+impl Chance {
+    pub(crate) fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % bound.max(1) as u64) as usize
+    }
+
+    pub(crate) fn one_in(&mut self, count: usize) -> bool {
+        self.below(count) == 0
+    }
+}
+
+/// What goes wrong.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Faults {
+    /// Before this operation, the machine stops.
+    pub(crate) stop_before: Option<usize>,
+    /// These operations fail.
+    pub(crate) fail: BTreeSet<usize>,
+    /// Bytes that can be written in all.
+    pub(crate) room: Option<usize>,
+    /// No call writes all that it is given.
+    pub(crate) short_writes: bool,
+    /// Folders cannot be exchanged.
+    pub(crate) no_exchange: bool,
+    /// Files have one name only.
+    pub(crate) no_links: bool,
+    /// The folder `/work/out` is a disk of its own.
+    pub(crate) mounted: bool,
+    /// What else is left to chance.
+    pub(crate) chance: Option<Chance>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Node {
+    Folder,
+    File(usize),
+}
+
+type Tree = BTreeMap<PathBuf, Node>;
+
+#[derive(Clone, Debug, Default)]
+struct Content {
+    bytes: Vec<u8>,
+    /// What is on the disk for certain.
+    synced: Option<Vec<u8>>,
+}
+
+struct State {
+    files: Vec<Content>,
+    tree: Tree,
+    /// The names as they were before each change since the last that is on the disk for certain, with the folders it touched.
+    unsynced: Vec<(Tree, Vec<PathBuf>)>,
+    locks: BTreeSet<PathBuf>,
+    faults: Faults,
+    operations: usize,
+    stopped: bool,
+    written: usize,
+    failures: usize,
+}
+
+/// The disk. Its clones are the same disk.
+#[derive(Clone)]
+pub(crate) struct SimulatedDisk(Arc<Mutex<State>>);
+
+fn error(kind: ErrorKind) -> io::Error {
+    kind.into()
+}
+
+fn whole(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for part in Path::new(HERE).join(path).components() {
+        match part {
+            Component::ParentDir => drop(out.pop()),
+            Component::CurDir => {}
+            other => out.push(other),
+        }
+    }
+    out
+}
+
+impl State {
+    /// Counts an operation, which may fail.
+    fn begin(&mut self) -> io::Result<()> {
+        if self.stopped || self.faults.stop_before == Some(self.operations) {
+            self.stopped = true;
+            return Err(io::Error::other(STOPPED));
+        }
+        self.operations += 1;
+        if self.faults.fail.contains(&(self.operations - 1)) {
+            self.failures += 1;
+            let kinds = [ErrorKind::Other, ErrorKind::StorageFull, ErrorKind::PermissionDenied];
+            let chance = self.faults.chance.get_or_insert(Chance(1));
+            return Err(io::Error::new(kinds[chance.below(3)], "a simulated failure"));
+        }
+        Ok(())
+    }
+
+    fn folder(&self, path: &Path) -> io::Result<()> {
+        match self.tree.get(path) {
+            Some(Node::Folder) => Ok(()),
+            Some(_) => Err(error(ErrorKind::NotADirectory)),
+            None => Err(error(ErrorKind::NotFound)),
+        }
+    }
+
+    fn children(&self, path: &Path) -> Vec<PathBuf> {
+        self.tree.keys().filter(|other| other.parent() == Some(path)).cloned().collect()
+    }
+
+    /// Changes names.
+    fn change(&mut self, touched: &[&Path], change: impl FnOnce(&mut Tree)) {
+        let parents = touched.iter().filter_map(|path| path.parent()).map(Path::to_owned).collect();
+        self.unsynced.push((self.tree.clone(), parents));
+        change(&mut self.tree);
+    }
+
+    fn same_disk(&self, one: &Path, other: &Path) -> io::Result<()> {
+        let inside = |path: &Path| path.starts_with("/work/out") && path != Path::new("/work/out");
+        if self.faults.mounted && inside(one) != inside(other) {
+            return Err(error(ErrorKind::CrossesDevices));
+        }
+        if self.faults.mounted && [one, other].contains(&Path::new("/work/out")) {
+            return Err(error(ErrorKind::ResourceBusy));
+        }
+        Ok(())
+    }
+
+    fn moved(&mut self, from: &Path, to: &Path) {
+        let under: Vec<PathBuf> = self.tree.keys().filter(|path| path.starts_with(from)).cloned().collect();
+        let (from, to) = (from.to_owned(), to.to_owned());
+        self.change(&[&from.clone(), &to.clone()], |tree| {
+            for path in under {
+                let rest = path.strip_prefix(&from).unwrap();
+                let new = if rest.as_os_str().is_empty() { to.clone() } else { to.join(rest) };
+                let node = tree.remove(&path).unwrap();
+                tree.insert(new, node);
+            }
+        });
+    }
+}
+
+impl SimulatedDisk {
+    pub(crate) fn new() -> Self {
+        let tree = [("/", Node::Folder), (HERE, Node::Folder)].map(|(path, node)| (path.into(), node)).into();
+        SimulatedDisk(Arc::new(Mutex::new(State {
+            files: Vec::new(),
+            tree,
+            unsynced: Vec::new(),
+            locks: BTreeSet::new(),
+            faults: Faults::default(),
+            operations: 0,
+            stopped: false,
+            written: 0,
+            failures: 0,
+        })))
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap()
+    }
+
+    /// A disk of the same content, all of it synced.
+    pub(crate) fn copy(&self) -> Self {
+        let disk = SimulatedDisk::new();
+        let state = self.state();
+        let mut new = disk.state();
+        new.tree = state.tree.clone();
+        new.files = state.files.clone();
+        for file in &mut new.files {
+            file.synced = Some(file.bytes.clone());
+        }
+        drop(new);
+        disk
+    }
+
+    /// Puts a file there, synced.
+    pub(crate) fn put(&self, path: &str, bytes: &[u8]) {
+        let mut state = self.state();
+        let path = whole(Path::new(path));
+        for folder in path.ancestors().skip(1) {
+            state.tree.entry(folder.to_owned()).or_insert(Node::Folder);
+        }
+        state.files.push(Content { bytes: bytes.to_vec(), synced: Some(bytes.to_vec()) });
+        let node = Node::File(state.files.len() - 1);
+        state.tree.insert(path, node);
+    }
+
+    /// From now on this goes wrong. Operations are counted from here.
+    pub(crate) fn set_faults(&self, faults: Faults) {
+        let mut state = self.state();
+        state.faults = faults;
+        state.operations = 0;
+        state.written = 0;
+    }
+
+    pub(crate) fn operations(&self) -> usize {
+        self.state().operations
+    }
+
+    /// Operations that have failed.
+    pub(crate) fn failures(&self) -> usize {
+        self.state().failures
+    }
+
+    pub(crate) fn has_stopped(&self) -> bool {
+        self.state().stopped
+    }
+
+    /// Starts the machine again: locks are gone, nothing fails, and if the power had gone, so is what was not synced.
+    pub(crate) fn restart(&self, power_was_lost: bool, chance: &mut Chance) {
+        let mut state = self.state();
+        state.locks.clear();
+        state.stopped = false;
+        state.faults = Faults::default();
+        if power_was_lost {
+            let kept = chance.below(state.unsynced.len() + 1);
+            if let Some((tree, _)) = state.unsynced.get(kept) {
+                state.tree = tree.clone();
+            }
+            for file in &mut state.files {
+                let now = std::mem::take(&mut file.bytes);
+                let synced = file.synced.clone().unwrap_or_default();
+                file.bytes = match (file.synced.as_ref() == Some(&now), chance.below(4)) {
+                    (true, _) | (_, 0) => now,
+                    (_, 1) => synced,
+                    (_, 2) => now[..chance.below(now.len() + 1)].to_vec(),
+                    _ => vec![0; now.len()],
+                };
+                file.synced = Some(file.bytes.clone());
+            }
+        }
+        state.unsynced.clear();
+    }
+
+    /// Every file below a folder with its bytes, and every folder.
+    pub(crate) fn listing(&self, folder: &str) -> BTreeMap<PathBuf, Option<Vec<u8>>> {
+        let state = self.state();
+        let below = state.tree.iter().filter(|(path, _)| path.starts_with(whole(Path::new(folder))));
+        let content = |node: &Node| match node {
+            Node::Folder => None,
+            Node::File(number) => Some(state.files[*number].bytes.clone()),
+        };
+        below.map(|(path, node)| (path.clone(), content(node))).collect()
+    }
+}
+
+/// A file that is read or written.
+struct Handle {
+    disk: SimulatedDisk,
+    number: usize,
+    at: usize,
+}
+
+impl Read for Handle {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let mut state = self.disk.state();
+        state.begin()?;
+        let bytes = &state.files[self.number].bytes;
+        let count = into.len().min(bytes.len() - self.at);
+        into[..count].copy_from_slice(&bytes[self.at..self.at + count]);
+        self.at += count;
+        Ok(count)
+    }
+}
+
+impl Write for Handle {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut state = self.disk.state();
+        state.begin()?;
+        let mut count = bytes.len();
+        if state.faults.short_writes && count > 1 {
+            let chance = state.faults.chance.get_or_insert(Chance(1));
+            // Not so short that a page would take long.
+            count = (1 + chance.below(count)).max(count / 4);
+        }
+        if let Some(room) = state.faults.room {
+            count = count.min(room.saturating_sub(state.written));
+            if count == 0 && !bytes.is_empty() {
+                state.failures += 1;
+                return Err(error(ErrorKind::StorageFull));
+            }
+        }
+        state.written += count;
+        state.files[self.number].bytes.extend(&bytes[..count]);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Output for Handle {
+    fn sync(&mut self) -> io::Result<()> {
+        let mut state = self.disk.state();
+        state.begin()?;
+        let file = &mut state.files[self.number];
+        file.synced = Some(file.bytes.clone());
+        Ok(())
+    }
+}
+
+/// A lock, until it is dropped.
+struct Held(SimulatedDisk, PathBuf);
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        let mut state = self.0.state();
+        if !state.stopped {
+            state.locks.remove(&self.1);
+        }
+    }
+}
+
+impl Disk for SimulatedDisk {
+    fn look(&self, path: &Path) -> io::Result<Found> {
+        let mut state = self.state();
+        state.begin()?;
+        match state.tree.get(&whole(path)) {
+            Some(Node::Folder) => Ok(Found { kind: FoundKind::Folder, identity: None }),
+            Some(Node::File(number)) => {
+                Ok(Found { kind: FoundKind::File, identity: Some((1, *number as u64)) })
+            }
+            None => Err(error(ErrorKind::NotFound)),
+        }
+    }
+
+    fn follow(&self, path: &Path) -> io::Result<Found> {
+        self.look(path)
+    }
+
+    fn actual(&self, path: &Path) -> io::Result<PathBuf> {
+        self.look(path).map(|_| whole(path))
+    }
+
+    fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
+        let mut state = self.state();
+        state.begin()?;
+        state.folder(&whole(folder))?;
+        let children = state.children(&whole(folder));
+        Ok(children.iter().map(|path| path.file_name().unwrap().to_owned()).collect())
+    }
+
+    fn open(&self, path: &Path) -> io::Result<Box<dyn Read + Send>> {
+        let mut state = self.state();
+        state.begin()?;
+        match state.tree.get(&whole(path)) {
+            Some(Node::File(number)) => Ok(Box::new(Handle { disk: self.clone(), number: *number, at: 0 })),
+            Some(Node::Folder) => Err(error(ErrorKind::IsADirectory)),
+            None => Err(error(ErrorKind::NotFound)),
+        }
+    }
+
+    fn standard_input(&self) -> io::Result<Box<dyn Read + Send>> {
+        Ok(Box::new(io::empty()))
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn Output>> {
+        let mut state = self.state();
+        state.begin()?;
+        let path = whole(path);
+        state.folder(path.parent().unwrap())?;
+        if state.tree.contains_key(&path) {
+            return Err(error(ErrorKind::AlreadyExists));
+        }
+        state.files.push(Content::default());
+        let number = state.files.len() - 1;
+        state.change(&[&path.clone()], |tree| {
+            tree.insert(path, Node::File(number));
+        });
+        Ok(Box::new(Handle { disk: self.clone(), number, at: 0 }))
+    }
+
+    fn stream(&self, _: &Path) -> io::Result<Box<dyn Output>> {
+        Err(error(ErrorKind::Unsupported))
+    }
+
+    fn create_folder(&self, path: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        state.begin()?;
+        let path = whole(path);
+        state.folder(path.parent().unwrap())?;
+        if state.tree.contains_key(&path) {
+            return Err(error(ErrorKind::AlreadyExists));
+        }
+        state.change(&[&path.clone()], |tree| {
+            tree.insert(path, Node::Folder);
+        });
+        Ok(())
+    }
+
+    fn remove_file(&self, path: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        state.begin()?;
+        let path = whole(path);
+        match state.tree.get(&path) {
+            Some(Node::File(_)) => Ok(state.change(&[&path.clone()], |tree| {
+                tree.remove(&path);
+            })),
+            Some(Node::Folder) => Err(error(ErrorKind::IsADirectory)),
+            None => Err(error(ErrorKind::NotFound)),
+        }
+    }
+
+    fn remove_folder(&self, path: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        state.begin()?;
+        let path = whole(path);
+        state.folder(&path)?;
+        if !state.children(&path).is_empty() {
+            return Err(error(ErrorKind::DirectoryNotEmpty));
+        }
+        state.change(&[&path.clone()], |tree| {
+            tree.remove(&path);
+        });
+        Ok(())
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        state.begin()?;
+        let (from, to) = (whole(from), whole(to));
+        state.same_disk(&from, &to)?;
+        state.folder(to.parent().unwrap())?;
+        match (state.tree.get(&from), state.tree.get(&to)) {
+            (None, _) => Err(error(ErrorKind::NotFound)),
+            (Some(Node::File(one)), Some(Node::File(other))) if one == other => Ok(()),
+            (Some(Node::File(_)), Some(Node::File(_)) | None) => {
+                state.moved(&from, &to);
+                Ok(())
+            }
+            _ => Err(error(ErrorKind::IsADirectory)),
+        }
+    }
+
+    fn rename_new(&self, from: &Path, to: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        state.begin()?;
+        let (from, to) = (whole(from), whole(to));
+        state.same_disk(&from, &to)?;
+        state.folder(to.parent().unwrap())?;
+        if !state.tree.contains_key(&from) {
+            return Err(error(ErrorKind::NotFound));
+        }
+        if state.tree.contains_key(&to) {
+            return Err(error(ErrorKind::AlreadyExists));
+        }
+        state.moved(&from, &to);
+        Ok(())
+    }
+
+    fn exchange(&self, one: &Path, other: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        state.begin()?;
+        let (one, other) = (whole(one), whole(other));
+        if state.faults.no_exchange {
+            return Err(error(ErrorKind::Unsupported));
+        }
+        state.same_disk(&one, &other)?;
+        state.folder(&one)?;
+        state.folder(&other)?;
+        let swapped = |path: &PathBuf| {
+            if let Ok(rest) = path.strip_prefix(&one) {
+                other.join(rest)
+            } else if let Ok(rest) = path.strip_prefix(&other) {
+                one.join(rest)
+            } else {
+                path.clone()
+            }
+        };
+        // A path that is joined with nothing keeps a mark at its end.
+        let tidy = |path: PathBuf| path.components().collect::<PathBuf>();
+        let tree = state.tree.iter().map(|(path, node)| (tidy(swapped(path)), *node)).collect();
+        state.change(&[&one, &other], |old| *old = tree);
+        Ok(())
+    }
+
+    fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        state.begin()?;
+        if state.faults.no_links {
+            return Err(error(ErrorKind::Unsupported));
+        }
+        let (from, to) = (whole(from), whole(to));
+        state.same_disk(&from, &to)?;
+        let Some(&node) = state.tree.get(&from) else { return Err(error(ErrorKind::NotFound)) };
+        if state.tree.contains_key(&to) {
+            return Err(error(ErrorKind::AlreadyExists));
+        }
+        state.change(&[&to.clone()], |tree| {
+            tree.insert(to, node);
+        });
+        Ok(())
+    }
+
+    fn copy_access(&self, _: &Path, _: &Path) -> io::Result<()> {
+        self.state().begin()
+    }
+
+    fn sync_folder(&self, path: &Path) -> io::Result<()> {
+        let mut state = self.state();
+        state.begin()?;
+        let path = whole(path);
+        state.folder(&path)?;
+        let last = state.unsynced.iter().rposition(|(_, touched)| touched.contains(&path));
+        if let Some(last) = last {
+            state.unsynced.drain(..=last);
+        }
+        Ok(())
+    }
+
+    fn lock(&self, path: &Path) -> io::Result<Option<Lock>> {
+        if self.look(path).is_err_and(|error| error.kind() == ErrorKind::NotFound) {
+            self.create(path)?;
+        }
+        let path = whole(path);
+        if !self.state().locks.insert(path.clone()) {
+            return Ok(None);
+        }
+        Ok(Some(Box::new(Held(self.clone(), path))))
+    }
+
+    fn lock_folder(&self, _: &Path) -> io::Result<Lock> {
+        self.state().begin()?;
+        Ok(Box::new(()))
+    }
+}

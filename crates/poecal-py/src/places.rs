@@ -1,0 +1,34 @@
+//! Where files go, as by the program; what is said on the way becomes warnings.
+
+use std::path::Path;
+
+use poecal::io::output::{Contents, Existing, FilePlace, FolderPlace};
+use pyo3::prelude::*;
+
+use crate::errors::raise;
+
+pub(crate) fn reserved_file(
+    py: Python<'_>,
+    path: &Path,
+    existing: Existing,
+    inputs: &[&Path],
+) -> PyResult<FilePlace> {
+    said(py, |say| FilePlace::reserve(path, existing, inputs, say))
+}
+
+pub(crate) fn reserved_folder(
+    py: Python<'_>,
+    folder: &Path,
+    contents: Contents,
+    existing: Existing,
+    inputs: &[&Path],
+) -> PyResult<FolderPlace> {
+    said(py, |say| FolderPlace::reserve(folder, contents, existing, inputs, say))
+}
+
+fn said<T>(py: Python<'_>, reserve: impl FnOnce(&mut dyn FnMut(String)) -> poecal::Result<T>) -> PyResult<T> {
+    let mut notes = Vec::new();
+    let place = reserve(&mut |note| notes.push(note));
+    crate::warn(py, &notes)?;
+    place.map_err(raise)
+}

@@ -1,0 +1,251 @@
+//! The machine's own disk.
+
+use std::ffi::OsString;
+use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::{Disk, Found, FoundKind, Lock, Output};
+
+/// The disk as the system has it.
+///
+/// ```
+/// use poecal::io::disk::{Disk as _, SystemDisk};
+/// assert!(SystemDisk.look("no such file".as_ref()).is_err());
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SystemDisk;
+
+impl Output for File {
+    fn sync(&mut self) -> io::Result<()> {
+        self.sync_all()
+    }
+}
+
+/// Standard output and error: there is nothing to sync.
+struct Standard<W>(W);
+
+impl<W: io::Write> io::Write for Standard<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl<W: io::Write + Send> Output for Standard<W> {
+    fn sync(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+fn found(metadata: &Metadata) -> Found {
+    let kind = match metadata.file_type() {
+        kind if kind.is_file() => FoundKind::File,
+        kind if kind.is_dir() => FoundKind::Folder,
+        kind if kind.is_symlink() => FoundKind::Link,
+        _ => FoundKind::Other,
+    };
+    Found { kind, identity: identity(metadata) }
+}
+
+#[cfg(unix)]
+fn identity(metadata: &Metadata) -> Option<(u64, u64)> {
+    use std::os::unix::fs::MetadataExt as _;
+    Some((metadata.dev(), metadata.ino()))
+}
+
+#[cfg(not(unix))]
+fn identity(_: &Metadata) -> Option<(u64, u64)> {
+    None
+}
+
+/// What a rename that must not replace comes to where the system has no such call: a second name, or a folder, which replaces no
+/// other that holds anything.
+fn rename_new_in_steps(from: &Path, to: &Path) -> io::Result<()> {
+    if fs::symlink_metadata(from)?.is_dir() {
+        return fs::rename(from, to);
+    }
+    fs::hard_link(from, to)?;
+    fs::remove_file(from)
+}
+
+#[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
+mod renames {
+    use std::io;
+    use std::path::Path;
+
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+
+    pub(super) fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
+        match renameat_with(CWD, from, CWD, to, RenameFlags::NOREPLACE).map_err(io::Error::from) {
+            Err(error) if is_unknown(&error) => super::rename_new_in_steps(from, to),
+            done => done,
+        }
+    }
+
+    pub(super) fn exchange(one: &Path, other: &Path) -> io::Result<()> {
+        renameat_with(CWD, one, CWD, other, RenameFlags::EXCHANGE).map_err(|error| {
+            let error = io::Error::from(error);
+            if is_unknown(&error) { io::ErrorKind::Unsupported.into() } else { error }
+        })
+    }
+
+    /// Whether the file system does not know such a rename.
+    fn is_unknown(error: &io::Error) -> bool {
+        matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported)
+    }
+}
+
+#[cfg(not(any(target_os = "linux", target_os = "android", target_vendor = "apple")))]
+mod renames {
+    use std::io;
+    use std::path::Path;
+
+    pub(super) fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
+        super::rename_new_in_steps(from, to)
+    }
+
+    pub(super) fn exchange(_: &Path, _: &Path) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+}
+
+impl Disk for SystemDisk {
+    fn look(&self, path: &Path) -> io::Result<Found> {
+        fs::symlink_metadata(path).map(|metadata| found(&metadata))
+    }
+
+    fn follow(&self, path: &Path) -> io::Result<Found> {
+        fs::metadata(path).map(|metadata| found(&metadata))
+    }
+
+    fn actual(&self, path: &Path) -> io::Result<PathBuf> {
+        fs::canonicalize(path)
+    }
+
+    fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
+        let mut names: Vec<OsString> = fs::read_dir(folder)?
+            .map(|entry| entry.map(|entry| entry.file_name()))
+            .collect::<Result<_, _>>()?;
+        names.sort();
+        Ok(names)
+    }
+
+    fn open(&self, path: &Path) -> io::Result<Box<dyn Read + Send>> {
+        Ok(Box::new(File::open(path)?))
+    }
+
+    fn standard_input(&self) -> io::Result<Box<dyn Read + Send>> {
+        static TAKEN: AtomicBool = AtomicBool::new(false);
+        if TAKEN.swap(true, Ordering::Relaxed) {
+            return Err(io::Error::new(io::ErrorKind::ResourceBusy, "standard input is read already"));
+        }
+        Ok(Box::new(io::stdin()))
+    }
+
+    fn create(&self, path: &Path) -> io::Result<Box<dyn Output>> {
+        Ok(Box::new(File::create_new(path)?))
+    }
+
+    fn stream(&self, path: &Path) -> io::Result<Box<dyn Output>> {
+        // Opened anew, a file that standard output goes into would be written from its beginning.
+        if ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name)) {
+            return Ok(Box::new(Standard(io::stdout())));
+        }
+        if ["/dev/stderr", "/dev/fd/2", "/proc/self/fd/2"].iter().any(|name| path == Path::new(name)) {
+            return Ok(Box::new(Standard(io::stderr())));
+        }
+        Ok(Box::new(Standard(OpenOptions::new().append(true).open(path)?)))
+    }
+
+    fn create_folder(&self, path: &Path) -> io::Result<()> {
+        fs::create_dir(path)
+    }
+
+    fn remove_file(&self, path: &Path) -> io::Result<()> {
+        fs::remove_file(path)
+    }
+
+    fn remove_folder(&self, path: &Path) -> io::Result<()> {
+        fs::remove_dir(path)
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        fs::rename(from, to)
+    }
+
+    fn rename_new(&self, from: &Path, to: &Path) -> io::Result<()> {
+        renames::rename_new(from, to)
+    }
+
+    fn exchange(&self, one: &Path, other: &Path) -> io::Result<()> {
+        renames::exchange(one, other)
+    }
+
+    fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
+        fs::hard_link(from, to)
+    }
+
+    #[cfg(unix)]
+    fn copy_access(&self, from: &Path, to: &Path) -> io::Result<()> {
+        use std::os::unix::fs::{MetadataExt as _, chown};
+        #[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
+        {
+            // Access lists and labels would be lost.
+            let attributes = rustix::fs::listxattr(from, &mut [0u8; 0][..]).unwrap_or(0);
+            if attributes > rustix::fs::listxattr(to, &mut [0u8; 0][..]).unwrap_or(0) {
+                return Err(io::ErrorKind::Unsupported.into());
+            }
+        }
+        let (wanted, has) = (fs::metadata(from)?, fs::metadata(to)?);
+        if (wanted.uid(), wanted.gid()) != (has.uid(), has.gid()) {
+            chown(to, Some(wanted.uid()), Some(wanted.gid()))?;
+        }
+        if wanted.permissions() != has.permissions() {
+            fs::set_permissions(to, wanted.permissions())?;
+        }
+        Ok(())
+    }
+
+    #[cfg(not(unix))]
+    fn copy_access(&self, _: &Path, _: &Path) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    #[cfg(unix)]
+    fn sync_folder(&self, path: &Path) -> io::Result<()> {
+        File::open(path)?.sync_all()
+    }
+
+    #[cfg(not(unix))]
+    fn sync_folder(&self, _: &Path) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn lock(&self, path: &Path) -> io::Result<Option<Lock>> {
+        let file = OpenOptions::new().create(true).append(true).open(path)?;
+        match file.try_lock() {
+            Ok(()) => Ok(Some(Box::new(file))),
+            Err(TryLockError::WouldBlock) => Ok(None),
+            Err(TryLockError::Error(error)) => Err(error),
+        }
+    }
+
+    #[cfg(unix)]
+    fn lock_folder(&self, path: &Path) -> io::Result<Lock> {
+        let folder = File::open(path)?;
+        match folder.lock() {
+            Err(error) if error.kind() != io::ErrorKind::Unsupported => Err(error),
+            _ => Ok(Box::new(folder)),
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn lock_folder(&self, _: &Path) -> io::Result<Lock> {
+        Ok(Box::new(()))
+    }
+}

@@ -1,0 +1,215 @@
+//! New files put in place: a whole folder where that is possible, which nobody can see half done; otherwise file by file, by a
+//! journal that the next run completes.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::path::Path;
+
+use super::journal::{Journal, Step};
+use super::place::{Existing, FolderPlace, check_existing, check_own, own_names, refused};
+use super::staging::{self, OLD, Staging};
+use super::{NewFile, interrupted, leftovers};
+use crate::error::{Error, Result};
+use crate::io::disk::{Disk, Lock};
+
+/// Times that a folder may be exchanged by others while it is being locked.
+const ATTEMPTS: usize = 1000;
+
+impl FolderPlace {
+    /// Writes one of the new files into the staging folder.
+    pub(super) fn stage(&mut self, file: &NewFile) -> Result<()> {
+        self.staging.write(file).map_err(|error| {
+            refused(
+                &self.named.join(&file.name),
+                format!(
+                    "the file cannot be written ({error}), expected a folder that can be written to: choose another with --out"
+                ),
+            )
+        })
+    }
+
+    /// Where the new files lie until they are put in place.
+    pub(super) fn new_files(&self) -> std::path::PathBuf {
+        self.staging.new_files()
+    }
+
+    /// Puts the new files of these names in place, and removes other files of an earlier run. Gives what is to be said. The caller
+    /// holds [`interrupted::undisturbed`].
+    pub(super) fn put(mut self, names: &[String]) -> Result<Vec<String>> {
+        let place = self.named.clone();
+        let failed = |cause: io::Error| {
+            refused(&place, format!("the results cannot be put in place ({cause}): nothing was changed"))
+        };
+        self.staging.sync().map_err(failed)?;
+        if !self.was_there {
+            match self.staging.disk.rename_new(&self.staging.new_files(), &self.folder) {
+                Ok(()) => return Ok(self.synced(self.folder.parent())),
+                Err(error) if !is_taken(&error) => return Err(failed(error)),
+                Err(_) => self.move_inside(failed)?,
+            }
+        }
+        let _lock = lock(self.staging.disk.as_ref(), &self.folder).map_err(failed)?;
+        let replaced = self.look_again(failed)?;
+        if let Some(notes) = self.exchange_folders().map_err(failed)? {
+            return Ok(notes);
+        }
+        self.exchange_files(names, &replaced)
+    }
+
+    /// What is to be said after a folder's names were synced, or could not be.
+    fn synced(&self, folder: Option<&Path>) -> Vec<String> {
+        let synced = folder.map_or(Ok(()), |folder| self.staging.disk.sync_folder(folder));
+        let note = |error| {
+            format!(
+                "{}: the results are in place, but may not last if power fails now ({error})",
+                self.named.display()
+            )
+        };
+        synced.err().map(note).into_iter().collect()
+    }
+
+    /// Somebody has made the folder meanwhile: the new files go on from inside it, if they may.
+    fn move_inside(&mut self, failed: impl Fn(io::Error) -> Error) -> Result<()> {
+        if self.existing == Existing::Kept {
+            let message = "found the output folder made by another run meanwhile, expected it to be new: nothing was changed; choose \
+                           another with --out, or overwrite its results with --force";
+            return Err(refused(&self.named, message));
+        }
+        let inside =
+            Staging::new(&self.staging.disk, &self.folder, &staging::prefix(None)).map_err(&failed)?;
+        let disk = &inside.disk;
+        let moved = disk
+            .remove_folder(&inside.new_files())
+            .and_then(|()| disk.rename_new(&self.staging.new_files(), &inside.new_files()))
+            .and_then(|()| disk.sync_folder(&inside.folder));
+        moved.map_err(failed)?;
+        self.staging = inside;
+        self.was_there = true;
+        Ok(())
+    }
+
+    /// Checks what is in the folder now that nobody else changes it. Gives the names of files that are replaced or go.
+    fn look_again(&self, failed: impl Fn(io::Error) -> Error) -> Result<BTreeSet<String>> {
+        let disk = self.staging.disk.as_ref();
+        let names = own_names(disk, &self.folder, self.contents).map_err(failed)?;
+        check_existing(disk, &self.named, &self.folder, (self.contents, self.existing), &names)?;
+        names.iter().try_for_each(|name| check_own(disk, &self.named.join(name), &[]))?;
+        Ok(names.into_iter().collect())
+    }
+
+    /// Exchanges the whole folder; none if that is not possible. Nothing was changed then, nor if it fails.
+    fn exchange_folders(&mut self) -> io::Result<Option<Vec<String>>> {
+        let Some(beside) = self.moved_beside() else { return Ok(None) };
+        let (disk, new) = (self.staging.disk.clone(), beside.new_files());
+        if disk.exchange(&new, &self.folder).is_err() {
+            return disk.rename_new(&new, &self.staging.new_files()).map(|()| None);
+        }
+        let notes = self.synced(self.folder.parent());
+        self.remove_earlier(beside);
+        Ok(Some(notes))
+    }
+
+    /// The new files in a staging folder beside the folder, if that holds nothing but files of ours.
+    fn moved_beside(&self) -> Option<Staging> {
+        let disk = self.staging.disk.clone();
+        let names = staging::names(disk.as_ref(), &self.folder).ok()?;
+        let is_ours = |name: &std::ffi::OsString| {
+            Some(name.as_os_str()) == self.staging.folder.file_name()
+                || name.to_str().is_some_and(|name| self.contents.is_own(name))
+        };
+        // Whoever works in the folder would find himself in one that is gone.
+        let is_here = disk.actual(Path::new(".")).is_ok_and(|here| here.starts_with(&self.folder));
+        if is_here || !names.iter().all(is_ours) {
+            return None;
+        }
+        disk.copy_access(&self.folder, &self.staging.new_files()).ok()?;
+        let parent = self.folder.parent()?;
+        let beside = Staging::new(&disk, parent, &staging::prefix(self.folder.file_name())).ok()?;
+        disk.remove_folder(&beside.new_files()).ok()?;
+        disk.rename_new(&self.staging.new_files(), &beside.new_files()).ok()?;
+        Some(beside)
+    }
+
+    /// Removes the earlier folder, which has this run's staging folder in it and lies where the new one was.
+    fn remove_earlier(&mut self, mut beside: Staging) {
+        let (disk, earlier) = (self.staging.disk.clone(), beside.new_files());
+        interrupted::ended(&self.staging.folder);
+        if let Some(name) = self.staging.folder.file_name() {
+            self.staging.folder = earlier.join(name);
+        }
+        self.staging.abandoned = true;
+        // What cannot be removed now, the next run removes.
+        let _ = staging::remove(disk.as_ref(), &self.staging.folder);
+        let is_own = |name: &str| self.contents.is_own(name);
+        beside.abandoned = leftovers::give_back(disk.as_ref(), &earlier, &self.folder, &is_own).is_err();
+    }
+
+    /// Exchanges file after file.
+    fn exchange_files(&mut self, names: &[String], replaced: &BTreeSet<String>) -> Result<Vec<String>> {
+        let (disk, staging) = (self.staging.disk.clone(), self.staging.folder.clone());
+        let (disk, folder) = (disk.as_ref(), self.folder.clone());
+        let error = |message: String| Err(refused(&self.named, message));
+        let put = |name: &String| {
+            let name = name.clone();
+            if replaced.contains(&name) { Step::Put(name) } else { Step::Add(name) }
+        };
+        let stale = replaced.iter().filter(|name| !names.contains(name)).cloned().map(Step::Remove);
+        let journal = Journal(names.iter().map(put).chain(stale).collect());
+        let kept = keep_old(disk, &self.staging, &folder, replaced)
+            .and_then(|()| journal.keep(disk, &staging, &journal.back(replaced)));
+        if let Err(cause) = kept {
+            // What the journal says must not be done once this has said that nothing was.
+            self.staging.abandoned = Journal::end(disk, &staging).is_err();
+            return error(format!("the results cannot be put in place ({cause}): nothing was changed"));
+        }
+        let Err(cause) = journal.carry_out(disk, &staging, &folder) else {
+            let notes = self.synced(Some(&folder));
+            let _ = Journal::end(disk, &staging);
+            return Ok(notes);
+        };
+        let returned = Journal::turn_back(disk, &staging)
+            .and_then(|()| Journal::kept(disk, &staging))
+            .and_then(|back| back.map_or(Ok(()), |back| back.carry_out(disk, &staging, &folder)))
+            .and_then(|()| disk.sync_folder(&folder))
+            .and_then(|()| Journal::end(disk, &staging));
+        if returned.is_ok() {
+            return error(format!("the results cannot be put in place ({cause}): nothing was changed"));
+        }
+        self.staging.abandoned = true;
+        error(format!(
+            "the results cannot be put in place ({cause}), nor can the earlier ones be put back: they lie in {}, and the next run into \
+             this folder settles it",
+            staging.join(OLD).display()
+        ))
+    }
+}
+
+/// Whether a place is taken.
+fn is_taken(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::AlreadyExists | io::ErrorKind::DirectoryNotEmpty)
+}
+
+/// Locks the folder that is at a path now: the one before may have been exchanged while its lock was waited for.
+fn lock(disk: &dyn Disk, folder: &Path) -> io::Result<Lock> {
+    for _ in 0..ATTEMPTS {
+        let before = disk.look(folder)?;
+        let lock = disk.lock_folder(folder)?;
+        if disk.look(folder)? == before {
+            return Ok(lock);
+        }
+    }
+    Err(io::ErrorKind::ResourceBusy.into())
+}
+
+/// Keeps the files that will be replaced.
+fn keep_old(
+    disk: &dyn Disk,
+    staging: &Staging,
+    folder: &Path,
+    replaced: &BTreeSet<String>,
+) -> io::Result<()> {
+    let old = staging.old_files();
+    disk.create_folder(&old)?;
+    replaced.iter().try_for_each(|name| staging::keep(disk, &folder.join(name), &old.join(name)))?;
+    disk.sync_folder(&old)
+}

@@ -1,0 +1,194 @@
+//! One file, whole or not at all; or a stream, as it is.
+
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use super::place::{Existing, GENERATOR, found, is_of_poecal, led_to, new_place, refuse_input, refused};
+use super::staging::{self, OLD, Staging};
+use super::{NewFile, Page, interrupted, leftovers};
+use crate::error::{Error, Result};
+use crate::io::disk::{self, FoundKind};
+
+/// Streams, by whatever path.
+const STREAMS: [&str; 4] = ["/dev/stdout", "/dev/stderr", "/dev/fd/", "/proc/self/fd/"];
+
+/// A file that is about to be written. Nothing has changed yet.
+///
+/// ```
+/// use poecal::io::output::{Existing, FilePlace};
+/// let path = std::env::temp_dir().join(format!("poecal_file_{}", std::process::id()));
+/// FilePlace::reserve(&path, Existing::Kept, &[], &mut |_| ())?.write(vec!["text".into()])?;
+/// assert_eq!(std::fs::read_to_string(&path).unwrap(), "text");
+/// assert!(FilePlace::reserve(&path, Existing::Kept, &[], &mut |_| ()).is_err());
+/// std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), poecal::Error>(())
+/// ```
+pub struct FilePlace {
+    /// As the user named it.
+    named: PathBuf,
+    way: Way,
+}
+
+enum Way {
+    /// To what is no regular file.
+    Stream(PathBuf),
+    /// Beside its place first, then moved there.
+    Staged { path: PathBuf, name: String, replaces: bool, staging: Staging },
+}
+
+impl std::fmt::Debug for FilePlace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("FilePlace").field("named", &self.named).finish_non_exhaustive()
+    }
+}
+
+/// A file whose new text is in place, and whose earlier one is still at hand.
+pub(super) struct Put(Option<(PathBuf, bool, Staging)>);
+
+impl FilePlace {
+    /// Looks whether a file may be written, and makes room for it beside its place. What is no regular file (a device, a pipe) is
+    /// written to as it is; a link is followed. What an interrupted run left there is removed first, and that is said. `inputs` are
+    /// files of this run, which are never replaced.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`](crate::ErrorKind::File) if something is there that `existing` does not let go, if it is an input or a
+    /// folder, or if nothing can be written there.
+    pub fn reserve(
+        path: &Path,
+        existing: Existing,
+        inputs: &[&Path],
+        say: &mut dyn FnMut(String),
+    ) -> Result<Self> {
+        let disk = disk::here();
+        let named = path.to_owned();
+        let is_stream = |start: &&str| {
+            path.to_str().is_some_and(|path| {
+                if start.ends_with('/') { path.starts_with(*start) } else { path == *start }
+            })
+        };
+        if STREAMS.iter().any(|start| is_stream(&start)) {
+            return Ok(FilePlace { named, way: Way::Stream(path.to_owned()) });
+        }
+        let there = match found(disk.as_ref(), path)? {
+            Some(found) if found.kind == FoundKind::Link => Some(led_to(disk.as_ref(), path)?),
+            Some(found) => Some((path.to_owned(), found)),
+            None => None,
+        };
+        match there.as_ref().map(|(_, found)| found.kind) {
+            Some(FoundKind::Folder) => {
+                return Err(refused(path, "found a directory, expected a file to write: name the file"));
+            }
+            Some(FoundKind::Other | FoundKind::Link) => {
+                let to = there.map_or_else(|| path.to_owned(), |(actual, _)| actual);
+                return Ok(FilePlace { named, way: Way::Stream(to) });
+            }
+            Some(FoundKind::File) => {
+                refuse_input(disk.as_ref(), path, inputs)?;
+                let may = match existing {
+                    Existing::Kept => false,
+                    Existing::Own => is_of_poecal(
+                        disk.as_ref(),
+                        &there.as_ref().map_or(path, |(actual, _)| actual),
+                        GENERATOR,
+                    ),
+                    Existing::Replaced => true,
+                };
+                if !may {
+                    let message =
+                        "found this file, expected none: choose another, or write over this one with --force";
+                    return Err(refused(path, message));
+                }
+            }
+            None => {}
+        }
+        let replaces = there.is_some();
+        let (parent, place) = new_place(disk.as_ref(), there.as_ref().map_or(path, |(actual, _)| actual))?;
+        let name = place.file_name().unwrap_or_default();
+        let prefix = staging::prefix(Some(name));
+        leftovers::settle(disk.as_ref(), &place, say);
+        let staging = Staging::new(&disk, &parent, &prefix).map_err(|error| unwritable(path, &error))?;
+        let name = name.to_string_lossy().into_owned();
+        Ok(FilePlace { named, way: Way::Staged { path: place, name, replaces, staging } })
+    }
+
+    /// Writes the file, of pieces that follow each other.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`](crate::ErrorKind::File) if it cannot be written; then nothing was changed.
+    pub fn write(mut self, page: Page) -> Result<()> {
+        self.stage(page)?;
+        let _undisturbed = interrupted::undisturbed();
+        self.put().map(Put::finish)
+    }
+
+    /// Writes the new text beside its place; a stream gets it at once.
+    pub(super) fn stage(&mut self, page: Page) -> Result<()> {
+        let staged = match &mut self.way {
+            Way::Stream(path) => disk::here().stream(path).and_then(|mut out| {
+                let written = page.iter().try_for_each(|piece| out.write_all(piece.as_bytes()));
+                match written.and_then(|()| out.sync()) {
+                    // A reader that has gone away is no error.
+                    Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+                    written => written,
+                }
+            }),
+            Way::Staged { name, staging, .. } => {
+                staging.write(&NewFile::of_page(name, page)).and_then(|()| staging.sync())
+            }
+        };
+        staged.map_err(|error| unwritable(&self.named, &error))
+    }
+
+    /// Puts the new text in place.
+    pub(super) fn put(self) -> Result<Put> {
+        let Way::Staged { path, name, replaces, staging } = self.way else { return Ok(Put(None)) };
+        let (disk, new) = (staging.disk.clone(), staging.new_files().join(&name));
+        let moved = if replaces {
+            let old = staging.old_files();
+            let kept =
+                disk.create_folder(&old).and_then(|()| staging::keep(disk.as_ref(), &path, &old.join(&name)));
+            kept.and_then(|()| disk.rename(&new, &path))
+        } else {
+            disk.rename_new(&new, &path)
+        };
+        match moved {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(refused(
+                &self.named,
+                "found this file made by another run meanwhile, expected none: nothing was changed",
+            )),
+            Err(error) => Err(unwritable(&self.named, &error)),
+            Ok(()) => Ok(Put(Some((path, replaces, staging)))),
+        }
+    }
+}
+
+impl Put {
+    /// Takes the new text away again, and puts the earlier one back.
+    pub(super) fn take_back(self) {
+        let Some((path, replaces, staging)) = self.0 else { return };
+        let disk = staging.disk.as_ref();
+        let old = path.file_name().map(|name| staging.folder.join(OLD).join(name));
+        // Nobody can be told more than that the results were not written.
+        let _ = match old.filter(|_| replaces) {
+            Some(old) => disk.rename(&old, &path),
+            None => disk.remove_file(&path),
+        };
+    }
+
+    /// Keeps the new text.
+    pub(super) fn finish(self) {
+        if let Some((path, _, staging)) = self.0
+            && let Some(parent) = path.parent()
+        {
+            // It is in place, whatever becomes of it if power fails now.
+            let _ = staging.disk.sync_folder(parent);
+        }
+    }
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Error {
+    let message = format!(
+        "the file cannot be written ({error}), expected a folder that can be written to: choose another"
+    );
+    refused(path, message)
+}

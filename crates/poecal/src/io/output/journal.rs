@@ -1,0 +1,185 @@
+//! What is left to do of an exchange of files, kept on the disk, so that the next run can do it.
+
+use std::collections::BTreeSet;
+use std::io::{self, Read as _, Write as _};
+use std::path::{Component, Path};
+
+use super::staging::{NEW, OLD, gone};
+use crate::io::disk::{Disk, FoundKind};
+
+/// The first line, with the version of the form.
+const HEAD: &str = "poecal-journal-1";
+/// The last line, without which the text is not whole.
+const END: &str = "end";
+const NAME: &str = "journal";
+/// The name under which it is written.
+const UNFINISHED: &str = "journal.unfinished";
+/// The name of the journal that takes its place where the exchange fails: it lies ready, since a full disk may be what fails.
+const BACK: &str = "journal.back";
+/// Bytes that a journal has at most.
+const LONGEST: u64 = 1 << 20;
+
+/// One step of an exchange. Each can be done again when it is done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    /// The file goes from the folder of the new files to its place, over another one.
+    Put(String),
+    /// The file goes from the folder of the new files to its place, where nothing is.
+    Add(String),
+    /// The file goes from the folder of the old files back to its place.
+    Back(String),
+    /// The file in place goes.
+    Remove(String),
+    /// The file in place goes if it was added.
+    Take(String),
+}
+
+/// The steps of an exchange.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Journal(pub(super) Vec<Step>);
+
+impl Journal {
+    fn text(&self) -> String {
+        let line = |step: &Step| match step {
+            Step::Put(name) => format!("put {name}\n"),
+            Step::Add(name) => format!("add {name}\n"),
+            Step::Back(name) => format!("back {name}\n"),
+            Step::Remove(name) => format!("remove {name}\n"),
+            Step::Take(name) => format!("take {name}\n"),
+        };
+        format!("{HEAD}\n{}{END}\n", self.0.iter().map(line).collect::<String>())
+    }
+
+    /// None if the text is not whole, or names a file outside the folder.
+    fn parse(text: &str) -> Option<Self> {
+        let lines = text.strip_prefix(HEAD)?.strip_prefix('\n')?.strip_suffix('\n')?.strip_suffix(END)?;
+        let step = |line: &str| {
+            let (word, name) = line.split_once(' ')?;
+            let name = is_plain(name).then(|| name.to_owned())?;
+            match word {
+                "put" => Some(Step::Put(name)),
+                "add" => Some(Step::Add(name)),
+                "back" => Some(Step::Back(name)),
+                "remove" => Some(Step::Remove(name)),
+                "take" => Some(Step::Take(name)),
+                _ => None,
+            }
+        };
+        lines.lines().map(step).collect::<Option<_>>().map(Journal)
+    }
+
+    /// Keeps the journal in a staging folder, and what undoes it.
+    pub(super) fn keep(&self, disk: &dyn Disk, staging: &Path, back: &Journal) -> io::Result<()> {
+        for (journal, name) in [(back, BACK), (self, UNFINISHED)] {
+            let mut file = disk.create(&staging.join(name))?;
+            file.write_all(journal.text().as_bytes())?;
+            file.sync()?;
+        }
+        disk.rename(&staging.join(UNFINISHED), &staging.join(NAME))?;
+        disk.sync_folder(staging)
+    }
+
+    /// Keeps what undoes the journal instead.
+    pub(super) fn turn_back(disk: &dyn Disk, staging: &Path) -> io::Result<()> {
+        disk.rename(&staging.join(BACK), &staging.join(NAME))?;
+        disk.sync_folder(staging)
+    }
+
+    /// The journal that a staging folder keeps, if it keeps one.
+    ///
+    /// # Errors
+    /// Those of the disk; [`io::ErrorKind::InvalidData`] if it is no journal.
+    pub(super) fn kept(disk: &dyn Disk, staging: &Path) -> io::Result<Option<Self>> {
+        let path = staging.join(NAME);
+        if !is_file(disk, &path)? {
+            return Ok(None);
+        }
+        let mut text = String::new();
+        disk.open(&path)?.take(LONGEST).read_to_string(&mut text)?;
+        Journal::parse(&text).ok_or_else(|| io::ErrorKind::InvalidData.into()).map(Some)
+    }
+
+    /// Does each step that is not done, in a folder.
+    pub(super) fn carry_out(&self, disk: &dyn Disk, staging: &Path, folder: &Path) -> io::Result<()> {
+        for step in &self.0 {
+            match step {
+                Step::Remove(name) if is_file(disk, &folder.join(name))? => {
+                    disk.remove_file(&folder.join(name))?
+                }
+                Step::Remove(_) => {}
+                Step::Take(name) => {
+                    if !is_file(disk, &staging.join(NEW).join(name))? && is_file(disk, &folder.join(name))? {
+                        disk.remove_file(&folder.join(name))?;
+                    }
+                }
+                Step::Add(name) if is_file(disk, &staging.join(NEW).join(name))? => {
+                    disk.rename_new(&staging.join(NEW).join(name), &folder.join(name))?;
+                }
+                Step::Put(name) if is_file(disk, &staging.join(NEW).join(name))? => {
+                    disk.rename(&staging.join(NEW).join(name), &folder.join(name))?;
+                }
+                Step::Back(name) if is_file(disk, &staging.join(OLD).join(name))? => {
+                    disk.rename(&staging.join(OLD).join(name), &folder.join(name))?;
+                }
+                Step::Put(_) | Step::Add(_) | Step::Back(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// What undoes the journal, however much of it is done; files of the names `replaced` have their earlier ones kept.
+    pub(super) fn back(&self, replaced: &BTreeSet<String>) -> Self {
+        let added = self.0.iter().filter_map(|step| match step {
+            Step::Add(name) => Some(Step::Take(name.clone())),
+            Step::Put(_) | Step::Back(_) | Step::Remove(_) | Step::Take(_) => None,
+        });
+        Journal(added.chain(replaced.iter().cloned().map(Step::Back)).collect())
+    }
+
+    /// Ends an exchange: nothing is left to do.
+    pub(super) fn end(disk: &dyn Disk, staging: &Path) -> io::Result<()> {
+        gone(disk.remove_file(&staging.join(NAME)))
+    }
+}
+
+/// Whether a file is there.
+fn is_file(disk: &dyn Disk, path: &Path) -> io::Result<bool> {
+    match disk.look(path) {
+        Ok(found) => Ok(found.kind == FoundKind::File),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Names that a staging folder has for its journal.
+pub(super) const NAMES: [&str; 3] = [UNFINISHED, NAME, BACK];
+
+/// Whether it is the name of a file, and nothing else.
+fn is_plain(name: &str) -> bool {
+    let mut parts = Path::new(name).components();
+    matches!((parts.next(), parts.next()), (Some(Component::Normal(part)), None) if part == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_journal_reads_back_and_leads_nowhere_else() {
+        let name = |name: &str| name.to_owned();
+        let journal = Journal(vec![
+            Step::Put(name("a b.csv")),
+            Step::Add(name("e")),
+            Step::Remove(name("c")),
+            Step::Back(name("d")),
+        ]);
+        assert_eq!(Journal::parse(&journal.text()), Some(journal.clone()));
+        let text = journal.text();
+        for cut in 1..text.len() {
+            assert_eq!(Journal::parse(&text[..cut]), None, "{cut}");
+        }
+        for hostile in ["../a", "/etc/passwd", "a/b", "..", ".", "", "a/"] {
+            assert_eq!(Journal::parse(&format!("{HEAD}\nput {hostile}\n{END}\n")), None, "{hostile}");
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! Where results go: what may be there, and what of it may be replaced. Asked before the work begins.
+
+use std::ffi::OsStr;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::leftovers;
+use super::staging::{self, Staging};
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::disk::{self, Disk, Found, FoundKind};
+use crate::io::named_files;
+
+/// What may become of files that exist.
+///
+/// ```
+/// use poecal::io::output::Existing;
+/// assert_ne!(Existing::Kept, Existing::Replaced);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// They stay, and nothing is written.
+    Kept,
+    /// They are replaced where poecal wrote them: a folder with a `calibration.json`, a report.
+    Own,
+    /// They are replaced.
+    Replaced,
+}
+
+impl Existing {
+    /// As a switch says it.
+    #[must_use]
+    pub fn forced(force: bool) -> Self {
+        if force { Existing::Replaced } else { Existing::Kept }
+    }
+}
+
+/// What a folder is to hold.
+///
+/// ```
+/// use poecal::io::output::Contents;
+/// assert!(Contents::Calibration.is_own("report.html") && !Contents::Calibration.is_own("notes.txt"));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contents {
+    /// The results of a calibration.
+    Calibration,
+    /// A simulated session.
+    Simulation,
+    /// The report of a reproduction.
+    Reproduction,
+    /// A project to start from.
+    Project,
+}
+
+impl Contents {
+    /// All of them.
+    pub(super) const ALL: [Contents; 4] =
+        [Contents::Calibration, Contents::Simulation, Contents::Reproduction, Contents::Project];
+
+    /// Whether a file of this name is one that may be written, so that one of an earlier run goes.
+    #[must_use]
+    pub fn is_own(self, name: &str) -> bool {
+        match self {
+            Contents::Calibration => super::calibration::OWN_NAMES.contains(&name),
+            Contents::Simulation => super::simulation::OWN_NAMES.contains(&name),
+            Contents::Reproduction => super::reproduction::is_own(name),
+            Contents::Project => super::project::OWN_NAMES.contains(&name),
+        }
+    }
+}
+
+/// A folder in which files are about to be written. Nothing in it has changed yet, and nothing will unless all is written.
+///
+/// ```
+/// use poecal::io::output::{Contents, Existing, FolderPlace};
+/// let folder = std::env::temp_dir().join(format!("poecal_place_{}", std::process::id()));
+/// let place = FolderPlace::reserve(&folder, Contents::Calibration, Existing::Kept, &[], &mut |_| ())?;
+/// drop(place);
+/// assert!(!folder.exists());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+pub struct FolderPlace {
+    /// As the user named it.
+    pub(super) named: PathBuf,
+    /// Without links.
+    pub(super) folder: PathBuf,
+    pub(super) contents: Contents,
+    pub(super) existing: Existing,
+    /// Whether the folder was there.
+    pub(super) was_there: bool,
+    pub(super) staging: Staging,
+}
+
+impl std::fmt::Debug for FolderPlace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("FolderPlace").field("named", &self.named).finish_non_exhaustive()
+    }
+}
+
+/// A complaint about a place.
+pub(super) fn refused(path: &Path, message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::File, message).in_file(path)
+}
+
+/// What is at a path, if anything is.
+pub(super) fn found(disk: &dyn Disk, path: &Path) -> Result<Option<Found>> {
+    match disk.look(path) {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(refused(
+            path,
+            format!("the place cannot be looked at ({error}), expected one to write to: choose another"),
+        )),
+    }
+}
+
+/// The path without links of a place in a folder that exists, where nothing is yet.
+pub(super) fn new_place(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, PathBuf)> {
+    let parent = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let Some(name) = path.file_name() else {
+        return Err(refused(path, "found no name at the end of the path, expected one: name the place"));
+    };
+    match disk.actual(parent) {
+        Ok(actual) if disk.follow(&actual).is_ok_and(|found| found.kind == FoundKind::Folder) => {
+            Ok((actual.clone(), actual.join(name)))
+        }
+        _ => {
+            let message = "the folder above does not exist, expected one to write into: create it first";
+            Err(refused(path, message))
+        }
+    }
+}
+
+/// What a link leads to.
+pub(super) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Found)> {
+    let actual = disk.actual(path).and_then(|actual| Ok((actual.clone(), disk.look(&actual)?)));
+    actual.map_err(|error| {
+        refused(path, format!("found a link that leads nowhere ({error}), expected one to something: remove it, or choose another"))
+    })
+}
+
+impl FolderPlace {
+    /// Looks whether files may be written to a folder, and makes room for them: inside the folder, or beside it if it is new. What an
+    /// interrupted run left there is completed or removed first, and that is said, a sentence each. `inputs` are files of this run,
+    /// which are never replaced.
+    ///
+    /// # Errors
+    /// [`ErrorKind::File`] if the folder holds something and `existing` does not let it go, if something there is no regular file or
+    /// an input, or if the folder cannot be written to.
+    pub fn reserve(
+        folder: &Path,
+        contents: Contents,
+        existing: Existing,
+        inputs: &[&Path],
+        say: &mut dyn FnMut(String),
+    ) -> Result<Self> {
+        let disk = disk::here();
+        let cannot = |error: io::Error| unwritable(folder, &error);
+        let there = match found(disk.as_ref(), folder)? {
+            Some(found) if found.kind == FoundKind::Link => Some(led_to(disk.as_ref(), folder)?),
+            Some(found) => Some((disk.actual(folder).map_err(cannot)?, found)),
+            None => None,
+        };
+        let (parent, prefix, actual) = match &there {
+            None => {
+                let (parent, actual) = new_place(disk.as_ref(), folder)?;
+                (parent, staging::prefix(actual.file_name()), actual)
+            }
+            Some((actual, found)) if found.kind == FoundKind::Folder => {
+                (actual.clone(), staging::prefix(None), actual.clone())
+            }
+            Some(_) => {
+                let message = "found a file, expected a folder for the results: choose another with --out";
+                return Err(refused(folder, message));
+            }
+        };
+        leftovers::settle(disk.as_ref(), &actual, say);
+        if there.is_some() {
+            let names = own_names(disk.as_ref(), &actual, contents).map_err(cannot)?;
+            check_existing(disk.as_ref(), folder, &actual, (contents, existing), &names)?;
+            names.iter().try_for_each(|name| check_own(disk.as_ref(), &folder.join(name), inputs))?;
+        }
+        let staging = Staging::new(&disk, &parent, &prefix).map_err(cannot)?;
+        let (named, was_there) = (folder.to_owned(), there.is_some());
+        Ok(FolderPlace { named, folder: actual, contents, existing, was_there, staging })
+    }
+}
+
+pub(super) fn unwritable(folder: &Path, error: &io::Error) -> Error {
+    let message = format!(
+        "the folder cannot be written to ({error}), expected one that can: choose another with --out"
+    );
+    refused(folder, message)
+}
+
+/// Names in a folder that are the contents' own.
+pub(super) fn own_names(disk: &dyn Disk, folder: &Path, contents: Contents) -> io::Result<Vec<String>> {
+    let names = staging::names(disk, folder)?.into_iter().filter_map(|name| name.into_string().ok());
+    Ok(names.filter(|name| contents.is_own(name)).collect())
+}
+
+/// Refuses a folder whose files must stay.
+pub(super) fn check_existing(
+    disk: &dyn Disk,
+    folder: &Path,
+    actual: &Path,
+    (contents, existing): (Contents, Existing),
+    names: &[String],
+) -> Result<()> {
+    if contents == Contents::Project {
+        return match names.first() {
+            Some(name) => Err(refused(
+                &folder.join(name),
+                "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out",
+            )),
+            None => Ok(()),
+        };
+    }
+    let is_staging = |name: &OsStr| staging::is_staging(name, &staging::prefix(None));
+    let all = staging::names(disk, actual).map_err(|error| unwritable(folder, &error))?;
+    if all.iter().all(|name| is_staging(name)) {
+        return Ok(());
+    }
+    match existing {
+        Existing::Replaced => Ok(()),
+        Existing::Own if is_of_poecal(disk, &actual.join("calibration.json"), SCHEMA) => Ok(()),
+        Existing::Own => Err(refused(
+            folder,
+            "found a folder without results of poecal, which `force` in the settings does not let it write to, expected a new folder or \
+             earlier results: choose another, or type --force",
+        )),
+        Existing::Kept => Err(refused(
+            folder,
+            "the output folder exists, expected a new one: choose another with --out, or overwrite its results with --force",
+        )),
+    }
+}
+
+/// Refuses to replace what is no regular file, or an input.
+pub(super) fn check_own(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {
+    let what = match found(disk, path)?.map(|found| found.kind) {
+        None => return Ok(()),
+        Some(FoundKind::File) => return refuse_input(disk, path, inputs),
+        Some(FoundKind::Folder) => "a directory",
+        Some(FoundKind::Link) => "a link",
+        Some(FoundKind::Other) => "a device or a pipe",
+    };
+    let message = format!(
+        "found {what}, expected a file or nothing: move it away, or choose another folder with --out"
+    );
+    Err(refused(path, message))
+}
+
+/// Refuses a place where an input of the same run lies, whatever path names it.
+pub(super) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {
+    match inputs.iter().find(|input| named_files::are_same(disk, input, path)) {
+        Some(input) => Err(refused(
+            path,
+            format!(
+                "found a file that this run reads ({}), expected another place to write to: an input is never replaced, choose another \
+                 with --out",
+                input.display()
+            ),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// By what a `calibration.json` is known.
+const SCHEMA: &str = "\"schema\": \"poecal-calibration-";
+/// By what a report is known.
+pub(super) const GENERATOR: &str = "<meta name=\"generator\" content=\"poecal ";
+/// Bytes in which that stands.
+const HEAD: u64 = 4096;
+
+/// Whether poecal wrote a file.
+pub(super) fn is_of_poecal(disk: &dyn Disk, path: &Path, mark: &str) -> bool {
+    let mut head = Vec::new();
+    let is_file = disk.look(path).is_ok_and(|found| found.kind == FoundKind::File);
+    let read =
+        |file: Box<dyn io::Read + Send>| io::Read::read_to_end(&mut io::Read::take(file, HEAD), &mut head);
+    is_file
+        && disk.open(path).and_then(read).is_ok()
+        && head.windows(mark.len()).any(|part| part == mark.as_bytes())
+}

@@ -1,0 +1,112 @@
+//! Inputs, opened: files and standard input, of a size that can be worked on, and no archive or workbook.
+
+use std::io::{self, Cursor, Read};
+use std::path::Path;
+
+use super::disk::{self, FoundKind};
+use crate::error::{Error, ErrorKind, Result};
+
+/// The path that means standard input.
+pub(super) const STANDARD_INPUT: &str = "-";
+/// Bytes of a text that is held whole, at most.
+pub(super) const LARGEST_TEXT: u64 = 256 << 20;
+/// Bytes of a table, at most.
+pub(super) const LARGEST_TABLE: u64 = 4 << 30;
+/// Bytes by which other forms than text are known.
+const HEAD: u64 = 8;
+
+/// What other files begin with, and what to do about them.
+const FORMS: [(&[u8], &str); 7] = [
+    (b"PK\x03\x04", "a ZIP archive or a workbook such as .xlsx; save the table as `CSV UTF-8`"),
+    (b"\xd0\xcf\x11\xe0", "a workbook of the old .xls form; save the table as `CSV UTF-8`"),
+    (b"\x1f\x8b", "a file compressed by gzip (.gz); unpack it first"),
+    (b"\xfd7zXZ", "a file compressed by xz; unpack it first"),
+    (b"\x28\xb5\x2f\xfd", "a file compressed by zstd; unpack it first"),
+    (b"BZh", "a file compressed by bzip2; unpack it first"),
+    (b"%PDF-", "a PDF document; it is the numbers that are needed, as text"),
+];
+
+/// An input that is read. It gives an error instead of more than its largest size.
+pub(super) struct Input {
+    head: Cursor<Vec<u8>>,
+    rest: io::Take<Box<dyn Read + Send>>,
+    largest: u64,
+}
+
+/// Opens a file, or standard input for `-`; `expected` says what it should be.
+///
+/// # Errors
+/// [`ErrorKind::File`] if it is a directory, missing or unreadable, or of a form that is no text.
+pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
+    let error = |message: String| Error::new(ErrorKind::File, message).in_file(path);
+    let opened = if is_standard_input(path) {
+        disk::here().standard_input()
+    } else {
+        let disk = disk::here();
+        if disk.follow(path).is_ok_and(|found| found.kind == FoundKind::Folder) {
+            return Err(error(format!("found a directory, expected {expected}")));
+        }
+        disk.open(path)
+    };
+    let mut rest = opened.map_err(|cause| match cause.kind() {
+        io::ErrorKind::NotFound => error(format!("found no such file, expected {expected}: check the path")),
+        _ => unreadable(path, &cause, expected),
+    })?;
+    let mut head = Vec::new();
+    rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(|cause| unreadable(path, &cause, expected))?;
+    if let Some((_, form)) = FORMS.iter().find(|(start, _)| head.starts_with(start)) {
+        return Err(error(format!("found {form}, expected {expected}")));
+    }
+    // One byte more than there may be shows that there are more.
+    Ok(Input { head: Cursor::new(head), rest: rest.take(largest - HEAD + 1), largest })
+}
+
+/// Whether a path means standard input.
+pub(super) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new(STANDARD_INPUT)
+}
+
+pub(super) fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Error {
+    Error::new(ErrorKind::File, format!("the file cannot be read ({error}), expected {expected}"))
+        .in_file(path)
+}
+
+impl Read for Input {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let head = self.head.read(into)?;
+        if head > 0 || into.is_empty() {
+            return Ok(head);
+        }
+        let count = self.rest.read(into)?;
+        if self.rest.limit() == 0 {
+            return Err(io::Error::other(format!("it is larger than {} MiB", self.largest >> 20)));
+        }
+        Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_input_larger_than_it_may_be_is_an_error_and_no_shorter_input() {
+        let path = std::env::temp_dir().join(format!("poecal_source_{}", std::process::id()));
+        let text = vec![b'a'; 1 << 10];
+        std::fs::write(&path, &text).unwrap();
+        let read = |largest| {
+            let mut bytes = Vec::new();
+            open(&path, "a text", largest).unwrap().read_to_end(&mut bytes).map(|_| bytes)
+        };
+        assert_eq!(read(1 << 10).unwrap(), text);
+        assert!(read((1 << 10) - 1).unwrap_err().to_string().starts_with("it is larger than"));
+        for (start, _) in FORMS {
+            std::fs::write(&path, [start, b"rest of it"].concat()).unwrap();
+            let Err(error) = open(&path, "a text", 1 << 10) else { panic!("{start:?}") };
+            assert!(error.to_string().contains(", expected a text"), "{error}");
+        }
+        std::fs::write(&path, "ab").unwrap();
+        assert_eq!(read(1 << 10).unwrap(), b"ab");
+        std::fs::remove_file(&path).unwrap();
+    }
+}
