@@ -3,6 +3,7 @@
 pub mod calibration_file;
 mod csv_text;
 mod hashes;
+mod looks_like;
 pub mod measurements;
 mod mimic;
 pub mod model;

@@ -71,7 +71,8 @@ pub(super) fn header(names: &[String], units: &[Unit], orientations: bool) -> Re
 
 /// The columns of the readings.
 pub(super) fn reading_header(names: &[String], units: &[Unit]) -> String {
-    let cell = |(name, unit): (&String, &Unit)| csv_text::cell(&format!("{name}[{}]", unit.symbol())).into_owned();
+    let cell =
+        |(name, unit): (&String, &Unit)| csv_text::cell(&format!("{name}[{}]", unit.symbol())).into_owned();
     names.iter().zip(units).map(cell).collect::<Vec<_>>().join(",")
 }
 
