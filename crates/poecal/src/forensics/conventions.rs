@@ -13,8 +13,7 @@ use crate::start::mean_rotation;
 
 /// Meanings that are judged in full.
 const CANDIDATES: usize = 3;
-/// Meanings, the best ones, that are looked through for those; elements of rotations that differ by rounding only.
-const LOOKED_AT: usize = 12;
+/// Elements of rotations that differ by rounding only.
 const SAME: f64 = 1e-9;
 /// Rows of each target whose orientations are tried as the target's own.
 const GUESSES: usize = 6;
@@ -68,16 +67,15 @@ type Judged = ((f64, Vec<Matrix3<f64>>), (usize, Reinterpretation));
 /// that is read from the usual columns.
 fn distinct(judged: Vec<Judged>) -> Vec<Judged> {
     let mut kept: Vec<Judged> = Vec::new();
-    for one in judged.into_iter().take(LOOKED_AT) {
+    for one in judged {
         let rotations = &one.0.1;
         let same = |other: &Judged| rotations.iter().zip(&other.0.1).all(|(a, b)| (a - b).amax() < SAME);
         match kept.iter().position(same) {
             Some(at) if one.1.0 < kept[at].1.0 => kept[at] = one,
-            Some(_) => {}
-            None => kept.push(one),
+            None if kept.len() < CANDIDATES => kept.push(one),
+            Some(_) | None => {}
         }
     }
-    kept.truncate(CANDIDATES);
     kept
 }
 
