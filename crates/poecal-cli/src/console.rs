@@ -9,6 +9,7 @@ use anstream::{AutoStream, ColorChoice};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use poecal::Result;
 use poecal::io::output::FilePlace;
+use poecal::text::{visible, visible_lines};
 
 use crate::{Said, style};
 
@@ -80,9 +81,11 @@ impl Console {
             return Ok(());
         }
         let stdout = std::io::stdout();
+        // Lines are the report's own; what else acts on a terminal comes from a file.
+        let text = visible_lines(text);
         let text = match width_of(&stdout) {
-            Some(width) => style::narrowed(text, width),
-            None => text.to_owned(),
+            Some(width) => style::narrowed(&text, width),
+            None => text.into_owned(),
         };
         let plain = AutoStream::choice(&stdout) == ColorChoice::Never;
         self.data(&if plain { text } else { style::painted(&text) })
@@ -101,6 +104,7 @@ impl Console {
 
     /// A line about the run itself, asked for and so never suppressed.
     pub(crate) fn note(&self, line: impl Display) {
+        let line = visible(&line.to_string()).into_owned();
         if kept(|said| said.err.push_str(&format!("{line}\n"))) {
             return;
         }
@@ -141,13 +145,14 @@ fn width_of(stream: &impl std::os::windows::io::AsHandle) -> Option<usize> {
 
 /// A message on standard error: one line, or on a terminal as many as its width asks for.
 fn tell(word: &str, style: anstyle::Style, message: &str) {
+    let message = visible(message);
     if kept(|said| said.err.push_str(&format!("{word} {message}\n"))) {
         return;
     }
     let stderr = std::io::stderr();
     let message = match width_of(&stderr) {
-        Some(width) => style::wrapped(message, word.len() + 1, width),
-        None => message.to_owned(),
+        Some(width) => style::wrapped(&message, word.len() + 1, width),
+        None => message.into_owned(),
     };
     let mut out = AutoStream::auto(stderr.lock());
     // Nobody is left to hear that nobody listens.

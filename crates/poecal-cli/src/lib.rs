@@ -20,6 +20,8 @@ use args::{Arguments, Command};
 use clap::error::ContextKind;
 use clap::{CommandFactory as _, FromArgMatches as _};
 use console::Console;
+use poecal::text::visible;
+use poecal::{Error, ErrorKind};
 
 /// Done.
 pub(crate) const DONE: u8 = 0;
@@ -29,6 +31,11 @@ pub(crate) const WORSE: u8 = 1;
 const WRONG: u8 = 2;
 /// The fit did not converge.
 pub(crate) const NOT_CONVERGED: u8 = 3;
+
+/// The words of a command line as people may see them. What is wrong with them is told of these, since clap quotes them as they are.
+fn shown(typed: &[OsString]) -> Vec<OsString> {
+    typed.iter().map(|word| OsString::from(visible(&word.to_string_lossy()).as_ref())).collect()
+}
 
 /// Help and version go to standard output, mistakes to standard error: one sentence for a bad value, with clap's hints for the rest.
 fn usage(error: &clap::Error) -> u8 {
@@ -45,7 +52,7 @@ fn usage(error: &clap::Error) -> u8 {
 
 /// The command line, with what its settings file adds, and what it means; or else the code to end with.
 fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
-    let refused = |error: &poecal::Error| {
+    let refused = |error: &Error| {
         Console::new(false).error(error);
         WRONG
     };
@@ -54,13 +61,25 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
         let arguments = Arguments::from_arg_matches(&matches)?;
         Ok((matches, arguments))
     };
-    let (matches, arguments) = parsed(&typed).map_err(|error| usage(&error))?;
+    let told = |words: &[OsString], error: clap::Error| match parsed(&shown(words)) {
+        Err(shown) => usage(&shown),
+        // Words that are right as they are shown can only be wrong because of what acts in them.
+        Ok(_) => {
+            let message = error.to_string();
+            let sentence = message.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            refused(&Error::new(ErrorKind::Option, sentence))
+        }
+    };
+    let (matches, arguments) = parsed(&typed).map_err(|error| told(&typed, error))?;
     let Some(completed) = settings::complete(&typed, &matches).map_err(|error| refused(&error))? else {
         return Ok((typed, arguments));
     };
     match parsed(&completed.words) {
         Ok((_, arguments)) => Ok((completed.words, arguments)),
-        Err(error) => Err(completed.error(&error).map_or_else(|| usage(&error), |error| refused(&error))),
+        Err(error) => Err(match completed.error(&error) {
+            Some(error) => refused(&error),
+            None => told(&completed.words, error),
+        }),
     }
 }
 

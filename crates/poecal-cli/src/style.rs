@@ -1,6 +1,9 @@
 //! How reports look on a terminal: labels, verdicts and what to look at stand out. Their words are the library's.
 
+use std::path::Path;
+
 use anstyle::{AnsiColor, Style};
+use poecal::text::visible;
 
 /// Of the word before an error.
 pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
@@ -18,6 +21,11 @@ const LOOK: [&str; 3] = ["outliers", "warnings", "diagnosis"];
 /// How each verdict begins.
 const VERDICTS: [(&str, Style); 3] =
     [("good", GOOD), ("use inside the sampled range", WARNING), ("do not use", ERROR)];
+
+/// A path as people may see it, on one line.
+pub(crate) fn shown(path: &Path) -> String {
+    visible(&path.display().to_string()).into_owned()
+}
 
 /// A labelled paragraph as reports have them, in lines of 80 characters where words are not longer.
 pub(crate) fn labelled(label: &str, text: &str) -> String {

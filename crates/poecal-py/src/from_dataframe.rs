@@ -67,7 +67,9 @@ fn cell(value: &Bound<'_, PyAny>) -> PyResult<String> {
 
 /// A cell in quotes, where it needs them. A cell is one line.
 fn quoted(text: &str) -> String {
-    let text = text.replace(['\n', '\r'], " ");
+    // The reader takes an apostrophe off before what a spreadsheet would run; one of the frame's own stays behind another.
+    let mark = if text.starts_with('\'') { "'" } else { "" };
+    let text = format!("{mark}{}", text.replace(['\n', '\r'], " "));
     if text.contains([',', '"', ';', '\t', ' ', '#']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

@@ -1,5 +1,7 @@
 //! Small tables for notebooks.
 
+use poecal::text::visible_lines;
+
 /// A piece of HTML. Every text is escaped.
 pub(crate) struct Html {
     text: String,
@@ -54,10 +56,10 @@ impl Html {
     }
 }
 
-/// A text without characters that mean something in HTML.
+/// A text without characters that mean something in HTML, or act instead of being seen.
 fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in visible_lines(text).chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),

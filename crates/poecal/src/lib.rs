@@ -57,6 +57,7 @@
 //! | [`calibration`] | all steps in order |
 //! | [`reproduce`] | the experiment of lou2009 with every formulation |
 //! | [`report`] | the result as text |
+//! | [`text`] | text from outside as people may see it |
 //! | [`io`] | files: the only module that opens them |
 //!
 //! Lengths are in metres and angles in radians, a twist is `(v; ω)`, `a_from_b` takes coordinates in b to coordinates in a. The
@@ -82,6 +83,7 @@ pub mod robot;
 pub mod simulate;
 pub mod solve;
 pub mod start;
+pub mod text;
 mod threads;
 pub mod uncertainty;
 

@@ -110,6 +110,25 @@ fn both_documented_dh_tables_are_the_same_arm() {
 }
 
 #[test]
+fn a_documented_dh_table_has_a_fixed_pose_between_its_rows() {
+    let robot = robot_toml::parse(blocks("Robot models", "toml")[3], "cranked.toml").unwrap();
+    let (q1, q2) = (0.7, -0.4);
+    let turned =
+        |axis: usize, angle: f64| Pose::new(poecal::lie::rotation::about(axis, angle), Vector3::zeros());
+    let moved = |x, y, z| Pose::from_translation(Vector3::new(x, y, z));
+    let expected = turned(2, q1)
+        * moved(0.0, 0.0, 0.4)
+        * (moved(0.0, 0.03, 0.015) * turned(1, 5f64.to_radians()))
+        * turned(0, -std::f64::consts::FRAC_PI_2)
+        * moved(0.025, 0.0, 0.0)
+        * turned(2, q2)
+        * moved(0.455, 0.0, 0.0);
+    let found = robot.forward_kinematics(&[q1, q2]);
+    assert!((found.translation - expected.translation).norm() < 1e-15, "{found:?}");
+    assert!((found.rotation - expected.rotation).norm() < 1e-15, "{found:?}");
+}
+
+#[test]
 fn results_have_the_documented_columns_and_keys() {
     let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();

@@ -86,6 +86,10 @@ const MAPPINGS: &[(&str, &str)] = &[
         "points.csv:2:9: found a position without orientation, expected both, because the mapping says that poses are target_from_device",
     ),
     (
+        "direction = \"target_from_device\"",
+        "map.toml:1:1: found the key `direction`, expected `pose = \"target_from_device\"` (or \"device_from_target\") for the way that the file's poses point",
+    ),
+    (
         "pose = \"inverted\"",
         "map.toml:1:8: unknown variant `inverted`, expected `device_from_target` or `target_from_device`",
     ),

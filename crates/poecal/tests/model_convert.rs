@@ -43,7 +43,7 @@ fn every_reference_urdf_converts_both_ways() {
 #[test]
 fn dh_tables_in_both_conventions_agree_with_the_product_of_their_matrices() {
     let rows = "joint = [
-      { name = 'j1', a = 25, alpha = -90, d = 400, theta = 10 },
+      { name = 'j1', a = 25, alpha = -90, d = 400, theta = 10, fixed = { position = [3, -5, 7], rpy = [10, 20, 30] } },
       { name = 'j2', type = 'prismatic', a = 0, alpha = 45, d = 560, theta = -90, limits = [-10, 20] },
       { name = 'j3', a = 0.5, alpha = 0, d = 0, theta = 0, limits = [-90, 90] },
     ]
@@ -64,8 +64,11 @@ fn dh_tables_in_both_conventions_agree_with_the_product_of_their_matrices() {
             (z(q3, 0.0), x(0.0, 0.0005)),
         ];
         let base = Pose::from_xyz_rpy([1.0, 0.0, 0.0], [0.0, 0.0, 90f64.to_radians()]);
-        let product = pairs.into_iter().fold(base, |pose, (along_z, along_x)| {
-            if standard { pose * along_z * along_x } else { pose * along_x * along_z }
+        let fixed = Pose::from_xyz_rpy([0.003, -0.005, 0.007], [10f64, 20.0, 30.0].map(f64::to_radians));
+        let product = pairs.into_iter().enumerate().fold(base, |pose, (row, (along_z, along_x))| {
+            let after = if row == 0 { fixed } else { Pose::identity() };
+            let row = if standard { along_z * along_x } else { along_x * along_z };
+            pose * row * after
         }) * Pose::from_translation(Vector3::new(0.0, 0.0, 0.08));
         let tip = robot.forward_kinematics(&[q1, q2, q3]);
         assert!((tip.translation - product.translation).norm() < 1e-14);

@@ -26,6 +26,14 @@ fn urdf_error(text: &str, base: Option<&str>, tip: Option<&str>) -> String {
 }
 
 #[test]
+fn what_is_said_twice_alike_counts_once() {
+    let limit = "<limit lower='-1' upper='1' effort='0'/>";
+    let twice = urdf(&format!("{limit}<limit effort='0' upper='1' lower='-1'/><child link='b'/>"), "");
+    let read = |text: &str| UrdfDocument::parse(text, "r.urdf", &ChainSelection::default()).unwrap();
+    assert_eq!(read(&twice).robot(), read(&urdf(limit, "")).robot());
+}
+
+#[test]
 fn bad_urdfs_get_one_sentence_each() {
     let two = urdf("", &joint("k", "revolute", "a", "c"));
     #[rustfmt::skip]
@@ -60,6 +68,18 @@ fn bad_urdfs_get_one_sentence_each() {
          "r.urdf:4:19: found `nan` in `rpy` of <origin> of joint `j`, expected a finite number"),
         (urdf("<origin xyz='1e300 0 0'/>", ""),
          "r.urdf:4:14: found `1e300` in `xyz` of <origin> of joint `j`, expected a number of metres or radians below 1e6"),
+        (urdf("<origin xyz='0 0 1'/>\n <origin xyz='0 0 2'/>", ""),
+         "r.urdf:5:2: found a second <origin> in joint `j`, expected one: the first is in line 4, leave one out"),
+        (urdf("<axis xyz='0 0 1'/><axis xyz='0 0 1'/>", ""),
+         "r.urdf:4:20: found a second <axis> in joint `j`, expected one: the first is in line 4, leave one out"),
+        (urdf("<limit lower='-1' upper='1'/>\n<limit lower='-1' upper='2'/>", ""),
+         "r.urdf:5:1: found a second <limit> in joint `j`, expected one: the first is in line 4, leave one out"),
+        (urdf("<child link='c'/>", ""),
+         "r.urdf:4:1: found a second <child> in joint `j`, expected one: the first is in line 3, leave one out"),
+        (urdf("<parent link='c'/>", ""),
+         "r.urdf:4:1: found a second <parent> in joint `j`, expected one: the first is in line 3, leave one out"),
+        (urdf("<mimic joint='k'/><mimic joint='k' offset='1'/>", &joint("k", "revolute", "b", "c")),
+         "r.urdf:4:19: found a second <mimic> in joint `j`, expected one: the first is in line 4, leave one out"),
         (urdf("<origin quat_xyzw='0 0 0 1'/>", ""),
          "r.urdf:4:1: <origin> of joint `j` has a quaternion, expected roll, pitch and yaw in `rpy`"),
         (urdf("<axis xyz='0 0 0'/>", ""),
@@ -201,10 +221,16 @@ fn bad_toml_models_get_one_sentence_each() {
          "r.toml:6:70: found a second joint named `j`, expected unique joint names"),
         (toml("a = 0, alpha = 90, d = 10, theta = 0", home),
          "r.toml:6:21: joint `j` has the DH parameter `a`, expected `screw`, or `point` and `direction`: for a DH table state convention = \"standard_dh\" or \"modified_dh\""),
+        (toml(&format!("{axis}, fixed = {{ position = [0, 0, 1] }}"), home),
+         "r.toml:6:67: joint `j` has `fixed`, expected it in a DH table only: a screw says where its axis stands in the base, whatever lies between"),
+        (dh("fixed = { position = [0, 0, 1], rpy = [0, 0, 0], quaternion_xyzw = [0, 0, 0, 1] }"),
+         "r.toml:6:55: `fixed` of joint `j` has more than one orientation, expected one of quaternion_xyzw, rpy and rotation"),
         (dh(axis),
          "r.toml:6:25: joint `j` has `screw`, expected a, alpha, d and theta: the model is a DH table"),
         (dh("a = 0") + home,
          "r.toml:9:8: found [home] in a DH model, expected [base] and [tool]: the home pose follows from the table"),
+        (toml(axis, home).replace("'j'", "\"j\\u001b\""),
+         "r.toml:6:12: found the control character \\u{1b} in the name of the joint, expected characters that can be seen"),
         (toml(axis, home).replace("'j'", "' '"),
          "r.toml:6:12: the name of the joint is empty, expected a name"),
         (
@@ -238,6 +264,8 @@ fn files_that_cannot_be_read_get_one_sentence_each() {
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).unwrap();
     write("empty.urdf", b" \r\n");
     write("latin1.urdf", b"<robot>\n<!-- \xe4 -->\n</robot>");
+    write("dh.csv", b"a,alpha,d,theta\n0,90,400,0\n");
+    write("points.csv", b"# session\njoint1,x[mm],y[mm]\n0,1,2\n");
     write("one.toml", toml("a = 0", "convention = 'standard_dh'").as_bytes());
     #[rustfmt::skip]
     let cases = [
@@ -246,6 +274,10 @@ fn files_that_cannot_be_read_get_one_sentence_each() {
         ("empty.urdf", "empty.urdf: the file is empty, expected a robot model (URDF, TOML or calibration.json)"),
         ("latin1.urdf",
          "latin1.urdf:2:6: found bytes that are not UTF-8, expected a robot model (URDF, TOML or calibration.json) as UTF-8 text"),
+        ("dh.csv",
+         "dh.csv:1: found a table of DH parameters (a, alpha, d, theta), expected a robot model: URDF, a calibration.json, or TOML that begins with poecal_robot = 1: write it with convention = \"standard_dh\" or \"modified_dh\" and an entry of `joint` for each row (docs/file-formats.md, TOML)"),
+        ("points.csv",
+         "points.csv:2: found a table with the columns joint1, x, y, expected a robot model: URDF, a calibration.json, or TOML that begins with poecal_robot = 1: if these are measurements, the model is named first and they behind it"),
         ("one.toml",
          "one.toml: found --base-link or --tip-link, expected neither: this model has one chain only"),
     ];

@@ -18,7 +18,7 @@ use poecal::{Error, ErrorKind, Result, report, solve};
 use super::typed::command;
 use crate::args::{Calibrate, Frame, ReportPlace};
 use crate::console::Console;
-use crate::style::labelled;
+use crate::style::{labelled, shown};
 use crate::timings::Timings;
 use crate::{DONE, NOT_CONVERGED, WORSE};
 
@@ -198,7 +198,7 @@ fn write(
         "written",
         &format!(
             "{}\n{}\nread back within {:.1e} m and {:.1e} rad in 1,000 configurations",
-            written.folder.display(),
+            shown(&written.folder),
             others.join(", "),
             written.largest.position_m,
             written.largest.rotation_rad
@@ -210,7 +210,7 @@ fn write(
         Some(ReportPlace::None) | None => among.map(|name| written.folder.join(name)),
     };
     if let Some(path) = report {
-        words.push_str(&labelled("report", &path.display().to_string()));
+        words.push_str(&labelled("report", &shown(&path)));
     }
     Ok(words)
 }

@@ -7,7 +7,7 @@ use poecal::io::output::{Project, write_project};
 use crate::DONE;
 use crate::args::Init;
 use crate::console::Console;
-use crate::style::labelled;
+use crate::style::{labelled, shown};
 
 pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     let chain = arguments.chain.selection();
@@ -22,9 +22,9 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     let written = write_project(&arguments.out, &project)?;
     let next = format!(
         "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
-        written.folder.join("README.md").display()
+        shown(&written.folder.join("README.md"))
     );
-    let files = format!("{}\n{}", written.folder.display(), written.files.join(", "));
+    let files = format!("{}\n{}", shown(&written.folder), written.files.join(", "));
     console.say(&(labelled("written", &files) + &labelled("next", &next)))?;
     Ok(DONE)
 }

@@ -8,7 +8,7 @@ use poecal::{Result, report as text};
 use crate::DONE;
 use crate::args::Report;
 use crate::console::Console;
-use crate::style::labelled;
+use crate::style::{labelled, shown};
 
 pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
     let beside = |name: &str| arguments.calibration.with_file_name(name);
@@ -20,6 +20,6 @@ pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
     let residuals = Residuals::read(&path)?;
     let page = text::calibration_page(&file, &residuals).map_err(|error| error.in_file(&path))?;
     place.write(page)?;
-    console.say(&labelled("written", &out.display().to_string()))?;
+    console.say(&labelled("written", &shown(&out)))?;
     Ok(DONE)
 }

@@ -7,7 +7,7 @@ use poecal::{Result, report};
 use crate::DONE;
 use crate::args::{Experiment, Reproduce};
 use crate::console::Console;
-use crate::style::labelled;
+use crate::style::{labelled, shown};
 
 pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> {
     let existing = Existing::forced(arguments.force);
@@ -31,6 +31,6 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> 
     let written = output::write_reproduction(place, &files)?;
     console.say(&words)?;
     console
-        .say(&labelled("written", &format!("{}\n{}", written.folder.display(), written.files.join(", "))))?;
+        .say(&labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", "))))?;
     Ok(DONE)
 }

@@ -8,7 +8,7 @@ use poecal::simulate::{Kind, Simulation};
 use crate::DONE;
 use crate::args::{Chain, Frame, Simulate};
 use crate::console::Console;
-use crate::style::labelled;
+use crate::style::{labelled, shown};
 
 pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     let existing = Existing::forced(arguments.force);
@@ -48,7 +48,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         console.warning(note);
     }
     console
-        .say(&labelled("written", &format!("{}\n{}", written.folder.display(), written.files.join(", "))))?;
+        .say(&labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", "))))?;
     Ok(DONE)
 }
 

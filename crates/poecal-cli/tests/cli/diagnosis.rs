@@ -1,6 +1,9 @@
 //! Mistakes in the input are told as people look for them.
 
+use std::fmt::Write as _;
+
 use poecal::forensics::DiagnosisKind;
+use poecal::lie::{Pose, rotation};
 use poecal::simulate::Kind;
 
 use crate::session::{calibration, session};
@@ -25,6 +28,68 @@ fn exchanged_columns_are_named_with_evidence() {
     assert_eq!(file.diagnosis.len(), 1);
     assert_eq!(file.diagnosis[0].kind, DiagnosisKind::JointsSwapped);
     assert!(file.diagnosis[0].rows.is_empty());
+}
+
+/// The session with its quaternions replaced by three columns.
+fn with_turns(text: &str, names: &str, turns: impl Fn(&Pose) -> [f64; 3]) -> String {
+    let mut out = String::new();
+    for (row, line) in text.lines().enumerate() {
+        let cells: Vec<&str> = line.split(',').collect();
+        let (kept, quaternion) = cells.split_at(cells.len() - 4);
+        let last = if row == 0 {
+            names.to_owned()
+        } else {
+            let parts: Vec<f64> = quaternion.iter().map(|part| part.parse().unwrap()).collect();
+            let pose = Pose::from_position_quaternion([0.0; 3], parts.try_into().unwrap());
+            turns(&pose).map(|angle| format!("{angle:?}")).join(",")
+        };
+        writeln!(out, "{},{last}", kept.join(",")).unwrap();
+    }
+    out
+}
+
+#[test]
+fn angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapping_that_reads_them() {
+    let folder = session(Kind::Pose);
+    // KUKA's A turns about z, B about y, C about x: yaw, pitch, roll.
+    let abc = |pose: &Pose| {
+        let [roll, pitch, yaw] = rotation::to_rpy(&pose.rotation);
+        [yaw, pitch, roll].map(f64::to_degrees)
+    };
+    let text = folder.read("measurements.csv");
+    folder.write("kuka.csv", with_turns(&text, "roll[deg],pitch[deg],yaw[deg]", abc));
+    let checked = folder.done("check robot.urdf kuka.csv --json");
+    let found: serde_json::Value = serde_json::from_str(&checked).unwrap();
+    let statement = found["diagnosis"][0]["statement"].as_str().unwrap();
+    println!("{statement}");
+    assert!(statement.starts_with(
+        "taking the orientation as intrinsic zyx angles (KUKA's A, B, C) instead of roll, pitch, yaw (extrinsic xyz) lowers the "
+    ));
+    assert!(statement.contains(
+        "a mapping (--columns) with `form = \"intrinsic_zyx\"` and `columns = [\"roll\", \"pitch\", \"yaw\"]` under `[orientation]`"
+    ));
+    folder.write(
+        "map.toml",
+        "[orientation]\nform = \"intrinsic_zyx\"\ncolumns = [\"roll\", \"pitch\", \"yaw\"]\n",
+    );
+    assert!(!folder.done("check robot.urdf kuka.csv --columns map.toml").contains("diagnosis"));
+}
+
+#[test]
+fn rotation_vectors_in_degrees_are_no_radians() {
+    let folder = session(Kind::Pose);
+    let vector = |pose: &Pose| -> [f64; 3] { rotation::log(&pose.rotation).map(f64::to_degrees).into() };
+    let text = folder.read("measurements.csv");
+    folder.write("ur.csv", with_turns(&text, "rx,ry,rz", vector));
+    let run = folder.run("check robot.urdf ur.csv");
+    assert_eq!(run.code, 2);
+    assert!(
+        run.err.starts_with("error: ur.csv:2:") && run.err.contains("as `rx[deg]`, `ry[deg]`, `rz[deg]`"),
+        "{}",
+        run.err
+    );
+    folder.write("ur.csv", with_turns(&text, "rx[deg],ry[deg],rz[deg]", vector));
+    assert!(!folder.done("check robot.urdf ur.csv").contains("diagnosis"));
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod bad_input;
 mod commands;
 mod diagnosis;
 mod folder;
+mod hostile;
 mod identify;
 mod init;
 mod offsets;

@@ -13,6 +13,8 @@ use crate::start::mean_rotation;
 
 /// Meanings that are judged in full.
 const CANDIDATES: usize = 3;
+/// Elements of rotations that differ by rounding only.
+const SAME: f64 = 1e-9;
 /// Rows of each target whose orientations are tried as the target's own.
 const GUESSES: usize = 6;
 
@@ -45,16 +47,36 @@ pub(super) fn conventions(session: &Session<'_>, data: &Dataset) -> Vec<Hypothes
             seen.push(Seen { row, target: observation.target, link_from_device, turned });
         }
     }
-    let mut judged: Vec<_> =
-        Reinterpretation::all().into_iter().map(|one| (meant(&seen, &one), one)).collect();
+    let all = Reinterpretation::all().into_iter().enumerate();
+    let mut judged: Vec<Judged> =
+        all.map(|(rank, meaning)| (meant(&seen, &meaning), (rank, meaning))).collect();
     judged.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
-    judged.truncate(CANDIDATES);
+    let judged = distinct(judged);
     let turns = |rotations: Vec<Matrix3<f64>>| {
         let mut turns = vec![None; data.len()];
         seen.iter().zip(rotations).for_each(|(one, turned)| turns[one.row] = Some(turned));
         turns
     };
-    judged.into_iter().map(|((_, rotations), one)| hypothesis(one, turns(rotations))).collect()
+    judged.into_iter().map(|((_, rotations), (_, one))| hypothesis(one, turns(rotations))).collect()
+}
+
+/// How far the orientations meant are from ones that follow the arm, these orientations, and what makes them: its rank and meaning.
+type Judged = ((f64, Vec<Matrix3<f64>>), (usize, Reinterpretation));
+
+/// The best meanings that give different orientations. Of those that give the same, the first in the order of all is named: the one
+/// that is read from the usual columns.
+fn distinct(judged: Vec<Judged>) -> Vec<Judged> {
+    let mut kept: Vec<Judged> = Vec::new();
+    for one in judged {
+        let rotations = &one.0.1;
+        let same = |other: &Judged| rotations.iter().zip(&other.0.1).all(|(a, b)| (a - b).amax() < SAME);
+        match kept.iter().position(same) {
+            Some(at) if one.1.0 < kept[at].1.0 => kept[at] = one,
+            None if kept.len() < CANDIDATES => kept.push(one),
+            Some(_) | None => {}
+        }
+    }
+    kept
 }
 
 /// The orientations meant, and their mean squared chordal distance from ones that follow the arm. Of the two sets of angles that a
@@ -87,16 +109,32 @@ fn meant(seen: &[Seen], meaning: &Reinterpretation) -> (f64, Vec<Matrix3<f64>>) 
 }
 
 fn hypothesis(meaning: Reinterpretation, turns: Vec<Option<Matrix3<f64>>>) -> Hypothesis {
-    let Reinterpretation { read, meant, .. } = meaning;
-    let action = if read == meant {
-        format!("taking the orientation ({}) in radians instead of degrees", meant.words())
+    let Reinterpretation { read, meant, factor } = meaning;
+    let (action, advice) = if read == meant {
+        let (is, read_as, unit) =
+            if factor > 1.0 { ("radians", "degrees", "rad") } else { ("degrees", "radians", "deg") };
+        let columns = read.columns().map_or_else(String::new, |columns| {
+            format!(", as in {}", columns.map(|name| format!("`{name}[{unit}]`")).join(", "))
+        });
+        (
+            format!("taking the orientation ({}) in {is} instead of {read_as}", meant.words()),
+            format!(
+                "state the unit of the angles in the header{columns}, or in a mapping (`unit = \"{unit}\"`)"
+            ),
+        )
     } else {
-        format!("taking the orientation as {} instead of {}", meant.words(), read.words())
+        let columns = read.columns().map_or_else(
+            || "the same `columns`".to_owned(),
+            |columns| format!("`columns = [{}]`", columns.map(|name| format!("\"{name}\"")).join(", ")),
+        );
+        (
+            format!("taking the orientation as {} instead of {}", meant.words(), read.words()),
+            format!(
+                "check the convention of the angles; a mapping (--columns) with `form = \"{}\"` and {columns} under `[orientation]` has \
+                 them read so (an equivalent pair of conventions may be meant)",
+                meant.form()
+            ),
+        )
     };
-    Hypothesis::new(
-        DiagnosisKind::EulerConvention,
-        Change::Turn(turns),
-        action,
-        "check the convention of the angles (an equivalent pair of conventions may be meant)".to_owned(),
-    )
+    Hypothesis::new(DiagnosisKind::EulerConvention, Change::Turn(turns), action, advice)
 }

@@ -69,10 +69,34 @@ impl Angles {
         let name =
             |axes: [usize; 3]| -> String { axes.iter().map(|&axis| ['x', 'y', 'z'][axis % 3]).collect() };
         match self {
+            Angles::Intrinsic([2, 1, 0]) => "intrinsic zyx angles (KUKA's A, B, C)".to_owned(),
             Angles::Intrinsic(axes) => format!("intrinsic {} angles", name(axes)),
             Angles::Extrinsic([0, 1, 2]) => "roll, pitch, yaw (extrinsic xyz)".to_owned(),
             Angles::Extrinsic(axes) => format!("extrinsic {} angles", name(axes)),
             Angles::RotationVector => "a rotation vector".to_owned(),
+        }
+    }
+}
+
+impl Angles {
+    /// As the `form` of a mapping.
+    pub(super) fn form(self) -> String {
+        let name =
+            |axes: [usize; 3]| -> String { axes.iter().map(|&axis| ['x', 'y', 'z'][axis % 3]).collect() };
+        match self {
+            Angles::Intrinsic(axes) => format!("intrinsic_{}", name(axes)),
+            Angles::Extrinsic([0, 1, 2]) => "roll_pitch_yaw".to_owned(),
+            Angles::Extrinsic(axes) => format!("extrinsic_{}", name(axes)),
+            Angles::RotationVector => "rotation_vector".to_owned(),
+        }
+    }
+
+    /// The columns that are read so without a mapping.
+    pub(super) fn columns(self) -> Option<[&'static str; 3]> {
+        match self {
+            Angles::Extrinsic([0, 1, 2]) => Some(["roll", "pitch", "yaw"]),
+            Angles::RotationVector => Some(["rx", "ry", "rz"]),
+            Angles::Intrinsic(_) | Angles::Extrinsic(_) => None,
         }
     }
 }
@@ -99,12 +123,12 @@ fn intrinsic([i, j, k]: [usize; 3], r: &Matrix3<f64>) -> [f64; 3] {
 pub(super) struct Reinterpretation {
     pub(super) read: Angles,
     pub(super) meant: Angles,
-    /// By which the angles are too small.
+    /// By which the angles are to be multiplied.
     pub(super) factor: f64,
 }
 
 impl Reinterpretation {
-    /// Every pair of meanings that differ, and angles of one meaning in radians read as degrees.
+    /// Every pair of meanings that differ, and angles of one meaning in radians read as degrees, or the other way round.
     pub(super) fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for read in Angles::all() {
@@ -116,7 +140,9 @@ impl Reinterpretation {
                 }
                 all.push(Reinterpretation { read, meant, factor: 1.0 });
             }
-            all.push(Reinterpretation { read, meant: read, factor: 180.0 / PI });
+            for factor in [180.0 / PI, PI / 180.0] {
+                all.push(Reinterpretation { read, meant: read, factor });
+            }
         }
         all
     }
@@ -146,6 +172,18 @@ fn wrapped(angle: f64) -> f64 {
 mod tests {
     use super::*;
     use nalgebra::Vector3;
+
+    #[test]
+    fn degrees_that_were_read_as_radians_are_undone_up_to_a_turn() {
+        let all = Reinterpretation::all();
+        let meaning = |angles| all.iter().find(|one| one.read == angles && one.factor < 1.0).unwrap();
+        for degrees in [[3.0, -2.0, 1.0], [0.5, 0.2, -1.0]] {
+            let read = Angles::RotationVector.rotation(degrees);
+            let meant = Angles::RotationVector.rotation(degrees.map(f64::to_radians));
+            let found = meaning(Angles::RotationVector).rotations(&read);
+            assert!(found.iter().any(|one| (one - meant).norm() < 1e-13), "{degrees:?}");
+        }
+    }
 
     #[test]
     fn angles_of_every_kind_give_their_rotation_back() {

@@ -1,8 +1,10 @@
 //! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.
 
 pub mod calibration_file;
+mod csv_text;
 pub mod disk;
 mod hashes;
+mod looks_like;
 pub mod measurements;
 mod mimic;
 pub mod model;

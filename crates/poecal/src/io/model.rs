@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::calibration_file::CalibrationFile;
 use super::proof::Difference;
 use super::urdf::{self, ChainSelection, UrdfDocument};
-use super::{robot_toml, source_text};
+use super::{looks_like, robot_toml, source_text};
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Robot;
 
@@ -88,6 +88,9 @@ impl Model {
             let robot = file.robot().map_err(|error| error.in_file(path))?;
             let source = ModelSource::Calibration(Box::new(file));
             return Ok(Model { robot, source, path: path.to_path_buf() });
+        }
+        if let Some(error) = looks_like::table_for_model(&text, path) {
+            return Err(error);
         }
         let (robot, source) = match ModelFormat::of_path(path).unwrap_or(ModelFormat::of_text(&text)) {
             ModelFormat::Urdf => {

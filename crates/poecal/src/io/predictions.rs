@@ -1,9 +1,9 @@
 //! Predicted poses as CSV.
 
+use super::csv_text::cell;
 use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
 use super::numbers::push_number;
-use super::residuals::quoted;
 use crate::calibration::inside;
 use crate::error::{Error, ErrorKind, Result, nearest};
 use crate::estimate::Packed;
@@ -56,7 +56,7 @@ pub fn predict(
     out.push('\n');
     for (row, pose) in found.poses.iter().enumerate() {
         if with_ids {
-            out.push_str(&quoted(joints.ids.get(row).map_or("", String::as_str)));
+            out.push_str(&cell(joints.ids.get(row).map_or("", String::as_str)));
             out.push(',');
         }
         let [x, y, z]: [f64; 3] = pose.translation.into();

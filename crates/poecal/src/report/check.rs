@@ -1,5 +1,6 @@
 //! What was understood of a model and of measurement files.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
 use serde::Serialize;
@@ -13,6 +14,7 @@ use crate::io::measurements::{
 use crate::io::model::{Model, ModelSource};
 use crate::measurement::Set;
 use crate::robot::{Joint, JointKind};
+use crate::text::visible;
 use nalgebra::Vector3;
 
 /// Widest name of ours, and of a column, that the table of columns keeps on one line.
@@ -256,8 +258,8 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
         line(out, "orientation", &format!("{orientation}; {}", file.pose));
     }
     let widest = |lengths: &mut dyn Iterator<Item = usize>| lengths.max().unwrap_or(0).min(WIDEST);
-    let ours = widest(&mut file.columns.iter().map(|column| width(&column.name))).max(8);
-    let theirs = widest(&mut file.columns.iter().map(|column| width(column_words(column)))).max(13);
+    let ours = widest(&mut file.columns.iter().map(|column| width(&visible(&column.name)))).max(8);
+    let theirs = widest(&mut file.columns.iter().map(|column| width(&column_words(column)))).max(13);
     let mut row = |name: &str, column: &str, unit: &str, range: &str| {
         // A long name pushes the rest of its row to a line of its own.
         let broken = if width(name) > ours || width(column) > theirs {
@@ -271,7 +273,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
     };
     row("column", "read from", "unit", "values");
     for column in &file.columns {
-        row(&column.name, column_words(column), &unit_words(column), &range_words(column));
+        row(&visible(&column.name), &column_words(column), &unit_words(column), &range_words(column));
     }
     if !file.ignored.is_empty() {
         line(out, "left alone", &file.ignored.join(", "));
@@ -282,8 +284,8 @@ fn width(text: &str) -> usize {
     text.chars().count()
 }
 
-fn column_words(column: &ColumnUnderstanding) -> &str {
-    column.column.as_deref().unwrap_or("(constant)")
+fn column_words(column: &ColumnUnderstanding) -> Cow<'_, str> {
+    visible(column.column.as_deref().unwrap_or("(constant)"))
 }
 
 fn unit_words(column: &ColumnUnderstanding) -> String {

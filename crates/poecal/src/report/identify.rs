@@ -10,6 +10,7 @@ use crate::io::calibration_file::IdentifiabilityEntry;
 use crate::io::model::Model;
 use crate::robot::JointKind;
 use crate::simulate::Kind;
+use crate::text::visible;
 
 /// What configurations would tell, for a person to look over or a machine to read.
 ///
@@ -162,5 +163,5 @@ fn coverage_row(joint: &JointCoverage, kind: JointKind) -> String {
         _ => "none".to_owned(),
     };
     let share = joint.share(kind).map_or_else(|| "-".to_owned(), |share| format!("{:.0} %", 100.0 * share));
-    format!("  {:<19}{sampled:>23}{limits:>26}{share:>8}", joint.joint)
+    format!("  {:<19}{sampled:>23}{limits:>26}{share:>8}", visible(&joint.joint))
 }

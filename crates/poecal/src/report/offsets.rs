@@ -10,6 +10,7 @@ use crate::io::model::{Model, ModelSource};
 use crate::lie::{Pose, rotation};
 use crate::offsets::{End, Explanation, TipError};
 use crate::robot::JointKind;
+use crate::text::visible;
 
 /// An explanation by offsets, for a person to look over or a machine to read.
 ///
@@ -215,7 +216,7 @@ impl JointEntry {
         let mark = if self.determined { "" } else { "*" };
         let shift = self.shift_mm.map_or_else(String::new, |shift| format!("{:>11} mm", fixed(shift)));
         let tilt = fixed(self.tilt_deg);
-        format!("  {:<18}{offset:>13} {unit:<3} {mark:<1}{tilt:>14} deg{shift}", self.name)
+        format!("  {:<18}{offset:>13} {unit:<3} {mark:<1}{tilt:>14} deg{shift}", visible(&self.name))
     }
 }
 

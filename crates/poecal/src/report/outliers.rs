@@ -6,6 +6,7 @@ use super::table::{line, number};
 use crate::calibration::Calibration;
 use crate::io::calibration_file::{OutlierEntry, OutlierSet};
 use crate::measurement::Dataset;
+use crate::text::visible;
 
 /// Rows that are named.
 const WORST: usize = 5;
@@ -50,7 +51,7 @@ pub(super) fn suspected(calibration: &Calibration, data: &Dataset) -> String {
             number(outlier.residual_mm),
             outlier.residual_deg.map_or_else(|| "-".to_owned(), number),
             outlier.weight,
-            outlier.file,
+            visible(&outlier.file),
             outlier.row
         );
     }

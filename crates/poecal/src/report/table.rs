@@ -9,6 +9,7 @@ use crate::measurement::{Dataset, PoseResidual};
 use crate::parameters::Formulation;
 use crate::robot::{JointKind, Robot};
 use crate::solve::{Method, Termination};
+use crate::text::visible;
 
 /// Columns of the table: their heads and how to take them from the accuracy of a set.
 type Column<'a> = (&'a str, fn(&SetAccuracy) -> &ModelAccuracy);
@@ -293,7 +294,7 @@ pub(super) fn line(out: &mut String, label: &str, text: &str) {
     const INDENT: usize = 14;
     let mut width = INDENT;
     let _ = write!(out, "{label:<INDENT$}");
-    for (k, word) in text.split(' ').enumerate() {
+    for (k, word) in visible(text).split(' ').enumerate() {
         let length = word.chars().count();
         if k > 0 && width + 1 + length > 80 {
             let _ = write!(out, "\n{:INDENT$}", "");

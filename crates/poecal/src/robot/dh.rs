@@ -20,7 +20,8 @@ pub enum DhConvention {
 /// ```
 /// use poecal::robot::{DhConvention, DhRow, JointKind, Robot};
 /// use poecal::lie::Pose;
-/// let row = |a_m, d_m, alpha_rad| DhRow { name: String::new(), kind: JointKind::Revolute, a_m, alpha_rad, d_m, theta_rad: 0.0, limits: None };
+/// let row = |a_m, d_m, alpha_rad| DhRow { name: String::new(), kind: JointKind::Revolute, a_m, alpha_rad, d_m, theta_rad: 0.0, limits: None,
+///     fixed: Pose::identity() };
 /// let rows: Vec<DhRow> = [(0.3, 0.0), (0.2, 0.1)].iter().enumerate()
 ///     .map(|(i, &(a, d))| DhRow { name: format!("joint{}", i + 1), ..row(a, d, 0.0) }).collect();
 /// let robot = Robot::from_dh("planar", DhConvention::Standard, &rows, Pose::identity(), Pose::identity())?;
@@ -43,6 +44,8 @@ pub struct DhRow {
     pub theta_rad: f64,
     /// Limits of the reading.
     pub limits: Option<Limits>,
+    /// A pose that follows the row and never moves: the next row, or the tip, stands in the frame after it.
+    pub fixed: Pose,
 }
 
 impl Robot {
@@ -79,10 +82,12 @@ impl Robot {
                 limits: row.limits,
                 reading: Reading::own(&row.name),
             });
-            base_from_frame = match convention {
+            let base_from_row = match convention {
                 DhConvention::Standard => base_from_joint * along_z * along_x,
                 DhConvention::Modified => base_from_joint * along_z,
             };
+            base_from_frame =
+                if row.fixed == Pose::identity() { base_from_row } else { base_from_row * row.fixed };
         }
         Robot::new(name, joints, base_from_frame * last_from_tip)
     }

@@ -147,7 +147,12 @@ impl ColumnMap {
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let mut map: ColumnMap = toml::from_str(text).map_err(|error| {
-            let message = error.message().replace('\n', "; ");
+            let mut message = error.message().replace('\n', "; ");
+            if message.starts_with("unknown field `direction`") {
+                message = "found the key `direction`, expected `pose = \"target_from_device\"` (or \"device_from_target\") for the way \
+                           that the file's poses point"
+                    .to_owned();
+            }
             let error_at = Error::new(ErrorKind::Syntax, message);
             match error.span() {
                 Some(span) => {

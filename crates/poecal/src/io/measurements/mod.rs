@@ -2,7 +2,7 @@
 //!
 //! Text becomes lines (`text`) and cells (`cells`), a table with places for messages (`table`), columns with a meaning and a unit
 //! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`) and at last measurements ([`read()`]), which are
-//! judged for their scale (`scale`, `spread`).
+//! judged for their scale (`scale`, `spread`, `turns`).
 
 mod builder;
 mod cells;
@@ -19,6 +19,7 @@ mod spread;
 mod table;
 mod template;
 mod text;
+mod turns;
 mod understanding;
 mod units;
 mod write;

@@ -13,6 +13,7 @@ use super::scale::{self, JointWatch};
 use super::spread;
 use super::table::{Row, Table};
 use super::text::Blocks;
+use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result};
@@ -105,6 +106,7 @@ impl<'a> Reader<'a> {
         let layout = Layout::new(&table.header, self.robot, self.options, self.map)?;
         let mut inputs = InputReader::new(&layout.inputs, Numbers::new(self.map.decimal));
         let mut watch = JointWatch::new(self.robot);
+        let mut turns = TurnWatch::new();
         let first = self.data.len();
         self.data.files.push(path.to_path_buf());
         if layout.id.is_some() {
@@ -116,6 +118,7 @@ impl<'a> Reader<'a> {
                 rows += 1;
                 inputs.read(&row)?;
                 watch.observe(&row, &inputs);
+                turns.observe(&row, &layout, &inputs);
                 self.row(&row, &layout, &mut inputs)?;
             }
         }
@@ -125,6 +128,7 @@ impl<'a> Reader<'a> {
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
         }
         self.warnings.extend(watch.finish(path, &layout)?);
+        turns.finish(path)?;
         let new_rows = self.data.observations.get(first..).unwrap_or_default();
         scale::check_positions(
             path,
@@ -140,6 +144,8 @@ impl<'a> Reader<'a> {
             self.data.ids.resize(self.data.len(), String::new());
         }
         self.warn_of_ignored(path, &layout);
+        let turns = turns::warning(&table.header, &layout, self.map);
+        self.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
         self.understood.push(FileUnderstanding {
             path: path.to_path_buf(),
             rows,

@@ -6,6 +6,7 @@ use super::cells::{Cell, Separator, character_column, split};
 use super::mapping::ColumnMap;
 use super::text::{Blocks, Lines};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
+use crate::io::looks_like::model_for_table;
 
 /// A column of the header: `name[unit]`.
 #[derive(Clone, Debug)]
@@ -56,6 +57,9 @@ impl<'a> Table<'a> {
     pub(super) fn open(path: &'a Path, mut blocks: Blocks<'a>, map: &ColumnMap) -> Result<Self> {
         while blocks.advance()? {
             let Some((line, text)) = blocks.lines(map.skip_lines).next() else { continue };
+            if let Some(error) = model_for_table(text, path, line) {
+                return Err(error);
+            }
             let separator = map.separator.unwrap_or_else(|| Separator::recognised(text));
             let header = Header::new(path, line, text, separator)?;
             return Ok(Table { header, separator, blocks, unread: true });

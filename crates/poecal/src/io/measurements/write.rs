@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::residuals::quoted;
+use crate::io::csv_text;
 use crate::measurement::{Dataset, Noise};
 use crate::robot::{JointKind, Robot};
 
@@ -58,13 +58,21 @@ pub(super) fn header(names: &[String], units: &[Unit], orientations: bool) -> Re
         );
         return Err(Error::new(ErrorKind::Model, message));
     }
+    if let Some(name) = names.iter().find(|name| name.contains(['\n', '\r'])) {
+        let message = format!(
+            "found a line break in the name of the joint `{name}`, expected none, since a column of that name could not be read \
+             back: rename the joint in the model"
+        );
+        return Err(Error::new(ErrorKind::Model, message));
+    }
     let measured = if orientations { "x[mm],y[mm],z[mm],qx,qy,qz,qw" } else { "x[mm],y[mm],z[mm]" };
     Ok(format!("{},{measured}", reading_header(names, units)))
 }
 
 /// The columns of the readings.
 pub(super) fn reading_header(names: &[String], units: &[Unit]) -> String {
-    let cell = |(name, unit): (&String, &Unit)| quoted(&format!("{name}[{}]", unit.symbol())).to_string();
+    let cell =
+        |(name, unit): (&String, &Unit)| csv_text::cell(&format!("{name}[{}]", unit.symbol())).into_owned();
     names.iter().zip(units).map(cell).collect::<Vec<_>>().join(",")
 }
 

@@ -13,7 +13,6 @@ use crate::robot::JointKind;
 use source::RowSource;
 pub use write::Rows;
 use write::in_pieces;
-pub(super) use write::quoted;
 
 /// Columns that every file begins with; a column for each joint reading follows.
 const COLUMNS: &str = "file,line,id,set,target,position_nominal[mm],position_registered[mm],position_calibrated[mm],x[mm],y[mm],z[mm],\

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{COLUMNS, Judged, ModelErrors, ResidualRow, Residuals, unit};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::csv_text::plain;
 use crate::io::source::LARGEST_TABLE;
 use crate::io::source_text;
 use crate::robot::JointKind;
@@ -62,7 +63,7 @@ impl Residuals {
         for (column, cell) in cells.iter().enumerate().skip(first) {
             let kinds = [JointKind::Revolute, JointKind::Prismatic];
             let reading = kinds.into_iter().find_map(|kind| {
-                let name = cell.strip_suffix(&format!("[{}]", unit(kind)))?;
+                let name = plain(cell).strip_suffix(&format!("[{}]", unit(kind)))?;
                 Some((name.to_owned(), kind))
             });
             let message = || {
@@ -77,15 +78,15 @@ impl Residuals {
 
     fn row(&mut self, cells: &[&str]) -> std::result::Result<(), Wrong> {
         let mut cells = Cells { cells, next: 0 };
-        let file = index_of(&mut self.files, cells.text()?);
+        let file = index_of(&mut self.files, plain(cells.text()?));
         let line = cells.parsed("a line number")?;
-        let id = cells.text()?.to_owned();
+        let id = plain(cells.text()?).to_owned();
         let held_out = match cells.text()? {
             "held_out" => true,
             "fit" => false,
             other => return Err(cells.wrong(other, "fit or held_out")),
         };
-        let target = index_of(&mut self.targets, cells.text()?);
+        let target = index_of(&mut self.targets, plain(cells.text()?));
         let position_mm = cells.errors()?.ok_or_else(|| cells.wrong("", "a number"))?;
         let rotation_deg = cells.errors()?;
         let judged = cells.judged()?;

@@ -1,6 +1,5 @@
 //! The text of a `residuals.csv`, made in pieces by all threads and written in the order of the rows.
 
-use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::Write;
 use std::ops::Range;
@@ -8,6 +7,7 @@ use std::ops::Range;
 use super::source::RowSource;
 use super::{COLUMNS, Judged, ModelErrors, Residuals, unit};
 use crate::calibration::Calibration;
+use crate::io::csv_text::cell;
 use crate::io::numbers::push_number;
 use crate::measurement::Dataset;
 use crate::threads;
@@ -93,7 +93,7 @@ fn head(residuals: &Residuals) -> String {
     let mut text = COLUMNS.to_owned();
     for (name, kind) in &residuals.readings {
         text.push(',');
-        text.push_str(&quoted(&format!("{name}[{}]", unit(*kind))));
+        text.push_str(&cell(&format!("{name}[{}]", unit(*kind))));
     }
     text.push('\n');
     text
@@ -101,13 +101,13 @@ fn head(residuals: &Residuals) -> String {
 
 /// The lines of some rows.
 fn text(residuals: &Residuals, range: Range<usize>) -> String {
-    let files: Vec<_> = residuals.files.iter().map(|name| quoted(name)).collect();
-    let targets: Vec<_> = residuals.targets.iter().map(|name| quoted(name)).collect();
+    let files: Vec<_> = residuals.files.iter().map(|name| cell(name)).collect();
+    let targets: Vec<_> = residuals.targets.iter().map(|name| cell(name)).collect();
     let mut text = String::with_capacity(range.len() * ROW);
     for (index, row) in range.clone().zip(residuals.rows.get(range).unwrap_or_default()) {
         text.push_str(files.get(row.file).map_or("", |name| name));
         let _ = write!(text, ",{},", row.line);
-        text.push_str(&quoted(&row.id));
+        text.push_str(&cell(&row.id));
         text.push_str(if row.held_out { ",held_out," } else { ",fit," });
         text.push_str(targets.get(row.target).map_or("", |name| name));
         push_errors(&mut text, Some(&row.position_mm));
@@ -138,13 +138,4 @@ fn push_errors(out: &mut String, errors: Option<&ModelErrors>) {
 fn push_cell(out: &mut String, number: f64) {
     out.push(',');
     push_number(out, number);
-}
-
-/// A CSV cell, quoted where it must be.
-pub(in crate::io) fn quoted(text: &str) -> Cow<'_, str> {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\"")).into()
-    } else {
-        text.into()
-    }
 }

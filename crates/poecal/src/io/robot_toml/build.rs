@@ -109,6 +109,13 @@ fn screw_joint(context: &Context, table: &JointTable, size_m: f64) -> Result<Joi
             return Err(context.error(value.span(), message));
         }
     }
+    if let Some(fixed) = &table.fixed {
+        let message = format!(
+            "joint `{name}` has `fixed`, expected it in a DH table only: a screw says where its axis stands in the base, whatever \
+             lies between"
+        );
+        return Err(context.error(fixed.span(), message));
+    }
     let kind = table.kind();
     match (&table.screw, &table.point, &table.direction) {
         (Some(screw), None, None) => {
@@ -253,6 +260,10 @@ fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
         d_m: length(&table.d)?,
         theta_rad: angle(&table.theta)?,
         limits: None,
+        fixed: match &table.fixed {
+            Some(fixed) => context.pose(fixed.get_ref(), &format!("`fixed` of {of}"))?,
+            None => Pose::identity(),
+        },
     })
 }
 

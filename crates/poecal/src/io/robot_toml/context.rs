@@ -76,8 +76,13 @@ impl Context<'_> {
         }
     }
 
-    /// A name that must not be empty.
+    /// A name that must not be empty, nor hold a character that XML, and so a URDF, cannot.
     pub(super) fn name(&self, name: &Spanned<String>, of: &str) -> Result<String> {
+        if let Some(c) = name.get_ref().chars().find(|&c| c < ' ' && !c.is_ascii_whitespace() || c == '\u{c}')
+        {
+            let found = format!("found the control character {} in the name of {of}", c.escape_unicode());
+            return Err(self.error(name.span(), format!("{found}, expected characters that can be seen")));
+        }
         if name.get_ref().trim().is_empty() {
             return Err(self.error(name.span(), format!("the name of {of} is empty, expected a name")));
         }

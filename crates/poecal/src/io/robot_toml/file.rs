@@ -95,6 +95,7 @@ pub(super) struct JointTable {
     pub(super) alpha: Option<Spanned<f64>>,
     pub(super) d: Option<Spanned<f64>>,
     pub(super) theta: Option<Spanned<f64>>,
+    pub(super) fixed: Option<Spanned<PoseTable>>,
     pub(super) limits: Option<Spanned<[f64; 2]>>,
     pub(super) mimic: Option<Spanned<MimicTable>>,
 }

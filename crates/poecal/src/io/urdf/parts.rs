@@ -71,8 +71,8 @@ fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_j
 }
 
 fn read_part<'a>(source: &Source<'a>, joint: &TreeJoint<'a>) -> Result<Part> {
-    let child = |name| source.children(joint.node, name).next();
-    let (origin, axis) = (child("origin"), child("axis"));
+    let child = |name| source.only_child(joint.node, name, &format!("joint `{}`", joint.name), true);
+    let (origin, axis) = (child("origin")?, child("axis")?);
     let of = format!("<origin> of joint `{}`", joint.name);
     let (mut xyz, mut rpy) = ([0.0; 3], [0.0; 3]);
     if let Some(origin) = origin {
@@ -121,7 +121,8 @@ fn read_axis<'a>(
 
 /// Limits, unless the joint is continuous or its range is empty (as exporters write what they do not know).
 fn read_limits<'a>(source: &Source<'a>, joint: &TreeJoint<'a>) -> Result<Option<Limits>> {
-    let Some(node) = source.children(joint.node, "limit").next() else { return Ok(None) };
+    let of = format!("joint `{}`", joint.name);
+    let Some(node) = source.only_child(joint.node, "limit", &of, false)? else { return Ok(None) };
     if joint.kind == JointType::Continuous {
         return Ok(None);
     }
@@ -153,7 +154,8 @@ fn read_reading(tree: &Tree, joint: &TreeJoint) -> Result<Reading> {
 
 fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Mimic>> {
     let source = &tree.source;
-    let Some(node) = source.children(follower.node, "mimic").next() else { return Ok(None) };
+    let of = format!("joint `{}`", follower.name);
+    let Some(node) = source.only_child(follower.node, "mimic", &of, false)? else { return Ok(None) };
     let of = format!("<mimic> of joint `{}`", follower.name);
     let (name, attribute) = source.required(node, "joint", &of)?;
     let error = |message| Err(source.error_at(attribute.range_value().start, message));

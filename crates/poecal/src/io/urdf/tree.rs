@@ -183,7 +183,7 @@ fn read_joint<'a>(
         )
     })?;
     let link = |role: &'static str| -> Result<usize> {
-        let Some(element) = source.children(node, role).next() else {
+        let Some(element) = source.only_child(node, role, &of, false)? else {
             return Err(source.error(node, format!("{of} has no <{role}>, expected <{role} link=\"...\"/>")));
         };
         let (link, attribute) = source.required(element, "link", &format!("<{role}> of {of}"))?;

@@ -1,5 +1,6 @@
 //! Attributes of an XML element, with errors that know their line and column.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
@@ -41,6 +42,33 @@ impl<'a> Source<'a> {
         name: &'static str,
     ) -> impl Iterator<Item = Node<'a, 'a>> {
         node.children().filter(move |child| child.is_element() && child.tag_name().name() == name)
+    }
+
+    /// The child of this name, of which there may be one only: which of two counts is not the same for all readers. A second one that
+    /// says the same is passed over, unless it is one of those that are written `anew`.
+    pub(super) fn only_child(
+        self,
+        node: Node<'a, 'a>,
+        name: &'static str,
+        of: &str,
+        anew: bool,
+    ) -> Result<Option<Node<'a, 'a>>> {
+        let mut children = self.children(node, name);
+        let first = children.next();
+        let says = |child: Node<'a, 'a>| -> BTreeSet<(&'a str, &'a str)> {
+            child.attributes().map(|attribute| (attribute.name(), attribute.value())).collect()
+        };
+        match children.find(|&second| anew || first.map(says) != Some(says(second))) {
+            Some(second) => {
+                let line =
+                    first.map_or(0, |first| position(self.document.input_text(), first.range().start).0);
+                let message = format!(
+                    "found a second <{name}> in {of}, expected one: the first is in line {line}, leave one out"
+                );
+                Err(self.error(second, message))
+            }
+            None => Ok(first),
+        }
     }
 
     /// An attribute that must be there and not be empty; `of` names its owner.

@@ -1,5 +1,6 @@
 //! What the script of the page works on, as JSON.
 
+use std::borrow::Cow;
 use std::cmp::Ordering;
 
 use serde::Serialize;
@@ -9,6 +10,7 @@ use super::{reading_index, readings_of};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::{CalibrationFile, KindWord, PoseEntry, ScrewEntry};
 use crate::io::residuals::{ModelErrors, ResidualRow, Residuals};
+use crate::text::visible;
 
 /// Rows that charts draw at most; how many of them are chosen for being suspected, and for being far off.
 pub(super) const MOST_ROWS: usize = 4000;
@@ -25,8 +27,8 @@ struct Data<'a> {
     home: &'a PoseEntry,
     nominal_home: &'a PoseEntry,
     base_from_device: &'a PoseEntry,
-    /// Names of the targets, and their places in the tip frame, metres.
-    targets: Vec<(&'a str, [f64; 3])>,
+    /// Names of the targets as they are shown, and their places in the tip frame, metres.
+    targets: Vec<(Cow<'a, str>, [f64; 3])>,
     readings: Vec<ReadingData<'a>>,
     sigma_position_mm: f64,
     rows: RowData,
@@ -36,7 +38,7 @@ struct Data<'a> {
 
 #[derive(Serialize)]
 struct JointData<'a> {
-    name: &'a str,
+    name: Cow<'a, str>,
     kind: KindWord,
     screw: &'a ScrewEntry,
     nominal_screw: &'a ScrewEntry,
@@ -50,7 +52,7 @@ struct JointData<'a> {
 
 #[derive(Serialize)]
 struct ReadingData<'a> {
-    name: &'a str,
+    name: Cow<'a, str>,
     unit: &'static str,
 }
 
@@ -79,7 +81,7 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
     let joints = file.joints.iter().map(|joint| {
         let sampled = file.coverage.iter().find(|found| found.joint == joint.name);
         JointData {
-            name: &joint.name,
+            name: visible(&joint.name),
             kind: joint.kind,
             screw: &joint.screw,
             nominal_screw: &joint.nominal_screw,
@@ -92,13 +94,14 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
         }
     });
     let place_of = |name: &String| file.targets.get(name).map_or([0.0; 3], |target| target.position_m);
+    let reading = |(_, name, unit)| ReadingData { name: visible(name), unit };
     let data = Data {
         joints: joints.collect(),
         home: &file.robot.base_from_tip_at_zero,
         nominal_home: &file.robot.nominal_base_from_tip_at_zero,
         base_from_device: &file.measurement_frame.base_from_device,
-        targets: residuals.targets.iter().map(|name| (name.as_str(), place_of(name))).collect(),
-        readings: readings_of(residuals).map(|(_, name, unit)| ReadingData { name, unit }).collect(),
+        targets: residuals.targets.iter().map(|name| (visible(name), place_of(name))).collect(),
+        readings: readings_of(residuals).map(reading).collect(),
         sigma_position_mm: file.noise.sigma_position_mm,
         rows: RowData::of(residuals),
         count: residuals.rows.len(),
@@ -156,7 +159,7 @@ impl RowData {
 
     fn push(&mut self, residuals: &Residuals, index: usize, row: &ResidualRow, even: bool) {
         self.number.push(index + 1);
-        self.place.push(place(residuals, index));
+        self.place.push(visible(&place(residuals, index)).into_owned());
         self.held_out.push(u8::from(row.held_out));
         self.even.push(u8::from(even));
         self.suspected.push(u8::from(row.judged.is_some_and(|judged| judged.suspected)));

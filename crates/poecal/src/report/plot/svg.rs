@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::report::fixed::Fixed;
+use crate::text::visible;
 
 /// A series' colour (Okabe and Ito's, which colour-blind people tell apart), dash and marker.
 struct Style {
@@ -47,9 +48,9 @@ pub(in crate::report) fn escape(text: &str) -> String {
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            // XML has no place for control characters, not even escaped.
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push(' '),
-            c => out.push(c),
+            '\n' | '\t' | '\r' => out.push(' '),
+            // XML has no place for control characters, not even escaped, and marks of direction would reorder what stands beside them.
+            c => out.push_str(&visible(c.encode_utf8(&mut [0; 4]))),
         }
     }
     out
@@ -239,10 +240,10 @@ mod tests {
 
     #[test]
     fn markup_in_text_stays_text() {
-        let svg = Canvas::new().finish(1.0, 1.0, "a < b & \"c\"\u{1}", "</svg>");
+        let svg = Canvas::new().finish(1.0, 1.0, "a < b & \"c\"\u{1}\u{202e}", "</svg>");
         let document = roxmltree::Document::parse(&svg).unwrap();
         let text: Vec<&str> = document.root_element().children().filter_map(|node| node.text()).collect();
-        assert!(text.contains(&"a < b & \"c\" ") && text.contains(&"</svg>"), "{text:?}");
+        assert!(text.contains(&r#"a < b & "c"\u{1}\u{202e}"#) && text.contains(&"</svg>"), "{text:?}");
     }
 
     #[test]

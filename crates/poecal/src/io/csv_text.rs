@@ -1,0 +1,94 @@
+//! Text in cells of the CSV files that are written here, such that a spreadsheet shows it and does not run it, and that it reads back
+//! the same.
+
+use std::borrow::Cow;
+
+/// What goes before a text that a spreadsheet would run.
+const MARK: char = '\'';
+
+/// Whether a cell that begins so would be run, or taken for something else than what it says.
+fn is_run(c: char) -> bool {
+    matches!(c, '=' | '+' | '-' | '@' | '\t' | '\r' | '\n')
+}
+
+/// A text as a cell: one that a spreadsheet would run, or that begins with an apostrophe, has an apostrophe before it; numbers stay as
+/// they are. Quoted where it must be.
+pub(in crate::io) fn cell(text: &str) -> Cow<'_, str> {
+    let is_marked = text.starts_with(MARK) || text.starts_with(is_run) && !is_number(text);
+    let padded = text.starts_with(char::is_whitespace) || text.ends_with(char::is_whitespace);
+    // A line that begins with # would be a comment.
+    if padded || text.starts_with('#') || text.contains([',', ';', '"', '\n', '\r', '\t']) {
+        let mark = if is_marked { "'" } else { "" };
+        return format!("\"{mark}{}\"", text.replace('"', "\"\"")).into();
+    }
+    if is_marked { format!("{MARK}{text}").into() } else { text.into() }
+}
+
+/// The text of a cell, without the apostrophe that [`cell`] puts before it.
+pub(in crate::io) fn plain(text: &str) -> &str {
+    match text.strip_prefix(MARK) {
+        Some(rest) if rest.starts_with(|c| c == MARK || is_run(c)) => rest,
+        _ => text,
+    }
+}
+
+/// Whether a text is a number with a sign and nothing else.
+fn is_number(text: &str) -> bool {
+    let characters = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
+    text.chars().all(characters) && text.parse::<f64>().is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::ChaCha8Rng;
+    use rand_core::{Rng as _, SeedableRng as _};
+
+    use super::*;
+
+    #[test]
+    fn what_a_spreadsheet_would_run_is_marked() {
+        let cases = [
+            ("=1+1", "'=1+1"),
+            ("@SUM(A1)", "'@SUM(A1)"),
+            ("-2+3", "'-2+3"),
+            ("+cmd", "'+cmd"),
+            ("-5", "-5"),
+            ("+1.5e3", "+1.5e3"),
+            ("-inf", "'-inf"),
+            ("'x", "''x"),
+            ("x'", "x'"),
+            ("\tx", "\"'\tx\""),
+            ("=a,b", "\"'=a,b\""),
+            ("say \"hi\"", "\"say \"\"hi\"\"\""),
+            ("#1", "\"#1\""),
+            ("a b", "a b"),
+            (" a", "\" a\""),
+            ("", ""),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(cell(text), expected);
+        }
+        // An apostrophe of somebody else's stays.
+        assert_eq!((plain("'abc"), plain("'"), plain("5'")), ("'abc", "'", "5'"));
+    }
+
+    #[test]
+    fn every_text_reads_back_the_same() {
+        let mut generator = ChaCha8Rng::seed_from_u64(1);
+        let alphabet: Vec<char> = "'=+-@\t\r\n,;\"#ab1.e \u{1b}\u{202e}µ".chars().collect();
+        let mut pick = |count: usize| (generator.next_u32() as usize) % count;
+        for _ in 0..20_000 {
+            let length = pick(6);
+            let text: String = (0..length).map(|_| alphabet[pick(alphabet.len())]).collect();
+            let written = cell(&text);
+            let line = format!("{written},{written}\n");
+            let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
+            // The reader of CSV passes over lines without any cell.
+            let record = reader.records().next().unwrap().unwrap();
+            for found in &record {
+                assert_eq!(plain(found), text, "{written}");
+                assert!(!found.starts_with(is_run) || is_number(found), "{written}");
+            }
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! What a text looks like that is not what was asked for: tables given as models, models given as tables.
+
+use std::path::Path;
+
+use crate::error::{Error, ErrorKind, first_few};
+
+/// What a model is.
+const MODEL: &str =
+    "expected a robot model: URDF, a calibration.json, or TOML that begins with poecal_robot = 1";
+/// What columns of DH tables are called, case ignored; some stand for each other.
+const DH_COLUMNS: [&str; 12] =
+    ["a", "alpha", "d", "theta", "r", "α", "θ", "a_i", "alpha_i", "d_i", "theta_i", "a(i-1)"];
+/// Columns that only measurements have.
+const MEASURED: [&str; 10] = ["x", "y", "z", "qx", "qy", "qz", "qw", "target", "id", "set"];
+
+/// The error of a model's text that is a table, `None` of all others.
+pub(super) fn table_for_model(text: &str, path: &Path) -> Option<Error> {
+    let (index, line) =
+        text.trim_start_matches('\u{feff}').lines().enumerate().find(|(_, line)| has_content(line))?;
+    let cells = cells(line)?;
+    let dh = cells.iter().filter(|cell| DH_COLUMNS.contains(&cell.to_lowercase().as_str())).count();
+    let measured = cells.iter().filter(|cell| MEASURED.contains(cell)).count();
+    let numbers = cells.iter().filter(|cell| cell.parse::<f64>().is_ok()).count();
+    let table = "convention = \"standard_dh\" or \"modified_dh\" and an entry of `joint` for each row (docs/file-formats.md, TOML)";
+    let message = if dh >= 3 && measured == 0 {
+        format!("found a table of DH parameters ({}), {MODEL}: write it with {table}", cells.join(", "))
+    } else if numbers == cells.len() && (3..=6).contains(&numbers) {
+        format!("found a table of numbers, {MODEL}: a table of DH parameters is written with {table}")
+    } else {
+        format!(
+            "found a table with the columns {}, {MODEL}: if these are measurements, the model is named first and they behind it",
+            first_few(&cells)
+        )
+    };
+    Some(Error::new(ErrorKind::Syntax, message).at_line(path, index + 1))
+}
+
+/// The error of a header that is the beginning of a model.
+pub(super) fn model_for_table(line: &str, path: &Path, number: usize) -> Option<Error> {
+    let line = line.trim();
+    let form = if line.starts_with("<?xml") || line.starts_with("<robot") || line.starts_with("<!--") {
+        "XML, as a URDF is"
+    } else if line == "{" || line.starts_with("{\"") || line.starts_with("{ \"") {
+        "JSON, as a calibration.json is"
+    } else if line.starts_with("poecal_robot") {
+        "a robot model in TOML"
+    } else {
+        return None;
+    };
+    let message = format!(
+        "found {form}, expected a table (CSV) with a header that names the columns: the model is named first, and tables behind it"
+    );
+    Some(Error::new(ErrorKind::Syntax, message).at_line(path, number))
+}
+
+fn has_content(line: &str) -> bool {
+    let line = line.trim();
+    !line.is_empty() && !line.starts_with('#')
+}
+
+/// The cells of a line that begins a table, names without units; `None` of a line that TOML, XML or JSON could have.
+fn cells(line: &str) -> Option<Vec<&str>> {
+    let line = line.trim();
+    let key = line.split('=').next().unwrap_or_default();
+    let is_key = line.contains('=') && !key.contains([',', ';', '\t']);
+    if line.starts_with(['<', '{', '[']) || is_key {
+        return None;
+    }
+    let separator = [';', '\t', ','].into_iter().find(|&separator| line.contains(separator));
+    let cells: Vec<&str> = match separator {
+        Some(separator) => line.split(separator).collect(),
+        None => line.split_whitespace().collect(),
+    };
+    let cells: Vec<&str> = cells
+        .into_iter()
+        .map(|cell| cell.trim().trim_matches('"').split('[').next().unwrap_or_default().trim())
+        .collect();
+    // A few words are no table yet.
+    let fewest = if separator.is_some() { 2 } else { 3 };
+    (cells.len() >= fewest).then_some(cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn model(text: &str) -> String {
+        table_for_model(text, Path::new("m.csv")).map_or_else(String::new, |error| error.to_string())
+    }
+
+    #[test]
+    fn a_table_of_dh_parameters_is_told_from_measurements() {
+        let toml = "m.csv:1: found a table of DH parameters (a, alpha, d, theta), expected a robot model: URDF, a calibration.json, or \
+                    TOML that begins with poecal_robot = 1: write it with convention = \"standard_dh\" or \"modified_dh\" and an entry \
+                    of `joint` for each row (docs/file-formats.md, TOML)";
+        assert_eq!(model("a,alpha,d,theta\n0,90,400,0\n"), toml);
+        assert_eq!(model("a[mm]; alpha[deg]; d[mm]; theta[deg]\n"), toml);
+        assert!(
+            model("# DH\ni a alpha d theta\n").starts_with("m.csv:2: found a table of DH parameters (i, a,")
+        );
+        assert!(
+            model("25,-90,400,0\n").starts_with("m.csv:1: found a table of numbers, expected a robot model")
+        );
+        assert!(model("id,joint1[deg],x[mm],y[mm],z[mm]\n1,2,3,4,5\n").ends_with(
+            "found a table with the columns id, joint1, x, y, z, expected a robot model: URDF, a calibration.json, or TOML that begins \
+             with poecal_robot = 1: if these are measurements, the model is named first and they behind it"
+        ));
+    }
+
+    #[test]
+    fn what_may_be_a_model_is_none() {
+        for text in [
+            "",
+            "poecal_robot = 1",
+            "joint = [{ a = 1, b = 2 }]",
+            "[home]",
+            "<robot/>",
+            "{\"a\": 1}",
+            "text",
+            "# only",
+        ] {
+            assert_eq!(model(text), "", "{text}");
+        }
+    }
+
+    #[test]
+    fn a_model_in_the_place_of_a_table_is_named() {
+        let of = |line: &str| model_for_table(line, Path::new("r.urdf"), 1).map(|error| error.to_string());
+        for line in ["<?xml version=\"1.0\"?>", "<robot name=\"r\">", "{", "poecal_robot = 1"] {
+            let message = of(line).unwrap();
+            assert!(message.ends_with("the model is named first, and tables behind it"), "{message}");
+        }
+        assert_eq!(of("joint1,x,y,z"), None);
+    }
+}
