@@ -105,24 +105,14 @@ fn mistakes_are_named() {
     assert!(right as f64 >= 0.95 * count as f64, "{right} of {count}");
 }
 
-/// What is clean must cost next to nothing, since it is looked at after every calibration.
 #[test]
-fn a_clean_calibration_is_known_at_once() {
+fn a_clean_calibration_has_no_mistake() {
     let simulation = poecal::simulate::Simulation::default();
     let made = simulation.run(&poecal::simulate::elbow(), poecal::simulate::Kind::Point).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let rows: Vec<u32> = (0..made.data.len() as u32).collect();
     let options = Options { calibrated: Some(&calibration.models.calibrated), ..Options::default() };
-    let best = (0..20)
-        .map(|_| {
-            let started = std::time::Instant::now();
-            assert_eq!(diagnose(&made.nominal, &made.data, &rows, &options), []);
-            started.elapsed().as_secs_f64() * 1e3
-        })
-        .fold(f64::INFINITY, f64::min);
-    println!("a clean session of {} rows: {best:.3} ms", rows.len());
-    // Measured: 0.1 ms; a fit takes more than 1 ms.
-    assert!(best < 1.0, "{best} ms");
+    assert_eq!(diagnose(&made.nominal, &made.data, &rows, &options), []);
 }
 
 #[test]

@@ -187,7 +187,8 @@ pub(super) fn pose_forms() -> Vec<Hypothesis> {
     let inverse = |change, what: &str, expected| {
         Hypothesis::new(DiagnosisKind::InvertedPose, change, format!("inverting the {what}"), expected)
     };
-    let poses = "check which way they go, since device_from_target is expected (`direction` in a mapping)";
+    let poses = "check which way they go, since device_from_target is expected \
+                 (poses of the device in the target: `pose = \"target_from_device\"` in a mapping)";
     let turns = "check which way they go, since orientations of the target in the device are expected \
                  (a transposed matrix or a conjugate quaternion is the other way)";
     vec![

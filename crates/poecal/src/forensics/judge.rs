@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::change::Change;
 use super::conventions::conventions;
+use super::few::Few;
 use super::hypotheses::{
     Columns, Hypothesis, joint_exchanges, joint_signs, joint_units, mirrors, pose_forms, position_units,
     row_shifts,
@@ -44,15 +45,16 @@ struct Judged {
 }
 
 /// The one mistake that explains the measurements, if there is one.
-pub(super) fn diagnose(session: &Session<'_>, all: &Dataset, base: &Score) -> Option<Diagnosis> {
+pub(super) fn diagnose(few: &Few<'_, '_>, all: &Dataset, base: &Score) -> Option<Diagnosis> {
+    let session = &*few.session;
     let columns = Columns::new(session.robot);
-    let sample = sampled(all);
+    let sample = sampled(&few.data);
     let hypotheses = single_mistakes(session, &columns, &sample);
-    let (best, score) = best_of(session, all, &sample, base, &hypotheses)
+    let (best, score) = best_of(few, all, &sample, base, &hypotheses)
         .map(|(index, score)| (hypotheses[index].clone(), score))
         .or_else(|| {
             let pairs = sign_pairs(&columns);
-            best_of(session, all, &sample, base, &pairs).map(|(index, score)| (pairs[index].clone(), score))
+            best_of(few, all, &sample, base, &pairs).map(|(index, score)| (pairs[index].clone(), score))
         })?;
     Some(told(&best, base, &score))
 }
@@ -99,16 +101,18 @@ fn signs(columns: &Columns, members: Vec<usize>) -> Hypothesis {
 
 /// The supposition that explains the data, and how well.
 fn best_of(
-    session: &Session<'_>,
+    few: &Few<'_, '_>,
     all: &Dataset,
     sample: &Dataset,
     base: &Score,
     hypotheses: &[Hypothesis],
 ) -> Option<(usize, Score)> {
+    let session = &*few.session;
     let rough = |(index, hypothesis): (usize, &Hypothesis)| {
-        // Rows are shifted before a sample is taken of them.
+        // Rows are shifted before targets and a sample are taken of them.
         let shifts = hypothesis.kind == DiagnosisKind::RowShift;
-        let data = if shifts { sampled(&hypothesis.apply(all)) } else { hypothesis.apply(sample) };
+        let data =
+            if shifts { sampled(&few.among(hypothesis.apply(all))) } else { hypothesis.apply(sample) };
         let (estimate, registered) = session.roughly_registered(&data);
         (index, data, estimate, registered)
     };

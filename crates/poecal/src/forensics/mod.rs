@@ -6,6 +6,7 @@
 mod change;
 mod conventions;
 mod euler;
+mod few;
 mod hypotheses;
 mod judge;
 mod repeats;
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 use crate::estimate::{Estimate, sample_rows};
 use crate::measurement::Dataset;
 use crate::robot::Robot;
+use few::Few;
 use session::{Session, sampled, taken};
 
 /// A kind of mistake, as a word that does not change between versions.
@@ -154,9 +156,11 @@ fn of_rows(session: &Session<'_>, data: &Dataset, rows: &[u32], options: &Option
         return targets::names(session, data, estimate);
     }
     let all = taken(data, rows);
-    let (estimate, base) = session.judged(&sampled(&all));
-    if session.is_sound(&whole, &estimate) {
-        return targets::names(session, data, &estimate);
+    let few = Few::of(session, &all);
+    let (estimate, base) = few.session.judged(&sampled(&few.data));
+    let placed = few.placed(session, &all, &estimate);
+    if session.is_sound(&whole, &placed) {
+        return targets::names(session, data, &placed);
     }
-    targets::rows(session, data, &all, rows, &base).or_else(|| judge::diagnose(session, &all, &base))
+    targets::rows(session, data, &all, rows, &base).or_else(|| judge::diagnose(&few, &all, &base))
 }

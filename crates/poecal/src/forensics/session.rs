@@ -62,7 +62,7 @@ pub(super) struct Session<'a> {
     /// Metres that one radian counts.
     pub(super) length_m: f64,
     pub(super) start: Estimate,
-    noise: Noise,
+    pub(super) noise: Noise,
 }
 
 impl<'a> Session<'a> {

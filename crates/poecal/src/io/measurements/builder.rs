@@ -1,12 +1,14 @@
 //! Finding the columns that a layout needs.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::layout::{Input, Source, TargetLayout, reading_quantity};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
 use super::table::Header;
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
-use crate::error::{Error, ErrorKind, Result, edit_distance};
+use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
 use crate::robot::Robot;
 
@@ -39,7 +41,7 @@ const OUR_NAMES: [&str; 18] = [
 pub(super) struct Builder<'a> {
     header: &'a Header<'a>,
     map: &'a ColumnMap,
-    readings: Vec<String>,
+    readings: BTreeSet<String>,
     pub(super) inputs: Vec<Input>,
     used: Vec<bool>,
 }
@@ -47,15 +49,16 @@ pub(super) struct Builder<'a> {
 impl<'a> Builder<'a> {
     /// Finds the joints' columns.
     pub(super) fn new(header: &'a Header<'a>, robot: &Robot, map: &'a ColumnMap) -> Result<Self> {
-        let readings = robot.reading_names();
-        if let Some(name) = map.joints.keys().find(|name| !readings.contains(name)) {
-            let message = format!("found the joint `{name}`, expected one of {}", readings.join(", "));
+        let names = robot.reading_names();
+        let readings: BTreeSet<String> = names.iter().cloned().collect();
+        if let Some(name) = map.joints.keys().find(|name| !readings.contains(*name)) {
+            let message = format!("found the joint `{name}`, expected one of {}", first_few(&names));
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&map.path));
         }
         let used = vec![false; header.cells.len()];
-        let mut builder = Builder { header, map, readings: readings.clone(), inputs: Vec::new(), used };
+        let mut builder = Builder { header, map, readings, inputs: Vec::new(), used };
         let default = ColumnSpec::default();
-        for name in &readings {
+        for name in &names {
             let spec = map.joints.get(name).unwrap_or(&default);
             let purpose = format!("for joint `{name}`");
             builder.spec_input(name, spec, reading_quantity(robot, name), &purpose)?;
@@ -122,15 +125,11 @@ impl<'a> Builder<'a> {
 
     /// Index of a column that must be there.
     pub(super) fn text_column(&mut self, name: &str, purpose: &str) -> Result<usize> {
-        let known: Vec<&str> = self
-            .readings
-            .iter()
-            .map(String::as_str)
-            .chain(OUR_NAMES)
-            .filter(|known| *known != name)
-            .collect();
+        let is_known = |found: &str| {
+            found != name && (self.readings.contains(found) || OUR_NAMES.contains(&found))
+        };
         let index =
-            self.header.require(name, purpose, &known).map_err(|error| self.explained(name, error))?;
+            self.header.require(name, purpose, is_known).map_err(|error| self.explained(name, error))?;
         self.mark(index);
         Ok(index)
     }
@@ -138,7 +137,7 @@ impl<'a> Builder<'a> {
     /// Says of a name's second column that the model's own joint takes the name of a column with a meaning, if that is why.
     fn explained(&self, name: &str, error: Error) -> Error {
         let is_clash = self.header.count(name) > 1
-            && self.readings.iter().any(|reading| reading == name)
+            && self.readings.contains(name)
             && OUR_NAMES.contains(&name);
         let place = error.place().and_then(|place| Some((place.line?, place.column?)));
         match place {
@@ -287,12 +286,11 @@ impl<'a> Builder<'a> {
 
     /// Refuses a column that is two things at once. (One sigma may serve several targets.)
     pub(super) fn check_distinct(&self) -> Result<()> {
-        let distinct = |input: &&Input| !input.name.contains("sigma_");
-        for (i, input) in self.inputs.iter().enumerate() {
+        let distinct = |input: &Input| !input.name.contains("sigma_");
+        let mut first: BTreeMap<usize, &Input> = BTreeMap::new();
+        for input in self.inputs.iter().filter(|input| distinct(input)) {
             let Source::Column(index) = input.source else { continue };
-            let earlier =
-                self.inputs.iter().take(i).filter(distinct).find(|other| other.source == input.source);
-            if let (Some(other), true) = (earlier, distinct(&input)) {
+            if let Some(other) = first.insert(index, input) {
                 let message = if other.name == input.name {
                     format!("found one column `{0}`, {1}", input.name, clash(&input.name))
                 } else {
@@ -310,18 +308,19 @@ impl<'a> Builder<'a> {
 
     pub(super) fn ignored(&self) -> Vec<(String, Option<&'static str>)> {
         let cells = self.header.cells.iter().enumerate();
+        let missing: Vec<&'static str> =
+            OUR_NAMES.into_iter().filter(|ours| self.header.count(ours) == 0).collect();
         cells
             .filter(|(index, cell)| !self.is_used(*index) && !cell.text.is_empty())
-            .map(|(_, cell)| (cell.text.clone(), self.meant(&cell.name)))
+            .map(|(_, cell)| (cell.text.clone(), meant(&cell.name, &missing)))
             .collect()
     }
+}
 
-    /// The name of ours that a column without meaning is a slip of the pen away from.
-    fn meant(&self, name: &str) -> Option<&'static str> {
-        let missing = |ours: &&str| !self.header.cells.iter().any(|cell| cell.name == *ours);
-        let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
-        OUR_NAMES.into_iter().filter(missing).find(|ours| edit_distance(name, ours) <= slips(ours))
-    }
+/// The name of ours, of those that are missing, that a column without meaning is a slip of the pen away from.
+fn meant(name: &str, missing: &[&'static str]) -> Option<&'static str> {
+    let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
+    missing.iter().copied().find(|ours| distance_within(name, ours, slips(ours)).is_some())
 }
 
 /// What is wrong, and what to do, when a joint has the name of a column with a meaning.

@@ -1,6 +1,6 @@
 //! The mapping file: how a file with its own column names is to be read.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -182,11 +182,12 @@ impl ColumnMap {
                 "found both `{key}` and `[[targets]]`, expected `{key}` in each target only"
             ));
         }
-        for (i, target) in self.targets.iter().enumerate() {
+        let mut names = BTreeSet::new();
+        for target in &self.targets {
             if target.name.is_empty() {
                 return error("found a target with an empty name, expected a name".to_owned());
             }
-            if self.targets.iter().take(i).any(|other| other.name == target.name) {
+            if !names.insert(&target.name) {
                 return error(format!("found two targets named `{}`, expected unique names", target.name));
             }
         }
