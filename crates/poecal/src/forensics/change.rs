@@ -14,6 +14,8 @@ pub(super) enum Change {
     Scale(Vec<usize>, f64),
     /// Two columns exchanged.
     Exchange(usize, usize),
+    /// A column times the first factor, plus another times the second.
+    Combine { column: usize, own: f64, other: usize, factor: f64 },
     /// A number added to a column, radians or metres.
     Add(usize, f64),
     /// Each reading goes with the measurement so many rows later: of the same target, or whatever target that row names.
@@ -56,6 +58,9 @@ impl Change {
                 columns.iter().for_each(|&column| readings[column] *= factor);
             }
             Change::Exchange(a, b) => readings.swap(*a, *b),
+            Change::Combine { column, own, other, factor } => {
+                readings[*column] = own * readings[*column] + factor * readings[*other];
+            }
             Change::Add(column, offset) => readings[*column] += offset,
             _ => {}
         }

@@ -5,14 +5,16 @@ use std::borrow::Cow;
 use nalgebra::{Matrix3, Vector3};
 
 use super::change::push;
-use super::session::Session;
+use super::session::{SAMPLE, Session};
 use crate::estimate::{Chain, Estimate, Linkage};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Observation};
 use crate::start::mean_rotation;
 
-/// Targets that are fitted together at most: each adds unknowns, and a sample has few rows of each of many.
+/// Targets up to which all are fitted together: each adds unknowns, and a sample has few rows of each of many.
 pub(super) const TARGETS: usize = 12;
+/// Targets that are fitted together at most, where fewer have too few rows for a sample.
+const MOST_TARGETS: usize = 24;
 
 /// The rows of a few targets, which are numbered anew.
 pub(super) struct Few<'a, 'd> {
@@ -35,10 +37,16 @@ impl<'a, 'd> Few<'a, 'd> {
     pub(super) fn with(session: &'d Session<'a>, all: &'d Dataset, these: &[usize]) -> Self {
         let mut counts = vec![0_usize; all.targets.len()];
         all.observations.iter().for_each(|row| counts[row.target] += 1);
-        these.iter().for_each(|&target| counts[target] = usize::MAX);
         let mut kept: Vec<usize> = (0..counts.len()).collect();
-        kept.sort_by_key(|&target| std::cmp::Reverse(counts[target]));
-        kept.truncate(TARGETS);
+        kept.sort_by_key(|target| (!these.contains(target), std::cmp::Reverse(counts[*target])));
+        let mut rows = 0;
+        let enough = kept.iter().take_while(|&&target| {
+            let was_too_few = rows < SAMPLE;
+            rows += counts[target];
+            was_too_few
+        });
+        let enough = enough.count().clamp(TARGETS, MOST_TARGETS);
+        kept.truncate(enough);
         kept.sort_unstable();
         let mut start = session.start.clone();
         start.base_from_target = kept.iter().map(|&target| session.start.base_from_target[target]).collect();

@@ -6,7 +6,7 @@ use super::change::Change;
 use super::conventions::conventions;
 use super::few::Few;
 use super::hypotheses::{
-    Columns, Hypothesis, joint_exchanges, joint_signs, joint_units, mirrors, pose_forms, position_units,
+    Columns, Hypothesis, joint_couplings, joint_exchanges, joint_signs, joint_units, mirrors, pose_forms, position_units,
     row_shifts,
 };
 use super::session::{SHORT, Score, Session, sampled};
@@ -14,6 +14,8 @@ use super::zero::joint_zeros;
 use super::{Diagnosis, DiagnosisKind};
 use crate::measurement::Dataset;
 
+/// Joints above which only neighbours are supposed to count the other way together.
+const MANY_JOINTS: usize = 12;
 /// Suppositions that are calibrated at all, and of those that are calibrated for long.
 const CALIBRATED: usize = 24;
 const FINALISTS: usize = 6;
@@ -65,6 +67,7 @@ fn single_mistakes(session: &Session<'_>, columns: &Columns, sample: &Dataset) -
     all.extend(position_units());
     all.extend(joint_signs(columns));
     all.extend(joint_exchanges(columns));
+    all.extend(joint_couplings(columns));
     if turned {
         all.extend(pose_forms());
         all.extend(conventions(session, sample));
@@ -78,11 +81,13 @@ fn single_mistakes(session: &Session<'_>, columns: &Columns, sample: &Dataset) -
 /// Two or three joints that count the other way.
 fn sign_pairs(columns: &Columns) -> Vec<Hypothesis> {
     let count = columns.names.len();
+    // Of many joints only neighbours: the number of threes grows with the cube.
+    let reach = if count > MANY_JOINTS { 3 } else { count };
     let mut all = Vec::new();
     for a in 0..count {
-        for b in a + 1..count {
+        for b in a + 1..count.min(a + reach) {
             all.push(signs(columns, vec![a, b]));
-            all.extend((b + 1..count).map(|c| signs(columns, vec![a, b, c])));
+            all.extend((b + 1..count.min(a + reach)).map(|c| signs(columns, vec![a, b, c])));
         }
     }
     all

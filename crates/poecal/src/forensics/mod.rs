@@ -35,6 +35,8 @@ pub enum DiagnosisKind {
     JointSign,
     /// Two joint columns are exchanged.
     JointsSwapped,
+    /// The readings of a joint are the sum or the difference of two joints.
+    JointsCoupled,
     /// A joint's zero is somewhere else.
     JointZero,
     /// Parts of the quaternions stand in another order.
@@ -113,12 +115,15 @@ impl Default for Options<'_> {
     }
 }
 
+/// Readings up to which suppositions are tried: what is tried grows with their square, and each takes the cube.
+pub const MOST_READINGS: usize = 32;
 /// Fewest rows that can tell a mistake.
 const FEWEST_ROWS: usize = 8;
 /// Rows that are looked through for single ones that stand out.
 const WHOLE: usize = 2000;
 
-/// Looks for mistakes in some rows of the data (in the order of the data; more of them tell more). Nothing is changed.
+/// Looks for mistakes in some rows of the data (in the order of the data; more of them tell more). Nothing is changed. Of robots with
+/// more than [`MOST_READINGS`] nothing but repeated rows is told.
 #[must_use]
 pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'_>) -> Vec<Diagnosis> {
     let mut rows: Vec<u32> = rows.iter().copied().filter(|&row| (row as usize) < data.len()).collect();
@@ -130,6 +135,10 @@ pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'
     let session = Session::new(robot, data, options.device_free);
     let (repeated, contradicting) = repeats::diagnose(&session, data, &rows);
     let mut found: Vec<Diagnosis> = repeated.into_iter().collect();
+    if data.reading_names().len() > MOST_READINGS {
+        found.extend(contradicting);
+        return found;
+    }
     let whole = of_rows(&session, data, &rows, options);
     // Two measurements of one target in one configuration: of two targets, if names are exchanged; otherwise one is wrong, and
     // neither says anything of the other rows.

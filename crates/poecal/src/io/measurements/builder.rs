@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::layout::{Input, Source, TargetLayout, reading_quantity};
+use super::layout::{Input, Source, TargetLayout, Term, reading_quantity};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
 use super::table::Header;
@@ -78,6 +78,9 @@ impl<'a> Builder<'a> {
             Unit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
                 .map_err(|error| error.in_file(&self.map.path))?;
         }
+        if !spec.columns.is_empty() {
+            return self.sum_input(name, spec, quantity, purpose);
+        }
         let Some(value) = spec.value else {
             let column = spec.column.as_deref().unwrap_or(name);
             return self.column_input(name, column, quantity, spec.unit, purpose);
@@ -93,7 +96,7 @@ impl<'a> Builder<'a> {
         }
         let source = Source::Constant(unit.to_si(value));
         let (name, label) = (name.to_owned(), name.to_owned());
-        self.inputs.push(Input { name, label, source, unit, unit_from });
+        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
         Ok(self.inputs.len() - 1)
     }
 
@@ -119,8 +122,41 @@ impl<'a> Builder<'a> {
             (None, None, None) => (quantity.si_unit(), UnitSource::Si),
         };
         let (name, label, source) = (name.to_owned(), column.to_owned(), Source::Column(index));
-        self.inputs.push(Input { name, label, source, unit, unit_from });
+        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
         Ok(self.inputs.len() - 1)
+    }
+
+    /// Adds a number that is a sum of columns.
+    fn sum_input(
+        &mut self,
+        name: &str,
+        spec: &ColumnSpec,
+        quantity: Quantity,
+        purpose: &str,
+    ) -> Result<usize> {
+        if !self.readings.contains(name) {
+            let message = format!("found `columns` {purpose}, expected one column: only joints are sums of columns");
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+        }
+        let mut sum: Vec<Term> = Vec::with_capacity(spec.columns.len());
+        let mut label = String::new();
+        let at = self.inputs.len();
+        for (column, &factor) in &spec.columns {
+            self.column_input(name, column, quantity, spec.unit, purpose)?;
+            let size = if factor.abs() == 1.0 { String::new() } else { format!("{} ", factor.abs()) };
+            let sign = if factor < 0.0 { "- " } else { "+ " };
+            let sign = if label.is_empty() && factor > 0.0 { "" } else { sign };
+            label.push_str(&format!("{}{sign}{size}{column}", if label.is_empty() { "" } else { " " }));
+        }
+        let parts = self.inputs.split_off(at);
+        for (part, &factor) in parts.iter().zip(spec.columns.values()) {
+            if let Source::Column(column) = part.source {
+                sum.push(Term { column, unit: part.unit, factor });
+            }
+        }
+        // The first of them stands for all where one unit and one place are told.
+        self.inputs.extend(parts.into_iter().next().map(|first| Input { label, sum, ..first }));
+        Ok(at)
     }
 
     /// Index of a column that must be there.
@@ -284,9 +320,9 @@ impl<'a> Builder<'a> {
         self.spec_input(name, spec, quantity, &format!("for `{name}`")).map(Some)
     }
 
-    /// Refuses a column that is two things at once. (One sigma may serve several targets.)
+    /// Refuses a column that is two things at once. (One sigma may serve several targets, and one column several sums.)
     pub(super) fn check_distinct(&self) -> Result<()> {
-        let distinct = |input: &Input| !input.name.contains("sigma_");
+        let distinct = |input: &Input| !input.name.contains("sigma_") && input.sum.is_empty();
         let mut first: BTreeMap<usize, &Input> = BTreeMap::new();
         for input in self.inputs.iter().filter(|input| distinct(input)) {
             let Source::Column(index) = input.source else { continue };

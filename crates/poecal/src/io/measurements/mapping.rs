@@ -77,10 +77,12 @@ impl UnitDefaults {
     }
 }
 
-/// One column, or one value for all rows. In TOML a column's name, or a table.
+/// One column, a sum of columns, or one value for all rows. In TOML a column's name, or a table.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ColumnSpec {
     pub(super) column: Option<String>,
+    /// Columns with their factors; none if it is no sum.
+    pub(super) columns: BTreeMap<String, f64>,
     pub(super) value: Option<f64>,
     pub(super) unit: Option<Unit>,
 }
@@ -230,6 +232,7 @@ struct ColumnSpecVisitor;
 #[serde(deny_unknown_fields)]
 struct ColumnFields {
     column: Option<String>,
+    columns: Option<BTreeMap<String, f64>>,
     value: Option<f64>,
     #[serde(default, deserialize_with = "any_unit")]
     unit: Option<Unit>,
@@ -239,7 +242,7 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
     type Value = ColumnSpec;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a column name, or a table with `column` or `value`, and `unit`")
+        f.write_str("a column name, or a table with `column`, `columns` or `value`, and `unit`")
     }
 
     fn visit_str<E: serde::de::Error>(self, column: &str) -> std::result::Result<ColumnSpec, E> {
@@ -248,14 +251,35 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<ColumnSpec, A::Error> {
         let fields = ColumnFields::deserialize(MapAccessDeserializer::new(map))?;
-        if fields.column.is_some() && fields.value.is_some() {
-            return Err(A::Error::custom("found both `column` and `value`, expected one of them"));
+        let given = [
+            ("column", fields.column.is_some()),
+            ("columns", fields.columns.is_some()),
+            ("value", fields.value.is_some()),
+        ];
+        let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
+        if let (Some(first), Some(second)) = (given.next(), given.next()) {
+            return Err(A::Error::custom(format!("found both `{first}` and `{second}`, expected one of them")));
         }
+        let columns = fields.columns.map(checked_columns::<A::Error>).transpose()?.unwrap_or_default();
         if fields.value.is_some_and(|value| !value.is_finite()) {
             return Err(A::Error::custom("found a value that is not finite, expected a finite number"));
         }
-        Ok(ColumnSpec { column: fields.column, value: fields.value, unit: fields.unit })
+        Ok(ColumnSpec { column: fields.column, columns, value: fields.value, unit: fields.unit })
     }
+}
+
+/// The columns of a sum, which must be some, with factors that say something.
+fn checked_columns<E: serde::de::Error>(
+    columns: BTreeMap<String, f64>,
+) -> std::result::Result<BTreeMap<String, f64>, E> {
+    if columns.is_empty() {
+        return Err(E::custom("found no column in `columns`, expected columns with their factors, like { J2 = -1, J3 = 1 }"));
+    }
+    if let Some((name, factor)) = columns.iter().find(|(_, factor)| !factor.is_normal()) {
+        let message = format!("found the factor {factor} of column `{name}`, expected a number other than 0, like 1 or -1");
+        return Err(E::custom(message));
+    }
+    Ok(columns)
 }
 
 /// A string that `parse` understands; its error is the TOML error's message.

@@ -150,8 +150,14 @@ impl<'a> Header<'a> {
     fn new(path: &'a Path, line: usize, text: &str, separator: Separator) -> Result<Self> {
         let mut cells = Vec::new();
         split_line(path, line, text, separator, &mut cells)?;
-        let cell = |cell: &Cell<'_>| HeaderCell::new(&cell.text(), character_column(text, cell.offset));
-        let cells: Vec<HeaderCell> = cells.iter().map(cell).collect();
+        // Counted on from cell to cell: there may be very many.
+        let (mut column, mut offset) = (1, 0);
+        let mut cell = |cell: &Cell<'_>| {
+            column += text.get(offset..cell.offset).map_or(0, |passed| passed.chars().count());
+            offset = offset.max(cell.offset);
+            HeaderCell::new(&cell.text(), column)
+        };
+        let cells: Vec<HeaderCell> = cells.iter().map(&mut cell).collect();
         if cells.iter().all(|cell| cell.text.replace(',', ".").parse::<f64>().is_ok()) {
             let message = "found a line of numbers, expected a header that names the columns \
                            (a line that begins with `#` is a comment)";
