@@ -250,9 +250,13 @@ mod tests {
 
     #[test]
     fn swaps_of_neighbours_count_once() {
-        for (a, b, distance) in
-            [("jiont1", "joint1", 1), ("", "ab", 2), ("X", "x", 0), ("ca", "abc", 3), ("kitten", "sitting", 3)]
-        {
+        for (a, b, distance) in [
+            ("jiont1", "joint1", 1),
+            ("", "ab", 2),
+            ("X", "x", 0),
+            ("ca", "abc", 3),
+            ("kitten", "sitting", 3),
+        ] {
             assert_eq!(distance_within(a, b, 9), Some(distance), "{a} {b}");
         }
         assert_eq!(distance_within("kitten", "sitting", 2), None);

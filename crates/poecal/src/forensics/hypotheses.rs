@@ -140,13 +140,17 @@ fn coupling(columns: &Columns, column: usize, other: usize, own: f64, factor: f6
     let joined = if factor < 0.0 { "less" } else { "plus" };
     // As a key of TOML: what is not of plain letters and digits stands in quotes.
     let key = |name: &str| {
-        let is_plain = name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
+        let is_plain =
+            name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
         if is_plain { name.to_owned() } else { format!("{name:?}") }
     };
     Hypothesis::new(
         DiagnosisKind::JointsCoupled,
         Change::Combine { column, own, other, factor },
-        format!("taking {name} as {}its readings {joined} those of {before}", if own < 0.0 { "minus " } else { "" }),
+        format!(
+            "taking {name} as {}its readings {joined} those of {before}",
+            if own < 0.0 { "minus " } else { "" }
+        ),
         format!(
             "check whether the controller states {name} together with {before}, as relative to the horizontal; in a mapping \
              file: `[joints]` and below it `{0} = {{ columns = {{ {0} = {1}1, {2} = {3}1 }} }}`",

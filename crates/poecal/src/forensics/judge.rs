@@ -6,8 +6,8 @@ use super::change::Change;
 use super::conventions::conventions;
 use super::few::Few;
 use super::hypotheses::{
-    Columns, Hypothesis, joint_couplings, joint_exchanges, joint_signs, joint_units, mirrors, pose_forms, position_units,
-    row_shifts,
+    Columns, Hypothesis, joint_couplings, joint_exchanges, joint_signs, joint_units, mirrors, pose_forms,
+    position_units, row_shifts,
 };
 use super::session::{SHORT, Score, Session, sampled};
 use super::zero::joint_zeros;
@@ -116,8 +116,7 @@ fn best_of(
     let rough = |(index, hypothesis): (usize, &Hypothesis)| {
         // Rows are shifted before targets and a sample are taken of them.
         let shifts = hypothesis.kind == DiagnosisKind::RowShift;
-        let data =
-            if shifts { sampled(&few.among(hypothesis.apply(all))) } else { hypothesis.apply(sample) };
+        let data = if shifts { sampled(&few.among(hypothesis.apply(all))) } else { hypothesis.apply(sample) };
         let (estimate, registered) = session.roughly_registered(&data);
         (index, data, estimate, registered)
     };

@@ -192,7 +192,9 @@ pub(crate) fn check_name(name: &str, of: &str) -> Result<()> {
     match name.chars().count() {
         letters if letters > LONGEST_NAME => Err(Error::new(
             ErrorKind::Model,
-            format!("found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}"),
+            format!(
+                "found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}"
+            ),
         )),
         _ => Ok(()),
     }

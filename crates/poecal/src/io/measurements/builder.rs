@@ -135,7 +135,8 @@ impl<'a> Builder<'a> {
         purpose: &str,
     ) -> Result<usize> {
         if !self.readings.contains(name) {
-            let message = format!("found `columns` {purpose}, expected one column: only joints are sums of columns");
+            let message =
+                format!("found `columns` {purpose}, expected one column: only joints are sums of columns");
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
         }
         let mut sum: Vec<Term> = Vec::with_capacity(spec.columns.len());
@@ -161,9 +162,8 @@ impl<'a> Builder<'a> {
 
     /// Index of a column that must be there.
     pub(super) fn text_column(&mut self, name: &str, purpose: &str) -> Result<usize> {
-        let is_known = |found: &str| {
-            found != name && (self.readings.contains(found) || OUR_NAMES.contains(&found))
-        };
+        let is_known =
+            |found: &str| found != name && (self.readings.contains(found) || OUR_NAMES.contains(&found));
         let index =
             self.header.require(name, purpose, is_known).map_err(|error| self.explained(name, error))?;
         self.mark(index);
@@ -172,9 +172,8 @@ impl<'a> Builder<'a> {
 
     /// Says of a name's second column that the model's own joint takes the name of a column with a meaning, if that is why.
     fn explained(&self, name: &str, error: Error) -> Error {
-        let is_clash = self.header.count(name) > 1
-            && self.readings.contains(name)
-            && OUR_NAMES.contains(&name);
+        let is_clash =
+            self.header.count(name) > 1 && self.readings.contains(name) && OUR_NAMES.contains(&name);
         let place = error.place().and_then(|place| Some((place.line?, place.column?)));
         match place {
             Some((line, column)) if is_clash => {

@@ -258,7 +258,9 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
         ];
         let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
         if let (Some(first), Some(second)) = (given.next(), given.next()) {
-            return Err(A::Error::custom(format!("found both `{first}` and `{second}`, expected one of them")));
+            return Err(A::Error::custom(format!(
+                "found both `{first}` and `{second}`, expected one of them"
+            )));
         }
         let columns = fields.columns.map(checked_columns::<A::Error>).transpose()?.unwrap_or_default();
         if fields.value.is_some_and(|value| !value.is_finite()) {
@@ -273,10 +275,14 @@ fn checked_columns<E: serde::de::Error>(
     columns: BTreeMap<String, f64>,
 ) -> std::result::Result<BTreeMap<String, f64>, E> {
     if columns.is_empty() {
-        return Err(E::custom("found no column in `columns`, expected columns with their factors, like { J2 = -1, J3 = 1 }"));
+        return Err(E::custom(
+            "found no column in `columns`, expected columns with their factors, like { J2 = -1, J3 = 1 }",
+        ));
     }
     if let Some((name, factor)) = columns.iter().find(|(_, factor)| !factor.is_normal()) {
-        let message = format!("found the factor {factor} of column `{name}`, expected a number other than 0, like 1 or -1");
+        let message = format!(
+            "found the factor {factor} of column `{name}`, expected a number other than 0, like 1 or -1"
+        );
         return Err(E::custom(message));
     }
     Ok(columns)

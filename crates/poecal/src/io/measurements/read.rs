@@ -258,7 +258,8 @@ impl<'a> Reader<'a> {
         if let Some(&index) = self.target_indices.get(key) {
             return Ok(index);
         }
-        check_name(key, "target").map_err(|error| row.error(layout.target_column.unwrap_or(0), error.message()))?;
+        check_name(key, "target")
+            .map_err(|error| row.error(layout.target_column.unwrap_or(0), error.message()))?;
         let index = self.target_indices.len();
         self.target_indices.insert(key.to_owned(), index);
         self.data.targets.push(name.map(str::to_owned));

@@ -197,7 +197,12 @@ impl<'a> Header<'a> {
     }
 
     /// As [`Header::find`], but the column must be there; `is_known` tells names that cannot be a misspelling of another column's.
-    pub(super) fn require(&self, name: &str, purpose: &str, is_known: impl Fn(&str) -> bool) -> Result<usize> {
+    pub(super) fn require(
+        &self,
+        name: &str,
+        purpose: &str,
+        is_known: impl Fn(&str) -> bool,
+    ) -> Result<usize> {
         if let Some(index) = self.find(name)? {
             return Ok(index);
         }

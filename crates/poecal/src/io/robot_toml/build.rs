@@ -277,11 +277,7 @@ fn limits(context: &Context, table: &JointTable) -> Result<Option<Limits>> {
 
 /// The reading of a joint, through mimic relations. A leader that is not among the joints is read beside the chain, in the
 /// follower's unit.
-fn reading(
-    context: &Context,
-    tables: &BTreeMap<&str, &JointTable>,
-    table: &JointTable,
-) -> Result<Reading> {
+fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &JointTable) -> Result<Reading> {
     let find = |name: &str| tables.get(name).copied();
     let mimic_of = |name: &str| -> Result<Option<Mimic>> {
         let Some((follower, mimic)) = find(name).and_then(|joint| Some((joint, joint.mimic.as_ref()?)))

@@ -1,8 +1,8 @@
 //! The chain from base to tip: as asked for, or the only one there is.
 
-use super::{ChainSelection, ends};
 use super::tree::Tree;
 use super::xml::Source;
+use super::{ChainSelection, ends};
 use crate::error::{Error, ErrorKind, Result, nearest_or_all};
 
 /// A chain through the tree: links and joints as indices into the tree, joints from base to tip.

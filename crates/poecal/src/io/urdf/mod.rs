@@ -87,7 +87,8 @@ impl UrdfDocument {
         let path = path.as_ref();
         if let Some(offset) = crowded_element(text) {
             let (line, column) = source_text::position(text, offset);
-            let message = "found an element with more than 1000 attributes, expected a URDF robot description";
+            let message =
+                "found an element with more than 1000 attributes, expected a URDF robot description";
             return Err(Error::new(ErrorKind::Syntax, message).at(path, line, column));
         }
         let document = Document::parse(text).map_err(|error| xml_error(&error, path))?;

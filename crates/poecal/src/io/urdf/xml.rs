@@ -161,7 +161,8 @@ mod tests {
     #[test]
     fn only_an_element_of_very_many_attributes_is_crowded() {
         let attributes = |count: usize| -> String { (0..count).map(|k| format!(" a{k}='\"1'")).collect() };
-        let of = |count| format!("<robot>\n<!-- {} --><link{}/></robot>", "\"\" ".repeat(5000), attributes(count));
+        let of =
+            |count| format!("<robot>\n<!-- {} --><link{}/></robot>", "\"\" ".repeat(5000), attributes(count));
         assert_eq!(crowded_element(&of(1000)), None);
         let text = of(1001);
         assert_eq!(crowded_element(&text), text.find("<link"));
