@@ -118,3 +118,44 @@ impl<'a> Way<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::io::urdf::{ChainSelection, UrdfDocument};
+    use std::fmt::Write;
+
+    fn message(urdf: &str) -> String {
+        UrdfDocument::parse(urdf, "r.urdf", &ChainSelection::default()).unwrap_err().to_string()
+    }
+
+    fn joint(name: &str, parent: &str, child: &str) -> String {
+        format!(
+            "<link name=\"{child}\"/><joint name=\"{name}\" type=\"continuous\"><parent link=\"{parent}\"/>\
+             <child link=\"{child}\"/></joint>\n"
+        )
+    }
+
+    /// A star, and a comb: each tooth's way to the root is long.
+    #[test]
+    fn the_ends_of_a_tree_of_very_many_branches_are_found_by_one_walk() {
+        const COUNT: usize = 20_000;
+        let (mut star, mut comb) = (
+            "<robot name=\"r\"><link name=\"l0\"/>".to_owned(),
+            "<robot name=\"r\"><link name=\"l0\"/>".to_owned(),
+        );
+        for k in 1..=COUNT {
+            star += &joint(&format!("j{k}"), "l0", &format!("l{k}"));
+            comb += &joint(&format!("j{k}"), &format!("l{}", k - 1), &format!("l{k}"));
+            comb += &joint(&format!("t{k}"), &format!("l{}", k - 1), &format!("tooth{k}"));
+        }
+        for (mut urdf, ends, first) in [(star, COUNT, "`l1`, `l2`"), (comb, COUNT + 1, "`tooth1`, `tooth2`")]
+        {
+            write!(urdf, "</robot>").unwrap();
+            let message = message(&urdf);
+            let expected =
+                format!("r.urdf: found {ends} end links with a moving joint above them ({first}, ");
+            assert!(message.starts_with(&expected), "{message}");
+            assert!(message.len() < 400, "{message}");
+        }
+    }
+}
