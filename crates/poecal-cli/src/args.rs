@@ -26,7 +26,7 @@ use poecal::io::predictions::PredictionFrame;
 use poecal::io::urdf::ChainSelection;
 
 use crate::console::Console;
-use crate::quantity::whole;
+use crate::quantity::threads;
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the verdict is worse than --require asks for; \
@@ -42,8 +42,8 @@ pub(crate) struct Arguments {
     /// Print errors and data only: what --json gives, predictions and converted models
     #[arg(long, global = true)]
     pub(crate) quiet: bool,
-    /// Number of threads (results do not depend on it)
-    #[arg(long, global = true, value_name = "N", value_parser = whole::<usize>)]
+    /// Number of threads, 1 to 256 (results do not depend on it)
+    #[arg(long, global = true, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
 }
 

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use poecal::io::measurements::{Quantity, Unit};
-use poecal::{Error, ErrorKind, Result};
+use poecal::{Error, ErrorKind, MOST_THREADS, Result};
 
 /// A number with its unit, in SI: metres for a length, radians for an angle.
 ///
@@ -115,6 +115,14 @@ pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
 /// Parser of a count for clap.
 pub(crate) fn whole<T: FromStr>(text: &str) -> std::result::Result<T, String> {
     text.parse().map_err(|_| format!("found `{text}`, expected a whole number"))
+}
+
+/// Parser of a number of threads for clap.
+pub(crate) fn threads(text: &str) -> std::result::Result<usize, String> {
+    match whole(text)? {
+        count @ 1..=MOST_THREADS => Ok(count),
+        _ => Err(format!("found `{text}`, expected a whole number from 1 to {MOST_THREADS}")),
+    }
 }
 
 #[cfg(test)]

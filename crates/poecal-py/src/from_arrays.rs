@@ -1,5 +1,7 @@
 //! Measurements of arrays.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 use poecal::Error;
 use poecal::io::measurements::{LARGEST_NUMBER, Quantity, Unit};
@@ -58,10 +60,12 @@ pub(crate) fn dataset(robot: &Robot, columns: &Columns<'_, '_>) -> PyResult<Data
     let at = |values: &[Option<f64>], row: usize| values.get(row).copied().flatten();
     let width = names.len();
     let mut data = Dataset::new(names);
+    // Looked up once a target: there may be very many.
+    let mut known: BTreeMap<Option<&str>, usize> = BTreeMap::new();
     for (row, (readings, measurement)) in readings.chunks_exact(width.max(1)).zip(seen).enumerate() {
         let target = columns.targets.as_ref().and_then(|targets| targets.get(row)).map(String::as_str);
         let observation = Observation {
-            target: data.target_index(target),
+            target: *known.entry(target).or_insert_with(|| data.target_index(target)),
             measurement,
             sigma_position_m: at(&sigma_position_m, row),
             sigma_rotation_rad: at(&sigma_rotation_rad, row),

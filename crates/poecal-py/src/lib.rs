@@ -69,9 +69,13 @@ mod _poecal {
         env!("CARGO_PKG_VERSION")
     }
 
-    /// Number of threads that all work shares; results do not depend on it. It can be set once, before anything is computed.
+    /// Number of threads that all work shares, 1 to 256; results do not depend on it. It can be set once, before anything is computed.
     #[pyfunction]
     fn set_threads(count: usize) -> PyResult<()> {
+        if !(1..=poecal::MOST_THREADS).contains(&count) {
+            let message = format!("found {count}, expected a number from 1 to {}", poecal::MOST_THREADS);
+            return Err(crate::errors::argument("count", message));
+        }
         rayon::ThreadPoolBuilder::new().num_threads(count).build_global().map_err(|_| {
             crate::errors::argument(
                 "count",

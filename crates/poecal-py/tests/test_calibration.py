@@ -200,6 +200,12 @@ def test_other_threads_go_on():
     assert beside > 0.2 * alone
 
 
+@pytest.mark.parametrize("count", [0, 100_000])
+def test_more_threads_than_there_is_use_for_are_refused(count):
+    with pytest.raises(poecal.OptionError, match=f"count: found {count}, expected a number from 1 to 256"):
+        poecal.set_threads(count)
+
+
 def test_threads_calibrate_at_once(made):
     expected = poecal.calibrate(made.nominal, made.measurements)
     found = [None] * 8

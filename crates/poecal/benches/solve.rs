@@ -11,6 +11,7 @@ mod trials;
 use divan::{Bencher, black_box};
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered, fit_screws};
 use poecal::estimate::Packed;
+use poecal::forensics::{self, diagnose};
 use poecal::measurement::Measurement;
 use poecal::parameters::{Formulation, Parameter, TargetFrame};
 use poecal::problem::{Problem, Refit};
@@ -109,4 +110,17 @@ fn calibrate_poses(bencher: Bencher<'_, '_>, rows: usize) {
     let options =
         CalibrationOptions { held_out: 0.0, frame: DeviceFrameKnowledge::Unknown, ..Default::default() };
     bencher.bench_local(|| black_box(calibrate(&made.nominal, &made.data, &options)));
+}
+
+/// What is clean must cost next to nothing, since it is looked at after every calibration: far less than a fit.
+#[divan::bench]
+fn diagnose_what_is_clean(bencher: Bencher<'_, '_>) {
+    let made = Simulation::default().run(&elbow(), Kind::Point).expect("a simulation of a finite robot");
+    let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).expect("a fit");
+    let options = forensics::Options {
+        calibrated: Some(&calibration.models.calibrated),
+        ..forensics::Options::default()
+    };
+    let rows = made.data.all_rows();
+    bencher.bench_local(|| black_box(diagnose(&made.nominal, &made.data, &rows, &options)));
 }

@@ -1,5 +1,6 @@
 //! The one error type: a sentence that says where, what was found, what was expected and what to do.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -72,7 +73,7 @@ struct Inner {
 impl Error {
     /// An error without a place; `message` says what was found, what was expected and what to do.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
-        Error(Box::new(Inner { kind, place: None, message: message.into() }))
+        Error(Box::new(Inner { kind, place: None, message: with_names_shown(message.into()) }))
     }
 
     /// The same error at a line and column (both from 1) of a file.
@@ -139,6 +140,12 @@ impl std::error::Error for Error {}
 
 /// Names that a message lists at most.
 const NAMES_LISTED: usize = 12;
+/// Letters of a name that are shown, if it has more than [`LONG_NAME`].
+const NAME_SHOWN: usize = 60;
+/// Letters up to which a name is shown whole.
+const LONG_NAME: usize = 120;
+/// Letters up to which names are compared: nobody mistypes longer ones, and the work grows with the square.
+const LONGEST_COMPARED: usize = 64;
 
 /// Result of the library's fallible functions.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -150,11 +157,13 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// assert_eq!(poecal::nearest("jiont1", ["x", "temperature"]), None);
 /// ```
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let furthest = (word.chars().count() / 2).max(1);
-    let distances = candidates.into_iter().map(|candidate| (edit_distance(word, candidate), candidate));
-    let (_, near) =
-        distances.filter(|(distance, _)| *distance <= furthest).min_by_key(|(distance, _)| *distance)?;
-    Some(near)
+    let letters = letters(word)?;
+    let furthest = (letters / 2).max(1);
+    let distances = candidates.into_iter().filter_map(|candidate| {
+        let distance = distance_within(word, candidate, furthest)?;
+        Some((distance, candidate))
+    });
+    Some(distances.min_by_key(|(distance, _)| *distance)?.1)
 }
 
 /// What a message says of the names that `word` could have been: the nearest, or else the first few.
@@ -166,29 +175,90 @@ pub(crate) fn nearest_or_all(word: &str, candidates: &[&str]) -> String {
     }
 }
 
-/// The names, or the first of many.
-pub(crate) fn first_few(names: &[&str]) -> String {
-    match names.get(..NAMES_LISTED) {
-        Some(first) if names.len() > NAMES_LISTED => format!("{}, …", first.join(", ")),
-        _ => names.join(", "),
+/// The names, or the first of many, each as it is shown.
+pub(crate) fn first_few<T: AsRef<str>>(names: &[T]) -> String {
+    let first: Vec<Cow<'_, str>> = names.iter().take(NAMES_LISTED).map(|name| shown(name.as_ref())).collect();
+    format!("{}{}", first.join(", "), if names.len() > NAMES_LISTED { ", …" } else { "" })
+}
+
+/// A name as messages and tables show it: of one that is very long, the beginning.
+pub(crate) fn shown(name: &str) -> Cow<'_, str> {
+    match (name.char_indices().nth(NAME_SHOWN), name.char_indices().nth(LONG_NAME)) {
+        (Some((end, _)), Some(_)) => Cow::Owned(format!("{}…", name.get(..end).unwrap_or_default())),
+        _ => Cow::Borrowed(name),
     }
 }
 
-/// Damerau's edit distance: insertions, deletions, substitutions and swaps of neighbours, case ignored.
-pub(crate) fn edit_distance(a: &str, b: &str) -> usize {
-    let a: Vec<char> = a.to_lowercase().chars().collect();
-    let b: Vec<char> = b.to_lowercase().chars().collect();
-    // rows[i][j]: distance between the first i characters of a and the first j of b.
-    let mut rows: Vec<Vec<usize>> = (0..=a.len()).map(|i| (i..=i + b.len()).collect()).collect();
-    for i in 1..=a.len() {
-        for j in 1..=b.len() {
-            let substitution = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            let mut best = substitution.min(rows[i - 1][j] + 1).min(rows[i][j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                best = best.min(rows[i - 2][j - 2] + 1);
-            }
-            rows[i][j] = best;
-        }
+/// A message with each name that stands in backticks [`shown`]: a file may call things what it likes.
+fn with_names_shown(message: String) -> String {
+    if message.len() <= LONG_NAME {
+        return message;
     }
-    rows[a.len()][b.len()]
+    let parts: Vec<Cow<'_, str>> = message.split('`').map(shown_unless_a_sentence).collect();
+    parts.join("`")
+}
+
+/// Words between two names stay as they are; they have spaces, and are not as long as a file may make a name.
+fn shown_unless_a_sentence(part: &str) -> Cow<'_, str> {
+    const LONGEST_SENTENCE: usize = 4000;
+    if part.contains(' ') && part.len() <= LONGEST_SENTENCE { Cow::Borrowed(part) } else { shown(part) }
+}
+
+/// How many letters a word has that is short enough to be compared.
+fn letters(word: &str) -> Option<usize> {
+    // A letter has four bytes at most: of a longer word not even the letters are counted.
+    let count = (word.len() <= 4 * LONGEST_COMPARED).then(|| word.chars().count());
+    count.filter(|count| *count <= LONGEST_COMPARED)
+}
+
+/// Damerau's edit distance (insertions, deletions, substitutions and swaps of neighbours, case ignored) if it is at most so much.
+pub(crate) fn distance_within(a: &str, b: &str, furthest: usize) -> Option<usize> {
+    let (a_letters, b_letters) = (letters(a)?, letters(b)?);
+    // Small letters may be more than large ones, by one in three at most.
+    if a_letters.abs_diff(b_letters) > furthest + LONGEST_COMPARED / 4 {
+        return None;
+    }
+    let distance = strsim::osa_distance(&a.to_lowercase(), &b.to_lowercase());
+    (distance <= furthest).then_some(distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_a_million_letters_are_neither_compared_nor_shown() {
+        let long = "j".repeat(1_000_000);
+        let longer = format!("{long}k");
+        assert_eq!(nearest(&long, [longer.as_str(), "joint1"]), None);
+        assert_eq!(nearest("joint2", [longer.as_str(), "joint1"]), Some("joint1"));
+        let start = format!("{}…", "j".repeat(60));
+        assert_eq!(first_few(&[&long, "joint1"]), format!("{start}, joint1"));
+        let error = Error::new(ErrorKind::Model, format!("found `{long}`, expected `{longer}`"));
+        assert_eq!(error.message(), format!("found `{start}`, expected `{start}`"));
+        let spaced = Error::new(ErrorKind::Model, format!("found `{}`", "a ".repeat(500_000)));
+        assert!(spaced.message().len() < 200, "{}", spaced.message().len());
+    }
+
+    #[test]
+    fn what_a_message_says_is_not_cut() {
+        let sentence = "found `joint` in the file, expected a number of some kind; ".repeat(20);
+        assert_eq!(Error::new(ErrorKind::Model, sentence.clone()).message(), sentence);
+        assert_eq!(shown(&"é".repeat(120)), "é".repeat(120));
+        assert_eq!(shown(&"é".repeat(121)), format!("{}…", "é".repeat(60)));
+    }
+
+    #[test]
+    fn swaps_of_neighbours_count_once() {
+        for (a, b, distance) in [
+            ("jiont1", "joint1", 1),
+            ("", "ab", 2),
+            ("X", "x", 0),
+            ("ca", "abc", 3),
+            ("kitten", "sitting", 3),
+        ] {
+            assert_eq!(distance_within(a, b, 9), Some(distance), "{a} {b}");
+        }
+        assert_eq!(distance_within("kitten", "sitting", 2), None);
+    }
 }

@@ -88,6 +88,7 @@ mod threads;
 pub mod uncertainty;
 
 pub use error::{Error, ErrorKind, Result, nearest};
+pub use threads::MOST_THREADS;
 
 /// The example of the README is compiled with the tests.
 #[cfg(doctest)]

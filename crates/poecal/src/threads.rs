@@ -4,6 +4,8 @@ use std::cmp::Ordering;
 
 use rayon::prelude::*;
 
+/// Threads that may be asked for: more than any machine has use for, and each has a stack of its own.
+pub const MOST_THREADS: usize = 256;
 /// Items that one thread sorts or looks at as fast as several.
 const FEW: usize = 8192;
 

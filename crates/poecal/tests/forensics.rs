@@ -4,13 +4,15 @@
 
 mod mistakes;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use mistakes::Session;
-use poecal::calibration::{CalibrationOptions, calibrate, delivered};
+use nalgebra::Vector3;
+use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
 use poecal::estimate::Packed;
 use poecal::forensics::{Diagnosis, DiagnosisKind, Options, diagnose};
-use poecal::measurement::{Dataset, Noise};
+use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement};
+use poecal::simulate::{Kind, Simulation, elbow};
 use poecal::start::{Registration, register};
 use rayon::prelude::*;
 
@@ -105,24 +107,134 @@ fn mistakes_are_named() {
     assert!(right as f64 >= 0.95 * count as f64, "{right} of {count}");
 }
 
-/// What is clean must cost next to nothing, since it is looked at after every calibration.
+/// An elbow of which each reading of a joint is that of the data plus so many times that of the joint before.
+fn coupled(session: &Session, column: usize, own: f64, factor: f64) -> Dataset {
+    let mut data = Dataset::new(session.data.reading_names().to_vec());
+    data.targets.clone_from(&session.data.targets);
+    for row in 0..session.data.len() {
+        let mut readings = session.data.readings(row).to_vec();
+        readings[column] = own * readings[column] + factor * readings[column - 1];
+        data.push_observation(&readings, session.data.observations[row]).unwrap();
+    }
+    data
+}
+
 #[test]
-fn a_clean_calibration_is_known_at_once() {
+fn readings_that_are_sums_of_two_joints_are_named() {
+    for (seed, own, factor) in [(0, 1.0, 1.0), (10, 1.0, -1.0), (20, -1.0, 1.0), (30, -1.0, -1.0)] {
+        let session = Session::drawn(seed);
+        let found = found(&session, &coupled(&session, 2, own, factor));
+        let kinds: Vec<_> = found.iter().map(|one| one.kind).collect();
+        assert_eq!(kinds, [DiagnosisKind::JointsCoupled], "{}: {found:?}", session.words);
+        // joint3 = (reading - factor joint2) / own
+        let (own, factor) = (own as i32, (-factor / own) as i32);
+        let line = format!("`joint3 = {{ columns = {{ joint3 = {own}, joint2 = {factor} }} }}`");
+        assert!(found[0].statement.contains(&line), "{line}: {}", found[0].statement);
+    }
+}
+
+/// What `poecal calibrate` names.
+fn told_with_calibration(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
+    let frame = if session.device_free { DeviceFrameKnowledge::Unknown } else { DeviceFrameKnowledge::Base };
+    calibrate(&session.robot, data, &CalibrationOptions { frame, ..Default::default() }).unwrap().diagnosis
+}
+
+#[test]
+fn check_and_calibrate_name_the_same_mistakes() {
+    let mut different = Vec::new();
+    let planted = (0..KINDS.len() as u64).map(mistaken);
+    let elbow = Session::drawn(0);
+    let data = coupled(&elbow, 2, 1.0, 1.0);
+    for (session, kind, data, words) in
+        planted.chain([(elbow, DiagnosisKind::JointsCoupled, data, "joint3 + joint2".to_owned())])
+    {
+        let kinds = |found: Vec<Diagnosis>| found.into_iter().map(|one| one.kind).collect::<BTreeSet<_>>();
+        let (checked, calibrated) =
+            (kinds(found(&session, &data)), kinds(told_with_calibration(&session, &data)));
+        if checked != calibrated || !checked.contains(&kind) {
+            different.push(format!(
+                "{kind:?} ({words}; {}): checked {checked:?}, calibrated {calibrated:?}",
+                session.words
+            ));
+        }
+    }
+    assert!(different.is_empty(), "{different:#?}");
+}
+
+/// A session of an elbow whose rows see so many targets in turn, with the sign of one joint wrong or not.
+fn of_targets(targets: usize, sign: f64) -> (Session, Dataset) {
+    let mut session = Session::drawn(0);
+    let made = Simulation { count: 3 * targets, ..Simulation::default() }.run(&elbow(), Kind::Point).unwrap();
+    session.robot = made.nominal;
+    let mut data = Dataset::new(made.data.reading_names().to_vec());
+    for row in 0..made.data.len() {
+        let mut readings = made.data.readings(row).to_vec();
+        readings[2] *= sign;
+        let name = format!("T{}", row % targets);
+        data.push(&readings, Some(&name), made.data.observations[row].measurement).unwrap();
+    }
+    (session, data)
+}
+
+/// Each target had unknowns of its own in every fit of every supposition, and each pair was a supposition: hours.
+#[test]
+fn a_thousand_targets_are_looked_through() {
+    let (session, data) = of_targets(1000, 1.0);
+    assert_eq!(found(&session, &data), []);
+    let (session, data) = of_targets(1000, -1.0);
+    let found = found(&session, &data);
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].kind, DiagnosisKind::JointSign);
+    let options = CalibrationOptions { held_out: 0.0, ..Default::default() };
+    let error = calibrate(&session.robot, &data, &options).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "found 3024 unknowns (24 of the screws, 3000 of 1000 targets), expected at most 1000, which one fit can bear: \
+         calibrate with fewer targets, or a shorter chain"
+    );
+}
+
+/// An elbow and 600 rows of 30 targets, each at a place of its own.
+fn of_many_places() -> (Session, Dataset) {
+    let (session, _) = of_targets(30, 1.0);
+    let made = Simulation { count: 600, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let mut data = Dataset::new(made.data.reading_names().to_vec());
+    for row in 0..made.data.len() {
+        let target = row % 30;
+        let angle = target as f64;
+        let place = Vector3::new(0.1 * angle.sin(), 0.1 * angle.cos(), 0.003 * angle);
+        let position = made.data.observations[row].measurement.pose().act(&place);
+        let seen = Measurement::Point(PointMeasurement { position });
+        data.push(made.data.readings(row), Some(&format!("T{target}")), seen).unwrap();
+    }
+    (session, data)
+}
+
+/// Names exchanged in rows of two of many targets.
+#[test]
+fn two_of_many_targets_exchanged_in_some_rows_are_named() {
+    let (session, mut data) = of_many_places();
+    for row in data.observations.iter_mut().skip(300) {
+        row.target = match row.target {
+            7 => 21,
+            21 => 7,
+            other => other,
+        };
+    }
+    let found = found(&session, &data);
+    assert_eq!(found.iter().map(|one| one.kind).collect::<Vec<_>>(), [DiagnosisKind::TargetsSwapped]);
+    let statement = &found[0].statement;
+    assert!(statement.contains("T7 and T21") || statement.contains("T21 and T7"), "{statement}");
+}
+
+#[test]
+fn a_clean_calibration_has_no_mistake() {
     let simulation = poecal::simulate::Simulation::default();
     let made = simulation.run(&poecal::simulate::elbow(), poecal::simulate::Kind::Point).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let rows: Vec<u32> = (0..made.data.len() as u32).collect();
     let options = Options { calibrated: Some(&calibration.models.calibrated), ..Options::default() };
-    let best = (0..20)
-        .map(|_| {
-            let started = std::time::Instant::now();
-            assert_eq!(diagnose(&made.nominal, &made.data, &rows, &options), []);
-            started.elapsed().as_secs_f64() * 1e3
-        })
-        .fold(f64::INFINITY, f64::min);
-    println!("a clean session of {} rows: {best:.3} ms", rows.len());
-    // Measured: 0.1 ms; a fit takes more than 1 ms.
-    assert!(best < 1.0, "{best} ms");
+    assert_eq!(diagnose(&made.nominal, &made.data, &rows, &options), []);
 }
 
 #[test]

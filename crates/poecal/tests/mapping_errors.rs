@@ -33,15 +33,39 @@ const MAPPINGS: &[(&str, &str)] = &[
     ),
     (
         "[joints]\na = { colum = \"x\" }",
-        "map.toml:2:7: unknown field `colum`, expected one of `column`, `value`, `unit`",
+        "map.toml:2:7: unknown field `colum`, expected one of `column`, `columns`, `value`, `unit`",
     ),
     (
         "[joints]\na = 3",
-        "map.toml:2:5: invalid type: integer `3`, expected a column name, or a table with `column` or `value`, and `unit`",
+        "map.toml:2:5: invalid type: integer `3`, expected a column name, or a table with `column`, `columns` or `value`, and `unit`",
     ),
     (
         "[joints]\na = { column = \"a\", value = 0.0 }",
         "map.toml:2:5: found both `column` and `value`, expected one of them",
+    ),
+    (
+        "[joints]\na = { columns = { a = 1 }, value = 0.0 }",
+        "map.toml:2:5: found both `columns` and `value`, expected one of them",
+    ),
+    (
+        "[joints]\na = { columns = {} }",
+        "map.toml:2:5: found no column in `columns`, expected columns with their factors, like { J2 = -1, J3 = 1 }",
+    ),
+    (
+        "[joints]\na = { columns = { a = 1, b = 0 } }",
+        "map.toml:2:5: found the factor 0 of column `b`, expected a number other than 0, like 1 or -1",
+    ),
+    (
+        "[joints]\na = { columns = { a = 1, bb = 1 } }",
+        "points.csv:1: found no column `bb`, expected one for joint `a`; the columns are id, a, lift, b, x, y, z",
+    ),
+    (
+        "[joints]\na = { columns = { a = 1 }, unit = \"mm\" }",
+        "map.toml: found the unit `mm` for joint `a`, expected an angle (rad, mrad, deg, arcmin, arcsec)",
+    ),
+    (
+        "sigma_position = { columns = { x = 1 } }",
+        "map.toml: found `columns` for `sigma_position`, expected one column: only joints are sums of columns",
     ),
     ("[joints]\njoint1 = \"a\"", "map.toml: found the joint `joint1`, expected one of a, lift, b"),
     (

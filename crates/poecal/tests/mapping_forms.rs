@@ -177,3 +177,19 @@ fn the_published_ur10_series_reads_as_its_copy_in_our_form() {
     assert_same_rows(&raw.data, &ours.data, 3e-8);
     println!("{} rows are the same", raw.data.len());
 }
+
+#[test]
+fn a_joint_may_be_a_sum_of_columns_in_their_own_units() {
+    let map = "[joints]\na = \"J1[deg]\"\nlift = { columns = { L = 1 }, unit = \"mm\" }\n\
+               b = { columns = { J1 = -1, J2 = 0.5 } }\n";
+    let read = with_map("J1[deg],L,J2[rad],x,y,z\n30,100,1,0.1,0.2,0.3\n-60,200,2,0.1,0.2,0.4\n", map);
+    for (row, [j1, lift, j2]) in [[30.0_f64, 0.1, 1.0], [-60.0, 0.2, 2.0]].into_iter().enumerate() {
+        let expected = [j1.to_radians(), lift, 0.5 * j2 - j1.to_radians()];
+        let readings = read.data.readings(row).iter().zip(expected);
+        assert!(readings.clone().all(|(a, b)| (a - b).abs() <= ROUNDING), "{readings:?}");
+    }
+    let columns = &read.understood[0].columns;
+    let words: Vec<_> = columns.iter().take(3).map(|column| column.column.as_deref().unwrap()).collect();
+    assert_eq!(words, ["J1[deg]", "L", "- J1 + 0.5 J2"]);
+    assert!(read.understood[0].ignored.is_empty());
+}

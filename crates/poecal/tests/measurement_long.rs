@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use poecal::io::measurements::{ReadOptions, parse};
+use poecal::io::measurements::{ColumnMap, ReadOptions, parse};
 use poecal::simulate::elbow;
 
 /// Enough rows for several pieces of a file.
@@ -67,4 +67,57 @@ fn a_long_file_is_read_row_by_row_and_its_first_mistake_named() {
         lines[line - 1] = bad.to_owned();
         assert_eq!(read(&lines).unwrap_err().to_string(), message);
     }
+}
+
+/// Enough columns that whatever looks at all of them for each takes minutes.
+const COLUMNS: usize = 100_000;
+
+fn with_columns(own: &str) -> String {
+    let names: Vec<String> = (0..COLUMNS).map(|column| format!("c{column}")).collect();
+    let numbers = vec!["1"; COLUMNS + own.split(',').count()];
+    format!("{},{own}\n{}\n", names.join(","), numbers.join(","))
+}
+
+#[test]
+fn very_many_columns_take_no_longer_each() {
+    let joints = "joint1,joint2,joint3,joint4,joint5,joint6";
+    let read = |text: &str| parse(text, "wide.csv", &elbow(), &ReadOptions::default());
+    let wide = read(&with_columns(&format!("{joints},x,y,z"))).unwrap();
+    assert_eq!((wide.data.len(), wide.understood[0].ignored.len()), (1, COLUMNS));
+    assert_eq!(wide.warnings.len(), 1);
+    assert!(wide.warnings[0].ends_with("`c28`, `c29` and 99970 more"), "{}", wide.warnings[0]);
+    let error = read(&with_columns("x,y,z")).unwrap_err().to_string();
+    assert!(
+        error.starts_with("wide.csv:1: found no column `joint1`, expected one for joint `joint1`;"),
+        "{error}"
+    );
+    assert!(error.len() < 300, "{error}");
+    let error = read(&with_columns(&format!("{joints},x,y,z,z"))).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "wide.csv:1:688939: found a second column `z`, expected one; rename or remove one of them"
+    );
+}
+
+#[test]
+fn very_many_targets_in_a_row_take_no_longer_each() {
+    const TARGETS: usize = 10_000;
+    let (mut map, mut names) = (String::new(), Vec::new());
+    for target in 0..TARGETS {
+        let columns: Vec<String> = ["x", "y", "z"].iter().map(|axis| format!("{axis}{target}")).collect();
+        map += &format!(
+            "[[targets]]\nname = \"T{target}\"\nposition = {{ columns = [\"{}\"] }}\n",
+            columns.join("\", \"")
+        );
+        names.extend(columns);
+    }
+    let mapping = Some(ColumnMap::parse(&map, "map.toml").unwrap());
+    let text = format!(
+        "joint1,joint2,joint3,joint4,joint5,joint6,{}\n{}\n",
+        names.join(","),
+        vec!["0.5"; 6 + 3 * TARGETS].join(",")
+    );
+    let options = ReadOptions { mapping, ..ReadOptions::default() };
+    let read = parse(&text, "wide.csv", &elbow(), &options).unwrap();
+    assert_eq!((read.data.len(), read.data.targets.len()), (TARGETS, TARGETS));
 }

@@ -11,7 +11,7 @@ use crate::estimate::{Chain, Linkage, Packed, delivered, radian_m};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
 use crate::parameters::{Formulation, Parameter, TargetFrame, TargetPlace};
-use crate::problem::Problem;
+use crate::problem::{MOST_UNKNOWNS, Problem};
 use crate::robot::Robot;
 use crate::simulate::{Kind, random_configuration};
 use crate::solve::LeastSquares;
@@ -74,7 +74,8 @@ pub struct Foresight {
 /// measured: theory.md §7 (36), (36c). The robot is taken as its model has it, the noise as given.
 ///
 /// # Errors
-/// [`ErrorKind::Measurement`] if there is no configuration, the number of readings does not fit the robot, or one is not finite.
+/// [`ErrorKind::Measurement`] if there is no configuration, the number of readings does not fit the robot, or one is not finite;
+/// [`ErrorKind::Problem`] if the robot has more unknowns than a fit can bear.
 ///
 /// ```
 /// use poecal::analysis::{Session, identify};
@@ -86,6 +87,15 @@ pub struct Foresight {
 /// # Ok::<(), poecal::Error>(())
 /// ```
 pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Foresight> {
+    let unknowns = 4 * robot.joints.len() + 6;
+    if unknowns > MOST_UNKNOWNS {
+        let message = format!(
+            "found about {unknowns} unknowns of {} joints, expected at most {MOST_UNKNOWNS}, which one fit can bear: identify a \
+             shorter chain",
+            robot.joints.len()
+        );
+        return Err(Error::new(ErrorKind::Problem, message));
+    }
     let data = imagined(robot, readings, session)?;
     let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
     let rows: Vec<u32> = data.all_rows();

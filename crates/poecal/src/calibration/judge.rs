@@ -9,6 +9,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Packed, RowError, row_errors};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
+use crate::problem::MOST_UNKNOWNS;
 use crate::robot::Robot;
 use crate::start::{Registration, register};
 
@@ -137,8 +138,16 @@ fn errors(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> (Packed, Vec<
 /// Refuses measurements that cannot determine what is found anew, and none at all.
 fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     let frame = if subject.refit_frame { 6 } else { 0 };
-    let target = |target| if data.target_is_frame(target) { 6 } else { 3 };
-    let tool: usize = if subject.refit_tool { (0..data.targets.len()).map(target).sum() } else { 0 };
+    let targets = data.frames(&data.all_rows()).into_iter().map(|is_frame| if is_frame { 6 } else { 3 });
+    let tool: usize = if subject.refit_tool { targets.sum() } else { 0 };
+    if tool > MOST_UNKNOWNS {
+        let message = format!(
+            "found {tool} unknowns of {} targets to be found anew, expected at most {MOST_UNKNOWNS}, which one fit can bear: \
+             leave --refit-tool out, or judge fewer targets",
+            data.targets.len()
+        );
+        return Err(Error::new(ErrorKind::Problem, message));
+    }
     let given: usize = data.observations.iter().map(|row| row.measurement.residual_model().dim()).sum();
     if given > frame + tool {
         return Ok(());

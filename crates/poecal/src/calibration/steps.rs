@@ -17,6 +17,7 @@ use crate::forensics::{self, Diagnosis, DiagnosisKind};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::Formulation;
+use crate::problem::MOST_UNKNOWNS;
 use crate::robot::{JointKind, Robot};
 use crate::start::{Registration, register, register_again};
 use crate::uncertainty::View;
@@ -219,15 +220,22 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing. After a robust fit in the rows that
-    /// it believes: what is wrong with single ones is told by that.
+    /// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing. After a robust fit first in the rows
+    /// that it believes, since single wrong ones hide what is wrong with all.
     fn diagnosis(&self, calibrated: &Estimate, believed: Option<&[u32]>) -> Vec<Diagnosis> {
         if !self.options.diagnose {
             return Vec::new();
         }
-        let rows = believed.map_or_else(|| self.data.all_rows(), <[u32]>::to_vec);
         let options = forensics::Options { device_free: self.device_free(), calibrated: Some(calibrated) };
-        forensics::diagnose(self.robot, self.data, &rows, &options)
+        let in_all = || forensics::diagnose(self.robot, self.data, &self.data.all_rows(), &options);
+        let Some(believed) = believed else { return in_all() };
+        let mut found = forensics::diagnose(self.robot, self.data, believed, &options);
+        if !found.iter().any(Diagnosis::is_of_input) {
+            // A shift of rows, or exchanged names, may be what made the fit disbelieve rows.
+            let known: Vec<DiagnosisKind> = found.iter().map(|it| it.kind).collect();
+            found.extend(in_all().into_iter().filter(|it| !known.contains(&it.kind)));
+        }
+        found
     }
 
     /// What makes the result doubtful, the last of it whether the device was moved.
@@ -251,8 +259,10 @@ impl<'a> Prepared<'a> {
 fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
     let screws: usize =
         robot.joints.iter().map(|joint| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum();
-    for (target, name) in data.targets.iter().enumerate() {
-        if !fit_rows.iter().any(|&row| data.observations[row as usize].target == target) {
+    let mut is_seen = vec![false; data.targets.len()];
+    fit_rows.iter().for_each(|&row| is_seen[data.observations[row as usize].target] = true);
+    for (is_seen, name) in is_seen.into_iter().zip(&data.targets) {
+        if !is_seen {
             let name = name.as_deref().unwrap_or("the tip");
             return Err(Error::new(
                 ErrorKind::Problem,
@@ -264,6 +274,16 @@ fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
     }
     let targets: usize = data.frames(fit_rows).iter().map(|&is_frame| if is_frame { 6 } else { 3 }).sum();
     let needed = screws + targets;
+    if needed > MOST_UNKNOWNS {
+        return Err(Error::new(
+            ErrorKind::Problem,
+            format!(
+                "found {needed} unknowns ({screws} of the screws, {targets} of {} targets), expected at most {MOST_UNKNOWNS}, \
+                 which one fit can bear: calibrate with fewer targets, or a shorter chain",
+                data.targets.len()
+            ),
+        ));
+    }
     let given: usize =
         fit_rows.iter().map(|&row| data.observations[row as usize].measurement.residual_model().dim()).sum();
     if given < needed {

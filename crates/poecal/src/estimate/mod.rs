@@ -13,6 +13,8 @@ pub use packing::{Packed, sample_rows};
 pub(crate) use row_error::map_squares;
 pub use row_error::{RowError, row_errors};
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 
 use crate::lie::{Pose, Screw, rotation};
@@ -169,14 +171,15 @@ pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
 /// The model as delivered: nominal screws, each target where the model has it or else at the tip, device at the base.
 #[must_use]
 pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
-    let base_from_target = data
-        .targets
-        .iter()
-        .map(|name| {
-            let known = robot.targets.iter().find(|(target, _)| Some(target) == name.as_ref());
-            robot.home * known.map_or_else(Pose::identity, |(_, tip_from_target)| *tip_from_target)
-        })
-        .collect();
+    let mut known: BTreeMap<&str, &Pose> = BTreeMap::new();
+    for (name, tip_from_target) in &robot.targets {
+        known.entry(name).or_insert(tip_from_target);
+    }
+    let tip_from_target = |name: &Option<String>| {
+        let found = name.as_deref().and_then(|name| known.get(name));
+        found.map_or_else(Pose::identity, |tip_from_target| **tip_from_target)
+    };
+    let base_from_target = data.targets.iter().map(|name| robot.home * tip_from_target(name)).collect();
     Estimate::new(robot, base_from_target, Pose::identity())
 }
 

@@ -1,5 +1,7 @@
 //! What undoes a supposed mistake: a change of readings or measurements, row by row.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Matrix3, Vector4};
 
 use crate::lie::{Pose, rotation};
@@ -12,6 +14,8 @@ pub(super) enum Change {
     Scale(Vec<usize>, f64),
     /// Two columns exchanged.
     Exchange(usize, usize),
+    /// A column times the first factor, plus another times the second.
+    Combine { column: usize, own: f64, other: usize, factor: f64 },
     /// A number added to a column, radians or metres.
     Add(usize, f64),
     /// Each reading goes with the measurement so many rows later: of the same target, or whatever target that row names.
@@ -54,6 +58,9 @@ impl Change {
                 columns.iter().for_each(|&column| readings[column] *= factor);
             }
             Change::Exchange(a, b) => readings.swap(*a, *b),
+            Change::Combine { column, own, other, factor } => {
+                readings[*column] = own * readings[*column] + factor * readings[*other];
+            }
             Change::Add(column, offset) => readings[*column] += offset,
             _ => {}
         }
@@ -121,23 +128,14 @@ fn frame(pose: Pose) -> Measurement {
 
 /// Readings of each row with the measurement of the same stream and file `by` such rows later.
 fn shifted(data: &Dataset, by: i32, stream: Stream) -> Dataset {
-    let mut keys: Vec<(Option<usize>, u32)> = Vec::new();
-    let mut streams: Vec<Vec<usize>> = Vec::new();
+    let mut streams: BTreeMap<(Option<usize>, u32), Vec<usize>> = BTreeMap::new();
     for (row, observation) in data.observations.iter().enumerate() {
         let target = (stream == Stream::Target).then_some(observation.target);
-        let key = (target, observation.source.file);
-        let known = keys.iter().position(|known| *known == key);
-        match known.and_then(|index| streams.get_mut(index)) {
-            Some(rows) => rows.push(row),
-            None => {
-                keys.push(key);
-                streams.push(vec![row]);
-            }
-        }
+        streams.entry((target, observation.source.file)).or_default().push(row);
     }
     let mut partner = vec![None; data.len()];
     let distance = by.unsigned_abs() as usize;
-    for rows in &streams {
+    for rows in streams.values() {
         for pair in rows.windows(distance + 1) {
             let (first, last) = (pair[0], pair[distance]);
             let (from, to) = if by > 0 { (first, last) } else { (last, first) };

@@ -121,6 +121,47 @@ pub(super) fn joint_exchanges(columns: &Columns) -> Vec<Hypothesis> {
     all
 }
 
+/// A turning joint whose readings are the sum or the difference of its own and those of the turning joint before it, as where a
+/// controller states the third axis relative to the horizontal.
+pub(super) fn joint_couplings(columns: &Columns) -> Vec<Hypothesis> {
+    let turning = columns.of(JointKind::Revolute);
+    let mut all = Vec::new();
+    for (&before, &column) in turning.iter().zip(turning.iter().skip(1)) {
+        for (own, factor) in [(1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+            all.push(coupling(columns, column, before, own, factor));
+        }
+    }
+    all
+}
+
+fn coupling(columns: &Columns, column: usize, other: usize, own: f64, factor: f64) -> Hypothesis {
+    let (name, before) = (columns.names[column].as_str(), columns.names[other].as_str());
+    let signed = |value: f64| if value < 0.0 { "-" } else { "" };
+    let joined = if factor < 0.0 { "less" } else { "plus" };
+    // As a key of TOML: what is not of plain letters and digits stands in quotes.
+    let key = |name: &str| {
+        let is_plain =
+            name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
+        if is_plain { name.to_owned() } else { format!("{name:?}") }
+    };
+    Hypothesis::new(
+        DiagnosisKind::JointsCoupled,
+        Change::Combine { column, own, other, factor },
+        format!(
+            "taking {name} as {}its readings {joined} those of {before}",
+            if own < 0.0 { "minus " } else { "" }
+        ),
+        format!(
+            "check whether the controller states {name} together with {before}, as relative to the horizontal; in a mapping \
+             file: `[joints]` and below it `{0} = {{ columns = {{ {0} = {1}1, {2} = {3}1 }} }}`",
+            key(name),
+            signed(own),
+            key(before),
+            signed(factor)
+        ),
+    )
+}
+
 /// Measurements that belong to readings some rows before or after.
 pub(super) fn row_shifts(targets: usize) -> Vec<Hypothesis> {
     let one = |stream: Stream, by: i32| {
@@ -187,7 +228,8 @@ pub(super) fn pose_forms() -> Vec<Hypothesis> {
     let inverse = |change, what: &str, expected| {
         Hypothesis::new(DiagnosisKind::InvertedPose, change, format!("inverting the {what}"), expected)
     };
-    let poses = "check which way they go, since device_from_target is expected (`direction` in a mapping)";
+    let poses = "check which way they go, since device_from_target is expected \
+                 (poses of the device in the target: `pose = \"target_from_device\"` in a mapping)";
     let turns = "check which way they go, since orientations of the target in the device are expected \
                  (a transposed matrix or a conjugate quaternion is the other way)";
     vec![

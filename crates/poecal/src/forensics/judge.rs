@@ -4,15 +4,18 @@ use rayon::prelude::*;
 
 use super::change::Change;
 use super::conventions::conventions;
+use super::few::Few;
 use super::hypotheses::{
-    Columns, Hypothesis, joint_exchanges, joint_signs, joint_units, mirrors, pose_forms, position_units,
-    row_shifts,
+    Columns, Hypothesis, joint_couplings, joint_exchanges, joint_signs, joint_units, mirrors, pose_forms,
+    position_units, row_shifts,
 };
 use super::session::{SHORT, Score, Session, sampled};
 use super::zero::joint_zeros;
 use super::{Diagnosis, DiagnosisKind};
 use crate::measurement::Dataset;
 
+/// Joints above which only neighbours are supposed to count the other way together.
+const MANY_JOINTS: usize = 12;
 /// Suppositions that are calibrated at all, and of those that are calibrated for long.
 const CALIBRATED: usize = 24;
 const FINALISTS: usize = 6;
@@ -44,15 +47,16 @@ struct Judged {
 }
 
 /// The one mistake that explains the measurements, if there is one.
-pub(super) fn diagnose(session: &Session<'_>, all: &Dataset, base: &Score) -> Option<Diagnosis> {
+pub(super) fn diagnose(few: &Few<'_, '_>, all: &Dataset, base: &Score) -> Option<Diagnosis> {
+    let session = &*few.session;
     let columns = Columns::new(session.robot);
-    let sample = sampled(all);
+    let sample = sampled(&few.data);
     let hypotheses = single_mistakes(session, &columns, &sample);
-    let (best, score) = best_of(session, all, &sample, base, &hypotheses)
+    let (best, score) = best_of(few, all, &sample, base, &hypotheses)
         .map(|(index, score)| (hypotheses[index].clone(), score))
         .or_else(|| {
             let pairs = sign_pairs(&columns);
-            best_of(session, all, &sample, base, &pairs).map(|(index, score)| (pairs[index].clone(), score))
+            best_of(few, all, &sample, base, &pairs).map(|(index, score)| (pairs[index].clone(), score))
         })?;
     Some(told(&best, base, &score))
 }
@@ -63,6 +67,7 @@ fn single_mistakes(session: &Session<'_>, columns: &Columns, sample: &Dataset) -
     all.extend(position_units());
     all.extend(joint_signs(columns));
     all.extend(joint_exchanges(columns));
+    all.extend(joint_couplings(columns));
     if turned {
         all.extend(pose_forms());
         all.extend(conventions(session, sample));
@@ -76,11 +81,13 @@ fn single_mistakes(session: &Session<'_>, columns: &Columns, sample: &Dataset) -
 /// Two or three joints that count the other way.
 fn sign_pairs(columns: &Columns) -> Vec<Hypothesis> {
     let count = columns.names.len();
+    // Of many joints only neighbours: the number of threes grows with the cube.
+    let reach = if count > MANY_JOINTS { 3 } else { count };
     let mut all = Vec::new();
     for a in 0..count {
-        for b in a + 1..count {
+        for b in a + 1..count.min(a + reach) {
             all.push(signs(columns, vec![a, b]));
-            all.extend((b + 1..count).map(|c| signs(columns, vec![a, b, c])));
+            all.extend((b + 1..count.min(a + reach)).map(|c| signs(columns, vec![a, b, c])));
         }
     }
     all
@@ -99,16 +106,17 @@ fn signs(columns: &Columns, members: Vec<usize>) -> Hypothesis {
 
 /// The supposition that explains the data, and how well.
 fn best_of(
-    session: &Session<'_>,
+    few: &Few<'_, '_>,
     all: &Dataset,
     sample: &Dataset,
     base: &Score,
     hypotheses: &[Hypothesis],
 ) -> Option<(usize, Score)> {
+    let session = &*few.session;
     let rough = |(index, hypothesis): (usize, &Hypothesis)| {
-        // Rows are shifted before a sample is taken of them.
+        // Rows are shifted before targets and a sample are taken of them.
         let shifts = hypothesis.kind == DiagnosisKind::RowShift;
-        let data = if shifts { sampled(&hypothesis.apply(all)) } else { hypothesis.apply(sample) };
+        let data = if shifts { sampled(&few.among(hypothesis.apply(all))) } else { hypothesis.apply(sample) };
         let (estimate, registered) = session.roughly_registered(&data);
         (index, data, estimate, registered)
     };

@@ -6,6 +6,7 @@
 mod change;
 mod conventions;
 mod euler;
+mod few;
 mod hypotheses;
 mod judge;
 mod repeats;
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 use crate::estimate::{Estimate, sample_rows};
 use crate::measurement::Dataset;
 use crate::robot::Robot;
+use few::Few;
 use session::{Session, sampled, taken};
 
 /// A kind of mistake, as a word that does not change between versions.
@@ -33,6 +35,8 @@ pub enum DiagnosisKind {
     JointSign,
     /// Two joint columns are exchanged.
     JointsSwapped,
+    /// The readings of a joint are the sum or the difference of two joints.
+    JointsCoupled,
     /// A joint's zero is somewhere else.
     JointZero,
     /// Parts of the quaternions stand in another order.
@@ -111,12 +115,15 @@ impl Default for Options<'_> {
     }
 }
 
+/// Readings up to which suppositions are tried: what is tried grows with their square, and each takes the cube.
+pub const MOST_READINGS: usize = 32;
 /// Fewest rows that can tell a mistake.
 const FEWEST_ROWS: usize = 8;
 /// Rows that are looked through for single ones that stand out.
 const WHOLE: usize = 2000;
 
-/// Looks for mistakes in some rows of the data (in the order of the data; more of them tell more). Nothing is changed.
+/// Looks for mistakes in some rows of the data (in the order of the data; more of them tell more). Nothing is changed. Of robots with
+/// more than [`MOST_READINGS`] nothing but repeated rows is told.
 #[must_use]
 pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'_>) -> Vec<Diagnosis> {
     let mut rows: Vec<u32> = rows.iter().copied().filter(|&row| (row as usize) < data.len()).collect();
@@ -128,6 +135,10 @@ pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'
     let session = Session::new(robot, data, options.device_free);
     let (repeated, contradicting) = repeats::diagnose(&session, data, &rows);
     let mut found: Vec<Diagnosis> = repeated.into_iter().collect();
+    if data.reading_names().len() > MOST_READINGS {
+        found.extend(contradicting);
+        return found;
+    }
     let whole = of_rows(&session, data, &rows, options);
     // Two measurements of one target in one configuration: of two targets, if names are exchanged; otherwise one is wrong, and
     // neither says anything of the other rows.
@@ -154,9 +165,11 @@ fn of_rows(session: &Session<'_>, data: &Dataset, rows: &[u32], options: &Option
         return targets::names(session, data, estimate);
     }
     let all = taken(data, rows);
-    let (estimate, base) = session.judged(&sampled(&all));
-    if session.is_sound(&whole, &estimate) {
-        return targets::names(session, data, &estimate);
+    let few = Few::of(session, &all);
+    let (estimate, base) = few.session.judged(&sampled(&few.data));
+    let placed = few.placed(session, &all, &estimate);
+    if session.is_sound(&whole, &placed) {
+        return targets::names(session, data, &placed);
     }
-    targets::rows(session, data, &all, rows, &base).or_else(|| judge::diagnose(session, &all, &base))
+    targets::rows(session, data, &all, rows, &base).or_else(|| judge::diagnose(&few, &all, &base))
 }

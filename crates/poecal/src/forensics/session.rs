@@ -12,7 +12,7 @@ use crate::solve::{Options, minimize};
 use crate::start::{Registration, register, register_roughly, target_parameters};
 
 /// Rows that a hypothesis is judged on.
-const SAMPLE: usize = 90;
+pub(super) const SAMPLE: usize = 90;
 /// Position noise that weights the rows, metres: only its ratio to the rotation noise counts.
 const NOISE_M: f64 = 1e-3;
 /// Error after a calibration, as a share of the reach, that is no reason to look further: real robots stay below it.
@@ -62,7 +62,7 @@ pub(super) struct Session<'a> {
     /// Metres that one radian counts.
     pub(super) length_m: f64,
     pub(super) start: Estimate,
-    noise: Noise,
+    pub(super) noise: Noise,
 }
 
 impl<'a> Session<'a> {

@@ -1,5 +1,11 @@
 //! Names of two targets exchanged: in all rows, from a row on, or in single rows.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::few::{Few, TARGETS, for_links};
 use super::judge::{CALIBRATED_SHARE, short};
 use super::session::{SHORT, Score, Session, sampled, taken};
 use super::{Diagnosis, DiagnosisKind};
@@ -13,19 +19,23 @@ const ROUNDS: usize = 6;
 /// By how much the exchange must lower the error of the rows concerned, and of all rows.
 const ROW_GAIN: f64 = 5.0;
 const GAIN: f64 = 1.5;
+/// Targets of many whose names are compared with each other: those that have moved furthest.
+const MOVED: usize = 200;
+/// Pairs of targets that are tried, and rows that say which.
+const PAIRS: usize = 15;
+const SUSPECTS: usize = 500;
 /// Rows that a statement names.
 const NAMED: usize = 5;
 
 /// Two targets that the model knows, and that lie where it has the other: their names are exchanged in all rows.
 pub(super) fn names(session: &Session<'_>, data: &Dataset, found: &Estimate) -> Option<Diagnosis> {
-    let known = |target: usize| {
-        let name = data.targets.get(target)?.as_ref()?;
-        session.robot.targets.iter().any(|(other, _)| other == name).then_some(name)
-    };
+    let of_model: BTreeSet<&String> = session.robot.targets.iter().map(|(name, _)| name).collect();
+    let known = |target: usize| data.targets.get(target)?.as_ref().filter(|name| of_model.contains(name));
     let nominal = |target: usize| session.start.base_from_target.get(target).map(|pose| pose.translation);
     let place = |target: usize| found.base_from_target.get(target).map(|pose| pose.translation);
-    for b in 0..data.targets.len() {
-        for a in 0..b {
+    let moved = furthest(data.targets.len(), |target| Some((nominal(target)? - place(target)?).norm()));
+    for (k, &b) in moved.iter().enumerate() {
+        for &a in moved.iter().take(k) {
             let (Some(first), Some(second)) = (known(a), known(b)) else { continue };
             let (Some(from_a), Some(from_b)) = (nominal(a), nominal(b)) else { continue };
             let (Some(at_a), Some(at_b)) = (place(a), place(b)) else { continue };
@@ -47,6 +57,18 @@ pub(super) fn names(session: &Session<'_>, data: &Dataset, found: &Estimate) -> 
     None
 }
 
+/// The targets that are furthest from where they should be, in their order.
+fn furthest(count: usize, moved_m: impl Fn(usize) -> Option<f64>) -> Vec<usize> {
+    let mut targets: Vec<usize> = (0..count).collect();
+    if count > MOVED {
+        let moved: Vec<f64> = targets.iter().map(|&target| moved_m(target).unwrap_or(0.0)).collect();
+        targets.sort_by(|&a, &b| moved[b].total_cmp(&moved[a]));
+        targets.truncate(MOVED);
+        targets.sort_unstable();
+    }
+    targets
+}
+
 /// Two targets whose names are exchanged in some rows. `rows` are those of `all` in the data.
 pub(super) fn rows(
     session: &Session<'_>,
@@ -55,9 +77,18 @@ pub(super) fn rows(
     rows: &[u32],
     base: &Score,
 ) -> Option<Diagnosis> {
-    let count = data.targets.len();
-    let pairs = (0..count).flat_map(|b| (0..b).map(move |a| (a, b)));
-    let found = pairs.filter_map(|pair| exchanged(session, all, pair, base));
+    let found = pairs(session, all).into_iter().filter_map(|pair| {
+        if all.targets.len() <= TARGETS {
+            return exchanged(session, all, pair, base);
+        }
+        let few = Few::with(session, all, &[pair.0, pair.1]);
+        let numbers = (few.number(pair.0)?, few.number(pair.1)?);
+        let base = few.session.judged(&sampled(&few.data)).1;
+        let (error, _, concerned, before, after) = exchanged(&few.session, &few.data, numbers, &base)?;
+        let rows = few.rows(all);
+        let concerned = concerned.into_iter().filter_map(|row| rows.get(row).copied()).collect();
+        Some((error, pair, concerned, before, after))
+    });
     let (_, pair, concerned, before, after) = found.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let name =
         |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
@@ -94,14 +125,64 @@ fn where_words(data: &Dataset, rows: &[u32], pair: (usize, usize), concerned: &[
     }
 }
 
+/// The pairs of targets that may be exchanged: all of few targets, and of many those that single rows speak for.
+fn pairs(session: &Session<'_>, all: &Dataset) -> Vec<(usize, usize)> {
+    let count = all.targets.len();
+    if count * count.saturating_sub(1) / 2 <= PAIRS {
+        return (0..count).flat_map(|b| (0..b).map(move |a| (a, b))).collect();
+    }
+    let mut votes: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    for range in starts(all) {
+        let part = taken(all, &range.map(|row| row as u32).collect::<Vec<_>>());
+        let few = Few::of(session, &part);
+        let (estimate, _) = few.session.judged(&sampled(&few.data));
+        vote(session, all, &few.placed(session, &part, &estimate), &mut votes);
+    }
+    let mut pairs: Vec<((usize, usize), f64)> = votes.into_iter().collect();
+    pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
+    pairs.into_iter().take(PAIRS).map(|(pair, _)| pair).collect()
+}
+
+/// Adds for each row that fits another target better by how much that lowers its squared error; the worst rows have a vote.
+fn vote(
+    session: &Session<'_>,
+    all: &Dataset,
+    estimate: &Estimate,
+    votes: &mut BTreeMap<(usize, usize), f64>,
+) {
+    let mut seen = Vec::with_capacity(all.len());
+    for_links(session, all, estimate, |row, link| {
+        let place = link.act(&all.observations[row].measurement.residual_model().position());
+        seen.push((row, place));
+    });
+    let squared = |target: usize, place: &Vector3<f64>| {
+        (estimate.base_from_target[target].translation - place).norm_squared()
+    };
+    let own = |(row, place): &(usize, Vector3<f64>)| squared(all.observations[*row].target, place);
+    seen.sort_by(|a, b| own(b).total_cmp(&own(a)));
+    seen.truncate(SUSPECTS);
+    for one in &seen {
+        let (target, own) = (all.observations[one.0].target, own(one));
+        let others = (0..all.targets.len()).filter(|&other| other != target);
+        let nearest = others.map(|other| (squared(other, &one.1), other)).min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((squared, other)) = nearest.filter(|(squared, _)| *squared < own) {
+            *votes.entry((target.min(other), target.max(other))).or_default() += own - squared;
+        }
+    }
+}
+
+/// Rows from which models are made: all, the first half, and the second.
+fn starts(all: &Dataset) -> [Range<usize>; 3] {
+    let half = all.len() / 2;
+    [0..all.len(), 0..half, half..all.len()]
+}
+
 /// Error after the exchange, the pair, its rows, and their errors before and after.
 type Exchange = (f64, (usize, usize), Vec<usize>, f64, f64);
 
 /// The rows of a pair that fit better exchanged, found from models of all rows, of the first half and of the second.
 fn exchanged(session: &Session<'_>, all: &Dataset, pair: (usize, usize), base: &Score) -> Option<Exchange> {
-    let half = all.len() / 2;
-    let starts = [0..all.len(), 0..half, half..all.len()];
-    let best = starts
+    let best = starts(all)
         .into_iter()
         .filter_map(|range| {
             let part: Vec<u32> = range.map(|row| row as u32).collect();

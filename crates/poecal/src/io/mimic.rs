@@ -1,5 +1,7 @@
 //! Mimic joints: following leaders to the joint that is read.
 
+use std::collections::BTreeSet;
+
 use crate::robot::Reading;
 
 /// A joint that follows another: value = multiplier · leader's value + offset.
@@ -16,14 +18,13 @@ pub(super) fn reading<E>(
     mut mimic_of: impl FnMut(&str) -> Result<Option<Mimic>, E>,
 ) -> Result<Option<Reading>, E> {
     let mut reading = Reading::own(joint);
-    let mut seen = vec![joint.to_owned()];
+    let mut seen = BTreeSet::from([joint.to_owned()]);
     while let Some(mimic) = mimic_of(&reading.name)? {
-        if seen.contains(&mimic.leader) {
+        if !seen.insert(mimic.leader.clone()) {
             return Ok(None);
         }
         reading.offset += reading.multiplier * mimic.offset;
         reading.multiplier *= mimic.multiplier;
-        seen.push(mimic.leader.clone());
         reading.name = mimic.leader;
     }
     Ok(Some(reading))

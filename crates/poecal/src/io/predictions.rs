@@ -5,7 +5,7 @@ use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
 use super::numbers::push_number;
 use crate::calibration::inside;
-use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::estimate::Packed;
 use crate::lie::Pose;
 use crate::uncertainty::PredictedError;
@@ -145,8 +145,8 @@ fn tip_from_target(model: &Model, name: &str) -> Result<Pose> {
     }
     let names: Vec<&str> = targets.iter().map(|(known, _)| known.as_str()).collect();
     let expected = match nearest(name, names.iter().copied()) {
-        Some(near) => format!("expected one of {}; did you mean `{near}`?", names.join(", ")),
-        None if !names.is_empty() => format!("expected one of {}", names.join(", ")),
+        Some(near) => format!("expected one of {}; did you mean `{near}`?", first_few(&names)),
+        None if !names.is_empty() => format!("expected one of {}", first_few(&names)),
         None => "expected none: the model has no targets, leave out --target to predict the tip".to_owned(),
     };
     let message = format!("found no target `{name}`, {expected}");

@@ -293,11 +293,16 @@ impl Dataset {
         let first_file = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
         self.files.extend(other.files.iter().cloned());
         let mut readings = Vec::with_capacity(order.len());
+        // Looked up once a target: there may be very many.
+        let mut targets: Vec<Option<usize>> = vec![None; other.targets.len()];
         for row in 0..other.len() {
             readings.clear();
             readings.extend(order.iter().map(|&index| other.readings(row)[index]));
             let mut observation = other.observations[row];
-            observation.target = self.target_index(other.targets[observation.target].as_deref());
+            let target = observation.target;
+            let known = targets[target];
+            observation.target = known.unwrap_or_else(|| self.target_index(other.targets[target].as_deref()));
+            targets[target] = Some(observation.target);
             observation.source.file += first_file;
             self.push_observation(&readings, observation)?;
         }

@@ -24,6 +24,9 @@ use nalgebra::Vector3;
 use std::mem::discriminant;
 use std::sync::OnceLock;
 
+/// Unknowns that a fit has at most: its work grows with the cube of their number, its memory with the square. 1,000 take about half a
+/// minute of one core.
+pub const MOST_UNKNOWNS: usize = 1000;
 /// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
 const CHUNK: usize = 1024;
 /// Partial sums that exist at a time: memory beside the data stays bounded.

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::{kinds_words, line, robot_words};
+use crate::error::first_few;
 use crate::forensics::Diagnosis;
 use crate::io::measurements::{
     ColumnUnderstanding, DecimalSign, FileUnderstanding, MeasurementFile, Quantity, Separator, Unit,
@@ -276,7 +277,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
         row(&visible(&column.name), &column_words(column), &unit_words(column), &range_words(column));
     }
     if !file.ignored.is_empty() {
-        line(out, "left alone", &file.ignored.join(", "));
+        line(out, "left alone", &first_few(&file.ignored));
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::fixed::Fixed;
 use crate::analysis::{Cause, Identifiability};
 use crate::calibration::{Calibration, Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
+use crate::error::shown;
 use crate::measurement::{Dataset, PoseResidual};
 use crate::parameters::Formulation;
 use crate::robot::{JointKind, Robot};
@@ -149,7 +150,7 @@ pub(super) fn robot_words(robot: &Robot) -> String {
         (0, sliding) => format!("{sliding} prismatic"),
         (turning, sliding) => format!("{turning} revolute, {sliding} prismatic"),
     };
-    format!("{}: {kinds}, from {} to {}", robot.name, robot.base_name, robot.tip_name)
+    format!("{}: {kinds}, from {} to {}", shown(&robot.name), shown(&robot.base_name), shown(&robot.tip_name))
 }
 
 fn data_words(calibration: &Calibration, data: &Dataset) -> String {

@@ -7,10 +7,17 @@ mod kinematics;
 pub use dh::{DhConvention, DhRow};
 pub use joint::{Joint, JointKind, Limits, Reading};
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, Screw};
+
+/// Moving joints that a robot has at most: a fit takes the cube of their number.
+pub const MOST_JOINTS: usize = 1000;
+/// Letters that the name of a joint or a target has at most.
+pub const LONGEST_NAME: usize = 200;
 
 /// A serial robot at its zero configuration, `base_from_tip(θ) = exp(ξ₁θ₁) … exp(ξₙθₙ) M` (lou2009 (2); theory.md §2 (6)).
 ///
@@ -46,7 +53,8 @@ impl Robot {
     /// A robot of its joints and home pose `base_from_tip` at zero joint values, with frames named `base` and `tip`.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if there is no joint or two joints share a name.
+    /// [`ErrorKind::Model`] if there is no joint, there are more than [`MOST_JOINTS`], two joints share a name, or a name is longer
+    /// than [`LONGEST_NAME`].
     pub fn new(name: &str, joints: Vec<Joint>, home: Pose) -> Result<Self> {
         if joints.is_empty() {
             return Err(Error::new(
@@ -56,8 +64,20 @@ impl Robot {
                 ),
             ));
         }
-        for (i, joint) in joints.iter().enumerate() {
-            if joints[..i].iter().any(|other| other.name == joint.name) {
+        if joints.len() > MOST_JOINTS {
+            return Err(Error::new(
+                ErrorKind::Model,
+                format!(
+                    "robot `{name}` has {} moving joints, expected at most {MOST_JOINTS}: choose a shorter chain",
+                    joints.len()
+                ),
+            ));
+        }
+        let mut names = BTreeSet::new();
+        for joint in &joints {
+            check_name(&joint.name, "joint")?;
+            check_name(&joint.reading.name, "joint")?;
+            if !names.insert(joint.name.as_str()) {
                 return Err(Error::new(
                     ErrorKind::Model,
                     format!("robot `{name}` has two joints named `{}`, expected unique names", joint.name),
@@ -91,23 +111,21 @@ impl Robot {
     /// Names of the readings that a configuration consists of, in order: each joint's own, once; a mimic joint has its leader's.
     #[must_use]
     pub fn reading_names(&self) -> Vec<String> {
-        let mut names: Vec<String> = Vec::new();
-        for joint in &self.joints {
-            if !names.contains(&joint.reading.name) {
-                names.push(joint.reading.name.clone());
-            }
-        }
-        names
+        let mut known = BTreeSet::new();
+        let names = self.joints.iter().map(|joint| &joint.reading.name);
+        names.filter(|name| known.insert(name.as_str())).cloned().collect()
     }
 
     /// For each joint, the index of its reading in [`Robot::reading_names`].
     #[must_use]
     pub fn reading_indices(&self) -> Vec<usize> {
-        let names = self.reading_names();
-        self.joints
-            .iter()
-            .map(|joint| names.iter().position(|name| *name == joint.reading.name).unwrap_or(0))
-            .collect()
+        let mut known: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut indices = Vec::with_capacity(self.joints.len());
+        for joint in &self.joints {
+            let next = known.len();
+            indices.push(*known.entry(&joint.reading.name).or_insert(next));
+        }
+        indices
     }
 
     /// The same robot with other screws (one a joint). Each joint frame follows its axis by the smallest motion
@@ -160,5 +178,24 @@ impl Robot {
             .filter(|span| *span < Limits::PLACEHOLDER_M)
             .sum();
         self.arm_m() + slides
+    }
+}
+
+/// Refuses a name that no message or table could show.
+///
+/// # Errors
+/// [`ErrorKind::Model`] if it has more letters than [`LONGEST_NAME`].
+pub(crate) fn check_name(name: &str, of: &str) -> Result<()> {
+    if name.len() <= LONGEST_NAME {
+        return Ok(());
+    }
+    match name.chars().count() {
+        letters if letters > LONGEST_NAME => Err(Error::new(
+            ErrorKind::Model,
+            format!(
+                "found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}"
+            ),
+        )),
+        _ => Ok(()),
     }
 }

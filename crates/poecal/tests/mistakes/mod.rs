@@ -259,6 +259,15 @@ impl Session {
                 }
                 Some((data, format!("by {by}, later: {later}")))
             }
+            DiagnosisKind::JointsCoupled => {
+                let couples = column > 0 && !slides && kinds[column - 1] == JointKind::Revolute;
+                let factor = if uniform(g) < 0.5 { 1.0 } else { -1.0 };
+                couples.then(|| {
+                    let data =
+                        self.changed(|_, readings, _| readings[column] += factor * readings[column - 1]);
+                    (data, format!("column {column} by {factor} of the one before"))
+                })
+            }
             DiagnosisKind::TargetsSwapped => self.renamed(g),
             DiagnosisKind::DuplicateRows => {
                 let mut data = self.data.clone();

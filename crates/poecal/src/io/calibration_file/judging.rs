@@ -2,7 +2,7 @@
 
 use super::{CalibrationFile, FrameWord};
 use crate::calibration::{DeviceFrameKnowledge, NoiseSource};
-use crate::error::{Error, ErrorKind, Result, nearest};
+use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::measurement::{Dataset, Noise};
 
 /// Rotation noise that counts where the calibration saw positions alone, degrees.
@@ -55,8 +55,9 @@ impl CalibrationFile {
     pub fn check_targets(&self, data: &Dataset) -> Result<()> {
         let refit = "or find the targets anew with --refit-tool";
         let names = || self.targets.keys().map(String::as_str);
-        for (index, name) in data.targets.iter().enumerate() {
-            let known = names().collect::<Vec<_>>().join(", ");
+        let frames = data.frames(&data.all_rows());
+        let known = first_few(&names().collect::<Vec<_>>());
+        for (is_frame, name) in frames.into_iter().zip(&data.targets) {
             let message = match name.as_deref() {
                 None if self.targets.is_empty() => continue,
                 None => format!(
@@ -64,7 +65,7 @@ impl CalibrationFile {
                      column `target`, {refit}"
                 ),
                 Some(name) => match self.targets.get(name) {
-                    Some(target) if target.quaternion_xyzw.is_none() && data.target_is_frame(index) => {
+                    Some(target) if target.quaternion_xyzw.is_none() && is_frame => {
                         format!(
                             "found orientations of target `{name}`, expected positions alone, since the calibration knows \
                          it as a point: leave the orientation columns out, {refit}"

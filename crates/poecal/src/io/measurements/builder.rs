@@ -1,12 +1,14 @@
 //! Finding the columns that a layout needs.
 
-use super::layout::{Input, Source, TargetLayout, reading_quantity};
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::layout::{Input, Source, TargetLayout, Term, reading_quantity};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
 use super::table::Header;
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
-use crate::error::{Error, ErrorKind, Result, edit_distance};
+use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
 use crate::robot::Robot;
 
@@ -39,7 +41,7 @@ const OUR_NAMES: [&str; 18] = [
 pub(super) struct Builder<'a> {
     header: &'a Header<'a>,
     map: &'a ColumnMap,
-    readings: Vec<String>,
+    readings: BTreeSet<String>,
     pub(super) inputs: Vec<Input>,
     used: Vec<bool>,
 }
@@ -47,15 +49,16 @@ pub(super) struct Builder<'a> {
 impl<'a> Builder<'a> {
     /// Finds the joints' columns.
     pub(super) fn new(header: &'a Header<'a>, robot: &Robot, map: &'a ColumnMap) -> Result<Self> {
-        let readings = robot.reading_names();
-        if let Some(name) = map.joints.keys().find(|name| !readings.contains(name)) {
-            let message = format!("found the joint `{name}`, expected one of {}", readings.join(", "));
+        let names = robot.reading_names();
+        let readings: BTreeSet<String> = names.iter().cloned().collect();
+        if let Some(name) = map.joints.keys().find(|name| !readings.contains(*name)) {
+            let message = format!("found the joint `{name}`, expected one of {}", first_few(&names));
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&map.path));
         }
         let used = vec![false; header.cells.len()];
-        let mut builder = Builder { header, map, readings: readings.clone(), inputs: Vec::new(), used };
+        let mut builder = Builder { header, map, readings, inputs: Vec::new(), used };
         let default = ColumnSpec::default();
-        for name in &readings {
+        for name in &names {
             let spec = map.joints.get(name).unwrap_or(&default);
             let purpose = format!("for joint `{name}`");
             builder.spec_input(name, spec, reading_quantity(robot, name), &purpose)?;
@@ -75,6 +78,9 @@ impl<'a> Builder<'a> {
             Unit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
                 .map_err(|error| error.in_file(&self.map.path))?;
         }
+        if !spec.columns.is_empty() {
+            return self.sum_input(name, spec, quantity, purpose);
+        }
         let Some(value) = spec.value else {
             let column = spec.column.as_deref().unwrap_or(name);
             return self.column_input(name, column, quantity, spec.unit, purpose);
@@ -90,7 +96,7 @@ impl<'a> Builder<'a> {
         }
         let source = Source::Constant(unit.to_si(value));
         let (name, label) = (name.to_owned(), name.to_owned());
-        self.inputs.push(Input { name, label, source, unit, unit_from });
+        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
         Ok(self.inputs.len() - 1)
     }
 
@@ -116,30 +122,58 @@ impl<'a> Builder<'a> {
             (None, None, None) => (quantity.si_unit(), UnitSource::Si),
         };
         let (name, label, source) = (name.to_owned(), column.to_owned(), Source::Column(index));
-        self.inputs.push(Input { name, label, source, unit, unit_from });
+        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
         Ok(self.inputs.len() - 1)
+    }
+
+    /// Adds a number that is a sum of columns.
+    fn sum_input(
+        &mut self,
+        name: &str,
+        spec: &ColumnSpec,
+        quantity: Quantity,
+        purpose: &str,
+    ) -> Result<usize> {
+        if !self.readings.contains(name) {
+            let message =
+                format!("found `columns` {purpose}, expected one column: only joints are sums of columns");
+            return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
+        }
+        let mut sum: Vec<Term> = Vec::with_capacity(spec.columns.len());
+        let mut label = String::new();
+        let at = self.inputs.len();
+        for (column, &factor) in &spec.columns {
+            self.column_input(name, column, quantity, spec.unit, purpose)?;
+            let size = if factor.abs() == 1.0 { String::new() } else { format!("{} ", factor.abs()) };
+            let sign = if factor < 0.0 { "- " } else { "+ " };
+            let sign = if label.is_empty() && factor > 0.0 { "" } else { sign };
+            label.push_str(&format!("{}{sign}{size}{column}", if label.is_empty() { "" } else { " " }));
+        }
+        let parts = self.inputs.split_off(at);
+        for (part, &factor) in parts.iter().zip(spec.columns.values()) {
+            if let Source::Column(column) = part.source {
+                sum.push(Term { column, unit: part.unit, factor });
+            }
+        }
+        // The first of them stands for all where one unit and one place are told.
+        self.inputs.extend(parts.into_iter().next().map(|first| Input { label, sum, ..first }));
+        Ok(at)
     }
 
     /// Index of a column that must be there.
     pub(super) fn text_column(&mut self, name: &str, purpose: &str) -> Result<usize> {
-        let known: Vec<&str> = self
-            .readings
-            .iter()
-            .map(String::as_str)
-            .chain(OUR_NAMES)
-            .filter(|known| *known != name)
-            .collect();
+        let is_known =
+            |found: &str| found != name && (self.readings.contains(found) || OUR_NAMES.contains(&found));
         let index =
-            self.header.require(name, purpose, &known).map_err(|error| self.explained(name, error))?;
+            self.header.require(name, purpose, is_known).map_err(|error| self.explained(name, error))?;
         self.mark(index);
         Ok(index)
     }
 
     /// Says of a name's second column that the model's own joint takes the name of a column with a meaning, if that is why.
     fn explained(&self, name: &str, error: Error) -> Error {
-        let is_clash = self.header.count(name) > 1
-            && self.readings.iter().any(|reading| reading == name)
-            && OUR_NAMES.contains(&name);
+        let is_clash =
+            self.header.count(name) > 1 && self.readings.contains(name) && OUR_NAMES.contains(&name);
         let place = error.place().and_then(|place| Some((place.line?, place.column?)));
         match place {
             Some((line, column)) if is_clash => {
@@ -285,14 +319,13 @@ impl<'a> Builder<'a> {
         self.spec_input(name, spec, quantity, &format!("for `{name}`")).map(Some)
     }
 
-    /// Refuses a column that is two things at once. (One sigma may serve several targets.)
+    /// Refuses a column that is two things at once. (One sigma may serve several targets, and one column several sums.)
     pub(super) fn check_distinct(&self) -> Result<()> {
-        let distinct = |input: &&Input| !input.name.contains("sigma_");
-        for (i, input) in self.inputs.iter().enumerate() {
+        let distinct = |input: &Input| !input.name.contains("sigma_") && input.sum.is_empty();
+        let mut first: BTreeMap<usize, &Input> = BTreeMap::new();
+        for input in self.inputs.iter().filter(|input| distinct(input)) {
             let Source::Column(index) = input.source else { continue };
-            let earlier =
-                self.inputs.iter().take(i).filter(distinct).find(|other| other.source == input.source);
-            if let (Some(other), true) = (earlier, distinct(&input)) {
+            if let Some(other) = first.insert(index, input) {
                 let message = if other.name == input.name {
                     format!("found one column `{0}`, {1}", input.name, clash(&input.name))
                 } else {
@@ -310,18 +343,19 @@ impl<'a> Builder<'a> {
 
     pub(super) fn ignored(&self) -> Vec<(String, Option<&'static str>)> {
         let cells = self.header.cells.iter().enumerate();
+        let missing: Vec<&'static str> =
+            OUR_NAMES.into_iter().filter(|ours| self.header.count(ours) == 0).collect();
         cells
             .filter(|(index, cell)| !self.is_used(*index) && !cell.text.is_empty())
-            .map(|(_, cell)| (cell.text.clone(), self.meant(&cell.name)))
+            .map(|(_, cell)| (cell.text.clone(), meant(&cell.name, &missing)))
             .collect()
     }
+}
 
-    /// The name of ours that a column without meaning is a slip of the pen away from.
-    fn meant(&self, name: &str) -> Option<&'static str> {
-        let missing = |ours: &&str| !self.header.cells.iter().any(|cell| cell.name == *ours);
-        let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
-        OUR_NAMES.into_iter().filter(missing).find(|ours| edit_distance(name, ours) <= slips(ours))
-    }
+/// The name of ours, of those that are missing, that a column without meaning is a slip of the pen away from.
+fn meant(name: &str, missing: &[&'static str]) -> Option<&'static str> {
+    let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
+    missing.iter().copied().find(|ours| distance_within(name, ours, slips(ours)).is_some())
 }
 
 /// What is wrong, and what to do, when a joint has the name of a column with a meaning.

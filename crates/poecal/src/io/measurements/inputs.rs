@@ -35,6 +35,7 @@ impl<'a> InputReader<'a> {
         for (input, range) in self.inputs.iter().zip(&mut self.ranges) {
             let value = match input.source {
                 Source::Constant(value) => Some(value),
+                Source::Column(_) if !input.sum.is_empty() => sum(&mut self.numbers, row, input)?,
                 Source::Column(column) => match row.cells.get(column).map_or("", |cell| cell.raw) {
                     "" => None,
                     text => Some(self.numbers.parse(text, row.line).map_err(|expected| {
@@ -95,6 +96,23 @@ impl<'a> InputReader<'a> {
             Some(Source::Constant(_)) | None => 0,
         }
     }
+}
+
+/// The sum of an input's columns; nothing if a cell is empty.
+fn sum(numbers: &mut Numbers, row: &Row<'_>, input: &Input) -> Result<Option<f64>> {
+    let mut sum = 0.0;
+    for term in &input.sum {
+        let text = row.cells.get(term.column).map_or("", |cell| cell.raw);
+        if text.is_empty() {
+            return Ok(None);
+        }
+        let value = numbers.parse(text, row.line).map_err(|expected| {
+            let message = format!("found `{text}` in a column of `{}`, expected {expected}", input.label);
+            row.error(term.column, message)
+        })?;
+        sum += term.factor * term.unit.to_si(value);
+    }
+    Ok(Some(sum))
 }
 
 /// Refuses a number that nothing measured can be, which sums of squares would not bear.

@@ -20,6 +20,16 @@ pub(super) struct Input {
     pub(super) source: Source,
     pub(super) unit: Unit,
     pub(super) unit_from: UnitSource,
+    /// What is added up, if it is a sum of columns: `source` is then the first of them.
+    pub(super) sum: Vec<Term>,
+}
+
+/// A column of a sum.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Term {
+    pub(super) column: usize,
+    pub(super) unit: Unit,
+    pub(super) factor: f64,
 }
 
 /// Where a number comes from.

@@ -1,6 +1,6 @@
 //! The mapping file: how a file with its own column names is to be read.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -77,10 +77,12 @@ impl UnitDefaults {
     }
 }
 
-/// One column, or one value for all rows. In TOML a column's name, or a table.
+/// One column, a sum of columns, or one value for all rows. In TOML a column's name, or a table.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ColumnSpec {
     pub(super) column: Option<String>,
+    /// Columns with their factors; none if it is no sum.
+    pub(super) columns: BTreeMap<String, f64>,
     pub(super) value: Option<f64>,
     pub(super) unit: Option<Unit>,
 }
@@ -187,11 +189,12 @@ impl ColumnMap {
                 "found both `{key}` and `[[targets]]`, expected `{key}` in each target only"
             ));
         }
-        for (i, target) in self.targets.iter().enumerate() {
+        let mut names = BTreeSet::new();
+        for target in &self.targets {
             if target.name.is_empty() {
                 return error("found a target with an empty name, expected a name".to_owned());
             }
-            if self.targets.iter().take(i).any(|other| other.name == target.name) {
+            if !names.insert(&target.name) {
                 return error(format!("found two targets named `{}`, expected unique names", target.name));
             }
         }
@@ -234,6 +237,7 @@ struct ColumnSpecVisitor;
 #[serde(deny_unknown_fields)]
 struct ColumnFields {
     column: Option<String>,
+    columns: Option<BTreeMap<String, f64>>,
     value: Option<f64>,
     #[serde(default, deserialize_with = "any_unit")]
     unit: Option<Unit>,
@@ -243,7 +247,7 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
     type Value = ColumnSpec;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a column name, or a table with `column` or `value`, and `unit`")
+        f.write_str("a column name, or a table with `column`, `columns` or `value`, and `unit`")
     }
 
     fn visit_str<E: serde::de::Error>(self, column: &str) -> std::result::Result<ColumnSpec, E> {
@@ -252,14 +256,41 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<ColumnSpec, A::Error> {
         let fields = ColumnFields::deserialize(MapAccessDeserializer::new(map))?;
-        if fields.column.is_some() && fields.value.is_some() {
-            return Err(A::Error::custom("found both `column` and `value`, expected one of them"));
+        let given = [
+            ("column", fields.column.is_some()),
+            ("columns", fields.columns.is_some()),
+            ("value", fields.value.is_some()),
+        ];
+        let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
+        if let (Some(first), Some(second)) = (given.next(), given.next()) {
+            return Err(A::Error::custom(format!(
+                "found both `{first}` and `{second}`, expected one of them"
+            )));
         }
+        let columns = fields.columns.map(checked_columns::<A::Error>).transpose()?.unwrap_or_default();
         if fields.value.is_some_and(|value| !value.is_finite()) {
             return Err(A::Error::custom("found a value that is not finite, expected a finite number"));
         }
-        Ok(ColumnSpec { column: fields.column, value: fields.value, unit: fields.unit })
+        Ok(ColumnSpec { column: fields.column, columns, value: fields.value, unit: fields.unit })
     }
+}
+
+/// The columns of a sum, which must be some, with factors that say something.
+fn checked_columns<E: serde::de::Error>(
+    columns: BTreeMap<String, f64>,
+) -> std::result::Result<BTreeMap<String, f64>, E> {
+    if columns.is_empty() {
+        return Err(E::custom(
+            "found no column in `columns`, expected columns with their factors, like { J2 = -1, J3 = 1 }",
+        ));
+    }
+    if let Some((name, factor)) = columns.iter().find(|(_, factor)| !factor.is_normal()) {
+        let message = format!(
+            "found the factor {factor} of column `{name}`, expected a number other than 0, like 1 or -1"
+        );
+        return Err(E::custom(message));
+    }
+    Ok(columns)
 }
 
 /// A string that `parse` understands; its error is the TOML error's message.

@@ -16,10 +16,10 @@ use super::text::Blocks;
 use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{MeasurementFile, ReadOptions};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, shown};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Set, Source};
-use crate::robot::Robot;
+use crate::robot::{Robot, check_name};
 
 /// Reads measurement files, joined in their order.
 ///
@@ -64,6 +64,9 @@ pub fn parse(
     reader.file(path.as_ref(), Blocks::new(path.as_ref(), text.as_bytes()))?;
     reader.finish()
 }
+
+/// Columns left alone that a warning names.
+const IGNORED_NAMED: usize = 30;
 
 struct Reader<'a> {
     robot: &'a Robot,
@@ -165,12 +168,17 @@ impl<'a> Reader<'a> {
         if layout.ignored.is_empty() {
             return;
         }
-        let columns = layout.ignored.iter().map(|(name, meant)| match meant {
-            Some(meant) => format!("`{name}` (did you mean `{meant}`?)"),
-            None => format!("`{name}`"),
+        let columns = layout.ignored.iter().take(IGNORED_NAMED).map(|(name, meant)| match meant {
+            Some(meant) => format!("`{}` (did you mean `{meant}`?)", shown(name)),
+            None => format!("`{}`", shown(name)),
         });
         let columns: Vec<String> = columns.collect();
-        self.warnings.push(format!("{}: left alone the columns {}", path.display(), columns.join(", ")));
+        let more = match layout.ignored.len() - columns.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let columns = columns.join(", ");
+        self.warnings.push(format!("{}: left alone the columns {columns}{more}", path.display()));
     }
 
     fn row(&mut self, row: &Row<'_>, layout: &Layout, inputs: &mut InputReader<'_>) -> Result<()> {
@@ -256,6 +264,8 @@ impl<'a> Reader<'a> {
         if let Some(&index) = self.target_indices.get(key) {
             return Ok(index);
         }
+        check_name(key, "target")
+            .map_err(|error| row.error(layout.target_column.unwrap_or(0), error.message()))?;
         let index = self.target_indices.len();
         self.target_indices.insert(key.to_owned(), index);
         self.data.targets.push(name.map(str::to_owned));

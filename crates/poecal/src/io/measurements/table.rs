@@ -1,5 +1,6 @@
 //! A file as a table: header and rows with their places.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split};
@@ -25,6 +26,8 @@ pub(super) struct Header<'a> {
     pub(super) path: &'a Path,
     pub(super) line: usize,
     pub(super) cells: Vec<HeaderCell>,
+    /// The first and the second column of each name, with and without its unit.
+    named: BTreeMap<String, (usize, Option<usize>)>,
 }
 
 /// A row, as long as the next one is not read.
@@ -151,28 +154,44 @@ impl<'a> Header<'a> {
     fn new(path: &'a Path, line: usize, text: &str, separator: Separator) -> Result<Self> {
         let mut cells = Vec::new();
         split_line(path, line, text, separator, &mut cells)?;
-        let cell = |cell: &Cell<'_>| HeaderCell::new(&cell.text(), character_column(text, cell.offset));
-        let cells: Vec<HeaderCell> = cells.iter().map(cell).collect();
+        // Counted on from cell to cell: there may be very many.
+        let (mut column, mut offset) = (1, 0);
+        let mut cell = |cell: &Cell<'_>| {
+            column += text.get(offset..cell.offset).map_or(0, |passed| passed.chars().count());
+            offset = offset.max(cell.offset);
+            HeaderCell::new(&cell.text(), column)
+        };
+        let cells: Vec<HeaderCell> = cells.iter().map(&mut cell).collect();
         if cells.iter().all(|cell| cell.text.replace(',', ".").parse::<f64>().is_ok()) {
             let message = "found a line of numbers, expected a header that names the columns \
                            (a line that begins with `#` is a comment)";
             return Err(Error::new(ErrorKind::Syntax, message).at_line(path, line));
         }
-        Ok(Header { path, line, cells })
+        let mut named: BTreeMap<String, (usize, Option<usize>)> = BTreeMap::new();
+        for (index, cell) in cells.iter().enumerate() {
+            let texts = [Some(&cell.name), Some(&cell.text).filter(|text| **text != cell.name)];
+            for text in texts.into_iter().flatten() {
+                match named.get_mut(text) {
+                    Some((_, second)) => *second = second.or(Some(index)),
+                    None => {
+                        named.insert(text.clone(), (index, None));
+                    }
+                }
+            }
+        }
+        Ok(Header { path, line, cells, named })
     }
 
     /// Index of the column of this name, which may include the unit as the file writes it.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
-        let mut matches =
-            self.cells.iter().enumerate().filter(|(_, cell)| cell.name == name || cell.text == name);
-        let first = matches.next().map(|(index, _)| index);
-        match matches.next() {
-            Some((second, _)) => {
+        match self.named.get(name) {
+            Some((_, Some(second))) => {
                 let message =
                     format!("found a second column `{name}`, expected one; rename or remove one of them");
-                Err(self.error(ErrorKind::Measurement, second, message))
+                Err(self.error(ErrorKind::Measurement, *second, message))
             }
-            None => Ok(first),
+            Some((first, None)) => Ok(Some(*first)),
+            None => Ok(None),
         }
     }
 
@@ -181,13 +200,18 @@ impl<'a> Header<'a> {
         self.cells.iter().filter(|cell| cell.name == name).count()
     }
 
-    /// As [`Header::find`], but the column must be there; `known` are names that another column cannot be a misspelling of.
-    pub(super) fn require(&self, name: &str, purpose: &str, known: &[&str]) -> Result<usize> {
+    /// As [`Header::find`], but the column must be there; `is_known` tells names that cannot be a misspelling of another column's.
+    pub(super) fn require(
+        &self,
+        name: &str,
+        purpose: &str,
+        is_known: impl Fn(&str) -> bool,
+    ) -> Result<usize> {
         if let Some(index) = self.find(name)? {
             return Ok(index);
         }
         let names = || self.cells.iter().map(|cell| cell.name.as_str()).filter(|found| !found.is_empty());
-        let hint = match nearest(name, names().filter(|found| !known.contains(found))) {
+        let hint = match nearest(name, names().filter(|found| !is_known(found))) {
             Some(near) => format!("the nearest name found is `{near}`"),
             None => format!("the columns are {}", first_few(&names().collect::<Vec<_>>())),
         };

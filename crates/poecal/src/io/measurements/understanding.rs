@@ -27,7 +27,7 @@ pub enum UnitSource {
 pub struct ColumnUnderstanding {
     /// Our name: `joint1`, `x`, `smr1 x`, …
     pub name: String,
-    /// The file's column, as in its header; none for a constant of the mapping.
+    /// The file's column, as in its header, or the sum of columns that the mapping asks for; none for a constant of the mapping.
     pub column: Option<String>,
     /// Symbol of the unit; none for text and pure numbers.
     pub unit: Option<&'static str>,
@@ -90,6 +90,7 @@ pub(super) fn columns(header: &Header<'_>, layout: &Layout, ranges: &[Range]) ->
         ColumnUnderstanding {
             name: input.name.clone(),
             column: match input.source {
+                Source::Column(_) if !input.sum.is_empty() => Some(input.label.clone()),
                 Source::Column(index) => text_of(index),
                 Source::Constant(_) => None,
             },

@@ -1,5 +1,7 @@
 //! From the tables of the file to a robot.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::Vector3;
 use toml::Spanned;
 
@@ -22,9 +24,10 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
         Convention::StandardDh => from_dh(context, file, &name, DhConvention::Standard)?,
         Convention::ModifiedDh => from_dh(context, file, &name, DhConvention::Modified)?,
     };
+    let tables: BTreeMap<&str, &JointTable> = file.joint.iter().map(|table| (table.name(), table)).collect();
     for (joint, table) in robot.joints.iter_mut().zip(&file.joint) {
         joint.limits = limits(context, table)?;
-        joint.reading = reading(context, file, table)?;
+        joint.reading = reading(context, &tables, table)?;
     }
     if let Some(base) = &file.base_link {
         robot.base_name = context.name(base, "the base link")?;
@@ -36,9 +39,10 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
             return Err(context.error(tip.span(), message));
         }
     }
+    let mut names = BTreeSet::new();
     for target in &file.target {
         let name = context.name(&target.name, "the target")?;
-        if robot.targets.iter().any(|(other, _)| *other == name) {
+        if !names.insert(target.name.get_ref()) {
             let message = format!("found a second target named `{name}`, expected unique target names");
             return Err(context.error(target.name.span(), message));
         }
@@ -58,9 +62,10 @@ fn check_version(context: &Context, file: &File) -> Result<()> {
 }
 
 fn check_joint_names(context: &Context, file: &File) -> Result<()> {
-    for (index, joint) in file.joint.iter().enumerate() {
+    let mut names = BTreeSet::new();
+    for joint in &file.joint {
         context.name(&joint.name, "the joint")?;
-        if file.joint.iter().take(index).any(|other| other.name() == joint.name()) {
+        if !names.insert(joint.name()) {
             let message =
                 format!("found a second joint named `{}`, expected unique joint names", joint.name());
             return Err(context.error(joint.name.span(), message));
@@ -283,8 +288,8 @@ fn limits(context: &Context, table: &JointTable) -> Result<Option<Limits>> {
 
 /// The reading of a joint, through mimic relations. A leader that is not among the joints is read beside the chain, in the
 /// follower's unit.
-fn reading(context: &Context, file: &File, table: &JointTable) -> Result<Reading> {
-    let find = |name: &str| file.joint.iter().find(|joint| joint.name() == name);
+fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &JointTable) -> Result<Reading> {
+    let find = |name: &str| tables.get(name).copied();
     let mimic_of = |name: &str| -> Result<Option<Mimic>> {
         let Some((follower, mimic)) = find(name).and_then(|joint| Some((joint, joint.mimic.as_ref()?)))
         else {

@@ -11,7 +11,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::numbers::LARGEST_NUMBER;
 use crate::io::source_text::position;
 use crate::lie::{Pose, rotation};
-use crate::robot::JointKind;
+use crate::robot::{JointKind, check_name};
 
 /// Rounding that a table of four digits has, in unit vectors, quaternions and rotation matrices.
 pub(super) const TABLE_ROUNDING: f64 = 2e-3;
@@ -86,6 +86,8 @@ impl Context<'_> {
         if name.get_ref().trim().is_empty() {
             return Err(self.error(name.span(), format!("the name of {of} is empty, expected a name")));
         }
+        check_name(name.get_ref(), of.strip_prefix("the ").unwrap_or(of))
+            .map_err(|error| self.error(name.span(), error.message().to_owned()))?;
         Ok(name.get_ref().clone())
     }
 

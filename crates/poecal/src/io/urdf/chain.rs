@@ -1,8 +1,8 @@
 //! The chain from base to tip: as asked for, or the only one there is.
 
-use super::ChainSelection;
 use super::tree::Tree;
 use super::xml::Source;
+use super::{ChainSelection, ends};
 use crate::error::{Error, ErrorKind, Result, nearest_or_all};
 
 /// A chain through the tree: links and joints as indices into the tree, joints from base to tip.
@@ -38,24 +38,12 @@ fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {
 
 /// The only link without children that has a moving joint above it (below `base`, if that is given).
 fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
-    let mut is_parent = vec![false; tree.links.len()];
-    for joint in &tree.joints {
-        if let Some(flag) = is_parent.get_mut(joint.parent) {
-            *flag = true;
-        }
-    }
-    let mut tips: Vec<Chain> = is_parent
-        .iter()
-        .enumerate()
-        .filter(|(_, is_parent)| !**is_parent)
-        .filter_map(|(link, _)| way_up(tree, base, link).ok())
-        .filter(|chain| moving(tree, chain).next().is_some())
-        .collect();
+    let mut tips = ends::ends(tree, base);
     if tips.len() > 1 {
-        tips.retain(|chain| !only_leads(tree, chain));
+        tips.retain(|end| !end.only_leads);
     }
     match tips.as_slice() {
-        [chain] => Ok(chain.tip),
+        [end] => Ok(end.link),
         [] => Err(error(
             &tree.source,
             format!(
@@ -68,23 +56,10 @@ fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
             format!(
                 "found {} end links with a moving joint above them ({}), expected one: choose it with --tip-link, and the base, if it is not the root, with --base-link",
                 several.len(),
-                list(several.iter().map(|chain| tree.link_name(chain.tip)))
+                list(several.iter().map(|end| tree.link_name(end.link)))
             ),
         )),
     }
-}
-
-/// Whether all that moves on a chain leads mimic joints elsewhere, as the motor beside a telescopic column does.
-fn only_leads(tree: &Tree, chain: &Chain) -> bool {
-    moving(tree, chain).all(|joint| {
-        tree.joints.iter().enumerate().any(|(index, follower)| {
-            !chain.joints.contains(&index)
-                && tree
-                    .source
-                    .children(follower.node, "mimic")
-                    .any(|mimic| mimic.attribute("joint") == Some(joint))
-        })
-    })
 }
 
 /// Names of the moving joints of a chain.
@@ -149,9 +124,10 @@ fn check_joints(tree: &Tree, chain: &Chain) -> Result<()> {
 
 /// Names in backticks; of many, the first twelve.
 fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let names: Vec<_> = names.into_iter().map(|name| format!("`{name}`")).collect();
-    match names.get(..12) {
-        Some(first) if names.len() > 12 => format!("{} and {} more", first.join(", "), names.len() - 12),
-        _ => names.join(", "),
+    let mut names = names.into_iter();
+    let first: Vec<_> = names.by_ref().take(12).map(|name| format!("`{name}`")).collect();
+    match names.count() {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
     }
 }

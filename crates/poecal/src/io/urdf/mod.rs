@@ -4,6 +4,7 @@
 //! file (meshes, inertias, controllers, comments) is neither looked at nor changed.
 
 mod chain;
+mod ends;
 mod parts;
 mod patch;
 mod splice;
@@ -23,7 +24,7 @@ use crate::io::source_text;
 use crate::robot::Robot;
 use parts::Part;
 use tree::Tree;
-use xml::Source;
+use xml::{Source, crowded_element};
 
 /// Which chain of the tree is meant. What is left out must be unique: the base is then the root above the tip, and the tip the
 /// only end link with a moving joint above it.
@@ -84,6 +85,12 @@ impl UrdfDocument {
     /// not unique or not there, or a joint of it cannot be used.
     pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
+        if let Some(offset) = crowded_element(text) {
+            let (line, column) = source_text::position(text, offset);
+            let message =
+                "found an element with more than 1000 attributes, expected a URDF robot description";
+            return Err(Error::new(ErrorKind::Syntax, message).at(path, line, column));
+        }
         let document = Document::parse(text).map_err(|error| xml_error(&error, path))?;
         let source = Source { document: &document, path };
         let robot_element = document.root_element();

@@ -1,6 +1,6 @@
 //! The tree of links and joints: names, parents and children, checked for being a tree at all.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use roxmltree::Node;
 
@@ -58,17 +58,25 @@ pub(super) struct Tree<'a> {
     pub(super) joints: Vec<TreeJoint<'a>>,
     /// For each link, the index of the joint that carries it.
     joint_above: Vec<Option<usize>>,
+    link_indices: BTreeMap<&'a str, usize>,
+    joint_indices: BTreeMap<&'a str, usize>,
 }
 
 impl<'a> Tree<'a> {
     pub(super) fn read(source: Source<'a>) -> Result<Self> {
         let robot = source.document.root_element();
         let (links, index) = read_links(source, robot)?;
-        let mut tree = Tree { source, joint_above: vec![None; links.len()], links, joints: Vec::new() };
-        let mut joint_names = BTreeSet::new();
+        let mut tree = Tree {
+            source,
+            joint_above: vec![None; links.len()],
+            links,
+            joints: Vec::new(),
+            link_indices: index,
+            joint_indices: BTreeMap::new(),
+        };
         for node in source.children(robot, "joint") {
-            let joint = read_joint(source, node, &index)?;
-            if !joint_names.insert(joint.name) {
+            let joint = read_joint(source, node, &tree.link_indices)?;
+            if tree.joint_indices.insert(joint.name, tree.joints.len()).is_some() {
                 let message =
                     format!("found a second joint named `{}`, expected unique joint names", joint.name);
                 return Err(source.error(node, message));
@@ -113,11 +121,15 @@ impl<'a> Tree<'a> {
     }
 
     pub(super) fn link(&self, name: &str) -> Option<usize> {
-        self.links.iter().position(|link| *link == name)
+        self.link_indices.get(name).copied()
+    }
+
+    pub(super) fn joint_index(&self, name: &str) -> Option<usize> {
+        self.joint_indices.get(name).copied()
     }
 
     pub(super) fn joint(&self, name: &str) -> Option<&TreeJoint<'a>> {
-        self.joints.iter().find(|joint| joint.name == name)
+        self.joints.get(self.joint_index(name)?)
     }
 
     /// Every way up must end: the links of a loop, each with one parent, have no root above them.

@@ -10,6 +10,32 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::numbers::LARGEST_NUMBER;
 use crate::io::source_text::position;
 
+/// Attributes that an element may have: the parser compares each with all others.
+const MOST_ATTRIBUTES: usize = 1000;
+
+/// The byte where an element begins that has more attributes than any robot description, if there is one.
+pub(super) fn crowded_element(text: &str) -> Option<usize> {
+    let bytes = text.as_bytes();
+    // Where the element began, the values closed in it, and the sign that closes the value at hand.
+    let (mut element, mut values, mut quote) = (None, 0, None);
+    for at in memchr::memchr3_iter(b'<', b'"', b'\'', bytes) {
+        match (bytes.get(at), quote) {
+            // No value holds this sign, whatever was left open before.
+            (Some(b'<'), _) => (element, values, quote) = (Some(at), 0, None),
+            (Some(sign), None) => quote = Some(*sign),
+            (Some(sign), Some(open)) if *sign == open => {
+                quote = None;
+                values += 1;
+            }
+            _ => {}
+        }
+        if values > MOST_ATTRIBUTES && element.is_some_and(|start| bytes.get(start + 1) != Some(&b'!')) {
+            return element;
+        }
+    }
+    None
+}
+
 /// A parsed XML text and the name of its file.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
@@ -154,4 +180,20 @@ impl<'a> Source<'a> {
 /// Where the value of an attribute stands in the text, without its quotes.
 pub(super) fn value_range(node: Node, name: &str) -> Option<Range<usize>> {
     node.attribute_node(name).map(|attribute| attribute.range_value())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::crowded_element;
+
+    #[test]
+    fn only_an_element_of_very_many_attributes_is_crowded() {
+        let attributes = |count: usize| -> String { (0..count).map(|k| format!(" a{k}='\"1'")).collect() };
+        let of =
+            |count| format!("<robot>\n<!-- {} --><link{}/></robot>", "\"\" ".repeat(5000), attributes(count));
+        assert_eq!(crowded_element(&of(1000)), None);
+        let text = of(1001);
+        assert_eq!(crowded_element(&text), text.find("<link"));
+        assert_eq!(crowded_element("<robot name='r\"><link name=\"a\"/></robot>"), None);
+    }
 }

@@ -1,0 +1,161 @@
+//! The ends of a tree: links without children, each with what moves above it. One walk through the tree finds them all.
+
+use std::collections::BTreeSet;
+
+use super::tree::Tree;
+
+/// A link without children that has a moving joint above it.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct End {
+    pub(super) link: usize,
+    /// Whether all that moves above it leads mimic joints elsewhere, as the motor beside a telescopic column does.
+    pub(super) only_leads: bool,
+}
+
+/// All ends below a base, or below every root, in the order of the file.
+pub(super) fn ends(tree: &Tree, base: Option<usize>) -> Vec<End> {
+    let below = joints_below(tree);
+    let leaders: Vec<BTreeSet<usize>> = tree.joints.iter().map(|joint| leaders_of(tree, joint)).collect();
+    let mut way = Way::new(tree, &leaders);
+    let mut ends = Vec::new();
+    let starts = match base {
+        Some(base) => vec![base],
+        None => (0..tree.links.len()).filter(|&link| tree.above(link).is_none()).collect(),
+    };
+    for start in starts {
+        // Links to come to, and joints to go back by. Not by recursion: a chain may be longer than the stack.
+        let mut steps = vec![Step::To(start, None)];
+        while let Some(step) = steps.pop() {
+            let (link, joint) = match step {
+                Step::Back(joint) => {
+                    way.leave(joint);
+                    continue;
+                }
+                Step::To(link, joint) => (link, joint),
+            };
+            if let Some(joint) = joint {
+                way.enter(joint);
+                steps.push(Step::Back(joint));
+            }
+            let children = below.get(link).map_or(&[][..], Vec::as_slice);
+            if children.is_empty() && way.moving > 0 {
+                ends.push(End { link, only_leads: way.alone == 0 });
+            }
+            steps.extend(children.iter().map(|&joint| Step::To(tree.joints[joint].child, Some(joint))));
+        }
+    }
+    ends.sort_unstable_by_key(|end| end.link);
+    ends
+}
+
+enum Step {
+    To(usize, Option<usize>),
+    Back(usize),
+}
+
+/// For each link, the joints that it carries.
+fn joints_below(tree: &Tree) -> Vec<Vec<usize>> {
+    let mut below = vec![Vec::new(); tree.links.len()];
+    for (index, joint) in tree.joints.iter().enumerate() {
+        if let Some(joints) = below.get_mut(joint.parent) {
+            joints.push(index);
+        }
+    }
+    below
+}
+
+/// The joints that a joint mimics.
+fn leaders_of(tree: &Tree, joint: &super::tree::TreeJoint<'_>) -> BTreeSet<usize> {
+    let mimics = tree.source.children(joint.node, "mimic");
+    mimics.filter_map(|mimic| tree.joint_index(mimic.attribute("joint")?)).collect()
+}
+
+/// The joints from the start of a walk to where it is.
+struct Way<'a> {
+    tree: &'a Tree<'a>,
+    leaders: &'a [BTreeSet<usize>],
+    /// For each joint: whether it is on the way, and how many joints elsewhere follow it.
+    is_on: Vec<bool>,
+    elsewhere: Vec<usize>,
+    /// Moving joints on the way, and those of them that lead none elsewhere.
+    moving: usize,
+    alone: usize,
+}
+
+impl<'a> Way<'a> {
+    fn new(tree: &'a Tree<'a>, leaders: &'a [BTreeSet<usize>]) -> Self {
+        let count = tree.joints.len();
+        let mut elsewhere = vec![0; count];
+        leaders.iter().flatten().for_each(|&leader| elsewhere[leader] += 1);
+        Way { tree, leaders, is_on: vec![false; count], elsewhere, moving: 0, alone: 0 }
+    }
+
+    fn counts(&self, joint: usize) -> bool {
+        self.is_on[joint] && self.tree.joints[joint].kind.moves()
+    }
+
+    fn is_alone(&self, joint: usize) -> bool {
+        self.counts(joint) && self.elsewhere[joint] == 0
+    }
+
+    fn enter(&mut self, joint: usize) {
+        for &leader in &self.leaders[joint] {
+            self.elsewhere[leader] -= 1;
+            self.alone += usize::from(self.is_alone(leader));
+        }
+        self.is_on[joint] = true;
+        self.moving += usize::from(self.counts(joint));
+        self.alone += usize::from(self.is_alone(joint));
+    }
+
+    fn leave(&mut self, joint: usize) {
+        self.moving -= usize::from(self.counts(joint));
+        self.alone -= usize::from(self.is_alone(joint));
+        self.is_on[joint] = false;
+        for &leader in &self.leaders[joint] {
+            self.alone -= usize::from(self.is_alone(leader));
+            self.elsewhere[leader] += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::io::urdf::{ChainSelection, UrdfDocument};
+    use std::fmt::Write;
+
+    fn message(urdf: &str) -> String {
+        UrdfDocument::parse(urdf, "r.urdf", &ChainSelection::default()).unwrap_err().to_string()
+    }
+
+    fn joint(name: &str, parent: &str, child: &str) -> String {
+        format!(
+            "<link name=\"{child}\"/><joint name=\"{name}\" type=\"continuous\"><parent link=\"{parent}\"/>\
+             <child link=\"{child}\"/></joint>\n"
+        )
+    }
+
+    /// A star, and a comb: each tooth's way to the root is long.
+    #[test]
+    fn the_ends_of_a_tree_of_very_many_branches_are_found_by_one_walk() {
+        const COUNT: usize = 20_000;
+        let (mut star, mut comb) = (
+            "<robot name=\"r\"><link name=\"l0\"/>".to_owned(),
+            "<robot name=\"r\"><link name=\"l0\"/>".to_owned(),
+        );
+        for k in 1..=COUNT {
+            star += &joint(&format!("j{k}"), "l0", &format!("l{k}"));
+            comb += &joint(&format!("j{k}"), &format!("l{}", k - 1), &format!("l{k}"));
+            comb += &joint(&format!("t{k}"), &format!("l{}", k - 1), &format!("tooth{k}"));
+        }
+        for (mut urdf, ends, first) in [(star, COUNT, "`l1`, `l2`"), (comb, COUNT + 1, "`tooth1`, `tooth2`")]
+        {
+            write!(urdf, "</robot>").unwrap();
+            let message = message(&urdf);
+            let expected =
+                format!("r.urdf: found {ends} end links with a moving joint above them ({first}, ");
+            assert!(message.starts_with(&expected), "{message}");
+            assert!(message.len() < 400, "{message}");
+        }
+    }
+}
