@@ -17,7 +17,7 @@ const MAPPINGS: &[(&str, &str)] = &[
     ),
     (
         "[position]\nunit = \"furlong\"",
-        "map.toml:2:8: found the unit `furlong`, expected a length (m, cm, mm, um, nm)",
+        "map.toml:2:8: found the unit `furlong`, expected a length (m, cm, mm, um, nm, in)",
     ),
     (
         "[position]\ncolumns = [\"x\", \"y\"]",
@@ -25,7 +25,7 @@ const MAPPINGS: &[(&str, &str)] = &[
     ),
     (
         "[joints]\na = { unit = \"degree\" }",
-        "map.toml:2:14: found the unit `degree`, expected one of m, cm, mm, um, nm, rad, mrad, deg, arcmin, arcsec",
+        "map.toml:2:14: found the unit `degree`, expected one of m, cm, mm, um, nm, in, rad, mrad, deg, arcmin, arcsec",
     ),
     (
         "[joints]\na = { unit = \"mm\" }",

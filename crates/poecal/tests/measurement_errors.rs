@@ -75,12 +75,12 @@ const FILES: &[(&[u8], &str)] = &[
         "points.csv:1:19: found a second column `id`, expected one; rename or remove one of them",
     ),
     (
-        b"a,lift,b,x[inch],y,z\n0,0,0,1,2,3\n",
-        "points.csv:1:10: found the unit `inch` for the position x, expected a length (m, cm, mm, um, nm)",
+        b"a,lift,b,x[ft],y,z\n0,0,0,1,2,3\n",
+        "points.csv:1:10: found the unit `ft` for the position x, expected a length (m, cm, mm, um, nm, in)",
     ),
     (
         b"a,lift,b,x[MM],y,z\n0,0,0,1,2,3\n",
-        "points.csv:1:10: found the unit `MM` for the position x, expected a length (m, cm, mm, um, nm); did you mean `mm`?",
+        "points.csv:1:10: found the unit `MM` for the position x, expected a length (m, cm, mm, um, nm, in); did you mean `mm`?",
     ),
     (
         b"a[mm],lift,b,x,y,z\n0,0,0,1,2,3\n",
@@ -88,11 +88,11 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift[deg],b,x,y,z\n0,0,0,1,2,3\n",
-        "points.csv:1:3: found the unit `deg` for joint `lift`, expected a length (m, cm, mm, um, nm)",
+        "points.csv:1:3: found the unit `deg` for joint `lift`, expected a length (m, cm, mm, um, nm, in)",
     ),
     (
         b"a,lift,b,x,y,z,sigma_position[rad]\n0,0,0,1,2,3,1\n",
-        "points.csv:1:16: found the unit `rad` for `sigma_position`, expected a length (m, cm, mm, um, nm)",
+        "points.csv:1:16: found the unit `rad` for `sigma_position`, expected a length (m, cm, mm, um, nm, in)",
     ),
     (
         b"a,lift,b,x,y,z,qx[deg],qy,qz,qw\n0,0,0,1,2,3,0,0,0,1\n",

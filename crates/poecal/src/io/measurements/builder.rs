@@ -3,7 +3,7 @@
 use super::layout::{Input, Source, TargetLayout, reading_quantity};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
-use super::table::Header;
+use super::header::{Header, unit_in_name};
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result, edit_distance};
@@ -34,6 +34,9 @@ const OUR_NAMES: [&str; 18] = [
     "id",
     "set",
 ];
+
+/// What to do about a column of ours that is not found.
+const MISSING: &str = ": rename or add a column, or name the right one in a mapping file (--columns)";
 
 /// Finds one thing after the other in a header and keeps account of the columns used.
 pub(super) struct Builder<'a> {
@@ -104,16 +107,23 @@ impl<'a> Builder<'a> {
         purpose: &str,
     ) -> Result<usize> {
         let index = self.text_column(column, purpose)?;
-        let in_header = self.header.cells.get(index).and_then(|cell| cell.unit.as_deref());
-        let (unit, unit_from) = match (mapped, in_header, self.map.units.of(quantity)) {
-            (Some(unit), _, _) => (unit, UnitSource::Mapping),
-            (None, Some(symbol), _) => {
-                let unit = Unit::parse_for(symbol, quantity, &format!(" {purpose}"))
-                    .map_err(|error| self.header.error(ErrorKind::Unit, index, error.message()))?;
-                (unit, UnitSource::Header)
+        let stated = match mapped {
+            Some(unit) => Some((unit, UnitSource::Mapping)),
+            None => self.header.unit(index, quantity, purpose)?,
+        };
+        let default = self.map.units.of(quantity).map(|unit| (unit, UnitSource::Mapping));
+        let (unit, unit_from) = match (stated.or(default), self.header.units_line) {
+            (Some(known), _) => known,
+            // Where units are stated below the header, an empty cell may be one that was forgotten or merged.
+            (None, Some(line)) if quantity != Quantity::Number => {
+                let si = quantity.si_unit().symbol();
+                let message = format!(
+                    "found no unit below column `{column}` in the line of units (line {line}), expected one {purpose}: \
+                     write `{si}` there if it is in {si}"
+                );
+                return Err(self.header.error(ErrorKind::Unit, index, message));
             }
-            (None, None, Some(unit)) => (unit, UnitSource::Mapping),
-            (None, None, None) => (quantity.si_unit(), UnitSource::Si),
+            (None, _) => (quantity.si_unit(), UnitSource::Si),
         };
         let (name, label, source) = (name.to_owned(), column.to_owned(), Source::Column(index));
         self.inputs.push(Input { name, label, source, unit, unit_from });
@@ -129,8 +139,12 @@ impl<'a> Builder<'a> {
             .chain(OUR_NAMES)
             .filter(|known| *known != name)
             .collect();
-        let index =
-            self.header.require(name, purpose, &known).map_err(|error| self.explained(name, error))?;
+        let is_ours = self.readings.iter().any(|reading| reading == name) || OUR_NAMES.contains(&name);
+        let advice = if is_ours { MISSING } else { "" };
+        let index = self
+            .header
+            .require(name, purpose, &known, advice)
+            .map_err(|error| self.explained(name, error))?;
         self.mark(index);
         Ok(index)
     }
@@ -308,7 +322,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    pub(super) fn ignored(&self) -> Vec<(String, Option<&'static str>)> {
+    pub(super) fn ignored(&self) -> Vec<(String, Option<String>)> {
         let cells = self.header.cells.iter().enumerate();
         cells
             .filter(|(index, cell)| !self.is_used(*index) && !cell.text.is_empty())
@@ -316,11 +330,15 @@ impl<'a> Builder<'a> {
             .collect()
     }
 
-    /// The name of ours that a column without meaning is a slip of the pen away from.
-    fn meant(&self, name: &str) -> Option<&'static str> {
+    /// The name of ours that a column without meaning is a slip of the pen, or brackets, away from.
+    fn meant(&self, name: &str) -> Option<String> {
         let missing = |ours: &&str| !self.header.cells.iter().any(|cell| cell.name == *ours);
         let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
-        OUR_NAMES.into_iter().filter(missing).find(|ours| edit_distance(name, ours) <= slips(ours))
+        let with_unit = |ours: &str| Some(format!("{ours}[{}]", unit_in_name(name, ours)?.symbol()));
+        OUR_NAMES.into_iter().filter(missing).find_map(|ours| {
+            let is_near = edit_distance(name, ours) <= slips(ours);
+            if is_near { Some(ours.to_owned()) } else { with_unit(ours) }
+        })
     }
 }
 

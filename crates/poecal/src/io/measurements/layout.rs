@@ -3,7 +3,7 @@
 use super::builder::Builder;
 use super::mapping::{ColumnMap, PoseDirection};
 use super::orientation::OrientationForm;
-use super::table::Header;
+use super::header::Header;
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
 use super::{FitWhere, ReadOptions};
@@ -61,7 +61,7 @@ pub(super) struct Layout {
     pub(super) set: SetRule,
     pub(super) pose: PoseDirection,
     /// Columns that have no meaning, with a name of ours that they may have meant.
-    pub(super) ignored: Vec<(String, Option<&'static str>)>,
+    pub(super) ignored: Vec<(String, Option<String>)>,
 }
 
 impl Layout {

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::layout::{Input, Layout, Source};
 use super::scale::{middle, short};
-use super::table::Header;
+use super::header::Header;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
