@@ -50,7 +50,7 @@ fn a_long_file_is_read_row_by_row_and_its_first_mistake_named() {
         (
             18_990,
             "row,fit,a,0,0,0,0,0,0,1,nan,3",
-            "rows.csv:18990:25: found `nan` in column `y`, expected a finite number",
+            "rows.csv:18990:25: found `nan` in column `y`, expected a finite number: leave the cell empty where nothing was measured",
         ),
         (
             18_000,

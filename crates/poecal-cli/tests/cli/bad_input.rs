@@ -79,11 +79,11 @@ const CALIBRATE: &str = "calibrate robot.urdf bad.csv";
 fn bad_headers_get_one_sentence_each() {
     check(&[
         case(CALIBRATE, "a,lft,b,x,y,z\n1,0,1,1,1,1\n",
-             "bad.csv:1: found no column `lift`, expected one for joint `lift`; the nearest name found is `lft`"),
+             "bad.csv:1: found no column `lift`, expected one for joint `lift`; the nearest name found is `lft`: rename or add a column, or name the right one in a mapping file (--columns)"),
         case(CALIBRATE, "a,lift,x,y,z\n1,0,1,1,1\n",
-             "bad.csv:1: found no column `b`, expected one for joint `b`; the columns are a, lift, x, y, z"),
+             "bad.csv:1: found no column `b`, expected one for joint `b`; the columns are a, lift, x, y, z: rename or add a column, or name the right one in a mapping file (--columns)"),
         case(CALIBRATE, "a,lift,b,x,y\n1,0,1,1,1\n",
-             "bad.csv:1: found no column `z`, expected one for the position z; the columns are a, lift, b, x, y"),
+             "bad.csv:1: found no column `z`, expected one for the position z; the columns are a, lift, b, x, y: rename or add a column, or name the right one in a mapping file (--columns)"),
         case(CALIBRATE, "a,lift,b,a,x,y,z\n1,0,1,1,1,1,1\n",
              "bad.csv:1:10: found a second column `a`, expected one; rename or remove one of them"),
         case(CALIBRATE, "a,lift,b,x[ft],y,z\n1,0,1,1,1,1\n",
@@ -95,7 +95,7 @@ fn bad_headers_get_one_sentence_each() {
         case(CALIBRATE, "a,lift,b,x,y,z[MM]\n1,0,1,1,1,1\n",
              "bad.csv:1:14: found the unit `MM` for the position z, expected a length (m, cm, mm, um, nm, in); did you mean `mm`?"),
         case(CALIBRATE, "a,lift,b,x,y,z,qx,qy,qz\n1,0,1,1,1,1,0,0,0\n",
-             "bad.csv:1: found no column `qw`, expected one for the orientation (quaternion x, y, z, w); the columns are a, lift, b, x, y, z, qx, qy, qz"),
+             "bad.csv:1: found no column `qw`, expected one for the orientation (quaternion x, y, z, w); the columns are a, lift, b, x, y, z, qx, qy, qz: rename or add a column, or name the right one in a mapping file (--columns)"),
         case(CALIBRATE, "a,lift,b,x,y,z,qx,qy,qz,qw,rx\n1,0,1,1,1,1,0,0,0,1,0\n",
              "bad.csv:1:28: found the orientation columns `qx` and `rx`, expected one form only"),
         case(CALIBRATE, "1,0,1,1,1,1\n1,0,1,1,1,1\n",
@@ -103,7 +103,7 @@ fn bad_headers_get_one_sentence_each() {
         case(CALIBRATE, "", "bad.csv: found no line with text, expected a header and rows"),
         case(CALIBRATE, HEADER, "bad.csv:1: found a header and no rows, expected at least one measurement"),
         case("predict robot.urdf bad.csv", "a,lift,c\n1,0,1\n",
-             "bad.csv:1: found no column `b`, expected one for joint `b`; the nearest name found is `c`"),
+             "bad.csv:1: found no column `b`, expected one for joint `b`; the nearest name found is `c`: rename or add a column, or name the right one in a mapping file (--columns)"),
     ]);
 }
 
@@ -114,19 +114,19 @@ fn bad_cells_get_one_sentence_each() {
     let poses = |row: &str| format!("a,lift,b,x,y,z,qx,qy,qz,qw\n{row}\n");
     check(&[
         case(CALIBRATE, table("0.1,0.2,0.3,NaN,0.1,0.5"),
-             "bad.csv:3:13: found `NaN` in column `x`, expected a finite number"),
+             "bad.csv:3:13: found `NaN` in column `x`, expected a finite number: leave the cell empty where nothing was measured"),
         case(CALIBRATE, table("inf,0.2,0.3,0.7,0.1,0.5"),
-             "bad.csv:3:1: found `inf` in column `a`, expected a finite number"),
+             "bad.csv:3:1: found `inf` in column `a`, expected a finite number: leave out a row without a reading"),
         case(CALIBRATE, table("0.1,0.2,0.3,0.7,abc,0.5"),
-             "bad.csv:3:17: found `abc` in column `y`, expected a finite number"),
+             "bad.csv:3:17: found `abc` in column `y`, expected a finite number; put `#` in front of a line that is no row"),
         case(CALIBRATE, table("0.1,0.2,0.3,0.7,1e999,0.5"),
              "bad.csv:3:17: found `1e999` in column `y`, expected a finite number"),
         case(CALIBRATE, table("0.1,0.2,,0.7,0.1,0.5"),
-             "bad.csv:3:9: found an empty cell in column `b`, expected a joint reading"),
+             "bad.csv:3:9: found an empty cell in column `b`, expected a joint reading: add it, or leave out the row"),
         case(CALIBRATE, table("0.1,0.2,0.3,0.7,,0.5"),
-             "bad.csv:3:17: found an empty cell in column `y`, expected a position"),
+             "bad.csv:3:17: found an empty cell in column `y`, expected a position: where none was measured, leave all of its cells empty"),
         case(CALIBRATE, table("0.1,0.2,0.3,0.7,0.1"),
-             "bad.csv:3:20: found 5 cells, expected 6 as in the header (line 1)"),
+             "bad.csv:3:20: found 5 cells, expected 6 as in the header (line 1); add the missing cells (they may be empty), or put `#` in front of a line that is no row"),
         case(CALIBRATE, table("0.1,0.2,0.3,0.7,0.1,0.5,9"),
              "bad.csv:3:25: found 7 cells, expected 6 as in the header (line 1); numbers with a decimal comma need another separator, such as `;`, or quotes"),
         case(CALIBRATE, table("0.1,0.2,0.3,0.7,0.1,\"0.5"),

@@ -8,6 +8,7 @@ mod diagnosis;
 mod folder;
 mod identify;
 mod init;
+mod lost_beams;
 mod offsets;
 mod report;
 mod reproduce;

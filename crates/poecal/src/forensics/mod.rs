@@ -11,6 +11,7 @@ mod judge;
 mod repeats;
 mod session;
 mod targets;
+mod unnamed;
 mod zero;
 
 use schemars::JsonSchema;
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 use crate::estimate::{Estimate, sample_rows};
 use crate::measurement::Dataset;
 use crate::robot::Robot;
+use repeats::Repeats;
 use session::{Session, sampled, taken};
 
 /// A kind of mistake, as a word that does not change between versions.
@@ -47,6 +49,8 @@ pub enum DiagnosisKind {
     RowShift,
     /// The names of two targets are exchanged.
     TargetsSwapped,
+    /// Several targets were seen, and no row says which.
+    TargetsUnnamed,
     /// Rows that stand in the data more than once, or contradict each other.
     DuplicateRows,
 }
@@ -126,13 +130,15 @@ pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'
         return Vec::new();
     }
     let session = Session::new(robot, data, options.device_free);
-    let (repeated, contradicting) = repeats::diagnose(&session, data, &rows);
+    let Repeats { repeated, contradicting, unnamed } = repeats::diagnose(&session, data, &rows);
     let mut found: Vec<Diagnosis> = repeated.into_iter().collect();
     let whole = of_rows(&session, data, &rows, options);
     // Two measurements of one target in one configuration: of two targets, if names are exchanged; otherwise one is wrong, and
     // neither says anything of the other rows.
     let exchanged = whole.as_ref().is_some_and(|one| one.kind == DiagnosisKind::TargetsSwapped);
     match contradicting {
+        // Nothing else can be said of rows that are taken for one target.
+        _ if unnamed.is_some() && !exchanged => found.extend(unnamed),
         Some(contradicting) if !exchanged => {
             rows.retain(|row| contradicting.rows.binary_search(row).is_err());
             found.push(contradicting);

@@ -260,6 +260,8 @@ impl Session {
                 Some((data, format!("by {by}, later: {later}")))
             }
             DiagnosisKind::TargetsSwapped => self.renamed(g),
+            // These sessions see one target in each configuration.
+            DiagnosisKind::TargetsUnnamed => None,
             DiagnosisKind::DuplicateRows => {
                 let mut data = self.data.clone();
                 let copies = 1 + pick(g, 3);

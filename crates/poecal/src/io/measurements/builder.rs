@@ -1,9 +1,9 @@
 //! Finding the columns that a layout needs.
 
+use super::header::{Header, unit_in_name};
 use super::layout::{Input, Source, TargetLayout, reading_quantity};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
-use super::header::{Header, unit_in_name};
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result, edit_distance};
@@ -116,12 +116,7 @@ impl<'a> Builder<'a> {
             (Some(known), _) => known,
             // Where units are stated below the header, an empty cell may be one that was forgotten or merged.
             (None, Some(line)) if quantity != Quantity::Number => {
-                let si = quantity.si_unit().symbol();
-                let message = format!(
-                    "found no unit below column `{column}` in the line of units (line {line}), expected one {purpose}: \
-                     write `{si}` there if it is in {si}"
-                );
-                return Err(self.header.error(ErrorKind::Unit, index, message));
+                return Err(self.header.no_unit(index, line, quantity, purpose));
             }
             (None, _) => (quantity.si_unit(), UnitSource::Si),
         };

@@ -125,9 +125,8 @@ impl<'a> Header<'a> {
     ) -> Result<Option<(Unit, UnitSource)>> {
         let Some(cell) = self.cells.get(index) else { return Ok(None) };
         let parse = |symbol: &str, place: (usize, usize)| {
-            Unit::parse_for(symbol, quantity, &format!(" {purpose}")).map_err(|error| {
-                Error::new(ErrorKind::Unit, error.message()).at(self.path, place.0, place.1)
-            })
+            Unit::parse_for(symbol, quantity, &format!(" {purpose}"))
+                .map_err(|error| Error::new(ErrorKind::Unit, error.message()).at(self.path, place.0, place.1))
         };
         let in_header = cell.unit.as_deref().map(|unit| parse(unit, (self.line, cell.column))).transpose()?;
         let Some((line, (column, symbol))) = self.units_line.zip(cell.below.as_ref()) else {
@@ -147,6 +146,17 @@ impl<'a> Header<'a> {
             Some(unit) => Ok(Some((unit, UnitSource::Header))),
             None => Ok(Some((below, UnitSource::UnitsLine))),
         }
+    }
+
+    /// The error of a column that has no unit in the line of units, nor anywhere else.
+    pub(super) fn no_unit(&self, index: usize, line: usize, quantity: Quantity, purpose: &str) -> Error {
+        let name = self.cells.get(index).map_or("", |cell| cell.text.as_str());
+        let si = quantity.si_unit().symbol();
+        let message = format!(
+            "found no unit below column `{name}` in the line of units (line {line}), expected one {purpose}: write `{si}` \
+             there if it is in {si}"
+        );
+        self.error(ErrorKind::Unit, index, message)
     }
 
     /// Index of the column of this name, which may include the unit as the file writes it.
@@ -196,7 +206,9 @@ impl<'a> Header<'a> {
         }
         let numbers = self.cells.iter().filter(|cell| is_number(&cell.text)).count();
         if 2 * numbers > self.cells.len() {
-            return Some("the line holds mostly numbers: put a line above it that names the columns".to_owned());
+            return Some(
+                "the line holds mostly numbers: put a line above it that names the columns".to_owned(),
+            );
         }
         match self.cells.as_slice() {
             [only] if only.text.len() > name.len() && only.text.contains(name) => Some(format!(

@@ -42,7 +42,7 @@ impl<'a> InputReader<'a> {
                 Source::Column(column) => match row.cells.get(column).map_or("", |cell| cell.raw) {
                     "" => None,
                     text => Some(self.numbers.parse(text, row.line).map_err(|expected| {
-                        let hint = if index >= self.joints && stands_for_nothing(text) { NOTHING } else { "" };
+                        let hint = hint(text, index < self.joints);
                         let message =
                             format!("found `{text}` in column `{}`, expected {expected}{hint}", input.label);
                         row.error(column, message)
@@ -92,7 +92,14 @@ impl<'a> InputReader<'a> {
         for (input, value) in self.values.iter().take(self.joints).enumerate() {
             match value {
                 Some(value) => self.readings.push(*value),
-                None => return Err(self.error(row, input, "found an empty cell", "a joint reading")),
+                None => {
+                    return Err(self.error(
+                        row,
+                        input,
+                        "found an empty cell",
+                        "a joint reading: add it, or leave out the row",
+                    ));
+                }
             }
         }
         Ok(())
@@ -120,6 +127,17 @@ impl<'a> InputReader<'a> {
 
 /// What to do about a word for nothing.
 const NOTHING: &str = ": leave the cell empty where nothing was measured";
+
+/// What to do about a cell that is no number.
+fn hint(text: &str, is_joint: bool) -> &'static str {
+    if stands_for_nothing(text) {
+        if is_joint { ": leave out a row without a reading" } else { NOTHING }
+    } else if text.chars().all(|c| c.is_alphabetic() || c.is_whitespace()) {
+        "; put `#` in front of a line that is no row"
+    } else {
+        ""
+    }
+}
 
 /// Whether a cell is what programs write where they have no number.
 fn stands_for_nothing(text: &str) -> bool {

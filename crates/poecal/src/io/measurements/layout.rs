@@ -1,9 +1,9 @@
 //! Which column of a file is what: the header, the mapping and the robot put together.
 
 use super::builder::Builder;
+use super::header::Header;
 use super::mapping::{ColumnMap, PoseDirection};
 use super::orientation::OrientationForm;
-use super::header::Header;
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
 use super::{FitWhere, ReadOptions};

@@ -113,7 +113,8 @@ impl LostBeams {
 /// What the current row shows of a target.
 fn beam(target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
     let position = inputs.all(target.position);
-    let orientation = || target.orientation.iter().flat_map(|(_, parts)| parts).map(|&part| inputs.value(part));
+    let orientation =
+        || target.orientation.iter().flat_map(|(_, parts)| parts).map(|&part| inputs.value(part));
     if position == [None; 3] {
         return if orientation().all(|part| part.is_none()) { Beam::Empty } else { Beam::Seen };
     }

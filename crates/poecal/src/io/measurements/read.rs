@@ -102,7 +102,8 @@ impl<'a> Reader<'a> {
     fn file<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
         let mut table = Table::open(path, blocks, self.map)?;
         let layout = Layout::new(&table.header, self.robot, self.options, self.map)?;
-        let mut inputs = InputReader::new(&layout.inputs, self.data.reading_names().len(), Numbers::new(self.map.decimal));
+        let mut inputs =
+            InputReader::new(&layout.inputs, self.data.reading_names().len(), Numbers::new(self.map.decimal));
         let mut watch = JointWatch::new(self.robot);
         let first = self.data.len();
         self.data.files.push(path.to_path_buf());
@@ -129,7 +130,8 @@ impl<'a> Reader<'a> {
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
         }
         if self.data.len() == first {
-            let message = format!("found no position in any of {rows} rows, expected at least one that is neither empty nor zero");
+            let message =
+                "found no position in any row, expected at least one that is neither empty nor zero";
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
         }
         self.warnings.extend(lost.warning(path));

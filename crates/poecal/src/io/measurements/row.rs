@@ -10,6 +10,9 @@ use crate::error::Result;
 use crate::lie::Pose;
 use crate::measurement::{Measurement, PointMeasurement, PoseMeasurement};
 
+/// What is expected of a position of which a part is missing.
+const EMPTY: &str = "a position: where none was measured, leave all of its cells empty";
+
 /// What the row says of a target; none if it may be missing and is.
 pub(super) fn measurement(
     row: &Row<'_>,
@@ -24,7 +27,7 @@ pub(super) fn measurement(
         parts => {
             let empty = parts.iter().position(Option::is_none).unwrap_or(0);
             let input = target.position.get(empty).copied().unwrap_or(0);
-            return Err(inputs.error(row, input, "found an empty cell", "a position"));
+            return Err(inputs.error(row, input, "found an empty cell", EMPTY));
         }
     };
     let measurement = match (orientation(row, target, inputs)?, direction) {

@@ -113,26 +113,29 @@ impl Rows<'_> {
     fn count_hint(&self, text: &str) -> String {
         let (found, expected) = (self.cells.len(), self.header.cells.len());
         let mut cells = Vec::new();
+        let is_empty = |cell: &Cell<'_>| cell.raw.is_empty();
         let others = [Separator::Comma, Separator::Semicolon, Separator::Tab];
         let other = others.into_iter().find(|&other| {
             other != self.separator && split(text, other, &mut cells).is_ok() && cells.len() == expected
         });
-        let ends_empty = |last: Option<&str>| last.is_some_and(str::is_empty);
         if let Some(other) = other {
-            format!(
-                "; separated by {} there are {expected}: separate header and rows alike",
-                other.symbol()
-            )
-        } else if found == expected + 1 && ends_empty(self.cells.last().map(|cell| cell.raw)) {
-            "; the row ends with a separator, and the header does not: remove it, or add one to the header".to_owned()
-        } else if found + 1 == expected
-            && ends_empty(self.header.cells.last().map(|cell| cell.text.as_str()))
+            format!("; separated by {} there are {expected}: separate header and rows alike", other.symbol())
+        } else if self.cells.get(expected..).is_some_and(|more| !more.is_empty() && more.iter().all(is_empty))
         {
-            "; the header ends with a separator, and the row does not: remove it, or add one to the rows".to_owned()
+            "; the row ends with a separator that the header does not have: remove it, or add it to the header".to_owned()
+        } else if self
+            .header
+            .cells
+            .get(found..)
+            .is_some_and(|more| more.iter().all(|cell| cell.text.is_empty()))
+        {
+            "; the header ends with a separator that the row does not have: remove it, or add it to the rows"
+                .to_owned()
         } else if found > expected && self.separator == Separator::Comma {
             "; numbers with a decimal comma need another separator, such as `;`, or quotes".to_owned()
         } else if found < expected {
-            "; a row has a cell, which may be empty, for each column, and what is no row begins with `#`".to_owned()
+            "; add the missing cells (they may be empty), or put `#` in front of a line that is no row"
+                .to_owned()
         } else {
             String::new()
         }
@@ -223,6 +226,10 @@ mod tests {
     #[test]
     fn a_damaged_file_is_the_same_table_however_its_blocks_fall() {
         let good = "\u{feff}# c\r\n\r\n # \u{e9}\r\n\"id\";a[deg];\u{b5}\r\n\"1\";0,5;\u{e9}\r\n\r\n#\r\n2;1;\"q\"\r\n";
+        let around = format!(
+            "sep=;\n{}",
+            good.trim_start_matches('\u{feff}').replacen("\r\n\"1\"", "\r\n#\r\n;deg;\r\n\"1\"", 1)
+        );
         let (mut tables, mut errors) = (0, 0);
         let mut attempt = |bytes: &[u8]| {
             let whole = rows(bytes, WHOLE);
@@ -231,7 +238,14 @@ mod tests {
             }
             if whole.is_ok() { tables += 1 } else { errors += 1 }
         };
-        for at in 0..good.len() {
+        assert_eq!(
+            rows(around.as_bytes(), WHOLE),
+            rows(good.as_bytes(), WHOLE)
+                .map(|rows| { rows.into_iter().map(|(line, cells)| (line + 3, cells)).collect() })
+        );
+        for (good, at) in
+            [good, &around].into_iter().flat_map(|text| (0..text.len()).map(move |at| (text, at)))
+        {
             attempt(&good.as_bytes()[..at]);
             for byte in [b'"', b';', b',', b'\n', b'\r', b'[', b']', b'-', b'#', 0, 0xff] {
                 let mut bytes = good.as_bytes().to_vec();

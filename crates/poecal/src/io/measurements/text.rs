@@ -192,8 +192,7 @@ impl<'a> Iterator for Lines<'a> {
 }
 
 /// What spreadsheets write for a cell that they could not work out; other lines that begin with `#` are comments.
-const SPREADSHEET_ERRORS: [&str; 7] =
-    ["#N/A", "#NV", "#VALUE!", "#WERT!", "#REF!", "#DIV/0!", "#NAME?"];
+const SPREADSHEET_ERRORS: [&str; 7] = ["#N/A", "#NV", "#VALUE!", "#WERT!", "#REF!", "#DIV/0!", "#NAME?"];
 
 /// Whether a line is one for people only.
 fn is_comment(content: &str) -> bool {

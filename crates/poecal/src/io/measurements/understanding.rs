@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::cells::Separator;
+use super::header::Header;
 use super::layout::{Input, Layout, SetRule, Source};
 use super::lost::LostBeams;
 use super::mapping::PoseDirection;
 use super::number::DecimalSign;
-use super::header::Header;
 
 /// Where a column's unit came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
