@@ -272,7 +272,7 @@ fn a_slide_without_limits_may_go_far() {
     let folder = Folder::new();
     let joints = vec![Joint::prismatic("rail", Screw::prismatic(&Vector3::x()))];
     let robot = Robot::new("rail", joints, Pose::identity()).unwrap();
-    let path = folder.write("points.csv", "rail,x,y,z\n0,0,0,0\n20,20,0,0\n45,45,0,0\n");
+    let path = folder.write("points.csv", "rail,x,y,z\n0,0,0,1\n20,20,0,1\n45,45,0,1\n");
     assert_eq!(read(&[path], &robot, &ReadOptions::default()).unwrap().data.len(), 3);
 }
 

@@ -331,8 +331,8 @@ impl<'a> Builder<'a> {
         let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
         let with_unit = |ours: &str| Some(format!("{ours}[{}]", unit_in_name(name, ours)?.symbol()));
         OUR_NAMES.into_iter().filter(missing).find_map(|ours| {
-            let is_near = edit_distance(name, ours) <= slips(ours);
-            if is_near { Some(ours.to_owned()) } else { with_unit(ours) }
+            let is_near = || edit_distance(name, ours) <= slips(ours);
+            with_unit(ours).or_else(|| is_near().then(|| ours.to_owned()))
         })
     }
 }
