@@ -45,7 +45,7 @@ fn a_long_file_is_read_row_by_row_and_its_first_mistake_named() {
         (
             19_000,
             "row,fit,a,0,0,0,0,0,0,1,2",
-            "rows.csv:19000:26: found 11 cells, expected 12 as in the header (line 1)",
+            "rows.csv:19000:26: found 11 cells, expected 12 as in the header (line 1); add the missing cells (they may be empty), or put `#` in front of a line that is no row",
         ),
         (
             18_990,
