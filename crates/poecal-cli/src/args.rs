@@ -108,11 +108,21 @@ impl Columns {
     }
 }
 
+/// How to treat lost beams.
+#[derive(Args, Debug)]
+pub(crate) struct Strictness {
+    /// Refuse lost beams (empty or zero positions) instead of leaving them out with a warning
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
 /// How to read measurement files.
 #[derive(Args, Debug)]
 pub(crate) struct Reading {
     #[command(flatten)]
     pub(crate) columns: Columns,
+    #[command(flatten)]
+    pub(crate) strictness: Strictness,
     /// Fit only rows whose COLUMN has one of these values, and hold out all others
     #[arg(long, value_name = "COLUMN=VALUE[,VALUE]")]
     pub(crate) fit_where: Option<String>,
@@ -121,7 +131,7 @@ pub(crate) struct Reading {
 impl Reading {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
-        Ok(ReadOptions { fit_where, ..self.columns.options()? })
+        Ok(ReadOptions { fit_where, strict: self.strictness.strict, ..self.columns.options()? })
     }
 }
 
@@ -155,6 +165,8 @@ pub(crate) struct Validate {
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) columns: Columns,
+    #[command(flatten)]
+    pub(crate) strictness: Strictness,
     /// Find the measuring device's frame anew from these measurements
     #[arg(long)]
     pub(crate) refit_frame: bool,

@@ -62,11 +62,13 @@ fn options(
     columns: Option<&PathBuf>,
     fit_where: Option<&str>,
     ignore_sets: bool,
+    strict: bool,
 ) -> poecal::Result<ReadOptions> {
     Ok(ReadOptions {
         mapping: columns.map(ColumnMap::read).transpose()?,
         fit_where: fit_where.map(str::parse).transpose()?,
         ignore_sets,
+        strict,
     })
 }
 
@@ -132,8 +134,9 @@ impl Measurements {
     /// fit_where : "COLUMN=VALUE[,VALUE]"
     ///     Fit only rows whose column has one of these values, and hold out all others.
     /// ignore_sets : whether the files' column `set` means nothing, as for rows that judge a calibration
+    /// strict : whether lost beams, empty or zero positions, are an error instead of being left out with a warning
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false))]
+    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false))]
     fn from_csv(
         py: Python<'_>,
         paths: Paths,
@@ -141,6 +144,7 @@ impl Measurements {
         columns: Option<PathBuf>,
         fit_where: Option<&str>,
         ignore_sets: bool,
+        strict: bool,
     ) -> PyResult<Self> {
         let paths = match paths {
             Paths::One(path) => vec![path],
@@ -148,7 +152,7 @@ impl Measurements {
         };
         let read = || {
             refuse_repeats(&paths)?;
-            let options = options(columns.as_ref(), fit_where, ignore_sets)?;
+            let options = options(columns.as_ref(), fit_where, ignore_sets, strict)?;
             let file = measurements::read(&paths, &robot.model.robot, &options)?;
             let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
             sha256.extend(file.sha256.clone());
@@ -215,10 +219,10 @@ impl Measurements {
 
     /// Measurements of a data frame (pandas, polars, or anything with `columns` and columns by name).
     ///
-    /// Columns have the same names, units in brackets and meanings as those of a file, `x[mm]` or `target`, and `columns`, `fit_where`
-    /// and `ignore_sets` are as for files. Missing values are empty cells.
+    /// Columns have the same names, units in brackets and meanings as those of a file, `x[mm]` or `target`, and `columns`, `fit_where`,
+    /// `ignore_sets` and `strict` are as for files. Missing values are empty cells.
     #[staticmethod]
-    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false))]
+    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false))]
     fn from_dataframe(
         py: Python<'_>,
         frame: &Bound<'_, PyAny>,
@@ -226,10 +230,11 @@ impl Measurements {
         columns: Option<PathBuf>,
         fit_where: Option<&str>,
         ignore_sets: bool,
+        strict: bool,
     ) -> PyResult<Self> {
         let text = from_dataframe::text(frame)?;
         let read = || {
-            let options = options(columns.as_ref(), fit_where, ignore_sets)?;
+            let options = options(columns.as_ref(), fit_where, ignore_sets, strict)?;
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)
         };
         let mut file = py.detach(read).map_err(from_dataframe::raise)?;

@@ -46,7 +46,7 @@ SENTENCES = [
     (lambda: arrays(targets=["a"]), "targets: found 1 entries, expected 20, one for each row of joints"),
     (lambda: arrays(sets=["train"] * 20), "sets: found `train`, expected one of fit, held_out"),
     (lambda: arrays(sigma_position_mm=-1), "sigma_position_mm: row 0: found -1, expected a standard deviation above 0"),
-    (lambda: arrays(length_unit="inch"), "length_unit: found the unit `inch`, expected a length (m, cm, mm, um, nm)"),
+    (lambda: arrays(length_unit="ft"), "length_unit: found the unit `ft`, expected a length (m, cm, mm, um, nm, in)"),
     (lambda: arrays(joints=np.empty((0, 6)), positions=np.empty((0, 3))), "joints: found no row, expected at least one measurement"),
     (lambda: calibrate(frame="tool"), "frame: found `tool`, expected one of unknown, base"),
     (lambda: calibrate(robust="hubre"), "robust: found `hubre`, expected one of auto, off, huber, cauchy, tukey; did you mean `huber`?"),

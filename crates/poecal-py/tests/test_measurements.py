@@ -130,6 +130,24 @@ def test_data_frames_tell_the_row():
         poecal.Measurements.from_dataframe([1, 2], elbow())
 
 
+def test_lost_beams_are_left_out_or_refused(tmp_path):
+    frame = pandas.DataFrame(table(session()))
+    axes = ["x[mm]", "y[mm]", "z[mm]"]
+    frame.loc[3, axes], frame.loc[5, axes] = np.nan, 0.0
+    words = "left out 2 measurements with an empty or zero position, as of a lost beam"
+    with pytest.warns(poecal.PoecalWarning, match=words):
+        seen = poecal.Measurements.from_dataframe(frame, elbow())
+    assert len(seen) == len(frame) - 2 and seen.warnings[0].endswith("; strict refuses them")
+    with pytest.raises(poecal.MeasurementError, match="^row 3: found an empty position"):
+        poecal.Measurements.from_dataframe(frame, elbow(), strict=True)
+    path = tmp_path / "lost.csv"
+    frame.to_csv(path, index=False)
+    with pytest.warns(poecal.PoecalWarning, match=words):
+        assert len(poecal.Measurements.from_csv(path, elbow())) == len(seen)
+    with pytest.raises(poecal.MeasurementError, match="lost.csv:5:"):
+        poecal.Measurements.from_csv(path, elbow(), strict=True)
+
+
 def test_files_tell_line_and_column(tmp_path):
     path = tmp_path / "rows.csv"
     path.write_text(f"{HEADER},x,y,z\n1,2,3,4,5,6,1,1,1\n1,2,3,4,five,6,1,1,1\n")

@@ -29,7 +29,8 @@ fn fifty_rows_are_one_threads_work() {
         let model = Model { robot: made.nominal, source: ModelSource::Toml, path: "elbow.toml".into() };
         let folder = std::env::temp_dir().join(format!("poecal_few_rows_{}", std::process::id()));
         let results = Results { file, residuals: Rows::AtHand(&residuals), report };
-        let place = FolderPlace::reserve(&folder, Contents::Calibration, Existing::Replaced, &[], &mut |_| ());
+        let place =
+            FolderPlace::reserve(&folder, Contents::Calibration, Existing::Replaced, &[], &mut |_| ());
         write(place.unwrap(), None, &model, &calibration, results).unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
     }

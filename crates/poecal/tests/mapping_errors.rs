@@ -17,15 +17,15 @@ const MAPPINGS: &[(&str, &str)] = &[
     ),
     (
         "[position]\nunit = \"furlong\"",
-        "map.toml:2:8: found the unit `furlong`, expected a length (m, cm, mm, um, nm)",
+        "map.toml:2:8: found the unit `furlong`, expected a length (m, cm, mm, um, nm, in)",
     ),
     (
         "[position]\ncolumns = [\"x\", \"y\"]",
         "map.toml:2:11: invalid length 2, expected an array of length 3",
     ),
     (
-        "[joints]\na = { unit = \"degree\" }",
-        "map.toml:2:14: found the unit `degree`, expected one of m, cm, mm, um, nm, rad, mrad, deg, arcmin, arcsec",
+        "[joints]\na = { unit = \"grad\" }",
+        "map.toml:2:14: found the unit `grad`, expected one of m, cm, mm, um, nm, in, rad, mrad, deg, arcmin, arcsec",
     ),
     (
         "[joints]\na = { unit = \"mm\" }",

@@ -88,15 +88,23 @@ fn a_mapping_reads_several_targets_of_a_row() {
     "#;
     let text = "id,a,lift,b,smr1_x,smr1_y,smr1_z,f_x,f_y,f_z,q0,q1,q2,q3,s\n\
                 1,0,0,0,100,200,300,1,2,3,0,0,0,1,0.05\n\
-                2,0,0,0,,,,1,2,3,,,,,\n";
-    let data = with_map(text, map).data;
+                2,0,0,0,,,,1,2,3,,,,,\n\
+                3,0,0,0,,,,,,,,,,,\n\
+                4,0,0,0,0,0,0,4,5,6,0,0,0,1,\n";
+    let file = with_map(text, map);
+    // A row without any target, and a target at zero; that some targets are not seen is usual.
+    assert_eq!((file.understood[0].lost.count, &file.understood[0].lost.first_lines[..]), (2, &[4, 5][..]));
+    let data = file.data;
     let rows: Vec<_> = data
         .observations
         .iter()
         .map(|row| (row.target, row.source.line, row.measurement.sees_orientation(), row.sigma_position_m))
         .collect();
-    assert_eq!(rows, [(0, 2, false, Some(5e-5)), (1, 2, true, None), (1, 3, false, None)]);
-    assert_eq!(data.ids, ["1", "1", "2"]);
+    assert_eq!(
+        rows,
+        [(0, 2, false, Some(5e-5)), (1, 2, true, None), (1, 3, false, None), (1, 5, true, None)]
+    );
+    assert_eq!(data.ids, ["1", "1", "2", "4"]);
     assert_eq!(pose(&data, 0).translation, Vector3::new(0.1, 0.2, 0.3));
     assert!((pose(&data, 1).rotation - rotation::about(2, PI)).norm() < ROUNDING);
 }

@@ -38,7 +38,7 @@ fn sets_that_are_ignored_are_not_required() {
         for (mapping, fit_where) in
             [(None, None), (Some(mapping.clone()), None), (Some(mapping.clone()), Some(fit_where.clone()))]
         {
-            let options = ReadOptions { mapping, fit_where, ignore_sets: true };
+            let options = ReadOptions { mapping, fit_where, ignore_sets: true, ..ReadOptions::default() };
             let file = read(&[&path], &robot(), &options).unwrap();
             assert_eq!(file.data.observations[0].set, None, "{text}");
         }

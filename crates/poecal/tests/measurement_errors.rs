@@ -16,14 +16,14 @@ const FILES: &[(&[u8], &str)] = &[
         b"0,0,0,1,2,3\n",
         "points.csv:1: found a line of numbers, expected a header that names the columns (a line that begins with `#` is a comment)",
     ),
-    (b"a,lift,b,x,y,z\n0,0,0,1,2\n", "points.csv:2:10: found 5 cells, expected 6 as in the header (line 1)"),
+    (b"a,lift,b,x,y,z\n0,0,0,1,2\n", "points.csv:2:10: found 5 cells, expected 6 as in the header (line 1); add the missing cells (they may be empty), or put `#` in front of a line that is no row"),
     (
         b"a,lift,b,x,y,z\n0,0,0,1,2,3,4\n",
         "points.csv:2:13: found 7 cells, expected 6 as in the header (line 1); numbers with a decimal comma need another separator, such as `;`, or quotes",
     ),
     (
         b"a;lift;b;x;y;z\n0;0;0;1;2;3;;\n",
-        "points.csv:2:13: found 8 cells, expected 6 as in the header (line 1)",
+        "points.csv:2:13: found 8 cells, expected 6 as in the header (line 1); the row ends with a separator that the header does not have: remove it, or add it to the header",
     ),
     (
         b"a,lift,b,x,y,z\n0,0,0,\"1,2,3\n",
@@ -40,11 +40,11 @@ const FILES: &[(&[u8], &str)] = &[
     (b"\xff\xfea\0,\0", "points.csv: found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`"),
     (
         b"a\0,\0b\0\n\0-\0,\0-\0\n\0",
-        "points.csv:1:2: found a NUL byte, expected UTF-8 text; save the file as `CSV UTF-8`",
+        "points.csv: found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`",
     ),
     (
         b"\0a\0,\0b\0\n",
-        "points.csv:1:1: found a NUL byte, expected UTF-8 text; save the file as `CSV UTF-8`",
+        "points.csv: found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`",
     ),
     (
         b"a,lift,b,x,y,z,note\n0,0,0,1,2,3,\0\n",
@@ -52,19 +52,19 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,B,x,y,z\n0,0,0,1,2,3\n",
-        "points.csv:1: found no column `b`, expected one for joint `b`; the nearest name found is `B`",
+        "points.csv:1: found no column `b`, expected one for joint `b`; the nearest name found is `B`: rename or add a column, or name the right one in a mapping file (--columns)",
     ),
     (
         b"a,lift,x,y,z,temperature\n0,0,1,2,3,20\n",
-        "points.csv:1: found no column `b`, expected one for joint `b`; the columns are a, lift, x, y, z, temperature",
+        "points.csv:1: found no column `b`, expected one for joint `b`; the columns are a, lift, x, y, z, temperature: rename or add a column, or name the right one in a mapping file (--columns)",
     ),
     (
         b"a,lift,b,x,y\n0,0,0,1,2\n",
-        "points.csv:1: found no column `z`, expected one for the position z; the columns are a, lift, b, x, y",
+        "points.csv:1: found no column `z`, expected one for the position z; the columns are a, lift, b, x, y: rename or add a column, or name the right one in a mapping file (--columns)",
     ),
     (
         b"a,lift,b,X,y,z\n0,0,0,1,2,3\n",
-        "points.csv:1: found no column `x`, expected one for the position x; the nearest name found is `X`",
+        "points.csv:1: found no column `x`, expected one for the position x; the nearest name found is `X`: rename or add a column, or name the right one in a mapping file (--columns)",
     ),
     (
         b"a,lift,b,x,y,z,a[deg]\n0,0,0,1,2,3,4\n",
@@ -75,12 +75,12 @@ const FILES: &[(&[u8], &str)] = &[
         "points.csv:1:19: found a second column `id`, expected one; rename or remove one of them",
     ),
     (
-        b"a,lift,b,x[inch],y,z\n0,0,0,1,2,3\n",
-        "points.csv:1:10: found the unit `inch` for the position x, expected a length (m, cm, mm, um, nm)",
+        b"a,lift,b,x[ft],y,z\n0,0,0,1,2,3\n",
+        "points.csv:1:10: found the unit `ft` for the position x, expected a length (m, cm, mm, um, nm, in)",
     ),
     (
         b"a,lift,b,x[MM],y,z\n0,0,0,1,2,3\n",
-        "points.csv:1:10: found the unit `MM` for the position x, expected a length (m, cm, mm, um, nm); did you mean `mm`?",
+        "points.csv:1:10: found the unit `MM` for the position x, expected a length (m, cm, mm, um, nm, in); did you mean `mm`?",
     ),
     (
         b"a[mm],lift,b,x,y,z\n0,0,0,1,2,3\n",
@@ -88,11 +88,11 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift[deg],b,x,y,z\n0,0,0,1,2,3\n",
-        "points.csv:1:3: found the unit `deg` for joint `lift`, expected a length (m, cm, mm, um, nm)",
+        "points.csv:1:3: found the unit `deg` for joint `lift`, expected a length (m, cm, mm, um, nm, in)",
     ),
     (
         b"a,lift,b,x,y,z,sigma_position[rad]\n0,0,0,1,2,3,1\n",
-        "points.csv:1:16: found the unit `rad` for `sigma_position`, expected a length (m, cm, mm, um, nm)",
+        "points.csv:1:16: found the unit `rad` for `sigma_position`, expected a length (m, cm, mm, um, nm, in)",
     ),
     (
         b"a,lift,b,x,y,z,qx[deg],qy,qz,qw\n0,0,0,1,2,3,0,0,0,1\n",
@@ -100,7 +100,7 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,b,x,y,z,qx,qy,qz\n0,0,0,1,2,3,0,0,0\n",
-        "points.csv:1: found no column `qw`, expected one for the orientation (quaternion x, y, z, w); the columns are a, lift, b, x, y, z, qx, qy, qz",
+        "points.csv:1: found no column `qw`, expected one for the orientation (quaternion x, y, z, w); the columns are a, lift, b, x, y, z, qx, qy, qz: rename or add a column, or name the right one in a mapping file (--columns)",
     ),
     (
         b"a,lift,b,x,y,z,rx,ry,rz,roll,pitch,yaw\n0,0,0,1,2,3,0,0,0,0,0,0\n",
@@ -108,11 +108,11 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,b,x,y,z\n0,0,0,nan,2,3\n",
-        "points.csv:2:7: found `nan` in column `x`, expected a finite number",
+        "points.csv:2:7: found `nan` in column `x`, expected a finite number: leave the cell empty where nothing was measured",
     ),
     (
         b"a,lift,b,x,y,z\n0,0,-inf,1,2,3\n",
-        "points.csv:2:5: found `-inf` in column `b`, expected a finite number",
+        "points.csv:2:5: found `-inf` in column `b`, expected a finite number: leave out a row without a reading",
     ),
     (
         b"a,lift,b,x,y,z\n0,0,0,1e999,2,3\n",
@@ -132,11 +132,11 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         "a,lift,b,x,y,z,note\n0,0,0,1,2,n/a,ä\n".as_bytes(),
-        "points.csv:2:11: found `n/a` in column `z`, expected a finite number",
+        "points.csv:2:11: found `n/a` in column `z`, expected a finite number: leave the cell empty where nothing was measured",
     ),
     (
         "note,a,lift,b,x,y,z\n\"ä,\"\"ö\"\"\",0,0,0,1,2,x\n".as_bytes(),
-        "points.csv:2:21: found `x` in column `z`, expected a finite number",
+        "points.csv:2:21: found `x` in column `z`, expected a finite number; put `#` in front of a line that is no row",
     ),
     (
         b"a;lift;b;x;y;z\n0,5;0;0;1;2;3\n\n# later\n0.5;0;0;1;2;3\n",
@@ -148,13 +148,81 @@ const FILES: &[(&[u8], &str)] = &[
     ),
     (
         b"a,lift,b,x,y,z\n,0,0,1,2,3\n",
-        "points.csv:2:1: found an empty cell in column `a`, expected a joint reading",
+        "points.csv:2:1: found an empty cell in column `a`, expected a joint reading: add it, or leave out the row",
     ),
     (
         b"a,lift,b,x,y,z\n0,0,0,1,,3\n",
-        "points.csv:2:9: found an empty cell in column `y`, expected a position",
+        "points.csv:2:9: found an empty cell in column `y`, expected a position: where none was measured, leave all of its cells empty",
     ),
-    (b"a,lift,b,x,y,z\n0,0,0,,,\n", "points.csv:2:7: found an empty cell in column `x`, expected a position"),
+    (
+        b"a,lift,b,x,y,z\n0,0,0,,,\n1,0,0,0,0,0.0\n",
+        "points.csv:1: found no position in any row, expected at least one that is neither empty nor zero",
+    ),
+    (
+        b"a,lift,b,x,y,z,rx,ry,rz\n0,0,0,,,,1,0,0\n",
+        "points.csv:2:7: found an empty cell in column `x`, expected a position: where none was measured, leave all of its cells empty",
+    ),
+    (
+        b"a_rad,lift_m,b_rad,x_mm,y_mm,z_mm\n0,0,0,1,2,3\n",
+        "points.csv:1: found no column `a`, expected one for joint `a`; if `a_rad` is meant, write `a[rad]`: rename or add a column, or name the right one in a mapping file (--columns)",
+    ),
+    (
+        b"a,lift,b,x in mm,y in mm,z in mm\n0,0,0,1,2,3\n",
+        "points.csv:1: found no column `x`, expected one for the position x; if `x in mm` is meant, write `x[mm]`: rename or add a column, or name the right one in a mapping file (--columns)",
+    ),
+    (
+        b"a,lift,b,x,y,z,x (mm)\n0,0,0,1,2,3,4\n",
+        "points.csv:1:16: found a second column `x`, expected one; rename or remove one of them",
+    ),
+    (
+        b"Session of Monday, cell 4\n\na,lift,b,x,y,z\n0,0,0,1,2,3\n",
+        "points.csv:1: found no column `a`, expected one for joint `a`; line 3 has it: put `#` in front of the lines above it, or write `skip_lines = 2` in a mapping file (--columns)",
+    ),
+    (
+        b"P1,0,0,0,1,2,3\n",
+        "points.csv:1: found no column `a`, expected one for joint `a`; the line holds mostly numbers: put a line above it that names the columns",
+    ),
+    (
+        b"a|lift|b|x|y|z\n0|0|0|1|2|3\n",
+        "points.csv:1: found no column `a`, expected one for joint `a`; the whole line is one column, `a|lift|b|x|y|z`: separate the columns by `,`, `;`, tabs or blanks",
+    ),
+    (
+        b"a,lift,b,x,y,z\n0,0;0;0;1;2;3\n",
+        "points.csv:2:14: found 2 cells, expected 6 as in the header (line 1); separated by `;` there are 6: separate header and rows alike",
+    ),
+    (
+        b"a,lift,b,x,y,z,\n0,0,0,1,2,3\n",
+        "points.csv:2:12: found 6 cells, expected 7 as in the header (line 1); the header ends with a separator that the row does not have: remove it, or add it to the rows",
+    ),
+    (
+        b"sep=|\na|lift|b|x|y|z\n0|0|0|1|2|3\n",
+        "points.csv:1:1: found the separator `|`, expected `,`, `;`, a tab or a blank",
+    ),
+    (b"sep=;\n", "points.csv: found no line with text, expected a header and rows"),
+    (
+        b"a,lift,b,x,y,z\ndeg,mm,deg,mm,mm\n0,0,0,1,2,3\n",
+        "points.csv:2:17: found 5 cells, expected 6 as in the header (line 1); add the missing cells (they may be empty), or put `#` in front of a line that is no row",
+    ),
+    (
+        b"a,lift,b,x,y,z\ndeg,deg,deg,mm,mm,mm\n0,0,0,1,2,3\n",
+        "points.csv:2:5: found the unit `deg` for joint `lift`, expected a length (m, cm, mm, um, nm, in)",
+    ),
+    (
+        b"a,lift,b,x,y[m],z\n[deg],[mm],[deg],[mm],[mm],[mm]\n0,0,0,1,2,3\n",
+        "points.csv:2:23: found the unit `mm` below `y[m]`, expected `m` as in the header (line 1), or an empty cell",
+    ),
+    (
+        b"a,lift,b,x,y,z\ndeg,mm,deg,mm,,\n0,0,0,1,2,3\n",
+        "points.csv:1:12: found no unit below column `y` in the line of units (line 2), expected one for the position y: write `m` there if it is in m",
+    ),
+    (
+        b"a;lift;b;x;y;z\n0;0;0;1 234,5;2;3\n",
+        "points.csv:2:7: found `1 234,5` in column `x`, expected a number with one decimal sign and no thousands separators",
+    ),
+    (
+        b"a,lift,b,x,y,z\n#N/A,0,0,1,2,3\n",
+        "points.csv:2:1: found `#N/A` in column `a`, expected a finite number: leave out a row without a reading",
+    ),
     (
         b"a,lift,b,x,y,z,qx,qy,qz,qw\n0,0,0,1,2,3,0,0,,1\n",
         "points.csv:2:17: found an empty cell in column `qz`, expected an orientation that is complete or absent",
@@ -311,7 +379,7 @@ fn joint_tables_are_checked_too() {
     };
     assert_eq!(
         message("a,lift,bb\n0,0,0\n"),
-        "joints.csv:1: found no column `b`, expected one for joint `b`; the nearest name found is `bb`"
+        "joints.csv:1: found no column `b`, expected one for joint `b`; the nearest name found is `bb`: rename or add a column, or name the right one in a mapping file (--columns)"
     );
     assert_eq!(
         message("a,lift,b\n"),
@@ -319,7 +387,7 @@ fn joint_tables_are_checked_too() {
     );
     assert_eq!(
         message("a,lift,b\n0,0,0\n1,0,x\n"),
-        "joints.csv:3:5: found `x` in column `b`, expected a finite number"
+        "joints.csv:3:5: found `x` in column `b`, expected a finite number; put `#` in front of a line that is no row"
     );
     assert_eq!(
         message("a,lift,b\n170,0,0\n-30,0,2\n"),

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use files::{Folder, robot};
 use nalgebra::Vector3;
 use poecal::io::measurements::{
-    DecimalSign, FitWhere, MeasurementFile, ReadOptions, Separator, UnitSource, read, read_joints,
+    DecimalSign, FitWhere, MeasurementFile, ReadOptions, Separator, UnitSource, parse, read, read_joints,
 };
 use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{Dataset, Set};
@@ -46,6 +46,102 @@ fn units_stand_in_the_header_or_are_si() {
     assert_eq!(units, ["deg", "mm", "rad", "mm", "cm", "um", "um", "mrad"]);
     assert_eq!(file.understood[0].columns[2].unit_from, Some(UnitSource::Si));
     assert!(file.warnings.is_empty(), "{:?}", file.warnings);
+}
+
+#[test]
+fn units_stand_in_round_brackets_or_as_words() {
+    let file = plain(
+        "a (deg),lift (Millimetres),b [radians],x(in),y [inch],z (meters),set\n90,250,0.5,10,20,0.3,fit\n",
+    );
+    assert_eq!(file.data.readings(0), [PI / 2.0, 0.25, 0.5]);
+    assert_eq!(pose(&file.data, 0).translation, Vector3::new(0.254, 0.508, 0.3));
+    let units: Vec<_> = file.understood[0].columns.iter().filter_map(|column| column.unit).collect();
+    assert_eq!(units, ["deg", "mm", "rad", "in", "in", "m"]);
+    assert_eq!(file.understood[0].columns[0].column.as_deref(), Some("a (deg)"));
+    assert!(file.warnings.is_empty(), "{:?}", file.warnings);
+}
+
+#[test]
+fn a_joint_whose_name_ends_like_a_unit_keeps_its_name() {
+    let slide = |name: &str| Joint::prismatic(name, Screw::prismatic(&Vector3::x()));
+    let robot = Robot::new("two", vec![slide("axis_m"), slide("axis(1)")], Pose::identity()).unwrap();
+    let text = "axis_m,axis(1)[mm],x,y,z\n0.5,20,1,2,3\n";
+    let file = parse(text, "points.csv", &robot, &ReadOptions::default()).unwrap();
+    assert_eq!(file.data.readings(0), [0.5, 0.02]);
+    let near = plain("a,lift,b,x,y,z,sigma_position_mm\n0,0,0,1,2,3,0.1\n").warnings;
+    assert!(near[0].ends_with("`sigma_position_mm` (did you mean `sigma_position[mm]`?)"), "{near:?}");
+}
+
+#[test]
+fn lines_of_separator_and_units_are_read() {
+    for (text, separator_line, units_line) in [
+        ("sep=;\nid;a;lift;b;x;y;z\n;deg;mm;deg;mm;mm;mm\nr;90;250;0,5;100;200;300\n", Some(1), Some(3)),
+        (
+            "\"SEP=,\"\nid,a[deg],lift,b,x,y,z\n,,(mm),(deg),[mm],[mm],[mm]\nr,90,250,0.5,100,200,300\n",
+            Some(1),
+            Some(3),
+        ),
+        (
+            "id\ta\tlift\tb\tx\ty\tz\tT\nname\t°\tmm\tDegrees\tmm\tmm\tmm\t°C\n\nr\t90\t250\t0.5\t100\t200\t300\t21\n",
+            None,
+            Some(2),
+        ),
+    ] {
+        let file = plain(text);
+        let understood = &file.understood[0];
+        assert_eq!((understood.separator_line, understood.units_line), (separator_line, units_line));
+        assert_eq!(file.data.readings(0), [PI / 2.0, 0.25, 0.5f64.to_radians()]);
+        assert!((pose(&file.data, 0).translation - Vector3::new(0.1, 0.2, 0.3)).norm() < ROUNDING);
+        assert_eq!((file.data.len(), file.data.ids[0].as_str()), (1, "r"));
+        assert_eq!(understood.columns[1].unit_from, Some(UnitSource::UnitsLine));
+    }
+    // However few bytes are read at a time, the tests of `table` say; here a joint table.
+    let folder = Folder::new();
+    let path = folder.write("joints.csv", "sep=;\na;lift;b\ndeg;mm;deg\n180;100;0\n");
+    assert_eq!(read_joints(path, &robot(), &ReadOptions::default()).unwrap().readings, [PI, 0.1, 0.0]);
+}
+
+#[test]
+fn lost_beams_are_left_out_and_counted() {
+    let text = "a,lift,b,x,y,z,qx,qy,qz,qw,set\n\
+                0,0,0,1,2,3,0,0,0,1,fit\n\
+                900,0,0,,,,,,,,fit\n\
+                0.2,0,0,0,0.0,-0,0,0,0,0,fit\n\
+                0.3,0,0,0,0,0,0,0,0,1,fit\n\
+                0.4,0,0,0,0,0,,,,,fit\n\
+                0.5,0,0,0,0,0,0,0,1,0,fit\n\
+                0.6,0,0,0,0,1,,,,,fit\n";
+    let file = plain(text);
+    let first: Vec<f64> = (0..file.data.len()).map(|row| file.data.readings(row)[0]).collect();
+    assert_eq!(first, [0.0, 0.5, 0.6]);
+    let understood = &file.understood[0];
+    assert_eq!((understood.rows, understood.points, understood.poses), (7, 1, 2));
+    assert_eq!((understood.lost.count, &understood.lost.first_lines[..]), (4, &[3, 4, 5, 6][..]));
+    // What was left out says nothing of the joint either.
+    assert_eq!(understood.columns[0].max, Some(0.6));
+    assert_eq!(
+        file.warnings.iter().map(|warning| warning.split(": ").nth(1).unwrap()).collect::<Vec<_>>(),
+        [
+            "left out 4 measurements with an empty or zero position, as of a lost beam (lines 3, 4, 5, 6); --strict refuses them"
+        ]
+    );
+    let strict = ReadOptions { strict: true, ..ReadOptions::default() };
+    let message = |text: &str| parse(text, "p.csv", &robot(), &strict).unwrap_err().to_string();
+    assert_eq!(
+        message(text),
+        "p.csv:3:9: found an empty position, as of a lost beam, expected what was measured; leave out the row"
+    );
+    assert_eq!(
+        message("a,lift,b,x,y,z\n0,0,0,0,0,0\n"),
+        "p.csv:2:7: found the position 0, 0, 0, as of a lost beam, expected what was measured; leave out the row"
+    );
+}
+
+#[test]
+fn one_lost_beam_is_no_other_unit() {
+    let text = "a[deg],lift[mm],b[deg],x[mm],y[mm],z[mm]\n\
+                0,0,0,91000,0,300\n30,0,0,90866,500,300\n60,0,0,90500,866,300\n0,0,0,0,0,0\n";
+    assert_eq!(plain(text).data.len(), 3);
 }
 
 #[test]
@@ -176,7 +272,7 @@ fn a_slide_without_limits_may_go_far() {
     let folder = Folder::new();
     let joints = vec![Joint::prismatic("rail", Screw::prismatic(&Vector3::x()))];
     let robot = Robot::new("rail", joints, Pose::identity()).unwrap();
-    let path = folder.write("points.csv", "rail,x,y,z\n0,0,0,0\n20,20,0,0\n45,45,0,0\n");
+    let path = folder.write("points.csv", "rail,x,y,z\n0,0,0,1\n20,20,0,1\n45,45,0,1\n");
     assert_eq!(read(&[path], &robot, &ReadOptions::default()).unwrap().data.len(), 3);
 }
 

@@ -45,12 +45,12 @@ fn a_long_file_is_read_row_by_row_and_its_first_mistake_named() {
         (
             19_000,
             "row,fit,a,0,0,0,0,0,0,1,2",
-            "rows.csv:19000:26: found 11 cells, expected 12 as in the header (line 1)",
+            "rows.csv:19000:26: found 11 cells, expected 12 as in the header (line 1); add the missing cells (they may be empty), or put `#` in front of a line that is no row",
         ),
         (
             18_990,
             "row,fit,a,0,0,0,0,0,0,1,nan,3",
-            "rows.csv:18990:25: found `nan` in column `y`, expected a finite number",
+            "rows.csv:18990:25: found `nan` in column `y`, expected a finite number: leave the cell empty where nothing was measured",
         ),
         (
             18_000,

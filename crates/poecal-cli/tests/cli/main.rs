@@ -9,6 +9,7 @@ mod folder;
 mod hostile;
 mod identify;
 mod init;
+mod lost_beams;
 mod offsets;
 #[cfg(unix)]
 mod places;

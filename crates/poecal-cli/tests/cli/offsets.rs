@@ -132,7 +132,7 @@ fn mistakes_get_a_sentence() {
         ),
         (
             "convert column.toml --to urdf --offset slide=1deg",
-            "--offset: joint `slide`: found the unit `deg`, expected a length (m, cm, mm, um, nm)",
+            "--offset: joint `slide`: found the unit `deg`, expected a length (m, cm, mm, um, nm, in)",
         ),
         (
             "convert column.toml --to urdf --offset slide=1",

@@ -127,6 +127,7 @@ class Measurements:
         columns: _Path | None = None,
         fit_where: str | None = None,
         ignore_sets: bool = False,
+        strict: bool = False,
     ) -> Measurements: ...
     @staticmethod
     def from_arrays(
@@ -152,6 +153,7 @@ class Measurements:
         columns: _Path | None = None,
         fit_where: str | None = None,
         ignore_sets: bool = False,
+        strict: bool = False,
     ) -> Measurements: ...
     @property
     def reading_names(self) -> list[str]: ...

@@ -12,6 +12,7 @@ mod judge;
 mod repeats;
 mod session;
 mod targets;
+mod unnamed;
 mod zero;
 
 use schemars::JsonSchema;
@@ -21,6 +22,7 @@ use crate::estimate::{Estimate, sample_rows};
 use crate::measurement::Dataset;
 use crate::robot::Robot;
 use few::Few;
+use repeats::Repeats;
 use session::{Session, sampled, taken};
 
 /// A kind of mistake, as a word that does not change between versions.
@@ -51,6 +53,8 @@ pub enum DiagnosisKind {
     RowShift,
     /// The names of two targets are exchanged.
     TargetsSwapped,
+    /// Several targets were seen, and no row says which.
+    TargetsUnnamed,
     /// Rows that stand in the data more than once, or contradict each other.
     DuplicateRows,
 }
@@ -133,7 +137,7 @@ pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'
         return Vec::new();
     }
     let session = Session::new(robot, data, options.device_free);
-    let (repeated, contradicting) = repeats::diagnose(&session, data, &rows);
+    let Repeats { repeated, contradicting, unnamed } = repeats::diagnose(&session, data, &rows);
     let mut found: Vec<Diagnosis> = repeated.into_iter().collect();
     if data.reading_names().len() > MOST_READINGS {
         found.extend(contradicting);
@@ -144,6 +148,8 @@ pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'
     // neither says anything of the other rows.
     let exchanged = whole.as_ref().is_some_and(|one| one.kind == DiagnosisKind::TargetsSwapped);
     match contradicting {
+        // Nothing else can be said of rows that are taken for one target.
+        _ if unnamed.is_some() && !exchanged => found.extend(unnamed),
         Some(contradicting) if !exchanged => {
             rows.retain(|row| contradicting.rows.binary_search(row).is_err());
             found.push(contradicting);

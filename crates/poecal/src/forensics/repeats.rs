@@ -2,7 +2,7 @@
 
 use super::judge::short;
 use super::session::Session;
-use super::{Diagnosis, DiagnosisKind};
+use super::{Diagnosis, DiagnosisKind, unnamed};
 use crate::lie::rotation;
 use crate::measurement::{Dataset, Measurement};
 
@@ -18,12 +18,18 @@ const NAMED: usize = 3;
 /// Two rows of one target with the same readings: an earlier and a later one.
 type Pair = (u32, u32);
 
-/// Rows that repeat another to the last digit, and rows that contradict another.
-pub(super) fn diagnose(
-    session: &Session<'_>,
-    data: &Dataset,
-    rows: &[u32],
-) -> (Option<Diagnosis>, Option<Diagnosis>) {
+/// What rows of one configuration show.
+pub(super) struct Repeats {
+    /// Rows that repeat another to the last digit.
+    pub(super) repeated: Option<Diagnosis>,
+    /// Rows that contradict another.
+    pub(super) contradicting: Option<Diagnosis>,
+    /// Why they do, if they are of several targets.
+    pub(super) unnamed: Option<Diagnosis>,
+}
+
+/// Looks at the rows of each configuration.
+pub(super) fn diagnose(session: &Session<'_>, data: &Dataset, rows: &[u32]) -> Repeats {
     let target = |row: u32| data.observations[row as usize].target;
     let seen = |row: u32| &data.observations[row as usize].measurement;
     let mut repeats = data.repeated(rows);
@@ -44,7 +50,12 @@ pub(super) fn diagnose(
     }
     repeated.sort_unstable_by_key(|pair| pair.1);
     contradicting.sort_unstable_by_key(|pair| pair.1);
-    (repetition(data, &repeated), contradiction(data, &contradicting, furthest_m * 1e3))
+    let groups = repeats.iter().flat_map(|group| group.chunk_by(same));
+    Repeats {
+        repeated: repetition(data, &repeated),
+        unnamed: if contradicting.is_empty() { None } else { unnamed::diagnose(session, data, groups) },
+        contradicting: contradiction(data, &contradicting, furthest_m * 1e3),
+    }
 }
 
 fn repetition(data: &Dataset, repeated: &[Pair]) -> Option<Diagnosis> {
@@ -89,7 +100,7 @@ fn contradiction(data: &Dataset, contradicting: &[Pair], furthest_mm: f64) -> Op
 }
 
 /// How far two measurements of one configuration are apart, metres, if that is more than a robot's repeatability.
-fn contradiction_m(session: &Session<'_>, a: &Measurement, b: &Measurement) -> Option<f64> {
+pub(super) fn contradiction_m(session: &Session<'_>, a: &Measurement, b: &Measurement) -> Option<f64> {
     let (first, second) = (a.pose(), b.pose());
     let apart_m = (first.translation - second.translation).norm();
     let both = a.sees_orientation() && b.sees_orientation();

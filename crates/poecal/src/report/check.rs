@@ -254,13 +254,19 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
     };
     line(out, "file", &file.path.display().to_string());
     line(out, "rows", &format!("{}: {}", file.rows, kinds_words(file.poses, file.points)));
-    line(out, "form", &format!("separator: {separator}; decimal sign: {decimal}"));
+    if let Some(lost) = file.lost.words() {
+        line(out, "left out", &lost);
+    }
+    let stated = file.separator_line.map_or_else(String::new, |line| format!(" (line {line})"));
+    let units = file.units_line.map_or_else(String::new, |line| format!("; units: line {line}"));
+    line(out, "form", &format!("separator: {separator}{stated}; decimal sign: {decimal}{units}"));
     if let Some(orientation) = &file.orientation {
         line(out, "orientation", &format!("{orientation}; {}", file.pose));
     }
     let widest = |lengths: &mut dyn Iterator<Item = usize>| lengths.max().unwrap_or(0).min(WIDEST);
     let ours = widest(&mut file.columns.iter().map(|column| width(&visible(&column.name)))).max(8);
     let theirs = widest(&mut file.columns.iter().map(|column| width(&column_words(column)))).max(13);
+    let units = widest(&mut file.columns.iter().map(|column| width(&unit_words(column)))).max(12);
     let mut row = |name: &str, column: &str, unit: &str, range: &str| {
         // A long name pushes the rest of its row to a line of its own.
         let broken = if width(name) > ours || width(column) > theirs {
@@ -268,7 +274,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
         } else {
             String::new()
         };
-        let text = format!("  {name:<ours$}  {column:<theirs$}{broken}  {unit:<12}  {range}");
+        let text = format!("  {name:<ours$}  {column:<theirs$}{broken}  {unit:<units$}  {range}");
         out.push_str(text.trim_end());
         out.push('\n');
     };
@@ -293,6 +299,7 @@ fn unit_words(column: &ColumnUnderstanding) -> String {
     let Some(unit) = column.unit else { return String::new() };
     match column.unit_from {
         Some(UnitSource::Header) => format!("{unit}, header"),
+        Some(UnitSource::UnitsLine) => format!("{unit}, units line"),
         Some(UnitSource::Mapping) => format!("{unit}, mapping"),
         Some(UnitSource::Si) | None => format!("{unit}, SI"),
     }

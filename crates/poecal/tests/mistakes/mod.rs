@@ -269,6 +269,8 @@ impl Session {
                 })
             }
             DiagnosisKind::TargetsSwapped => self.renamed(g),
+            // These sessions see one target in each configuration.
+            DiagnosisKind::TargetsUnnamed => None,
             DiagnosisKind::DuplicateRows => {
                 let mut data = self.data.clone();
                 let copies = 1 + pick(g, 3);

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::header::{Header, unit_in_name};
 use super::layout::{Input, Source, TargetLayout, Term, reading_quantity};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
-use super::table::Header;
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
@@ -36,6 +36,9 @@ const OUR_NAMES: [&str; 18] = [
     "id",
     "set",
 ];
+
+/// What to do about a column of ours that is not found.
+const MISSING: &str = ": rename or add a column, or name the right one in a mapping file (--columns)";
 
 /// Finds one thing after the other in a header and keeps account of the columns used.
 pub(super) struct Builder<'a> {
@@ -110,16 +113,18 @@ impl<'a> Builder<'a> {
         purpose: &str,
     ) -> Result<usize> {
         let index = self.text_column(column, purpose)?;
-        let in_header = self.header.cells.get(index).and_then(|cell| cell.unit.as_deref());
-        let (unit, unit_from) = match (mapped, in_header, self.map.units.of(quantity)) {
-            (Some(unit), _, _) => (unit, UnitSource::Mapping),
-            (None, Some(symbol), _) => {
-                let unit = Unit::parse_for(symbol, quantity, &format!(" {purpose}"))
-                    .map_err(|error| self.header.error(ErrorKind::Unit, index, error.message()))?;
-                (unit, UnitSource::Header)
+        let stated = match mapped {
+            Some(unit) => Some((unit, UnitSource::Mapping)),
+            None => self.header.unit(index, quantity, purpose)?,
+        };
+        let default = self.map.units.of(quantity).map(|unit| (unit, UnitSource::Mapping));
+        let (unit, unit_from) = match (stated.or(default), self.header.units_line) {
+            (Some(known), _) => known,
+            // Where units are stated below the header, an empty cell may be one that was forgotten or merged.
+            (None, Some(line)) if quantity != Quantity::Number => {
+                return Err(self.header.no_unit(index, line, quantity, purpose));
             }
-            (None, None, Some(unit)) => (unit, UnitSource::Mapping),
-            (None, None, None) => (quantity.si_unit(), UnitSource::Si),
+            (None, _) => (quantity.si_unit(), UnitSource::Si),
         };
         let (name, label, source) = (name.to_owned(), column.to_owned(), Source::Column(index));
         self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
@@ -164,8 +169,12 @@ impl<'a> Builder<'a> {
     pub(super) fn text_column(&mut self, name: &str, purpose: &str) -> Result<usize> {
         let is_known =
             |found: &str| found != name && (self.readings.contains(found) || OUR_NAMES.contains(&found));
-        let index =
-            self.header.require(name, purpose, is_known).map_err(|error| self.explained(name, error))?;
+        let is_ours = self.readings.contains(name) || OUR_NAMES.contains(&name);
+        let advice = if is_ours { MISSING } else { "" };
+        let index = self
+            .header
+            .require(name, purpose, is_known, advice)
+            .map_err(|error| self.explained(name, error))?;
         self.mark(index);
         Ok(index)
     }
@@ -341,7 +350,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    pub(super) fn ignored(&self) -> Vec<(String, Option<&'static str>)> {
+    pub(super) fn ignored(&self) -> Vec<(String, Option<String>)> {
         let cells = self.header.cells.iter().enumerate();
         let missing: Vec<&'static str> =
             OUR_NAMES.into_iter().filter(|ours| self.header.count(ours) == 0).collect();
@@ -352,10 +361,14 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The name of ours, of those that are missing, that a column without meaning is a slip of the pen away from.
-fn meant(name: &str, missing: &[&'static str]) -> Option<&'static str> {
+/// The name of ours, of those that are missing, that a column without meaning is a slip of the pen, or brackets, away from.
+fn meant(name: &str, missing: &[&'static str]) -> Option<String> {
     let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
-    missing.iter().copied().find(|ours| distance_within(name, ours, slips(ours)).is_some())
+    let with_unit = |ours: &str| Some(format!("{ours}[{}]", unit_in_name(name, ours)?.symbol()));
+    missing.iter().find_map(|ours| {
+        let is_near = || distance_within(name, ours, slips(ours)).is_some();
+        with_unit(ours).or_else(|| is_near().then(|| (*ours).to_owned()))
+    })
 }
 
 /// What is wrong, and what to do, when a joint has the name of a column with a meaning.

@@ -21,12 +21,33 @@ pub enum Separator {
 }
 
 impl Separator {
-    fn matches(self, c: char) -> bool {
+    pub(super) fn matches(self, c: char) -> bool {
         match self {
             Separator::Comma => c == ',',
             Separator::Semicolon => c == ';',
             Separator::Tab => c == '\t',
             Separator::Whitespace => c.is_whitespace(),
+        }
+    }
+
+    /// The separator of this character.
+    pub(super) fn of(c: char) -> Option<Self> {
+        match c {
+            ',' => Some(Separator::Comma),
+            ';' => Some(Separator::Semicolon),
+            '\t' => Some(Separator::Tab),
+            ' ' => Some(Separator::Whitespace),
+            _ => None,
+        }
+    }
+
+    /// What messages call it.
+    pub(super) fn symbol(self) -> &'static str {
+        match self {
+            Separator::Comma => "`,`",
+            Separator::Semicolon => "`;`",
+            Separator::Tab => "tabs",
+            Separator::Whitespace => "blanks",
         }
     }
 

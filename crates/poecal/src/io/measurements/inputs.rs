@@ -16,12 +16,16 @@ pub(super) struct InputReader<'a> {
     inputs: &'a [Input],
     values: Vec<Option<f64>>,
     readings: Vec<f64>,
+    /// How many of the inputs, the first ones, are joint readings.
+    joints: usize,
 }
 
 impl<'a> InputReader<'a> {
-    pub(super) fn new(inputs: &'a [Input], numbers: Numbers) -> Self {
+    /// For rows of these inputs, of which so many, the first ones, are joint readings.
+    pub(super) fn new(inputs: &'a [Input], joints: usize, numbers: Numbers) -> Self {
         InputReader {
             numbers,
+            joints,
             ranges: vec![Range::default(); inputs.len()],
             inputs,
             values: Vec::with_capacity(inputs.len()),
@@ -32,28 +36,45 @@ impl<'a> InputReader<'a> {
     /// Takes in a row's numbers; an empty cell is no number.
     pub(super) fn read(&mut self, row: &Row<'_>) -> Result<()> {
         self.values.clear();
-        for (input, range) in self.inputs.iter().zip(&mut self.ranges) {
+        for (index, input) in self.inputs.iter().enumerate() {
             let value = match input.source {
                 Source::Constant(value) => Some(value),
                 Source::Column(_) if !input.sum.is_empty() => sum(&mut self.numbers, row, input)?,
                 Source::Column(column) => match row.cells.get(column).map_or("", |cell| cell.raw) {
                     "" => None,
                     text => Some(self.numbers.parse(text, row.line).map_err(|expected| {
-                        row.error(
-                            column,
-                            format!("found `{text}` in column `{}`, expected {expected}", input.label),
-                        )
+                        let hint = hint(text, index < self.joints);
+                        let message =
+                            format!("found `{text}` in column `{}`, expected {expected}{hint}", input.label);
+                        row.error(column, message)
                     })?),
                 }
                 .map(|value| input.unit.to_si(value)),
             };
             if let Some(value) = value {
                 check_size(value, row, input)?;
-                range.include(value);
             }
             self.values.push(value);
         }
         Ok(())
+    }
+
+    /// Counts the current row's numbers for the smallest and largest.
+    pub(super) fn include_in_ranges(&mut self) {
+        for (value, range) in self.values.iter().zip(&mut self.ranges) {
+            if let Some(value) = value {
+                range.include(*value);
+            }
+        }
+    }
+
+    /// Takes numbers of the current row for empty cells.
+    pub(super) fn forget(&mut self, inputs: &[usize]) {
+        for &input in inputs {
+            if let Some(value) = self.values.get_mut(input) {
+                *value = None;
+            }
+        }
     }
 
     /// The value of an input in the current row.
@@ -66,13 +87,20 @@ impl<'a> InputReader<'a> {
         inputs.map(|input| self.value(input))
     }
 
-    /// Takes the first inputs of the current row, which must be there, for its joint readings.
-    pub(super) fn take_readings(&mut self, row: &Row<'_>, count: usize) -> Result<()> {
+    /// Takes the current row's joint readings, which must be there.
+    pub(super) fn take_readings(&mut self, row: &Row<'_>) -> Result<()> {
         self.readings.clear();
-        for (input, value) in self.values.iter().take(count).enumerate() {
+        for (input, value) in self.values.iter().take(self.joints).enumerate() {
             match value {
                 Some(value) => self.readings.push(*value),
-                None => return Err(self.error(row, input, "found an empty cell", "a joint reading")),
+                None => {
+                    return Err(self.error(
+                        row,
+                        input,
+                        "found an empty cell",
+                        "a joint reading: add it, or leave out the row",
+                    ));
+                }
             }
         }
         Ok(())
@@ -113,6 +141,27 @@ fn sum(numbers: &mut Numbers, row: &Row<'_>, input: &Input) -> Result<Option<f64
         sum += term.factor * term.unit.to_si(value);
     }
     Ok(Some(sum))
+}
+
+/// What to do about a word for nothing.
+const NOTHING: &str = ": leave the cell empty where nothing was measured";
+
+/// What to do about a cell that is no number.
+fn hint(text: &str, is_joint: bool) -> &'static str {
+    if stands_for_nothing(text) {
+        if is_joint { ": leave out a row without a reading" } else { NOTHING }
+    } else if text.chars().all(|c| c.is_alphabetic() || c.is_whitespace()) {
+        "; put `#` in front of a line that is no row"
+    } else {
+        ""
+    }
+}
+
+/// Whether a cell is what programs write where they have no number.
+fn stands_for_nothing(text: &str) -> bool {
+    let words = ["nan", "na", "n/a", "null", "none", "nil", "inf", "+inf", "-inf", "-nan"];
+    let is_dashes = text.chars().all(|c| matches!(c, '-' | '–' | '—' | '.' | '*' | '?' | '/'));
+    text.starts_with('#') || is_dashes || words.contains(&text.to_lowercase().as_str())
 }
 
 /// Refuses a number that nothing measured can be, which sums of squares would not bear.

@@ -45,14 +45,14 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
     let map = options.mapping.as_ref().unwrap_or(&no_map);
     let mut table = Table::open(path, Blocks::open(path, "a file of joint readings (CSV)")?, map)?;
     let layout = Layout::joints(&table.header, robot, map)?;
-    let mut inputs = InputReader::new(&layout.inputs, Numbers::new(map.decimal));
+    let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
     let mut watch = JointWatch::new(robot);
     let mut joints = JointsTable::default();
     while let Some(mut rows) = table.next_block()? {
         while let Some(row) = rows.next()? {
             inputs.read(&row)?;
             watch.observe(&row, &inputs);
-            inputs.take_readings(&row, layout.inputs.len())?;
+            inputs.take_readings(&row)?;
             joints.readings.extend_from_slice(inputs.readings());
             joints.rows += 1;
             joints.lines.push(row.line);

@@ -1,9 +1,9 @@
 //! Which column of a file is what: the header, the mapping and the robot put together.
 
 use super::builder::Builder;
+use super::header::Header;
 use super::mapping::{ColumnMap, PoseDirection};
 use super::orientation::OrientationForm;
-use super::table::Header;
 use super::understanding::UnitSource;
 use super::units::{Quantity, Unit};
 use super::{FitWhere, ReadOptions};
@@ -71,7 +71,7 @@ pub(super) struct Layout {
     pub(super) set: SetRule,
     pub(super) pose: PoseDirection,
     /// Columns that have no meaning, with a name of ours that they may have meant.
-    pub(super) ignored: Vec<(String, Option<&'static str>)>,
+    pub(super) ignored: Vec<(String, Option<String>)>,
 }
 
 impl Layout {

@@ -22,7 +22,7 @@ use crate::io::source_text;
 /// let text = "[position]\ncolumns = [\"px\", \"py\", \"pz\"]\nunit = \"mm\"\n";
 /// assert!(ColumnMap::parse(text, "map.toml").is_ok());
 /// let error = ColumnMap::parse("[position]\nunit = \"deg\"\n", "map.toml").unwrap_err();
-/// assert_eq!(error.to_string(), "map.toml:2:8: found the unit `deg`, expected a length (m, cm, mm, um, nm)");
+/// assert_eq!(error.to_string(), "map.toml:2:8: found the unit `deg`, expected a length (m, cm, mm, um, nm, in)");
 /// ```
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]

@@ -1,19 +1,22 @@
 //! Measurement files: CSV with one row a configuration and target (docs/file-formats.md, "Measurements").
 //!
 //! Text becomes lines (`text`) and cells (`cells`), a table with places for messages (`table`), columns with a meaning and a unit
-//! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`) and at last measurements ([`read()`]), which are
-//! judged for their scale (`scale`, `spread`, `turns`).
+//! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`), without those of lost beams (`lost`), and at
+//! last measurements (`row`, [`read()`]), which are judged for their scale (`scale`, `spread`, `turns`).
 
 mod builder;
 mod cells;
 mod fit_where;
+mod header;
 mod inputs;
 mod joints;
 mod layout;
+mod lost;
 mod mapping;
 mod number;
 mod orientation;
 mod read;
+mod row;
 mod scale;
 mod spread;
 mod table;
@@ -28,6 +31,7 @@ pub use super::numbers::LARGEST_NUMBER;
 pub use cells::Separator;
 pub use fit_where::FitWhere;
 pub use joints::{JointsTable, read_joints};
+pub use lost::LostBeams;
 pub use mapping::ColumnMap;
 pub use number::DecimalSign;
 pub use read::{parse, read};
@@ -57,6 +61,8 @@ pub struct ReadOptions {
     /// Whether no row belongs to a set: [`ReadOptions::fit_where`], the mapping's `set` and the `set` column are then neither
     /// applied nor required, as for files of which every row judges a calibration.
     pub ignore_sets: bool,
+    /// Whether a lost beam, an empty or zero position, is an error; otherwise it is left out and counted in a warning.
+    pub strict: bool,
 }
 
 /// What measurement files hold, and how they were understood.

@@ -44,6 +44,7 @@ impl Numbers {
                 b'.' => points += 1,
                 b',' => commas += 1,
                 b'0'..=b'9' | b'+' | b'-' | b'e' | b'E' => {}
+                _ if is_grouped(text) => return Err(NO_GROUPS.to_owned()),
                 // Rust's own parser would take `nan` and `inf`.
                 _ => return Err("a finite number".to_owned()),
             }
@@ -52,7 +53,7 @@ impl Numbers {
             (0, 0) => None,
             (1, 0) => Some(DecimalSign::Point),
             (0, 1) => Some(DecimalSign::Comma),
-            _ => return Err("a number with one decimal sign and no thousands separators".to_owned()),
+            _ => return Err(NO_GROUPS.to_owned()),
         };
         if let Some(found) = found {
             let (sign, since) = *self.sign.get_or_insert((found, Some(line)));
@@ -77,6 +78,15 @@ impl Numbers {
         };
         value.ok().filter(|value| value.is_finite()).ok_or_else(|| "a finite number".to_owned())
     }
+}
+
+const NO_GROUPS: &str = "a number with one decimal sign and no thousands separators";
+
+/// Whether a text is digits in groups that are not separated by a decimal sign: `1 234,5`, `1'234.5`.
+fn is_grouped(text: &str) -> bool {
+    let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+');
+    let separates = |c: char| matches!(c, ' ' | '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '\u{2019}' | '_');
+    text.starts_with(digits) && text.ends_with(digits) && text.chars().all(|c| digits(c) || separates(c))
 }
 
 #[cfg(test)]
@@ -127,6 +137,10 @@ mod tests {
 
     #[test]
     fn what_is_no_finite_number_is_refused() {
+        for text in ["1 234.5", "-1'234,5", "1\u{202f}234"] {
+            assert_eq!(Numbers::new(None).parse(text, 1), Err(NO_GROUPS.to_owned()), "{text}");
+        }
+        assert_eq!(Numbers::new(None).parse("2024-01-02 x", 1), Err("a finite number".to_owned()));
         for text in
             ["nan", "NaN", "inf", "-infinity", "1e999", "abc", "", "1e", "--1", "0x10", "1_0", "1,234.5"]
         {

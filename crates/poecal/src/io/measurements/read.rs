@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::inputs::InputReader;
 use super::layout::{Layout, SetRule, TargetLayout};
-use super::mapping::{ColumnMap, PoseDirection};
+use super::lost::LostBeams;
+use super::mapping::ColumnMap;
 use super::number::Numbers;
+use super::row::{measurement, sigma};
 use super::scale::{self, JointWatch};
 use super::spread;
 use super::table::{Row, Table};
@@ -17,8 +17,7 @@ use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
-use crate::lie::Pose;
-use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Set, Source};
+use crate::measurement::{Dataset, Observation, Set, Source};
 use crate::robot::{Robot, check_name};
 
 /// Reads measurement files, joined in their order.
@@ -107,7 +106,8 @@ impl<'a> Reader<'a> {
     fn file<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
         let mut table = Table::open(path, blocks, self.map)?;
         let layout = Layout::new(&table.header, self.robot, self.options, self.map)?;
-        let mut inputs = InputReader::new(&layout.inputs, Numbers::new(self.map.decimal));
+        let mut inputs =
+            InputReader::new(&layout.inputs, self.data.reading_names().len(), Numbers::new(self.map.decimal));
         let mut watch = JointWatch::new(self.robot);
         let mut turns = TurnWatch::new();
         let first = self.data.len();
@@ -115,14 +115,19 @@ impl<'a> Reader<'a> {
         if layout.id.is_some() {
             self.data.ids.resize(first, String::new());
         }
-        let mut rows = 0;
+        let (mut rows, mut lost) = (0, LostBeams::default());
         while let Some(mut some) = table.next_block()? {
             while let Some(row) = some.next()? {
                 rows += 1;
                 inputs.read(&row)?;
+                inputs.take_readings(&row)?;
+                if lost.take_out(&row, &layout.targets, &mut inputs, self.options.strict)? {
+                    continue;
+                }
+                inputs.include_in_ranges();
                 watch.observe(&row, &inputs);
                 turns.observe(&row, &layout, &inputs);
-                self.row(&row, &layout, &mut inputs)?;
+                self.row(&row, &layout, &inputs)?;
             }
         }
         self.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
@@ -130,6 +135,12 @@ impl<'a> Reader<'a> {
             let message = "found a header and no rows, expected at least one measurement";
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
         }
+        if self.data.len() == first {
+            let message =
+                "found no position in any row, expected at least one that is neither empty nor zero";
+            return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
+        }
+        self.warnings.extend(lost.warning(path));
         self.warnings.extend(watch.finish(path, &layout)?);
         turns.finish(path)?;
         let new_rows = self.data.observations.get(first..).unwrap_or_default();
@@ -154,7 +165,10 @@ impl<'a> Reader<'a> {
             rows,
             points,
             poses,
+            lost,
             separator: table.separator,
+            separator_line: table.separator_line,
+            units_line: table.header.units_line,
             decimal_sign: inputs.numbers.sign(),
             columns: understanding::columns(&table.header, &layout, &inputs.ranges),
             orientation: understanding::orientation(&layout),
@@ -181,16 +195,13 @@ impl<'a> Reader<'a> {
         self.warnings.push(format!("{}: left alone the columns {columns}{more}", path.display()));
     }
 
-    fn row(&mut self, row: &Row<'_>, layout: &Layout, inputs: &mut InputReader<'_>) -> Result<()> {
-        inputs.take_readings(row, self.data.reading_names().len())?;
+    fn row(&mut self, row: &Row<'_>, layout: &Layout, inputs: &InputReader<'_>) -> Result<()> {
         let set = self.set(row, layout)?;
-        let mut seen = false;
         for target in &layout.targets {
             let may_be_missing = layout.targets.len() > 1;
             let Some(measurement) = measurement(row, target, layout.pose, inputs, may_be_missing)? else {
                 continue;
             };
-            seen = true;
             let observation = Observation {
                 target: self.target(row, layout, target)?,
                 measurement,
@@ -208,9 +219,6 @@ impl<'a> Reader<'a> {
             if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
                 self.data.ids.push(cell.text().into_owned());
             }
-        }
-        if !seen {
-            return Err(row.error(0, "found a row without any target's position, expected at least one"));
         }
         Ok(())
     }
@@ -289,82 +297,5 @@ impl<'a> Reader<'a> {
         }
         let Reader { data, understood, sha256, warnings, .. } = self;
         Ok(MeasurementFile { data, understood, sha256, warnings })
-    }
-}
-
-/// What the row says of a target; none if it may be missing and is.
-fn measurement(
-    row: &Row<'_>,
-    target: &TargetLayout,
-    direction: PoseDirection,
-    inputs: &InputReader<'_>,
-    may_be_missing: bool,
-) -> Result<Option<Measurement>> {
-    let position = match inputs.all(target.position) {
-        [Some(x), Some(y), Some(z)] => Vector3::new(x, y, z),
-        [None, None, None] if may_be_missing => return Ok(None),
-        parts => {
-            let empty = parts.iter().position(Option::is_none).unwrap_or(0);
-            let input = target.position.get(empty).copied().unwrap_or(0);
-            return Err(inputs.error(row, input, "found an empty cell", "a position"));
-        }
-    };
-    let measurement = match (orientation(row, target, inputs)?, direction) {
-        (None, PoseDirection::DeviceFromTarget) => Measurement::Point(PointMeasurement { position }),
-        (None, PoseDirection::TargetFromDevice) => {
-            let message = "found a position without orientation, expected both, because the mapping says that \
-                           poses are target_from_device";
-            return Err(row.error(inputs.column(target.position[0]), message));
-        }
-        (Some(rotation), PoseDirection::DeviceFromTarget) => {
-            Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position) })
-        }
-        (Some(rotation), PoseDirection::TargetFromDevice) => {
-            Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position).inverse() })
-        }
-    };
-    Ok(Some(measurement))
-}
-
-/// The measured rotation; none if all its cells are empty.
-fn orientation(
-    row: &Row<'_>,
-    target: &TargetLayout,
-    inputs: &InputReader<'_>,
-) -> Result<Option<Matrix3<f64>>> {
-    let Some((form, columns)) = &target.orientation else { return Ok(None) };
-    let mut values = [0.0; 4];
-    let mut empty = None;
-    let mut given = false;
-    for (slot, &input) in values.iter_mut().zip(columns) {
-        match inputs.value(input) {
-            Some(value) => {
-                *slot = value;
-                given = true;
-            }
-            None => empty = Some(input),
-        }
-    }
-    match (given, empty) {
-        (false, _) => Ok(None),
-        (true, Some(input)) => {
-            Err(inputs.error(row, input, "found an empty cell", "an orientation that is complete or absent"))
-        }
-        (true, None) => {
-            let first = columns.first().map_or(0, |&input| inputs.column(input));
-            form.rotation(values).map(Some).map_err(|message| row.error(first, message))
-        }
-    }
-}
-
-/// A standard deviation, if the row states it.
-fn sigma(row: &Row<'_>, input: Option<usize>, inputs: &InputReader<'_>) -> Result<Option<f64>> {
-    let Some(input) = input else { return Ok(None) };
-    match inputs.value(input) {
-        Some(value) if value <= 0.0 => {
-            let text = row.cells.get(inputs.column(input)).map_or("", |cell| cell.raw);
-            Err(inputs.error(row, input, &format!("found `{text}`"), "a standard deviation above 0"))
-        }
-        value => Ok(value),
     }
 }

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 
+use super::header::Header;
 use super::layout::{Input, Layout, Source};
 use super::scale::{middle, short};
-use super::table::Header;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;

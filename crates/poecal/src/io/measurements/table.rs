@@ -1,34 +1,16 @@
 //! A file as a table: header and rows with their places.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split};
+use super::header::{Header, are_units};
 use super::mapping::ColumnMap;
 use super::text::{Blocks, Lines};
-use crate::error::{Error, ErrorKind, Result, first_few, nearest};
+use crate::error::{Error, ErrorKind, Result};
 use crate::io::looks_like::model_for_table;
 
-/// A column of the header: `name[unit]`.
-#[derive(Clone, Debug)]
-pub(super) struct HeaderCell {
-    /// As it stands in the file.
-    pub(super) text: String,
-    /// Without the unit.
-    pub(super) name: String,
-    /// What the brackets hold.
-    pub(super) unit: Option<String>,
-    column: usize,
-}
-
-/// The line that names the columns.
-pub(super) struct Header<'a> {
-    pub(super) path: &'a Path,
-    pub(super) line: usize,
-    pub(super) cells: Vec<HeaderCell>,
-    /// The first and the second column of each name, with and without its unit.
-    named: BTreeMap<String, (usize, Option<usize>)>,
-}
+/// Lines below the header that are looked at if it is none.
+const LINES_BELOW: usize = 10;
 
 /// A row, as long as the next one is not read.
 pub(super) struct Row<'t> {
@@ -42,8 +24,10 @@ pub(super) struct Row<'t> {
 pub(super) struct Table<'a> {
     pub(super) header: Header<'a>,
     pub(super) separator: Separator,
+    /// The line that states the separator, as `sep=;`, if there is one.
+    pub(super) separator_line: Option<usize>,
     blocks: Blocks<'a>,
-    /// Whether the block at hand, the header's, has yet to give its rows.
+    /// Whether the block at hand has yet to give its rows.
     unread: bool,
 }
 
@@ -56,19 +40,34 @@ pub(super) struct Rows<'t> {
 }
 
 impl<'a> Table<'a> {
-    /// Reads the header; the separator is the mapping's or recognised.
+    /// Reads the header and the lines of separator and units around it; the separator is the mapping's, stated or recognised.
     pub(super) fn open(path: &'a Path, mut blocks: Blocks<'a>, map: &ColumnMap) -> Result<Self> {
-        while blocks.advance()? {
-            let Some((line, text)) = blocks.lines(map.skip_lines).next() else { continue };
-            if let Some(error) = model_for_table(text, path, line) {
-                return Err(error);
-            }
-            let separator = map.separator.unwrap_or_else(|| Separator::recognised(text));
-            let header = Header::new(path, line, text, separator)?;
-            return Ok(Table { header, separator, blocks, unread: true });
+        blocks.advance()?;
+        let none = || {
+            let message = "found no line with text, expected a header and rows";
+            Error::new(ErrorKind::Syntax, message).in_file(path)
+        };
+        let (mut line, mut text) = next_line(&mut blocks, map.skip_lines)?.ok_or_else(none)?;
+        if let Some(error) = model_for_table(&text, path, line) {
+            return Err(error);
         }
-        let message = "found no line with text, expected a header and rows";
-        Err(Error::new(ErrorKind::Syntax, message).in_file(path))
+        let stated = stated_separator(path, line, &text)?;
+        let separator_line = stated.map(|_| line);
+        if stated.is_some() {
+            (line, text) = next_line(&mut blocks, line)?.ok_or_else(none)?;
+        }
+        let separator = map.separator.or(stated).unwrap_or_else(|| Separator::recognised(&text));
+        let mut header = Header::new(path, line, &text, separator)?;
+        if let Some((line, text)) = next_line(&mut blocks, line)? {
+            let mut cells = Vec::new();
+            let is_table = split(&text, separator, &mut cells).is_ok() && cells.len() == header.cells.len();
+            if is_table && are_units(&cells) {
+                header.set_units(line, &text, &cells);
+            }
+        }
+        let below = blocks.lines(line).take(LINES_BELOW);
+        header.look_below(below.map(|(line, text)| (line, text.to_owned())));
+        Ok(Table { header, separator, separator_line, blocks, unread: true })
     }
 
     /// The checksum of the file, as far as it has been read.
@@ -82,7 +81,7 @@ impl<'a> Table<'a> {
             return Ok(None);
         }
         let Table { header, separator, blocks, .. } = self;
-        let lines = blocks.lines(header.line);
+        let lines = blocks.lines(header.last_line());
         Ok(Some(Rows { header, separator: *separator, lines, cells: Vec::new() }))
     }
 }
@@ -104,8 +103,9 @@ impl Rows<'_> {
                     None => text.trim_end().chars().count() + 1,
                 };
                 let message = format!(
-                    "found {found} cells, expected {expected} as in the header (line {header_line}){}",
-                    self.decimal_comma_hint(found, expected)
+                    "found {found} cell{}, expected {expected} as in the header (line {header_line}){}",
+                    if found == 1 { "" } else { "s" },
+                    self.count_hint(text)
                 );
                 return Err(Error::new(ErrorKind::Syntax, message).at(path, line, place));
             }
@@ -113,16 +113,70 @@ impl Rows<'_> {
         }
     }
 
-    fn decimal_comma_hint(&self, found: usize, expected: usize) -> &'static str {
-        if self.separator == Separator::Comma && found > expected {
-            "; numbers with a decimal comma need another separator, such as `;`, or quotes"
+    /// What may be wrong with a row of another number of cells than the header's.
+    fn count_hint(&self, text: &str) -> String {
+        let (found, expected) = (self.cells.len(), self.header.cells.len());
+        let mut cells = Vec::new();
+        let is_empty = |cell: &Cell<'_>| cell.raw.is_empty();
+        let others = [Separator::Comma, Separator::Semicolon, Separator::Tab];
+        let other = others.into_iter().find(|&other| {
+            other != self.separator && split(text, other, &mut cells).is_ok() && cells.len() == expected
+        });
+        if let Some(other) = other {
+            format!("; separated by {} there are {expected}: separate header and rows alike", other.symbol())
+        } else if self.cells.get(expected..).is_some_and(|more| !more.is_empty() && more.iter().all(is_empty))
+        {
+            "; the row ends with a separator that the header does not have: remove it, or add it to the header".to_owned()
+        } else if self
+            .header
+            .cells
+            .get(found..)
+            .is_some_and(|more| more.iter().all(|cell| cell.text.is_empty()))
+        {
+            "; the header ends with a separator that the row does not have: remove it, or add it to the rows"
+                .to_owned()
+        } else if found > expected && self.separator == Separator::Comma {
+            "; numbers with a decimal comma need another separator, such as `;`, or quotes".to_owned()
+        } else if found < expected {
+            "; add the missing cells (they may be empty), or put `#` in front of a line that is no row"
+                .to_owned()
         } else {
-            ""
+            String::new()
         }
     }
 }
 
-fn split_line<'a>(
+/// The first line after line `skip` that is neither blank nor a comment, in this block or a later one.
+fn next_line(blocks: &mut Blocks<'_>, skip: usize) -> Result<Option<(usize, String)>> {
+    loop {
+        if let Some((line, text)) = blocks.lines(skip).next() {
+            return Ok(Some((line, text.to_owned())));
+        }
+        if !blocks.advance()? {
+            return Ok(None);
+        }
+    }
+}
+
+/// The separator that a line `sep=;` states, as spreadsheets write it.
+fn stated_separator(path: &Path, line: usize, text: &str) -> Result<Option<Separator>> {
+    let text = text.strip_prefix('"').and_then(|text| text.trim_end().strip_suffix('"')).unwrap_or(text);
+    let Some(stated) = text.get(..4).filter(|start| start.eq_ignore_ascii_case("sep=")) else {
+        return Ok(None);
+    };
+    let stated = text.get(stated.len()..).unwrap_or_default();
+    let mut characters = stated.chars();
+    let separator = characters.next().and_then(Separator::of);
+    match separator {
+        Some(separator) if characters.all(|c| separator.matches(c) || c == ' ') => Ok(Some(separator)),
+        _ => {
+            let message = format!("found the separator `{stated}`, expected `,`, `;`, a tab or a blank");
+            Err(Error::new(ErrorKind::Syntax, message).at(path, line, 1))
+        }
+    }
+}
+
+pub(super) fn split_line<'a>(
     path: &Path,
     line: usize,
     text: &'a str,
@@ -132,98 +186,6 @@ fn split_line<'a>(
     split(text, separator, cells).map_err(|(offset, message)| {
         Error::new(ErrorKind::Syntax, message).at(path, line, character_column(text, offset))
     })
-}
-
-impl HeaderCell {
-    fn new(text: &str, column: usize) -> Self {
-        let bracketed = text.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
-        let (name, unit) = match bracketed {
-            Some((name, unit)) => (name.trim_end(), Some(unit.trim().to_owned())),
-            None => (text, None),
-        };
-        HeaderCell {
-            text: text.to_owned(),
-            name: name.to_owned(),
-            unit: unit.filter(|unit| !unit.is_empty()),
-            column,
-        }
-    }
-}
-
-impl<'a> Header<'a> {
-    fn new(path: &'a Path, line: usize, text: &str, separator: Separator) -> Result<Self> {
-        let mut cells = Vec::new();
-        split_line(path, line, text, separator, &mut cells)?;
-        // Counted on from cell to cell: there may be very many.
-        let (mut column, mut offset) = (1, 0);
-        let mut cell = |cell: &Cell<'_>| {
-            column += text.get(offset..cell.offset).map_or(0, |passed| passed.chars().count());
-            offset = offset.max(cell.offset);
-            HeaderCell::new(&cell.text(), column)
-        };
-        let cells: Vec<HeaderCell> = cells.iter().map(&mut cell).collect();
-        if cells.iter().all(|cell| cell.text.replace(',', ".").parse::<f64>().is_ok()) {
-            let message = "found a line of numbers, expected a header that names the columns \
-                           (a line that begins with `#` is a comment)";
-            return Err(Error::new(ErrorKind::Syntax, message).at_line(path, line));
-        }
-        let mut named: BTreeMap<String, (usize, Option<usize>)> = BTreeMap::new();
-        for (index, cell) in cells.iter().enumerate() {
-            let texts = [Some(&cell.name), Some(&cell.text).filter(|text| **text != cell.name)];
-            for text in texts.into_iter().flatten() {
-                match named.get_mut(text) {
-                    Some((_, second)) => *second = second.or(Some(index)),
-                    None => {
-                        named.insert(text.clone(), (index, None));
-                    }
-                }
-            }
-        }
-        Ok(Header { path, line, cells, named })
-    }
-
-    /// Index of the column of this name, which may include the unit as the file writes it.
-    pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
-        match self.named.get(name) {
-            Some((_, Some(second))) => {
-                let message =
-                    format!("found a second column `{name}`, expected one; rename or remove one of them");
-                Err(self.error(ErrorKind::Measurement, *second, message))
-            }
-            Some((first, None)) => Ok(Some(*first)),
-            None => Ok(None),
-        }
-    }
-
-    /// How many columns have this name.
-    pub(super) fn count(&self, name: &str) -> usize {
-        self.cells.iter().filter(|cell| cell.name == name).count()
-    }
-
-    /// As [`Header::find`], but the column must be there; `is_known` tells names that cannot be a misspelling of another column's.
-    pub(super) fn require(
-        &self,
-        name: &str,
-        purpose: &str,
-        is_known: impl Fn(&str) -> bool,
-    ) -> Result<usize> {
-        if let Some(index) = self.find(name)? {
-            return Ok(index);
-        }
-        let names = || self.cells.iter().map(|cell| cell.name.as_str()).filter(|found| !found.is_empty());
-        let hint = match nearest(name, names().filter(|found| !is_known(found))) {
-            Some(near) => format!("the nearest name found is `{near}`"),
-            None => format!("the columns are {}", first_few(&names().collect::<Vec<_>>())),
-        };
-        let message = format!("found no column `{name}`, expected one {purpose}; {hint}");
-        Err(Error::new(ErrorKind::Measurement, message).at_line(self.path, self.line))
-    }
-
-    /// An error at a column's name.
-    pub(super) fn error(&self, kind: ErrorKind, index: usize, message: impl Into<String>) -> Error {
-        let column = self.cells.get(index).map_or(1, |cell| cell.column);
-        Error::new(kind, message).at(self.path, self.line, column)
-    }
 }
 
 impl Row<'_> {
@@ -268,6 +230,10 @@ mod tests {
     #[test]
     fn a_damaged_file_is_the_same_table_however_its_blocks_fall() {
         let good = "\u{feff}# c\r\n\r\n # \u{e9}\r\n\"id\";a[deg];\u{b5}\r\n\"1\";0,5;\u{e9}\r\n\r\n#\r\n2;1;\"q\"\r\n";
+        let around = format!(
+            "sep=;\n{}",
+            good.trim_start_matches('\u{feff}').replacen("\r\n\"1\"", "\r\n#\r\n;deg;\r\n\"1\"", 1)
+        );
         let (mut tables, mut errors) = (0, 0);
         let mut attempt = |bytes: &[u8]| {
             let whole = rows(bytes, WHOLE);
@@ -276,7 +242,14 @@ mod tests {
             }
             if whole.is_ok() { tables += 1 } else { errors += 1 }
         };
-        for at in 0..good.len() {
+        assert_eq!(
+            rows(around.as_bytes(), WHOLE),
+            rows(good.as_bytes(), WHOLE)
+                .map(|rows| { rows.into_iter().map(|(line, cells)| (line + 3, cells)).collect() })
+        );
+        for (good, at) in
+            [good, &around].into_iter().flat_map(|text| (0..text.len()).map(move |at| (text, at)))
+        {
             attempt(&good.as_bytes()[..at]);
             for byte in [b'"', b';', b',', b'\n', b'\r', b'[', b']', b'-', b'#', 0, 0xff] {
                 let mut bytes = good.as_bytes().to_vec();

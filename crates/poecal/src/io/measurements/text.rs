@@ -123,7 +123,10 @@ impl<'a> Blocks<'a> {
 
 /// The error of bytes that are no text, of which there are `lines` lines before these.
 fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
-    if lines == 0 && (bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff])) {
+    let is_marked = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
+    // Without a mark, of the first two characters every other byte is none.
+    let is_utf16 = is_marked || matches!(bytes, [0, 1..=255, 0, 1..=255, ..] | [1..=255, 0, 1..=255, 0, ..]);
+    if lines == 0 && is_utf16 {
         let message = "found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`";
         return Error::new(ErrorKind::Syntax, message).in_file(path);
     }
@@ -164,11 +167,23 @@ impl<'a> Iterator for Lines<'a> {
             self.number += 1;
             let line = line.strip_suffix('\r').unwrap_or(line);
             let content = line.trim_start();
-            if self.number > self.skip && !content.is_empty() && !content.starts_with('#') {
+            if self.number > self.skip && !content.is_empty() && !is_comment(content) {
                 return Some((self.number, line));
             }
         }
     }
+}
+
+/// What spreadsheets write for a cell that they could not work out; other lines that begin with `#` are comments.
+const SPREADSHEET_ERRORS: [&str; 7] = ["#N/A", "#NV", "#VALUE!", "#WERT!", "#REF!", "#DIV/0!", "#NAME?"];
+
+/// Whether a line is one for people only.
+fn is_comment(content: &str) -> bool {
+    let is_cell = |error: &str| {
+        let rest = content.strip_prefix(error);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with([',', ';', '\t']))
+    };
+    content.starts_with('#') && !SPREADSHEET_ERRORS.into_iter().any(is_cell)
 }
 
 #[cfg(test)]
@@ -194,6 +209,7 @@ mod tests {
         );
         assert_eq!(lines("title\na", 1, BLOCK).0, [(2, "a".to_owned())]);
         assert_eq!(lines("a\rb", 0, BLOCK).0, [(1, "a".to_owned()), (2, "b".to_owned())]);
+        assert_eq!(lines("#N/A,1\n#NAME\n#N/A 1", 0, BLOCK).0, [(1, "#N/A,1".to_owned())]);
     }
 
     /// Comments and blank lines, some before all others, a byte order mark, and characters of several bytes.

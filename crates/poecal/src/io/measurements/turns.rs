@@ -4,11 +4,12 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
+use super::header::Header;
 use super::inputs::InputReader;
 use super::layout::{Input, Layout, Source};
 use super::mapping::ColumnMap;
 use super::orientation::OrientationForm;
-use super::table::{Header, Row};
+use super::table::Row;
 use crate::error::{Error, ErrorKind, Result};
 
 /// Share of rows that must be beyond all sense: a few corrupt rows are no other unit.

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::cells::Separator;
+use super::header::Header;
 use super::layout::{Input, Layout, SetRule, Source};
+use super::lost::LostBeams;
 use super::mapping::PoseDirection;
 use super::number::DecimalSign;
-use super::table::Header;
 
 /// Where a column's unit came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -16,6 +17,8 @@ use super::table::Header;
 pub enum UnitSource {
     /// Brackets in the header.
     Header,
+    /// The line of units below the header.
+    UnitsLine,
     /// The mapping file.
     Mapping,
     /// Nowhere: SI.
@@ -51,14 +54,20 @@ pub struct ColumnUnderstanding {
 pub struct FileUnderstanding {
     /// The file, as the user named it.
     pub path: PathBuf,
-    /// Rows of the file.
+    /// Rows of the file, those of lost beams too.
     pub rows: usize,
     /// Position-only measurements.
     pub points: usize,
     /// Measurements with orientation.
     pub poses: usize,
+    /// Lost beams: measurements without a position, which were left out.
+    pub lost: LostBeams,
     /// What stands between two cells.
     pub separator: Separator,
+    /// The line that states the separator, as `sep=;`; none if no line does.
+    pub separator_line: Option<usize>,
+    /// The line of units below the header; none if there is none.
+    pub units_line: Option<usize>,
     /// What stands before the decimals.
     pub decimal_sign: DecimalSign,
     /// Our columns and what they were read from.

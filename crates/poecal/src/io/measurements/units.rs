@@ -64,12 +64,14 @@ const fn unit(symbol: &'static str, quantity: Quantity, factor: f64, divisor: f6
 const METRE: Unit = unit("m", Quantity::Length, 1.0, 1.0);
 const RADIAN: Unit = unit("rad", Quantity::Angle, 1.0, 1.0);
 const ONE: Unit = unit("1", Quantity::Number, 1.0, 1.0);
-const UNITS: [Unit; 11] = [
+const UNITS: [Unit; 12] = [
     METRE,
     unit("cm", Quantity::Length, 1.0, 1e2),
     unit("mm", Quantity::Length, 1.0, 1e3),
     unit("um", Quantity::Length, 1.0, 1e6),
     unit("nm", Quantity::Length, 1.0, 1e9),
+    // 25.4 mm exactly.
+    unit("in", Quantity::Length, 254.0, 1e4),
     RADIAN,
     unit("mrad", Quantity::Angle, 1.0, 1e3),
     unit("deg", Quantity::Angle, PI / 180.0, 1.0),
@@ -77,9 +79,22 @@ const UNITS: [Unit; 11] = [
     unit("arcsec", Quantity::Angle, PI / 648_000.0, 1.0),
     ONE,
 ];
+/// Other names of units, in small letters or not.
+const OTHER_NAMES: [(&str, &[&str]); 10] = [
+    ("m", &["metre", "metres", "meter", "meters"]),
+    ("cm", &["centimetre", "centimetres", "centimeter", "centimeters"]),
+    ("mm", &["millimetre", "millimetres", "millimeter", "millimeters"]),
+    ("um", &["micrometre", "micrometres", "micrometer", "micrometers", "micron", "microns"]),
+    ("in", &["inch", "inches"]),
+    ("rad", &["radian", "radians"]),
+    ("mrad", &["milliradian", "milliradians"]),
+    ("deg", &["degree", "degrees"]),
+    ("arcmin", &["arcminute", "arcminutes"]),
+    ("arcsec", &["arcsecond", "arcseconds"]),
+];
 
 impl Unit {
-    /// The unit of this symbol for this quantity; `µm` and `°` are known beside `um` and `deg`.
+    /// The unit of this symbol for this quantity; `µm`, `°` and words such as `degrees` and `inch` are known beside the symbols.
     ///
     /// # Errors
     /// [`ErrorKind::Unit`] if it is unknown or measures something else.
@@ -89,12 +104,7 @@ impl Unit {
 
     /// As [`Unit::parse`]; `purpose` (` for …`) says in the message what the unit is for.
     pub(super) fn parse_for(symbol: &str, quantity: Quantity, purpose: &str) -> Result<Unit> {
-        let plain = match symbol {
-            "µm" | "μm" => "um",
-            "°" => "deg",
-            "-" => "1",
-            other => other,
-        };
+        let plain = plain(symbol);
         if let Some(unit) = quantity.known_units().find(|unit| unit.symbol == plain) {
             return Ok(*unit);
         }
@@ -158,6 +168,17 @@ impl Unit {
     }
 }
 
+/// The symbol of a unit that may be called by another name.
+fn plain(name: &str) -> &str {
+    let is_named = |words: &[&str]| words.iter().any(|word| word.eq_ignore_ascii_case(name));
+    match name {
+        "µm" | "μm" => "um",
+        "°" => "deg",
+        "-" => "1",
+        other => OTHER_NAMES.iter().find(|(_, words)| is_named(words)).map_or(other, |(symbol, _)| symbol),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -173,11 +194,23 @@ mod tests {
     }
 
     #[test]
+    fn units_have_other_names() {
+        for (symbol, names) in OTHER_NAMES {
+            for name in names {
+                assert_eq!(Unit::parse_any(name).unwrap().symbol(), symbol);
+            }
+        }
+        assert_eq!(Unit::parse("Inches", Quantity::Length).unwrap().to_si(1.0), 0.0254);
+        assert_eq!(Unit::parse("in", Quantity::Length).unwrap().to_si(10.0), 0.254);
+        assert!(Unit::parse("Degrees", Quantity::Length).is_err());
+    }
+
+    #[test]
     fn unknown_units_name_what_is_known() {
         let message = |symbol, quantity| Unit::parse(symbol, quantity).unwrap_err().to_string();
         assert_eq!(
             message("MM", Quantity::Length),
-            "found the unit `MM`, expected a length (m, cm, mm, um, nm); did you mean `mm`?"
+            "found the unit `MM`, expected a length (m, cm, mm, um, nm, in); did you mean `mm`?"
         );
         assert_eq!(message("m", Quantity::Number), "found the unit `m`, expected a number without unit (1)");
     }

@@ -1,0 +1,309 @@
+//! The line that names the columns, and the line of units that may stand below it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::cells::{Cell, Separator, character_column, split};
+use super::table::split_line;
+use super::understanding::UnitSource;
+use super::units::{Quantity, Unit};
+use crate::error::{Error, ErrorKind, Result, first_few, nearest};
+
+/// A column of the header: `name[unit]` or `name (unit)`.
+#[derive(Clone, Debug)]
+pub(super) struct HeaderCell {
+    /// As it stands in the file.
+    pub(super) text: String,
+    /// Without the unit.
+    pub(super) name: String,
+    /// What the brackets hold.
+    pub(super) unit: Option<String>,
+    /// What stands below, in the line of units: column in that line, and unit.
+    below: Option<(usize, String)>,
+    column: usize,
+}
+
+/// The line that names the columns.
+pub(super) struct Header<'a> {
+    pub(super) path: &'a Path,
+    pub(super) line: usize,
+    pub(super) cells: Vec<HeaderCell>,
+    /// The first and the second column of each name, with and without its unit.
+    named: BTreeMap<String, (usize, Option<usize>)>,
+    /// The line of units, if there is one.
+    pub(super) units_line: Option<usize>,
+    /// The first few lines below, for a header that is none.
+    below: Vec<(usize, String)>,
+}
+
+impl HeaderCell {
+    fn new(text: &str, column: usize) -> Self {
+        // Round brackets may be part of a name.
+        let is_unit = |unit: &str| Unit::parse_any(unit.trim()).is_ok();
+        let (name, unit) = bracketed(text, '[', ']')
+            .or_else(|| bracketed(text, '(', ')').filter(|(_, unit)| is_unit(unit)))
+            .map_or((text, None), |(name, unit)| (name.trim_end(), Some(unit.trim().to_owned())));
+        HeaderCell {
+            text: text.to_owned(),
+            name: name.to_owned(),
+            unit: unit.filter(|unit| !unit.is_empty()),
+            below: None,
+            column,
+        }
+    }
+}
+
+/// A text that ends with brackets: what stands before them and in them.
+fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
+    text.strip_suffix(close)?.rsplit_once(open)
+}
+
+/// The unit that a column states as part of its name, as `x_mm` or `x in mm`.
+pub(super) fn unit_in_name(text: &str, name: &str) -> Option<Unit> {
+    let start = text.get(..name.len()).filter(|start| start.eq_ignore_ascii_case(name))?;
+    let rest = text.get(start.len()..).filter(|rest| !rest.starts_with(char::is_alphanumeric))?;
+    let words = rest.split(|c: char| !c.is_alphanumeric() && c != '°').filter(|word| !word.is_empty());
+    match words.collect::<Vec<_>>().as_slice() {
+        [unit] | ["in", unit] => {
+            Unit::parse_any(unit).or_else(|_| Unit::parse_any(&unit.to_lowercase())).ok()
+        }
+        _ => None,
+    }
+}
+
+/// Whether the cells below a header are units: one is, and none is a number. (Whether each fits is seen where it is needed.)
+pub(super) fn are_units(cells: &[Cell<'_>]) -> bool {
+    cells.iter().any(|cell| Unit::parse_any(bare(cell.raw)).is_ok())
+        && !cells.iter().any(|cell| is_number(cell.raw))
+}
+
+/// A unit without brackets around it.
+fn bare(text: &str) -> &str {
+    let inside = |open, close| text.strip_prefix(open)?.strip_suffix(close);
+    inside('[', ']').or_else(|| inside('(', ')')).unwrap_or(text).trim()
+}
+
+fn is_number(text: &str) -> bool {
+    text.replace(',', ".").parse::<f64>().is_ok()
+}
+
+impl<'a> Header<'a> {
+    pub(super) fn new(path: &'a Path, line: usize, text: &str, separator: Separator) -> Result<Self> {
+        let mut cells = Vec::new();
+        split_line(path, line, text, separator, &mut cells)?;
+        if cells.iter().all(|cell| is_number(&cell.text())) {
+            let message = "found a line of numbers, expected a header that names the columns \
+                           (a line that begins with `#` is a comment)";
+            return Err(Error::new(ErrorKind::Syntax, message).at_line(path, line));
+        }
+        let cells = header_cells(text, &cells);
+        let mut named: BTreeMap<String, (usize, Option<usize>)> = BTreeMap::new();
+        for (index, cell) in cells.iter().enumerate() {
+            let texts = [Some(&cell.name), Some(&cell.text).filter(|text| **text != cell.name)];
+            for text in texts.into_iter().flatten() {
+                match named.get_mut(text) {
+                    Some((_, second)) => *second = second.or(Some(index)),
+                    None => {
+                        named.insert(text.clone(), (index, None));
+                    }
+                }
+            }
+        }
+        Ok(Header { path, line, cells, named, units_line: None, below: Vec::new() })
+    }
+
+    /// Takes the units of a line below.
+    pub(super) fn set_units(&mut self, line: usize, text: &str, cells: &[Cell<'_>]) {
+        self.units_line = Some(line);
+        for (header, cell) in self.cells.iter_mut().zip(cells) {
+            let unit = cell.text();
+            let unit = Some(bare(&unit)).filter(|unit| !unit.is_empty());
+            header.below = unit.map(|unit| (character_column(text, cell.offset), unit.to_owned()));
+        }
+    }
+
+    /// Keeps the first few lines below, for what is to be said if this header is none.
+    pub(super) fn look_below(&mut self, lines: impl Iterator<Item = (usize, String)>) {
+        self.below = lines.collect();
+    }
+
+    /// The last line that is not a row.
+    pub(super) fn last_line(&self) -> usize {
+        self.units_line.unwrap_or(self.line)
+    }
+
+    /// The unit that the file states for a column, in the header, below it, or both.
+    pub(super) fn unit(
+        &self,
+        index: usize,
+        quantity: Quantity,
+        purpose: &str,
+    ) -> Result<Option<(Unit, UnitSource)>> {
+        let Some(cell) = self.cells.get(index) else { return Ok(None) };
+        let parse = |symbol: &str, place: (usize, usize)| {
+            Unit::parse_for(symbol, quantity, &format!(" {purpose}"))
+                .map_err(|error| Error::new(ErrorKind::Unit, error.message()).at(self.path, place.0, place.1))
+        };
+        let in_header = cell.unit.as_deref().map(|unit| parse(unit, (self.line, cell.column))).transpose()?;
+        let Some((line, (column, symbol))) = self.units_line.zip(cell.below.as_ref()) else {
+            return Ok(in_header.map(|unit| (unit, UnitSource::Header)));
+        };
+        let below = parse(symbol, (line, *column))?;
+        match in_header {
+            Some(unit) if unit != below => {
+                let message = format!(
+                    "found the unit `{symbol}` below `{}`, expected `{}` as in the header (line {}), or an empty cell",
+                    cell.text,
+                    unit.symbol(),
+                    self.line
+                );
+                Err(Error::new(ErrorKind::Unit, message).at(self.path, line, *column))
+            }
+            Some(unit) => Ok(Some((unit, UnitSource::Header))),
+            None => Ok(Some((below, UnitSource::UnitsLine))),
+        }
+    }
+
+    /// The error of a column that has no unit in the line of units, nor anywhere else.
+    pub(super) fn no_unit(&self, index: usize, line: usize, quantity: Quantity, purpose: &str) -> Error {
+        let name = self.cells.get(index).map_or("", |cell| cell.text.as_str());
+        let si = quantity.si_unit().symbol();
+        let message = format!(
+            "found no unit below column `{name}` in the line of units (line {line}), expected one {purpose}: write `{si}` \
+             there if it is in {si}"
+        );
+        self.error(ErrorKind::Unit, index, message)
+    }
+
+    /// Index of the column of this name, which may include the unit as the file writes it.
+    pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
+        match self.named.get(name) {
+            Some((_, Some(second))) => {
+                let message =
+                    format!("found a second column `{name}`, expected one; rename or remove one of them");
+                Err(self.error(ErrorKind::Measurement, *second, message))
+            }
+            Some((first, None)) => Ok(Some(*first)),
+            None => Ok(None),
+        }
+    }
+
+    /// How many columns have this name.
+    pub(super) fn count(&self, name: &str) -> usize {
+        self.cells.iter().filter(|cell| cell.name == name).count()
+    }
+
+    /// As [`Header::find`], but the column must be there; `is_known` tells names that cannot be a misspelling of another column's,
+    /// and `advice` is what to do.
+    pub(super) fn require(
+        &self,
+        name: &str,
+        purpose: &str,
+        is_known: impl Fn(&str) -> bool,
+        advice: &str,
+    ) -> Result<usize> {
+        if let Some(index) = self.find(name)? {
+            return Ok(index);
+        }
+        let hint = self.no_header(name).unwrap_or_else(|| self.other_names(name, is_known) + advice);
+        let message = format!("found no column `{name}`, expected one {purpose}; {hint}");
+        Err(Error::new(ErrorKind::Measurement, message).at_line(self.path, self.line))
+    }
+
+    /// What to say if this line is not the header at all.
+    fn no_header(&self, name: &str) -> Option<String> {
+        let has_name = |(_, text): &&(usize, String)| {
+            let mut cells = Vec::new();
+            split(text, Separator::recognised(text), &mut cells).is_ok()
+                && header_cells(text, &cells).iter().any(|cell| cell.name == name)
+        };
+        if let Some((line, _)) = self.below.iter().find(has_name) {
+            return Some(format!(
+                "line {line} has it: put `#` in front of the lines above it, or write `skip_lines = {}` in a mapping \
+                 file (--columns)",
+                line - 1
+            ));
+        }
+        let numbers = self.cells.iter().filter(|cell| is_number(&cell.text)).count();
+        if 2 * numbers > self.cells.len() {
+            return Some(
+                "the line holds mostly numbers: put a line above it that names the columns".to_owned(),
+            );
+        }
+        match self.cells.as_slice() {
+            [only] if only.text.len() > name.len() && only.text.contains(name) => Some(format!(
+                "the whole line is one column, `{}`: separate the columns by `,`, `;`, tabs or blanks",
+                only.text
+            )),
+            _ => None,
+        }
+    }
+
+    /// What other column may be meant.
+    fn other_names(&self, name: &str, is_known: impl Fn(&str) -> bool) -> String {
+        let names = || {
+            let named = self.cells.iter().filter(|cell| !cell.name.is_empty());
+            named.map(|cell| cell.name.as_str()).filter(|found| !is_known(found))
+        };
+        let with_unit = names().find_map(|found| Some((found, unit_in_name(found, name)?)));
+        match (with_unit, nearest(name, names())) {
+            (Some((found, unit)), _) => {
+                format!("if `{found}` is meant, write `{name}[{}]`", unit.symbol())
+            }
+            (None, Some(near)) => format!("the nearest name found is `{near}`"),
+            (None, None) => {
+                let all = self.cells.iter().map(|cell| cell.name.as_str()).filter(|name| !name.is_empty());
+                format!("the columns are {}", first_few(&all.collect::<Vec<_>>()))
+            }
+        }
+    }
+
+    /// An error at a column's name.
+    pub(super) fn error(&self, kind: ErrorKind, index: usize, message: impl Into<String>) -> Error {
+        let column = self.cells.get(index).map_or(1, |cell| cell.column);
+        Error::new(kind, message).at(self.path, self.line, column)
+    }
+}
+
+fn header_cells(text: &str, cells: &[Cell<'_>]) -> Vec<HeaderCell> {
+    // Counted on from cell to cell: there may be very many.
+    let (mut column, mut offset) = (1, 0);
+    let cell = |cell: &Cell<'_>| {
+        column += text.get(offset..cell.offset).map_or(0, |passed| passed.chars().count());
+        offset = offset.max(cell.offset);
+        HeaderCell::new(&cell.text(), column)
+    };
+    cells.iter().map(cell).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn round_brackets_are_units_only_where_they_hold_one() {
+        let parts = |text: &str| {
+            let cell = HeaderCell::new(text, 1);
+            (cell.name, cell.unit)
+        };
+        let is = |name: &str, unit: &str| (name.to_owned(), Some(unit.to_owned()));
+        assert_eq!(parts("x (mm)"), is("x", "mm"));
+        assert_eq!(parts("joint1(Degrees)"), is("joint1", "Degrees"));
+        assert_eq!(parts("x [parsec]"), is("x", "parsec"));
+        for name in ["joint(1)", "A (left)", "x (MM)", "x (-)", "x ()"] {
+            assert_eq!(parts(name), (name.to_owned(), None));
+        }
+    }
+
+    #[test]
+    fn units_are_seen_in_names() {
+        let symbol = |text: &str, name: &str| unit_in_name(text, name).map(Unit::symbol);
+        for text in ["x_mm", "x-mm", "X.mm", "x in mm", "x / MM", "x (MM)", "x_[mm]"] {
+            assert_eq!(symbol(text, "x"), Some("mm"), "{text}");
+        }
+        assert_eq!(symbol("joint1_degrees", "joint1"), Some("deg"));
+        for text in ["xmm", "x_left", "x_left_mm", "x", "ax_mm", "x1_mm"] {
+            assert_eq!(symbol(text, "x"), None, "{text}");
+        }
+    }
+}

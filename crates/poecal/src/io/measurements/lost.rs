@@ -1,0 +1,140 @@
+//! Lost beams: measurements that say nothing of where the target was.
+
+use std::path::Path;
+
+use nalgebra::Matrix3;
+use serde::Serialize;
+
+use super::inputs::InputReader;
+use super::layout::TargetLayout;
+use super::table::Row;
+use crate::error::{Error, Result};
+
+/// Lines that are named.
+const NAMED_LINES: usize = 5;
+
+/// Measurements that were left out because the device did not see the target: their position is empty, or exactly zero in all three
+/// coordinates.
+///
+/// ```
+/// use poecal::io::measurements::{ReadOptions, parse};
+/// let robot = poecal::simulate::scara();
+/// let text = "joint1,joint2,joint3,joint4,x,y,z\n0,0,0,0,0.6,0.05,0.1\n0.1,0,0,0,,,\n0.2,0,0,0,0,0,0\n";
+/// let file = parse(text, "a table", &robot, &ReadOptions::default())?;
+/// assert_eq!((file.data.len(), file.understood[0].lost.count), (1, 2));
+/// assert_eq!(file.understood[0].lost.first_lines, [3, 4]);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct LostBeams {
+    /// How many there are.
+    pub count: usize,
+    /// The lines of the first few.
+    pub first_lines: Vec<usize>,
+}
+
+/// What a row shows of a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beam {
+    /// Something was measured, or written.
+    Seen,
+    /// All cells are empty.
+    Empty,
+    /// The position is zero, and the orientation zero, the identity or empty.
+    Zero,
+}
+
+impl LostBeams {
+    /// Takes lost beams out of a row's numbers; whether nothing is left of the row.
+    ///
+    /// # Errors
+    /// [`crate::ErrorKind::Measurement`] at a lost beam if it is refused (`strict`).
+    pub(super) fn take_out(
+        &mut self,
+        row: &Row<'_>,
+        targets: &[TargetLayout],
+        inputs: &mut InputReader<'_>,
+        strict: bool,
+    ) -> Result<bool> {
+        let before = self.count;
+        let mut seen = false;
+        for target in targets {
+            match beam(target, inputs) {
+                Beam::Seen => seen = true,
+                // Of several targets in a row some may not be looked at.
+                Beam::Empty => {}
+                Beam::Zero if strict => return Err(refused(row, target, inputs, "the position 0, 0, 0")),
+                Beam::Zero => {
+                    self.add(row.line);
+                    inputs.forget(&target.position);
+                    inputs.forget(target.orientation.as_ref().map_or(&[], |(_, parts)| parts));
+                }
+            }
+        }
+        if !seen && self.count == before {
+            if let (true, Some(target)) = (strict, targets.first()) {
+                return Err(refused(row, target, inputs, "an empty position"));
+            }
+            self.add(row.line);
+        }
+        Ok(!seen)
+    }
+
+    fn add(&mut self, line: usize) {
+        self.count += 1;
+        if self.first_lines.len() < NAMED_LINES && self.first_lines.last() != Some(&line) {
+            self.first_lines.push(line);
+        }
+    }
+
+    /// What was left out, in words; none if there is nothing.
+    #[must_use]
+    pub fn words(&self) -> Option<String> {
+        let lines: Vec<String> = self.first_lines.iter().map(usize::to_string).collect();
+        let (what, line_word) = match (self.count, lines.len()) {
+            (0, _) => return None,
+            (1, _) => ("1 measurement".to_owned(), "line"),
+            (count, 1) => (format!("{count} measurements"), "line"),
+            (count, _) => (format!("{count} measurements"), "lines"),
+        };
+        let more = if self.count > NAMED_LINES { ", …" } else { "" };
+        Some(format!(
+            "{what} with an empty or zero position, as of a lost beam ({line_word} {}{more})",
+            lines.join(", ")
+        ))
+    }
+
+    /// The warning of a file.
+    pub(super) fn warning(&self, path: &Path) -> Option<String> {
+        Some(format!("{}: left out {}; --strict refuses them", path.display(), self.words()?))
+    }
+}
+
+/// What the current row shows of a target.
+fn beam(target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
+    let position = inputs.all(target.position);
+    let orientation =
+        || target.orientation.iter().flat_map(|(_, parts)| parts).map(|&part| inputs.value(part));
+    if position == [None; 3] {
+        return if orientation().all(|part| part.is_none()) { Beam::Empty } else { Beam::Seen };
+    }
+    if position != [Some(0.0); 3] {
+        return Beam::Seen;
+    }
+    let is_none = orientation().all(|part| part.is_none_or(|part| part == 0.0));
+    let is_identity = || {
+        let mut values = [0.0; 4];
+        for (value, part) in values.iter_mut().zip(orientation()) {
+            *value = part.unwrap_or(f64::NAN);
+        }
+        let form = target.orientation.as_ref().map(|(form, _)| form);
+        form.and_then(|form| form.rotation(values).ok()) == Some(Matrix3::identity())
+    };
+    if is_none || is_identity() { Beam::Zero } else { Beam::Seen }
+}
+
+fn refused(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>, found: &str) -> Error {
+    let [first, ..] = target.position;
+    let message = format!("found {found}, as of a lost beam, expected what was measured; leave out the row");
+    row.error(inputs.column(first), message)
+}

@@ -1,0 +1,91 @@
+//! What a row says of a target.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::inputs::InputReader;
+use super::layout::TargetLayout;
+use super::mapping::PoseDirection;
+use super::table::Row;
+use crate::error::Result;
+use crate::lie::Pose;
+use crate::measurement::{Measurement, PointMeasurement, PoseMeasurement};
+
+/// What is expected of a position of which a part is missing.
+const EMPTY: &str = "a position: where none was measured, leave all of its cells empty";
+
+/// What the row says of a target; none if it may be missing and is.
+pub(super) fn measurement(
+    row: &Row<'_>,
+    target: &TargetLayout,
+    direction: PoseDirection,
+    inputs: &InputReader<'_>,
+    may_be_missing: bool,
+) -> Result<Option<Measurement>> {
+    let position = match inputs.all(target.position) {
+        [Some(x), Some(y), Some(z)] => Vector3::new(x, y, z),
+        [None, None, None] if may_be_missing => return Ok(None),
+        parts => {
+            let empty = parts.iter().position(Option::is_none).unwrap_or(0);
+            let input = target.position.get(empty).copied().unwrap_or(0);
+            return Err(inputs.error(row, input, "found an empty cell", EMPTY));
+        }
+    };
+    let measurement = match (orientation(row, target, inputs)?, direction) {
+        (None, PoseDirection::DeviceFromTarget) => Measurement::Point(PointMeasurement { position }),
+        (None, PoseDirection::TargetFromDevice) => {
+            let message = "found a position without orientation, expected both, because the mapping says that \
+                           poses are target_from_device";
+            return Err(row.error(inputs.column(target.position[0]), message));
+        }
+        (Some(rotation), PoseDirection::DeviceFromTarget) => {
+            Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position) })
+        }
+        (Some(rotation), PoseDirection::TargetFromDevice) => {
+            Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position).inverse() })
+        }
+    };
+    Ok(Some(measurement))
+}
+
+/// The measured rotation; none if all its cells are empty.
+fn orientation(
+    row: &Row<'_>,
+    target: &TargetLayout,
+    inputs: &InputReader<'_>,
+) -> Result<Option<Matrix3<f64>>> {
+    let Some((form, columns)) = &target.orientation else { return Ok(None) };
+    let mut values = [0.0; 4];
+    let mut empty = None;
+    let mut given = false;
+    for (slot, &input) in values.iter_mut().zip(columns) {
+        match inputs.value(input) {
+            Some(value) => {
+                *slot = value;
+                given = true;
+            }
+            None => empty = Some(input),
+        }
+    }
+    match (given, empty) {
+        (false, _) => Ok(None),
+        (true, Some(input)) => {
+            Err(inputs.error(row, input, "found an empty cell", "an orientation that is complete or absent"))
+        }
+        (true, None) => {
+            let first = columns.first().map_or(0, |&input| inputs.column(input));
+            form.rotation(values).map(Some).map_err(|message| row.error(first, message))
+        }
+    }
+}
+
+/// A standard deviation, if the row states it.
+pub(super) fn sigma(row: &Row<'_>, input: Option<usize>, inputs: &InputReader<'_>) -> Result<Option<f64>> {
+    let Some(input) = input else { return Ok(None) };
+    match inputs.value(input) {
+        Some(value) if value <= 0.0 => {
+            let text = row.cells.get(inputs.column(input)).map_or("", |cell| cell.raw);
+            Err(inputs.error(row, input, &format!("found `{text}`"), "a standard deviation above 0"))
+        }
+        value => Ok(value),
+    }
+}
