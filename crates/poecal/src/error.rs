@@ -40,7 +40,7 @@ pub struct Place {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.path.display())?;
+        f.write_str(&one_line(self.path.display().to_string()))?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
             if let Some(column) = self.column {
@@ -70,9 +70,15 @@ struct Inner {
 }
 
 impl Error {
-    /// An error without a place; `message` says what was found, what was expected and what to do.
+    /// An error without a place; `message` says what was found, what was expected and what to do. Control characters of a text that it
+    /// quotes are written out, so that it is one line and moves no terminal's cursor.
+    ///
+    /// ```
+    /// use poecal::{Error, ErrorKind};
+    /// assert_eq!(Error::new(ErrorKind::Syntax, "found `a\tb\n`").message(), r"found `a\tb\n`");
+    /// ```
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
-        Error(Box::new(Inner { kind, place: None, message: message.into() }))
+        Error(Box::new(Inner { kind, place: None, message: one_line(message.into()) }))
     }
 
     /// The same error at a line and column (both from 1) of a file.
@@ -136,6 +142,19 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// The text with its control characters, and whatever else ends a line, written out (`\n`, `\u{1b}`).
+pub(crate) fn one_line(text: String) -> String {
+    let breaks = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
+    if !text.contains(breaks) {
+        return text;
+    }
+    let mut line = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        if breaks(c) { line.extend(c.escape_default()) } else { line.push(c) }
+    }
+    line
+}
 
 /// Names that a message lists at most.
 const NAMES_LISTED: usize = 12;

@@ -185,7 +185,11 @@ fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path) -> Error {
         let message = format!(
             "found {found} ({reason}), expected a calibration as written by `poecal calibrate`: name a calibration.json"
         );
-        Error::new(ErrorKind::Syntax, message).at(path, error.line().max(1), error.column().max(1))
+        let line = error.line().max(1);
+        // The parser counts bytes up to what it did not expect.
+        let before = text.split('\n').nth(line - 1).unwrap_or_default().char_indices();
+        let column = before.take_while(|(at, _)| *at < error.column()).count().max(1);
+        Error::new(ErrorKind::Syntax, message).at(path, line, column)
     };
     let value: serde_json::Value = match serde_json::from_str(text) {
         Ok(value) => value,

@@ -14,6 +14,7 @@ use super::orientation::OrientationForm;
 use super::text::read_text;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::source_text::position;
 
 /// How a file's columns become ours, read from a TOML file (docs/file-formats.md, "Mapping file").
 ///
@@ -151,9 +152,7 @@ impl ColumnMap {
             let error_at = Error::new(ErrorKind::Syntax, message);
             match error.span() {
                 Some(span) => {
-                    let before = text.get(..span.start).unwrap_or(text);
-                    let line = before.matches('\n').count() + 1;
-                    let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+                    let (line, column) = position(text, span.start);
                     error_at.at(path, line, column)
                 }
                 None => error_at.in_file(path),

@@ -37,10 +37,11 @@ impl Residuals {
                 );
                 Error::new(ErrorKind::Syntax, message).at(path, line, 1)
             })?;
-            let line = record.position().map_or(1, |position| position.line() as usize);
             let cells: Vec<&str> = record.iter().collect();
             let done = if index == 0 { found.head(&cells) } else { found.row(&cells) };
-            done.map_err(|Wrong { column, message }| {
+            done.map_err(|Wrong { cell, message }| {
+                let start = record.position().map_or(0, |position| position.byte() as usize);
+                let (line, column) = source_text::position(text, cell_start(text, start, cell));
                 Error::new(ErrorKind::Syntax, message).at(path, line, column)
             })?;
         }
@@ -54,7 +55,7 @@ impl Residuals {
                 let message = format!(
                     "found the column `{cell}`, expected `{expected}`, as in {EXPECTED}: calibrate again"
                 );
-                return Err(Wrong { column: column + 1, message });
+                return Err(Wrong { cell: column, message });
             }
         }
         let first = COLUMNS.split(',').count();
@@ -69,7 +70,7 @@ impl Residuals {
                     "found the column `{cell}`, expected a joint's name with [deg] or [mm]: calibrate again"
                 )
             };
-            self.readings.push(reading.ok_or_else(|| Wrong { column: column + 1, message: message() })?);
+            self.readings.push(reading.ok_or_else(|| Wrong { cell: column, message: message() })?);
         }
         Ok(())
     }
@@ -108,9 +109,27 @@ fn index_of(names: &mut Vec<String>, name: &str) -> usize {
     })
 }
 
-/// What is wrong, and in which column, from 1.
+/// Byte offset of a record's cell, or of the record's end if it has fewer; `start` is where the record before ended.
+fn cell_start(text: &str, start: usize, cell: usize) -> usize {
+    let rest = text.get(start..).unwrap_or_default();
+    let record = rest.trim_start_matches(['\u{feff}', '\r', '\n']);
+    let start = text.len() - record.len();
+    let (mut quoted, mut cells) = (false, 0);
+    for (at, character) in record.char_indices() {
+        match character {
+            _ if cells == cell => return start + at,
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells += 1,
+            '\r' | '\n' if !quoted => return start + at,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+/// What is wrong, and in which cell, from 0.
 struct Wrong {
-    column: usize,
+    cell: usize,
     message: String,
 }
 
@@ -123,7 +142,10 @@ struct Cells<'a> {
 impl<'a> Cells<'a> {
     /// A complaint about the cell that was taken last.
     fn wrong(&self, found: &str, expected: &str) -> Wrong {
-        Wrong { column: self.next, message: format!("found `{found}`, expected {expected}: calibrate again") }
+        Wrong {
+            cell: self.next.saturating_sub(1),
+            message: format!("found `{found}`, expected {expected}: calibrate again"),
+        }
     }
 
     fn text(&mut self) -> std::result::Result<&'a str, Wrong> {
@@ -131,7 +153,7 @@ impl<'a> Cells<'a> {
         self.next += 1;
         let message =
             || "found the end of the row, expected a cell for each column: calibrate again".to_owned();
-        cell.ok_or_else(|| Wrong { column: self.next, message: message() })
+        cell.ok_or_else(|| Wrong { cell: self.next.saturating_sub(1), message: message() })
     }
 
     fn parsed<T: std::str::FromStr>(&mut self, expected: &str) -> std::result::Result<T, Wrong> {
