@@ -61,8 +61,6 @@ const PIECES: [&str; 22] = [
     "\u{1b}[2J",
     "µé\u{2028}",
 ];
-/// Most changes of one seed.
-const MOST_CHANGES: u64 = 6;
 
 /// Makes variations of seeds: bytes changed, put in, left out, doubled; words and numbers replaced; parts of other seeds put in.
 ///
@@ -89,7 +87,8 @@ impl<'a> Mutator<'a> {
     /// The next variation of some seed.
     pub fn variation(&mut self) -> Vec<u8> {
         let mut data = self.seed().to_vec();
-        for _ in 0..=self.below(MOST_CHANGES as usize) {
+        // One change as a rule, seldom many: most inputs are then read to their end.
+        for _ in 0..=self.generator.next_u64().trailing_zeros() {
             self.change(&mut data);
         }
         data.truncate(LONGEST);

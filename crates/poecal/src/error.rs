@@ -211,3 +211,14 @@ pub(crate) fn edit_distance(a: &str, b: &str) -> usize {
     }
     rows[a.len()][b.len()]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_one_line_whatever_it_quotes() {
+        let error = Error::new(ErrorKind::Syntax, "found `a\r\n\u{1b}[2J\u{2028}\tµ`").at("a\nb.csv", 1, 2);
+        assert_eq!(error.to_string(), r"a\nb.csv:1:2: found `a\r\n\u{1b}[2J\u{2028}\tµ`");
+    }
+}

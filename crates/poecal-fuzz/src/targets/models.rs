@@ -7,7 +7,7 @@ use poecal::io::urdf::{ChainSelection, UrdfDocument};
 use poecal::lie::{Pose, Screw};
 use poecal::robot::Robot;
 
-use crate::properties::{PATH, alike, certain, one_line, text, understood};
+use crate::properties::{PATH, VAST_M, alike, certain, one_line, size_m, text, understood};
 
 /// Rounding of what is written and read again, of a robot of 1 m.
 const ROUNDING: f64 = 1e-10;
@@ -21,6 +21,9 @@ pub fn urdf(data: &[u8]) -> bool {
     };
     assert_eq!(document.text(), text);
     let robot = document.robot();
+    if size_m(robot) > VAST_M {
+        return true;
+    }
     patched(&document, robot);
     patched(&document, &moved(robot));
     let source = ModelSource::Urdf(Box::new(document.clone()));
@@ -59,13 +62,14 @@ pub(crate) fn moved(robot: &Robot) -> Robot {
 
 /// A model in both forms, if it can be.
 pub(crate) fn converted(model: &Model) {
+    let is_vast = size_m(&model.robot) > VAST_M;
     for form in [ModelFormat::Urdf, ModelFormat::Toml] {
         match convert(model, form) {
             Ok(converted) => converted.notes.iter().for_each(|note| one_line(note)),
             Err(error) => {
                 one_line(&error.to_string());
                 assert_eq!(error.kind(), ErrorKind::Export, "{error}");
-                assert!(!error.message().contains("cannot be read back"), "{error}");
+                assert!(is_vast || !error.message().contains("cannot be read back"), "{error}");
             }
         }
     }
@@ -75,6 +79,9 @@ pub(crate) fn converted(model: &Model) {
 pub fn robot_toml(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
     let Some(robot) = understood(robot_toml::parse(&text, PATH), &text) else { return false };
+    if size_m(&robot) > VAST_M {
+        return true;
+    }
     let written = robot_toml::write(&robot);
     let again = certain(robot_toml::parse(&written, PATH), &written);
     same_robot(&robot, &again);

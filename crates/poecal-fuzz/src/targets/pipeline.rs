@@ -13,7 +13,7 @@ use poecal::report;
 use super::calibration::{page, same};
 use super::models::{converted, patched};
 use super::tables::{joints_sound, sound};
-use crate::properties::{PATH, certain, one_line, parts, understood};
+use crate::properties::{PATH, VAST_M, certain, one_line, parts, size_m, understood};
 
 /// What is calibrated at most, so that one input takes little time.
 const MOST_JOINTS: usize = 8;
@@ -79,7 +79,9 @@ fn results(model: &Model, read: &MeasurementFile, calibration: &Calibration) -> 
     assert_eq!(certain(Residuals::parse(&text, PATH), &text).text(), text);
     assert!(page(&file, &residuals), "a calibration without a page");
     let robot = calibration.robot_with_targets();
-    if let ModelSource::Urdf(document) = &model.source {
+    if let ModelSource::Urdf(document) = &model.source
+        && size_m(&robot) < VAST_M
+    {
         patched(document, &robot);
     }
     let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path: PATH.into() };

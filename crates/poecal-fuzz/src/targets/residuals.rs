@@ -17,5 +17,6 @@ pub(crate) fn same(residuals: &Residuals) {
     let written = residuals.text();
     let again = certain(Residuals::parse(&written, PATH), &written);
     assert_eq!(again.text(), written);
-    assert_eq!(&again, residuals, "{written}");
+    // What is no number does not equal itself.
+    assert!(&again == residuals || written.contains("NaN"), "{written}");
 }

@@ -4,8 +4,8 @@ use poecal::io::settings::{SettingValue, Settings};
 
 use crate::properties::{PATH, certain, text, understood};
 
-/// Keys that settings may have.
-const KEYS: [&str; 12] = [
+/// Keys that settings may have: those of the examples, and some of each kind.
+const KEYS: [&str; 14] = [
     "model",
     "measurements",
     "columns",
@@ -13,7 +13,9 @@ const KEYS: [&str; 12] = [
     "out",
     "report",
     "frame",
+    "tip_link",
     "sigma_position",
+    "sigma_rotation",
     "held_out",
     "seed",
     "fit_where",

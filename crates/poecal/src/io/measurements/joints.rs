@@ -10,7 +10,7 @@ use super::number::Numbers;
 use super::scale::JointWatch;
 use super::table::Table;
 use super::text::Blocks;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, one_line};
 use crate::robot::Robot;
 
 /// Configurations of a file.
@@ -96,6 +96,6 @@ fn of_blocks<'p>(
         let message = "found a header and no rows, expected at least one row of joint readings";
         return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
     }
-    joints.warnings = watch.finish(path, &layout)?;
+    joints.warnings = watch.finish(path, &layout)?.into_iter().map(one_line).collect();
     Ok(joints)
 }

@@ -15,7 +15,7 @@ use super::table::{Row, Table};
 use super::text::Blocks;
 use super::understanding::{self, FileUnderstanding};
 use super::{MeasurementFile, ReadOptions};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, one_line};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Set, Source};
 use crate::robot::Robot;
@@ -272,6 +272,7 @@ impl<'a> Reader<'a> {
             });
         }
         let Reader { data, understood, sha256, warnings, .. } = self;
+        let warnings = warnings.into_iter().map(one_line).collect();
         Ok(MeasurementFile { data, understood, sha256, warnings })
     }
 }

@@ -162,14 +162,15 @@ impl<'a> Cells<'a> {
     }
 
     fn number(&mut self) -> std::result::Result<f64, Wrong> {
-        self.parsed("a number")
+        let number: f64 = self.parsed("a number")?;
+        let cell =
+            self.next.checked_sub(1).and_then(|last| self.cells.get(last)).copied().unwrap_or_default();
+        if number.is_finite() { Ok(number) } else { Err(self.wrong(cell, "a finite number")) }
     }
 
     /// As many numbers, or none if their cells are all empty.
     fn numbers<const N: usize>(&mut self) -> std::result::Result<Option<[f64; N]>, Wrong> {
-        let here = self.cells.get(self.next..self.next + N);
-        if here.is_some_and(|cells| cells.iter().all(|cell| cell.is_empty())) {
-            self.next += N;
+        if self.are_empty(N) {
             return Ok(None);
         }
         let mut values = [0.0; N];
@@ -179,18 +180,26 @@ impl<'a> Cells<'a> {
         Ok(Some(values))
     }
 
+    /// Whether the next cells are all empty; they are then passed over.
+    fn are_empty(&mut self, count: usize) -> bool {
+        let here = self.cells.get(self.next..self.next + count);
+        let empty = here.is_some_and(|cells| cells.iter().all(|cell| cell.is_empty()));
+        self.next += if empty { count } else { 0 };
+        empty
+    }
+
     fn errors(&mut self) -> std::result::Result<Option<ModelErrors>, Wrong> {
         let numbers: Option<[f64; 6]> = self.numbers()?;
         Ok(numbers.map(|[a, b, c, x, y, z]| ModelErrors { models: [a, b, c], residual: [x, y, z] }))
     }
 
     fn judged(&mut self) -> std::result::Result<Option<Judged>, Wrong> {
-        let numbers: Option<[f64; 4]> = self.numbers()?;
-        Ok(numbers.map(|[weight, leverage, studentized, suspected]| Judged {
-            weight,
-            leverage,
-            studentized,
-            suspected: suspected != 0.0,
-        }))
+        if self.are_empty(4) {
+            return Ok(None);
+        }
+        let weight = self.number()?;
+        // Where all of a row's information is its own, these may be no numbers.
+        let (leverage, studentized) = (self.parsed("a number")?, self.parsed("a number")?);
+        Ok(Some(Judged { weight, leverage, studentized, suspected: self.number()? != 0.0 }))
     }
 }
