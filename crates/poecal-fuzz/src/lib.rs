@@ -44,14 +44,14 @@ pub struct Target {
 
 /// All of them.
 pub const TARGETS: [Target; 10] = [
-    Target { name: "urdf", run: targets::urdf, trials: 4000 },
-    Target { name: "robot_toml", run: targets::robot_toml, trials: 4000 },
-    Target { name: "measurements", run: targets::measurements, trials: 10000 },
+    Target { name: "urdf", run: targets::urdf, trials: 1500 },
+    Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
+    Target { name: "measurements", run: targets::measurements, trials: 6000 },
     Target { name: "mapping", run: targets::mapping, trials: 10000 },
     Target { name: "joints", run: targets::joints, trials: 10000 },
-    Target { name: "residuals", run: targets::residuals, trials: 10000 },
+    Target { name: "residuals", run: targets::residuals, trials: 5000 },
     Target { name: "settings", run: targets::settings, trials: 20000 },
-    Target { name: "calibration", run: targets::calibration, trials: 2000 },
-    Target { name: "report", run: targets::report, trials: 1000 },
+    Target { name: "calibration", run: targets::calibration, trials: 1000 },
+    Target { name: "report", run: targets::report, trials: 600 },
     Target { name: "pipeline", run: targets::pipeline, trials: 150 },
 ];
