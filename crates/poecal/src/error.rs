@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::text::visible;
+
 /// What went wrong, as a word that does not change between versions.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +43,7 @@ pub struct Place {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.path.display())?;
+        f.write_str(&visible(&self.path.display().to_string()))?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
             if let Some(column) = self.column {
@@ -71,9 +73,16 @@ struct Inner {
 }
 
 impl Error {
-    /// An error without a place; `message` says what was found, what was expected and what to do.
+    /// An error without a place; `message` says what was found, what was expected and what to do. Control characters of a text that it
+    /// quotes are written out, so that it is one line and moves no terminal's cursor.
+    ///
+    /// ```
+    /// use poecal::{Error, ErrorKind};
+    /// assert_eq!(Error::new(ErrorKind::Syntax, "found `a\tb\n`").message(), r"found `a\u{9}b\u{a}`");
+    /// ```
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
-        Error(Box::new(Inner { kind, place: None, message: with_names_shown(message.into()) }))
+        let message = with_names_shown(message.into());
+        Error(Box::new(Inner { kind, place: None, message: visible(&message).into_owned() }))
     }
 
     /// The same error at a line and column (both from 1) of a file.
@@ -260,5 +269,11 @@ mod tests {
             assert_eq!(distance_within(a, b, 9), Some(distance), "{a} {b}");
         }
         assert_eq!(distance_within("kitten", "sitting", 2), None);
+    }
+
+    #[test]
+    fn an_error_is_one_line_whatever_it_quotes() {
+        let error = Error::new(ErrorKind::Syntax, "found `a\r\n\u{1b}[2J\u{2028}\tµ`").at("a\nb.csv", 1, 2);
+        assert_eq!(error.to_string(), r"a\u{a}b.csv:1:2: found `a\u{d}\u{a}\u{1b}[2J\u{2028}\u{9}µ`");
     }
 }

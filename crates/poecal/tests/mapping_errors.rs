@@ -10,6 +10,10 @@ use poecal::io::measurements::{ColumnMap, ReadOptions, read};
 /// Text of `map.toml`, and the whole message when a good file is read with it.
 const MAPPINGS: &[(&str, &str)] = &[
     ("separator = \"|\"", "map.toml:1:13: found the separator `|`, expected `,`, `;`, `tab` or `whitespace`"),
+    (
+        "\u{feff}separator = \"|\"",
+        "map.toml:1:13: found the separator `|`, expected `,`, `;`, `tab` or `whitespace`",
+    ),
     ("decimal = \"'\"", "map.toml:1:11: found the decimal sign `'`, expected `.` or `,`"),
     (
         "\n\nseparater = \";\"",

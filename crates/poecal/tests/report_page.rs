@@ -217,18 +217,27 @@ fn residuals_of_another_calibration_are_refused() {
 fn residuals_that_were_changed_are_told_with_their_place() {
     let session = Session::new(&elbow(), Kind::Point, 60);
     let text = session.residuals().text();
-    let message = |text: &str| Residuals::parse(text, "residuals.csv").unwrap_err().to_string();
+    // A message, and what stands at its place: columns count characters.
+    let refused = |text: &str| {
+        let error = Residuals::parse(text, "residuals.csv").unwrap_err();
+        let place = error.place().unwrap();
+        let line = text.lines().nth(place.line.unwrap() - 1).unwrap();
+        (error.to_string(), line.chars().skip(place.column.unwrap() - 1).collect::<String>())
+    };
     for (old, new, expected) in [
         (",held_out,", ",maybe,", "found `maybe`, expected fit or held_out"),
         ("leverage", "pull", "found the column `pull`, expected `leverage`"),
         ("joint1[deg]", "joint1", "found the column `joint1`, expected a joint's name with [deg] or [mm]"),
     ] {
-        let error = message(&text.replacen(old, new, 1));
+        let (error, rest) = refused(&text.replacen(old, new, 1));
         println!("{error}");
+        assert!(rest.starts_with(new.trim_start_matches(',')), "{error}: {rest}");
         assert!(error.starts_with("residuals.csv:") && error.contains(expected), "{error}");
     }
     let cut = text.trim_end().rsplit_once(',').unwrap().0;
-    assert!(message(cut).contains("residuals.csv:61:27: found the end of the row"), "{}", message(cut));
-    let longer = format!("{},7", text.trim_end());
-    assert!(message(&longer).contains("found `7`, expected no further cell"), "{}", message(&longer));
+    let (error, rest) = refused(cut);
+    assert!(error.contains("residuals.csv:61:") && error.contains(": found the end of the row"), "{error}");
+    assert_eq!(rest, "");
+    let (error, rest) = refused(&format!("{},7", text.trim_end()));
+    assert!(error.contains("found `7`, expected no further cell") && rest == "7", "{error}: {rest}");
 }

@@ -420,9 +420,12 @@ impl Disk for SimulatedDisk {
         state.begin()?;
         let path = whole(path);
         match state.tree.get(&path) {
-            Some(Node::File(_)) => Ok(state.change(&[&path.clone()], |tree| {
-                tree.remove(&path);
-            })),
+            Some(Node::File(_)) => {
+                state.change(&[&path.clone()], |tree| {
+                    tree.remove(&path);
+                });
+                Ok(())
+            }
             Some(Node::Folder) => Err(error(ErrorKind::IsADirectory)),
             None => Err(error(ErrorKind::NotFound)),
         }

@@ -81,25 +81,45 @@ impl Model {
     /// else as the reader of its form.
     pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
-        let text = source_text::read(path, "a robot model (URDF, TOML or calibration.json)")?;
-        if looks_like_json(path, &text) {
+        Model::parse(
+            &source_text::read(path, "a robot model (URDF, TOML or calibration.json)")?,
+            path,
+            selection,
+        )
+    }
+
+    /// A robot model from its text; `path` is what messages call it, and its extension says which form it has, as for a file.
+    ///
+    /// ```
+    /// use poecal::io::model::{Model, ModelSource};
+    /// let text = poecal::io::robot_toml::write(&poecal::simulate::scara());
+    /// let model = Model::parse(&text, "a model", &Default::default())?;
+    /// assert_eq!(model.source, ModelSource::Toml);
+    /// # Ok::<(), poecal::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Model::read`].
+    pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
+        let path = path.as_ref();
+        if looks_like_json(path, text) {
             refuse_selection(path, selection)?;
-            let file = CalibrationFile::parse(&text, path)?;
+            let file = CalibrationFile::parse(text, path)?;
             let robot = file.robot().map_err(|error| error.in_file(path))?;
             let source = ModelSource::Calibration(Box::new(file));
             return Ok(Model { robot, source, path: path.to_path_buf() });
         }
-        if let Some(error) = looks_like::table_for_model(&text, path) {
+        if let Some(error) = looks_like::table_for_model(text, path) {
             return Err(error);
         }
-        let (robot, source) = match ModelFormat::of_path(path).unwrap_or(ModelFormat::of_text(&text)) {
+        let (robot, source) = match ModelFormat::of_path(path).unwrap_or(ModelFormat::of_text(text)) {
             ModelFormat::Urdf => {
-                let urdf = UrdfDocument::parse(&text, path, selection)?;
+                let urdf = UrdfDocument::parse(text, path, selection)?;
                 (urdf.robot().clone(), ModelSource::Urdf(Box::new(urdf)))
             }
             ModelFormat::Toml => {
                 refuse_selection(path, selection)?;
-                (robot_toml::parse(&text, path)?, ModelSource::Toml)
+                (robot_toml::parse(text, path)?, ModelSource::Toml)
             }
         };
         Ok(Model { robot, source, path: path.to_path_buf() })

@@ -61,6 +61,14 @@ pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
     Ok(Input { head: Cursor::new(head), rest: rest.take(largest - HEAD + 1), largest })
 }
 
+#[cfg(test)]
+impl Input {
+    /// What `source` gives.
+    pub(super) fn of(source: Box<dyn Read + Send>) -> Self {
+        Input { head: Cursor::default(), rest: source.take(LARGEST_TABLE), largest: LARGEST_TABLE }
+    }
+}
+
 /// Whether a path means standard input.
 pub(super) fn is_standard_input(path: &Path) -> bool {
     path == Path::new(STANDARD_INPUT)

@@ -2,6 +2,7 @@
 
 mod judging;
 mod outliers;
+mod refusal;
 mod repeatability;
 mod schema;
 mod trust;
@@ -23,6 +24,7 @@ use crate::lie::{Pose, Screw, Twist};
 use crate::measurement::Dataset;
 use crate::robot::{Joint, JointKind, Limits, Reading, Robot};
 use nalgebra::Vector3;
+use refusal::refusal;
 
 /// Version word of the file; readers refuse others.
 pub const SCHEMA: &str = "poecal-calibration-1";
@@ -176,33 +178,6 @@ impl CalibrationFile {
     }
 }
 
-/// Why a text is no calibration of this version; `error` is what kept it from being read as one.
-fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path) -> Error {
-    let syntax = |error: &serde_json::Error| {
-        let reason = error.to_string();
-        let reason = reason.split(" at line ").next().unwrap_or_default();
-        let found = if error.is_data() { "something that does not fit the schema" } else { "broken JSON" };
-        let message = format!(
-            "found {found} ({reason}), expected a calibration as written by `poecal calibrate`: name a calibration.json"
-        );
-        Error::new(ErrorKind::Syntax, message).at(path, error.line().max(1), error.column().max(1))
-    };
-    let value: serde_json::Value = match serde_json::from_str(text) {
-        Ok(value) => value,
-        Err(error) => return syntax(&error),
-    };
-    let message = match (value.get("schema").and_then(serde_json::Value::as_str), error) {
-        (Some(SCHEMA), Some(error)) => return syntax(&error),
-        (Some(other), _) => {
-            format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version")
-        }
-        (None, _) => {
-            format!("found JSON without the key `schema`, expected a calibration of schema `{SCHEMA}`")
-        }
-    };
-    Error::new(ErrorKind::Syntax, message).in_file(path)
-}
-
 impl From<&Diagnosis> for DiagnosisEntry {
     fn from(found: &Diagnosis) -> Self {
         DiagnosisEntry { kind: found.kind, statement: found.statement.clone(), rows: found.rows.clone() }
@@ -273,6 +248,15 @@ impl JointEntry {
         let off = (screw.twist().to_vector() - twist.to_vector()).norm();
         if screw.is_prismatic() != (kind == JointKind::Prismatic) || off.is_nan() || off > 1e-6 {
             return Err(bad());
+        }
+        if let Some([lower, upper]) = self.limits
+            && (lower.is_nan() || upper.is_nan() || lower >= upper)
+        {
+            let message = format!(
+                "found limits from {lower} to {upper} of joint `{}`, expected the lower one first",
+                self.name
+            );
+            return Err(Error::new(ErrorKind::Model, message));
         }
         Ok(Joint {
             name: self.name.clone(),
@@ -346,5 +330,19 @@ impl From<KindWord> for JointKind {
             KindWord::Revolute => JointKind::Revolute,
             KindWord::Prismatic => JointKind::Prismatic,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_that_are_none_are_refused() {
+        let seed = include_str!("../../../../../fuzz/seeds/calibration/scara");
+        let mut file = CalibrationFile::parse(seed, "c.json").unwrap();
+        file.joints[0].limits = Some([1.0, -1.0]);
+        let error = file.robot().unwrap_err().to_string();
+        assert_eq!(error, "found limits from 1 to -1 of joint `joint1`, expected the lower one first");
     }
 }

@@ -12,6 +12,7 @@ use super::table::Table;
 use super::text::Blocks;
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Robot;
+use crate::text::visible;
 
 /// Configurations of a file.
 ///
@@ -41,9 +42,40 @@ pub struct JointsTable {
 /// As [`super::read`], of what concerns joints.
 pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
     let path = path.as_ref();
+    of_blocks(path, Blocks::open(path, "a file of joint readings (CSV)")?, robot, options)
+}
+
+/// Reads the text of such a file; `path` is for the messages only.
+///
+/// ```
+/// use poecal::io::measurements::{ReadOptions, parse_joints};
+/// let text = "joint1,joint2,joint3,joint4\n0,0.1,0.1,0\n";
+/// let table = parse_joints(text, "a table", &poecal::simulate::scara(), &ReadOptions::default())?;
+/// assert_eq!(table.readings, [0.0, 0.1, 0.1, 0.0]);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`super::read`], of what concerns joints.
+pub fn parse_joints(
+    text: &str,
+    path: impl AsRef<Path>,
+    robot: &Robot,
+    options: &ReadOptions,
+) -> Result<JointsTable> {
+    let path = path.as_ref();
+    of_blocks(path, Blocks::new(path, text.as_bytes()), robot, options)
+}
+
+fn of_blocks<'p>(
+    path: &'p Path,
+    blocks: Blocks<'p>,
+    robot: &Robot,
+    options: &ReadOptions,
+) -> Result<JointsTable> {
     let no_map = ColumnMap::default();
     let map = options.mapping.as_ref().unwrap_or(&no_map);
-    let mut table = Table::open(path, Blocks::open(path, "a file of joint readings (CSV)")?, map)?;
+    let mut table = Table::open(path, blocks, map)?;
     let layout = Layout::joints(&table.header, robot, map)?;
     let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
     let mut watch = JointWatch::new(robot);
@@ -65,6 +97,7 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
         let message = "found a header and no rows, expected at least one row of joint readings";
         return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
     }
-    joints.warnings = watch.finish(path, &layout)?;
+    joints.warnings =
+        watch.finish(path, &layout)?.iter().map(|warning| visible(warning).into_owned()).collect();
     Ok(joints)
 }

@@ -13,7 +13,7 @@ use super::number::DecimalSign;
 use super::orientation::OrientationForm;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::source_text;
+use crate::io::source_text::{self, position};
 
 /// How a file's columns become ours, read from a TOML file (docs/file-formats.md, "Mapping file").
 ///
@@ -158,9 +158,7 @@ impl ColumnMap {
             let error_at = Error::new(ErrorKind::Syntax, message);
             match error.span() {
                 Some(span) => {
-                    let before = text.get(..span.start).unwrap_or(text);
-                    let line = before.matches('\n').count() + 1;
-                    let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+                    let (line, column) = position(text, span.start);
                     error_at.at(path, line, column)
                 }
                 None => error_at.in_file(path),

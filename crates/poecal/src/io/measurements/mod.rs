@@ -30,7 +30,7 @@ mod write;
 pub use super::numbers::LARGEST_NUMBER;
 pub use cells::Separator;
 pub use fit_where::FitWhere;
-pub use joints::{JointsTable, read_joints};
+pub use joints::{JointsTable, parse_joints, read_joints};
 pub use lost::LostBeams;
 pub use mapping::ColumnMap;
 pub use number::DecimalSign;

@@ -19,6 +19,7 @@ use super::{MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
 use crate::measurement::{Dataset, Observation, Set, Source};
 use crate::robot::{Robot, check_name};
+use crate::text::visible;
 
 /// Reads measurement files, joined in their order.
 ///
@@ -296,6 +297,7 @@ impl<'a> Reader<'a> {
             });
         }
         let Reader { data, understood, sha256, warnings, .. } = self;
+        let warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
         Ok(MeasurementFile { data, understood, sha256, warnings })
     }
 }

@@ -239,16 +239,20 @@ mod tests {
 
     #[test]
     fn a_file_that_fails_while_being_read_is_told() {
-        let path = std::env::temp_dir().join(format!("poecal_text_{}", std::process::id()));
-        // One that may be written only.
-        let source = Source::File(Hashing::new(File::create(&path).unwrap()));
+        /// What breaks off.
+        struct Broken;
+        impl Read for Broken {
+            fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+                Err(std::io::Error::other("the cable was pulled"))
+            }
+        }
+        let path = Path::new("x.csv");
+        let source = Source::File(Hashing::new(Input::of(Box::new(Broken))));
         let expected = "a measurement file (CSV)";
-        let error =
-            Blocks { expected, ..Blocks::of(&path, source, BLOCK) }.advance().unwrap_err().to_string();
-        std::fs::remove_file(&path).unwrap();
-        assert!(
-            error.contains(": cannot be read (") && error.ends_with("), expected a measurement file (CSV)"),
-            "{error}"
+        let error = Blocks { expected, ..Blocks::of(path, source, BLOCK) }.advance().unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "x.csv: the file cannot be read (the cable was pulled), expected a measurement file (CSV)"
         );
     }
 }

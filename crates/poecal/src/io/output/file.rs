@@ -66,7 +66,7 @@ impl FilePlace {
                 if start.ends_with('/') { path.starts_with(*start) } else { path == *start }
             })
         };
-        if STREAMS.iter().any(|start| is_stream(&start)) {
+        if STREAMS.iter().any(is_stream) {
             return Ok(FilePlace { named, way: Way::Stream(path.to_owned()) });
         }
         let there = match found(disk.as_ref(), path)? {
@@ -88,7 +88,7 @@ impl FilePlace {
                     Existing::Kept => false,
                     Existing::Own => is_of_poecal(
                         disk.as_ref(),
-                        &there.as_ref().map_or(path, |(actual, _)| actual),
+                        there.as_ref().map_or(path, |(actual, _)| actual),
                         GENERATOR,
                     ),
                     Existing::Replaced => true,

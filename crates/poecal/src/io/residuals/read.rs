@@ -39,10 +39,11 @@ impl Residuals {
                 );
                 Error::new(ErrorKind::Syntax, message).at(path, line, 1)
             })?;
-            let line = record.position().map_or(1, |position| position.line() as usize);
             let cells: Vec<&str> = record.iter().collect();
             let done = if index == 0 { found.head(&cells) } else { found.row(&cells) };
-            done.map_err(|Wrong { column, message }| {
+            done.map_err(|Wrong { cell, message }| {
+                let start = record.position().map_or(0, |position| position.byte() as usize);
+                let (line, column) = source_text::position(text, cell_start(text, start, cell));
                 Error::new(ErrorKind::Syntax, message).at(path, line, column)
             })?;
         }
@@ -56,7 +57,7 @@ impl Residuals {
                 let message = format!(
                     "found the column `{cell}`, expected `{expected}`, as in {EXPECTED}: calibrate again"
                 );
-                return Err(Wrong { column: column + 1, message });
+                return Err(Wrong { cell: column, message });
             }
         }
         let first = COLUMNS.split(',').count();
@@ -71,7 +72,7 @@ impl Residuals {
                     "found the column `{cell}`, expected a joint's name with [deg] or [mm]: calibrate again"
                 )
             };
-            self.readings.push(reading.ok_or_else(|| Wrong { column: column + 1, message: message() })?);
+            self.readings.push(reading.ok_or_else(|| Wrong { cell: column, message: message() })?);
         }
         Ok(())
     }
@@ -110,9 +111,27 @@ fn index_of(names: &mut Vec<String>, name: &str) -> usize {
     })
 }
 
-/// What is wrong, and in which column, from 1.
+/// Byte offset of a record's cell, or of the record's end if it has fewer; `start` is where the record before ended.
+fn cell_start(text: &str, start: usize, cell: usize) -> usize {
+    let rest = text.get(start..).unwrap_or_default();
+    let record = rest.trim_start_matches(['\u{feff}', '\r', '\n']);
+    let start = text.len() - record.len();
+    let (mut quoted, mut cells) = (false, 0);
+    for (at, character) in record.char_indices() {
+        match character {
+            _ if cells == cell => return start + at,
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells += 1,
+            '\r' | '\n' if !quoted => return start + at,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+/// What is wrong, and in which cell, from 0.
 struct Wrong {
-    column: usize,
+    cell: usize,
     message: String,
 }
 
@@ -125,7 +144,10 @@ struct Cells<'a> {
 impl<'a> Cells<'a> {
     /// A complaint about the cell that was taken last.
     fn wrong(&self, found: &str, expected: &str) -> Wrong {
-        Wrong { column: self.next, message: format!("found `{found}`, expected {expected}: calibrate again") }
+        Wrong {
+            cell: self.next.saturating_sub(1),
+            message: format!("found `{found}`, expected {expected}: calibrate again"),
+        }
     }
 
     fn text(&mut self) -> std::result::Result<&'a str, Wrong> {
@@ -133,7 +155,7 @@ impl<'a> Cells<'a> {
         self.next += 1;
         let message =
             || "found the end of the row, expected a cell for each column: calibrate again".to_owned();
-        cell.ok_or_else(|| Wrong { column: self.next, message: message() })
+        cell.ok_or_else(|| Wrong { cell: self.next.saturating_sub(1), message: message() })
     }
 
     fn parsed<T: std::str::FromStr>(&mut self, expected: &str) -> std::result::Result<T, Wrong> {
@@ -142,14 +164,15 @@ impl<'a> Cells<'a> {
     }
 
     fn number(&mut self) -> std::result::Result<f64, Wrong> {
-        self.parsed("a number")
+        let number: f64 = self.parsed("a number")?;
+        let cell =
+            self.next.checked_sub(1).and_then(|last| self.cells.get(last)).copied().unwrap_or_default();
+        if number.is_finite() { Ok(number) } else { Err(self.wrong(cell, "a finite number")) }
     }
 
     /// As many numbers, or none if their cells are all empty.
     fn numbers<const N: usize>(&mut self) -> std::result::Result<Option<[f64; N]>, Wrong> {
-        let here = self.cells.get(self.next..self.next + N);
-        if here.is_some_and(|cells| cells.iter().all(|cell| cell.is_empty())) {
-            self.next += N;
+        if self.are_empty(N) {
             return Ok(None);
         }
         let mut values = [0.0; N];
@@ -159,18 +182,26 @@ impl<'a> Cells<'a> {
         Ok(Some(values))
     }
 
+    /// Whether the next cells are all empty; they are then passed over.
+    fn are_empty(&mut self, count: usize) -> bool {
+        let here = self.cells.get(self.next..self.next + count);
+        let empty = here.is_some_and(|cells| cells.iter().all(|cell| cell.is_empty()));
+        self.next += if empty { count } else { 0 };
+        empty
+    }
+
     fn errors(&mut self) -> std::result::Result<Option<ModelErrors>, Wrong> {
         let numbers: Option<[f64; 6]> = self.numbers()?;
         Ok(numbers.map(|[a, b, c, x, y, z]| ModelErrors { models: [a, b, c], residual: [x, y, z] }))
     }
 
     fn judged(&mut self) -> std::result::Result<Option<Judged>, Wrong> {
-        let numbers: Option<[f64; 4]> = self.numbers()?;
-        Ok(numbers.map(|[weight, leverage, studentized, suspected]| Judged {
-            weight,
-            leverage,
-            studentized,
-            suspected: suspected != 0.0,
-        }))
+        if self.are_empty(4) {
+            return Ok(None);
+        }
+        let weight = self.number()?;
+        // Where all of a row's information is its own, these may be no numbers.
+        let (leverage, studentized) = (self.parsed("a number")?, self.parsed("a number")?);
+        Ok(Some(Judged { weight, leverage, studentized, suspected: self.number()? != 0.0 }))
     }
 }

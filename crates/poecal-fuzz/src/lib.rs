@@ -1,0 +1,57 @@
+//! What must hold of any input, as plain functions of bytes.
+//!
+//! Each of [`TARGETS`] takes bytes for the text of a file that poecal reads, and fails by panicking: if the library does, or if something
+//! does not hold that should, such as that what is written reads back the same. The programs in `fuzz/` call them with what libFuzzer
+//! makes up, the test of this crate with the seeds in `fuzz/seeds` and [`Mutator`]'s variations of them.
+//!
+//! ```
+//! let target = poecal_fuzz::TARGETS.iter().find(|target| target.name == "joints").ok_or("no such target")?;
+//! assert!((target.run)(b"joint1,joint2,joint3,joint4\n0,0.1,0.1,0\n"));
+//! assert!(!(target.run)(b"no table"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+// Whatever does not hold is told by a panic.
+#![allow(clippy::panic, clippy::expect_used, clippy::unwrap_used)]
+
+mod mutator;
+mod properties;
+pub mod targets;
+
+pub use mutator::Mutator;
+
+/// Longest input that is looked at, bytes: nothing that is found by chance needs more, and time and memory stay bounded.
+pub const LONGEST: usize = 1 << 16;
+
+/// What stands on a line of its own between the texts of an input that has several.
+pub const BETWEEN: &str = "=====";
+
+/// One of the things that are fuzzed.
+///
+/// ```
+/// let names: Vec<&str> = poecal_fuzz::TARGETS.iter().map(|target| target.name).collect();
+/// assert!(names.contains(&"urdf") && names.len() == 10);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Its name, that of its program in `fuzz/fuzz_targets` and of its folder in `fuzz/seeds`.
+    pub name: &'static str,
+    /// Takes an input; tells whether it was understood, and not refused with an error.
+    pub run: fn(&[u8]) -> bool,
+    /// How many inputs `./test` tries of it: about as many as take two seconds.
+    pub trials: usize,
+}
+
+/// All of them.
+pub const TARGETS: [Target; 10] = [
+    Target { name: "urdf", run: targets::urdf, trials: 1500 },
+    Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
+    Target { name: "measurements", run: targets::measurements, trials: 6000 },
+    Target { name: "mapping", run: targets::mapping, trials: 10000 },
+    Target { name: "joints", run: targets::joints, trials: 10000 },
+    Target { name: "residuals", run: targets::residuals, trials: 5000 },
+    Target { name: "settings", run: targets::settings, trials: 20000 },
+    Target { name: "calibration", run: targets::calibration, trials: 1000 },
+    Target { name: "report", run: targets::report, trials: 600 },
+    Target { name: "pipeline", run: targets::pipeline, trials: 150 },
+];

@@ -1,0 +1,88 @@
+//! Properties that several targets share.
+
+use std::path::Path;
+
+use poecal::io::Difference;
+use poecal::robot::Robot;
+use poecal::{Error, Result};
+
+use crate::{BETWEEN, LONGEST};
+
+/// The name under which texts are read.
+pub(crate) const PATH: &str = "input";
+
+/// The input as text; none if it is too long to be looked at.
+pub(crate) fn text(data: &[u8]) -> Option<String> {
+    (data.len() <= LONGEST).then(|| String::from_utf8_lossy(data).into_owned())
+}
+
+/// The texts of an input that has several; those that are left out are empty.
+pub(crate) fn parts<const N: usize>(data: &[u8]) -> Option<[String; N]> {
+    let text = text(data)?;
+    let between = format!("\n{BETWEEN}\n");
+    let mut parts = text.splitn(N, &between).map(str::to_owned);
+    Some(std::array::from_fn(|_| parts.next().unwrap_or_default()))
+}
+
+/// The value, if it is one; an error must read as one sentence, and its place must be one of the text's.
+pub(crate) fn understood<T>(result: Result<T>, text: &str) -> Option<T> {
+    result.map_err(|error| check_error(&error, text)).ok()
+}
+
+/// The value of what must not fail.
+pub(crate) fn certain<T>(result: Result<T>, what: &str) -> T {
+    result.unwrap_or_else(|error| panic!("{what}: {error}"))
+}
+
+fn check_error(error: &Error, text: &str) {
+    one_line(&error.to_string());
+    assert!(!error.message().trim().is_empty(), "an error without words");
+    let Some(place) = error.place() else { return };
+    assert_eq!(place.path, Path::new(PATH), "{error}");
+    let Some(line) = place.line else { return };
+    // Tables may have the line ends of an old Mac, other texts not.
+    let is_place = |ends: char| {
+        let found = line.checked_sub(1).and_then(|line| text.split(ends).nth(line));
+        // One beyond the last character is where something is missing.
+        let columns = found.map(|found| found.chars().count() + 1);
+        columns.is_some_and(|most| (1..=most).contains(&place.column.unwrap_or(1)))
+    };
+    assert!(is_place('\n') || (!text.contains('\n') && is_place('\r')), "{error}: no place of {text:?}");
+}
+
+/// A sentence that moves no cursor and ends no line.
+pub(crate) fn one_line(sentence: &str) {
+    let ends = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
+    assert!(!sentence.contains(ends), "more than a line: {sentence:?}");
+}
+
+/// Numbers beyond this are not written and read again by the properties: sums of such are beyond what readers take.
+pub(crate) const VAST_M: f64 = 1e5;
+
+/// A length that everything of the robot lies within, metres: rounding is in proportion to it.
+pub(crate) fn size_m(robot: &Robot) -> f64 {
+    let mut size = robot.reach_m().max(1.0) + robot.home.translation.norm();
+    for joint in &robot.joints {
+        let reading = &joint.reading;
+        let limits = joint.limits.map_or(10.0, |limits| limits.lower.abs().max(limits.upper.abs()));
+        size += joint.frame.translation.norm() + joint.screw.v().norm();
+        // Of large angles, sine and cosine are as coarse as their digits; a slide's reading is a length.
+        size += (limits * reading.multiplier.abs() + reading.offset.abs()).max(limits);
+    }
+    size
+}
+
+/// The robots must move alike, but for rounding.
+pub(crate) fn alike(robot: &Robot, again: &Robot, tolerance: f64, what: &str) {
+    let names = |robot: &Robot| {
+        let joints = robot.joints.iter();
+        joints.map(|joint| (joint.name.clone(), joint.kind, joint.reading.name.clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(names(robot), names(again), "{what}: joints");
+    let size = size_m(robot);
+    let found = Difference::of(robot, again, 20);
+    assert!(
+        found.is_within(tolerance * size * size, tolerance * size),
+        "{what}: {found:?} of a robot of {size} m"
+    );
+}

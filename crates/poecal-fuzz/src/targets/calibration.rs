@@ -1,0 +1,85 @@
+//! `calibration.json`, and the report made of it.
+
+use poecal::io::calibration_file::CalibrationFile;
+use poecal::io::measurements::parse_joints;
+use poecal::io::model::{Model, ModelSource};
+use poecal::io::predictions::{PredictionFrame, predict};
+use poecal::io::residuals::Residuals;
+use poecal::report::calibration_page;
+
+use super::models::converted;
+use crate::properties::{PATH, certain, one_line, parts, text, understood};
+
+/// A calibration: read, written, read again, and used as a robot.
+pub fn calibration(data: &[u8]) -> bool {
+    let Some(text) = text(data) else { return false };
+    let Some(file) = understood(CalibrationFile::parse(&text, PATH), &text) else { return false };
+    same(&file);
+    let robots = [file.robot(), file.nominal_robot()].map(|robot| understood(robot, &text));
+    understood(file.base_from_device(), &text);
+    let [Some(robot), _] = robots else { return false };
+    let names = robot.reading_names();
+    let table = format!(
+        "{}\n{}\n",
+        names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(","),
+        vec!["0.1"; names.len()].join(",")
+    );
+    let source = ModelSource::Calibration(Box::new(file));
+    let model = Model { robot, source, path: PATH.into() };
+    converted(&model);
+    if let Some(joints) = understood(parse_joints(&table, PATH, &model.robot, &Default::default()), &table) {
+        for (frame, doubts) in [(PredictionFrame::Base, true), (PredictionFrame::Device, false)] {
+            understood(predict(&model, &joints, frame, None, doubts), "");
+        }
+    }
+    true
+}
+
+fn quoted(name: &str) -> String {
+    format!("\"{}\"", name.replace('"', "\"\""))
+}
+
+/// What is written must read back the same.
+pub(crate) fn same(file: &CalibrationFile) {
+    let written = certain(file.to_text(), "to_text");
+    let again = certain(CalibrationFile::parse(&written, PATH), &written);
+    assert_eq!(&again, file);
+    assert_eq!(certain(again.to_text(), "to_text"), written);
+}
+
+/// A calibration and its residuals: the page.
+pub fn report(data: &[u8]) -> bool {
+    let Some([json, csv]) = parts(data) else { return false };
+    let Some(file) = understood(CalibrationFile::parse(&json, PATH), &json) else { return false };
+    let Some(residuals) = understood(Residuals::parse(&csv, PATH), &csv) else { return false };
+    page(&file, &residuals)
+}
+
+/// The page must be whole, and nothing that a file says may be markup in it.
+pub(crate) fn page(file: &CalibrationFile, residuals: &Residuals) -> bool {
+    let page = match calibration_page(file, residuals) {
+        Ok(page) => page,
+        Err(error) => {
+            one_line(&error.to_string());
+            return false;
+        }
+    };
+    let [head, body, _, data, ..] = page.as_slice() else { panic!("{} pieces", page.len()) };
+    // A leverage that is none is told as such.
+    let unfit = residuals
+        .rows
+        .iter()
+        .filter_map(|row| row.judged)
+        .any(|it| !(it.leverage + it.studentized).is_finite());
+    assert!(head.starts_with("<!DOCTYPE html>") && page.concat().ends_with("</html>\n"));
+    for piece in [head, body] {
+        let lower = piece.to_lowercase();
+        for markup in ["<script", "<iframe", "<img", "<link", "javascript:"] {
+            assert!(!lower.contains(markup), "{markup} in the page");
+        }
+        assert!(unfit || !piece.contains("NaN"), "NaN in the page");
+    }
+    assert!(!data.contains('<'));
+    serde_json::from_str::<serde_json::Value>(data).expect("the page's data");
+    true
+}

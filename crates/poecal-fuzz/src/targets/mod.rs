@@ -1,0 +1,17 @@
+//! What is fuzzed: functions of bytes that tell whether the input was understood.
+
+mod calibration;
+mod mapping;
+mod models;
+mod pipeline;
+mod residuals;
+mod settings;
+mod tables;
+
+pub use calibration::{calibration, report};
+pub use mapping::mapping;
+pub use models::{robot_toml, urdf};
+pub use pipeline::pipeline;
+pub use residuals::residuals;
+pub use settings::settings;
+pub use tables::{joints, measurements};

@@ -1,0 +1,109 @@
+//! Robot models: URDF and TOML.
+
+use poecal::ErrorKind;
+use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
+use poecal::io::robot_toml;
+use poecal::io::urdf::{ChainSelection, UrdfDocument};
+use poecal::lie::{Pose, Screw};
+use poecal::robot::Robot;
+
+use crate::properties::{PATH, VAST_M, alike, certain, one_line, size_m, text, understood};
+
+/// Rounding of what is written and read again, of a robot of 1 m.
+const ROUNDING: f64 = 1e-10;
+
+/// A URDF: read, written into its own text as it is and with other screws, and in the other form.
+pub fn urdf(data: &[u8]) -> bool {
+    let Some(text) = text(data) else { return false };
+    let Some(document) = understood(UrdfDocument::parse(&text, PATH, &ChainSelection::default()), &text)
+    else {
+        return false;
+    };
+    assert_eq!(document.text(), text);
+    let robot = document.robot();
+    if size_m(robot) > VAST_M {
+        return true;
+    }
+    patched(&document, robot);
+    patched(&document, &moved(robot));
+    let source = ModelSource::Urdf(Box::new(document.clone()));
+    converted(&Model { robot: robot.clone(), source, path: PATH.into() });
+    true
+}
+
+/// Writes a robot into the text that another was read from, and reads it back.
+pub(crate) fn patched(document: &UrdfDocument, robot: &Robot) {
+    let patched = certain(document.patched(robot), "patched");
+    patched.notes.iter().for_each(|note| one_line(note));
+    let selection =
+        ChainSelection { base_link: Some(robot.base_name.clone()), tip_link: Some(patched.tip_link) };
+    let again = certain(UrdfDocument::parse(&patched.text, PATH, &selection), &patched.text);
+    alike(robot, again.robot(), ROUNDING, "patched");
+    let limits = |robot: &Robot| robot.joints.iter().map(|joint| joint.limits).collect::<Vec<_>>();
+    assert_eq!(limits(robot), limits(again.robot()));
+    // Once written, a robot's text stays.
+    let twice = certain(again.patched(again.robot()), "patched twice");
+    alike(
+        again.robot(),
+        certain(UrdfDocument::parse(&twice.text, PATH, &selection), "twice").robot(),
+        ROUNDING,
+        "twice",
+    );
+}
+
+/// The robot with every axis and its tip somewhere else, as a calibration finds them.
+pub(crate) fn moved(robot: &Robot) -> Robot {
+    let little = Pose::from_xyz_rpy([2e-3, -1e-3, 3e-3], [0.01, -0.02, 0.005]);
+    let screws: Vec<Screw> = robot.joints.iter().map(|joint| joint.screw.transformed(&little)).collect();
+    let mut moved = robot.with_screws(&screws);
+    moved.home = little * robot.home;
+    moved
+}
+
+/// A model in both forms, if it can be.
+pub(crate) fn converted(model: &Model) {
+    let is_vast = size_m(&model.robot) > VAST_M;
+    for form in [ModelFormat::Urdf, ModelFormat::Toml] {
+        match convert(model, form) {
+            Ok(converted) => converted.notes.iter().for_each(|note| one_line(note)),
+            Err(error) => {
+                one_line(&error.to_string());
+                assert_eq!(error.kind(), ErrorKind::Export, "{error}");
+                assert!(is_vast || !error.message().contains("cannot be read back"), "{error}");
+            }
+        }
+    }
+}
+
+/// A TOML model: read, written, read again.
+pub fn robot_toml(data: &[u8]) -> bool {
+    let Some(text) = text(data) else { return false };
+    let Some(robot) = understood(robot_toml::parse(&text, PATH), &text) else { return false };
+    if size_m(&robot) > VAST_M {
+        return true;
+    }
+    let written = robot_toml::write(&robot);
+    let again = certain(robot_toml::parse(&written, PATH), &written);
+    same_robot(&robot, &again);
+    // A robot of that form is the same to the last digit but for the length of its directions, which are made 1 again.
+    let once_more = certain(robot_toml::parse(&robot_toml::write(&again), PATH), "written twice");
+    same_robot(&again, &once_more);
+    converted(&Model { robot, source: ModelSource::Toml, path: PATH.into() });
+    true
+}
+
+fn same_robot(robot: &Robot, again: &Robot) {
+    alike(robot, again, ROUNDING, "written and read");
+    let frames = |robot: &Robot| (robot.name.clone(), robot.base_name.clone(), robot.tip_name.clone());
+    assert_eq!(frames(robot), frames(again));
+    for (joint, other) in robot.joints.iter().zip(&again.joints) {
+        assert_eq!((joint.limits, &joint.reading), (other.limits, &other.reading), "{}", joint.name);
+    }
+    let names = |robot: &Robot| robot.targets.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(robot), names(again));
+    for ((name, pose), (_, other)) in robot.targets.iter().zip(&again.targets) {
+        let off = (pose.translation - other.translation).norm() / pose.translation.norm().max(1.0);
+        let turned = (pose.rotation - other.rotation).norm();
+        assert!(off <= ROUNDING && turned <= ROUNDING, "target {name}: {off:e}, {turned:e}");
+    }
+}

@@ -1,0 +1,90 @@
+//! All of a calibration, in memory.
+
+use poecal::calibration::{Calibration, CalibrationOptions, calibrate};
+use poecal::forensics::{Options, diagnose};
+use poecal::io::calibration_file::{CalibrationFile, Inputs};
+use poecal::io::measurements::{ColumnMap, MeasurementFile, ReadOptions, parse, parse_joints};
+use poecal::io::model::{Model, ModelSource};
+use poecal::io::predictions::{PredictionFrame, predict};
+use poecal::io::residuals::Residuals;
+use poecal::io::urdf::ChainSelection;
+use poecal::report;
+
+use super::calibration::{page, same};
+use super::models::{converted, patched};
+use super::tables::{joints_sound, sound};
+use crate::properties::{PATH, VAST_M, certain, one_line, parts, size_m, understood};
+
+/// What is calibrated at most, so that one input takes little time.
+const MOST_JOINTS: usize = 8;
+const MOST_ROWS: usize = 60;
+const MOST_TARGETS: usize = 4;
+
+/// A model, measurements and a mapping: read, checked, calibrated, written and predicted.
+pub fn pipeline(data: &[u8]) -> bool {
+    let Some([model, table, map]) = parts(data) else { return false };
+    let selection = ChainSelection::default();
+    let Some(model) = understood(Model::parse(&model, PATH, &selection), &model) else { return false };
+    let mapping = if map.is_empty() {
+        None
+    } else {
+        let Some(mapping) = understood(ColumnMap::parse(&map, PATH), &map) else { return false };
+        Some(mapping)
+    };
+    let options = ReadOptions { mapping, ..ReadOptions::default() };
+    let Some(file) = understood(parse(&table, PATH, &model.robot, &options), &table) else { return false };
+    sound(&file, &table);
+    let sizes = (model.robot.joints.len(), file.data.len(), file.data.targets.len());
+    if sizes.0 > MOST_JOINTS || sizes.1 > MOST_ROWS || sizes.2 > MOST_TARGETS {
+        return true;
+    }
+    checked(&model, &file);
+    let calibrated =
+        calibrate(&model.robot, &file.data, &CalibrationOptions { restarts: 2, ..Default::default() });
+    let calibration = match calibrated {
+        Ok(calibration) => calibration,
+        Err(error) => {
+            one_line(&error.to_string());
+            return false;
+        }
+    };
+    let results = results(&model, &file, &calibration);
+    if let Some(joints) = understood(parse_joints(&table, PATH, &model.robot, &options), &table) {
+        joints_sound(&joints, &model.robot);
+        for (frame, doubts) in [(PredictionFrame::Base, true), (PredictionFrame::Device, false)] {
+            understood(predict(&results, &joints, frame, None, doubts), "");
+        }
+    }
+    true
+}
+
+fn checked(model: &Model, file: &MeasurementFile) {
+    let found = diagnose(&model.robot, &file.data, &file.data.all_rows(), &Options::default());
+    found.iter().for_each(|diagnosis| one_line(&diagnosis.statement));
+    let check = report::Check::new(model, Some(file), &found);
+    assert!(!check.text().is_empty());
+    certain(report::json(&check), "check as JSON");
+}
+
+/// What is written of a calibration, and the model that it becomes.
+fn results(model: &Model, read: &MeasurementFile, calibration: &Calibration) -> Model {
+    for sentence in &calibration.warnings {
+        one_line(sentence);
+    }
+    assert!(!report::summary(calibration, &read.data).is_empty());
+    let file = CalibrationFile::new(calibration, &read.data, Inputs::default());
+    same(&file);
+    let residuals = Residuals::of(&read.data, calibration);
+    let text = residuals.text();
+    assert_eq!(certain(Residuals::parse(&text, PATH), &text).text(), text);
+    assert!(page(&file, &residuals), "a calibration without a page");
+    let robot = calibration.robot_with_targets();
+    if let ModelSource::Urdf(document) = &model.source
+        && size_m(&robot) < VAST_M
+    {
+        patched(document, &robot);
+    }
+    let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path: PATH.into() };
+    converted(&model);
+    model
+}

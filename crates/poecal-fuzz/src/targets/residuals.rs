@@ -1,0 +1,22 @@
+//! `residuals.csv`.
+
+use poecal::io::residuals::Residuals;
+
+use crate::properties::{PATH, certain, text, understood};
+
+/// Residuals: read, written, read again.
+pub fn residuals(data: &[u8]) -> bool {
+    let Some(text) = text(data) else { return false };
+    let Some(residuals) = understood(Residuals::parse(&text, PATH), &text) else { return false };
+    same(&residuals);
+    true
+}
+
+/// What is written must read back the same.
+pub(crate) fn same(residuals: &Residuals) {
+    let written = residuals.text();
+    let again = certain(Residuals::parse(&written, PATH), &written);
+    assert_eq!(again.text(), written);
+    // What is no number does not equal itself.
+    assert!(&again == residuals || written.contains("NaN"), "{written}");
+}

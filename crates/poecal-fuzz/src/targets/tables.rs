@@ -1,0 +1,69 @@
+//! Tables: measurements and joint readings.
+
+use poecal::io::measurements::{ColumnMap, JointsTable, MeasurementFile, ReadOptions, parse, parse_joints};
+use poecal::io::model::{Model, ModelSource};
+use poecal::io::predictions::{PredictionFrame, predict};
+use poecal::robot::Robot;
+use poecal::simulate::{elbow, scara};
+
+use crate::properties::{PATH, certain, one_line, parts, text, understood};
+
+/// A robot that a table's joints may be of.
+pub(crate) fn robot_of(table: &str) -> Robot {
+    if table.contains("joint6") { elbow() } else { scara() }
+}
+
+/// A measurement table, with the mapping by which it is read, if one follows.
+pub fn measurements(data: &[u8]) -> bool {
+    let Some([table, map]) = parts(data) else { return false };
+    let mapping = if map.is_empty() {
+        None
+    } else {
+        let Some(mapping) = understood(ColumnMap::parse(&map, PATH), &map) else { return false };
+        Some(mapping)
+    };
+    let robot = robot_of(&table);
+    let options = ReadOptions { mapping, ..ReadOptions::default() };
+    let Some(file) = understood(parse(&table, PATH, &robot, &options), &table) else { return false };
+    sound(&file, &table);
+    // Which lines are fitted says nothing of what they hold.
+    let all = ReadOptions { ignore_sets: true, ..options };
+    let again = certain(parse(&table, PATH, &robot, &all), "without sets");
+    assert_eq!(file.data.all_readings(), again.data.all_readings());
+    true
+}
+
+/// What was read must fit together and belong to the text.
+pub(crate) fn sound(file: &MeasurementFile, text: &str) {
+    certain(file.data.check(), "data");
+    file.warnings.iter().for_each(|warning| one_line(warning));
+    assert!(!file.data.is_empty() && file.understood.len() == 1);
+    for understood in &file.understood {
+        assert_eq!(understood.points + understood.poses, file.data.len());
+        assert!(understood.rows <= file.data.len());
+    }
+    let lines = text.split(['\n', '\r']).count();
+    assert!(file.data.observations.iter().all(|row| (1..=lines).contains(&(row.source.line as usize))));
+    assert!(file.data.all_readings().iter().all(|reading| reading.abs() <= 1e6));
+}
+
+/// A table of joint readings, and what is predicted from them.
+pub fn joints(data: &[u8]) -> bool {
+    let Some(text) = text(data) else { return false };
+    let robot = robot_of(&text);
+    let Some(table) = understood(parse_joints(&text, PATH, &robot, &ReadOptions::default()), &text) else {
+        return false;
+    };
+    joints_sound(&table, &robot);
+    let model = Model { robot, source: ModelSource::Toml, path: PATH.into() };
+    let predicted = certain(predict(&model, &table, PredictionFrame::Base, None, false), "predict");
+    assert!(predicted.lines().count() > table.rows, "{predicted}");
+    true
+}
+
+pub(crate) fn joints_sound(table: &JointsTable, robot: &Robot) {
+    assert_eq!(table.readings.len(), table.rows * robot.reading_names().len());
+    assert!(table.ids.is_empty() || table.ids.len() == table.rows);
+    assert!(table.lines.len() == table.rows && table.lines.is_sorted_by(|a, b| a < b));
+    table.warnings.iter().for_each(|warning| one_line(warning));
+}

@@ -1,0 +1,49 @@
+//! Why a text is no calibration.
+
+use std::path::Path;
+
+use super::SCHEMA;
+use crate::error::{Error, ErrorKind};
+
+/// Why a text is no calibration of this version; `error` is what kept it from being read as one.
+pub(super) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path) -> Error {
+    let syntax = |error: &serde_json::Error| {
+        let reason = error.to_string();
+        let reason = reason.split(" at line ").next().unwrap_or_default();
+        let found = if error.is_data() { "something that does not fit the schema" } else { "broken JSON" };
+        let message = format!(
+            "found {found} ({reason}), expected a calibration as written by `poecal calibrate`: name a calibration.json"
+        );
+        let line = error.line().max(1);
+        // The parser counts bytes up to what it did not expect.
+        let before = text.split('\n').nth(line - 1).unwrap_or_default().char_indices();
+        let column = before.take_while(|(at, _)| *at < error.column()).count().max(1);
+        Error::new(ErrorKind::Syntax, message).at(path, line, column)
+    };
+    let value: serde_json::Value = match serde_json::from_str(text) {
+        Ok(value) => value,
+        Err(error) => return syntax(&error),
+    };
+    let message = match (value.get("schema").and_then(serde_json::Value::as_str), error) {
+        (Some(SCHEMA), Some(error)) => return syntax(&error),
+        (Some(other), _) => {
+            format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version")
+        }
+        (None, _) => {
+            format!("found JSON without the key `schema`, expected a calibration of schema `{SCHEMA}`")
+        }
+    };
+    Error::new(ErrorKind::Syntax, message).in_file(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::CalibrationFile;
+
+    #[test]
+    fn columns_count_characters() {
+        let error = CalibrationFile::parse("{\n\"µµ\": \"µ\" x}", "c.json").unwrap_err();
+        let place = error.place().unwrap();
+        assert_eq!((place.line, place.column), (Some(2), Some(11)), "{error}");
+    }
+}
