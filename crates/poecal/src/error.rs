@@ -117,6 +117,13 @@ impl Error {
         self
     }
 
+    /// The same error, with more to say.
+    pub(crate) fn with_more(mut self, more: &str) -> Self {
+        self.0.message.push_str("; ");
+        self.0.message.push_str(&visible(more));
+        self
+    }
+
     /// The kind of error.
     #[must_use]
     pub fn kind(&self) -> ErrorKind {

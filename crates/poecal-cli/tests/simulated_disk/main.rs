@@ -1,7 +1,7 @@
 //! Whole commands on a disk that writes short, runs full, fails and stops at any moment, and forgets what was not synced: whatever
 //! happens, a place holds what it held before, or all that is new, or the next run completes it. And it never loses a file of others.
 //!
-//! `POECAL_TRIALS` is the number of trials (1,000; `full`: 100,000).
+//! `POECAL_TRIALS` is the number of trials (1,000, where `CI` is `true` 10,000; `full`: 100,000).
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
@@ -19,8 +19,8 @@ use poecal_cli::{Said, run_captured};
 
 const ROBOT: &str = include_str!("../../../../examples/elbow/robot.urdf");
 const POINTS: &str = include_str!("../../../../examples/elbow/points.csv");
-/// Rows that are measured: few, since thousands of calibrations run.
-const ROWS: usize = 14;
+/// Rows that are measured: few, since thousands of calibrations run, but enough for a fit that is found at once.
+const ROWS: usize = 30;
 /// Marks of what a run has not put in place.
 const UNFINISHED: &str = "poecal-unfinished";
 
@@ -80,7 +80,7 @@ fn cases() -> Vec<Case> {
     let empty = SimulatedDisk::new();
     empty.put("robot.urdf", ROBOT.as_bytes());
     empty.put("monday.csv", rows(1).as_bytes());
-    empty.put("tuesday.csv", rows(20).as_bytes());
+    empty.put("tuesday.csv", rows(25).as_bytes());
     let first = empty.copy();
     assert_eq!(run(&first, "calibrate robot.urdf monday.csv --out out --report page.html").code, 0);
     assert_eq!(run(&first, "convert out/calibration.json --to toml --out robot.toml").code, 0);
@@ -161,7 +161,7 @@ fn state(case: &Case, disk: &SimulatedDisk) -> &'static str {
     } else if new.iter().all(|new| *new) {
         "new"
     } else if old.iter().zip(&new).all(|(old, new)| *old || *new) {
-        // A machine that stops can do so between two places, each whole.
+        // A machine can stop between two places, each whole, and two failures leave one of them to the next run.
         "each whole"
     } else {
         "mixed"
@@ -180,7 +180,11 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
         match (said.code, state(case, &disk)) {
             (0, "new") | (2, "old") => {}
             // More than one thing went wrong: what could not be put back is said, and settled by the next run.
-            (2, _) if failures > 1 => assert!(said.err.contains("settles it"), "{seen}"),
+            (2, _) if failures > 1 => {
+                let is_said =
+                    ["settles it", "could not be taken back"].iter().any(|words| said.err.contains(words));
+                assert!(is_said, "{seen}");
+            }
             (code, state) => panic!("{seen}code {code}, but the places are {state}"),
         }
     }
@@ -189,7 +193,9 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
     let again = case.command.replace(" --force", "");
     let _ = run(&disk, &again);
     let settled = state(case, &disk);
-    assert!(settled == "old" || settled == "new" || (stopped && settled == "each whole"), "{seen}{settled}");
+    let is_settled =
+        ["old", "new"].contains(&settled) || ((stopped || failures > 1) && settled == "each whole");
+    assert!(is_settled, "{seen}{settled}");
     let forced = if case.command.contains("--force") || case.name == "report" {
         case.command.to_owned()
     } else {
@@ -213,6 +219,7 @@ fn trials() -> usize {
     match std::env::var("POECAL_TRIALS").as_deref() {
         Ok("full") => 100_000,
         Ok(number) => number.parse().unwrap(),
+        Err(_) if std::env::var("CI").as_deref() == Ok("true") => 10_000,
         Err(_) => 1000,
     }
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::place::{Existing, GENERATOR, found, is_of_poecal, led_to, new_place, refuse_input, refused};
-use super::staging::{self, OLD, Staging};
+use super::staging::{self, Staging};
 use super::{NewFile, Page, interrupted, leftovers};
 use crate::error::{Error, Result};
 use crate::io::disk::{self, FoundKind};
@@ -74,23 +74,23 @@ impl FilePlace {
             Some(found) => Some((path.to_owned(), found)),
             None => None,
         };
-        match there.as_ref().map(|(_, found)| found.kind) {
+        let at = there.as_ref().map_or(path, |(actual, _)| actual);
+        let kind = there.as_ref().map(|(_, found)| found.kind);
+        if kind.is_none_or(|kind| kind == FoundKind::File) {
+            leftovers::settle(disk.as_ref(), &new_place(disk.as_ref(), at)?.1, say);
+        }
+        match kind {
             Some(FoundKind::Folder) => {
                 return Err(refused(path, "found a directory, expected a file to write: name the file"));
             }
             Some(FoundKind::Other | FoundKind::Link) => {
-                let to = there.map_or_else(|| path.to_owned(), |(actual, _)| actual);
-                return Ok(FilePlace { named, way: Way::Stream(to) });
+                return Ok(FilePlace { named, way: Way::Stream(at.to_owned()) });
             }
             Some(FoundKind::File) => {
                 refuse_input(disk.as_ref(), path, inputs)?;
                 let may = match existing {
                     Existing::Kept => false,
-                    Existing::Own => is_of_poecal(
-                        disk.as_ref(),
-                        there.as_ref().map_or(path, |(actual, _)| actual),
-                        GENERATOR,
-                    ),
+                    Existing::Own => is_of_poecal(disk.as_ref(), at, GENERATOR),
                     Existing::Replaced => true,
                 };
                 if !may {
@@ -102,10 +102,9 @@ impl FilePlace {
             None => {}
         }
         let replaces = there.is_some();
-        let (parent, place) = new_place(disk.as_ref(), there.as_ref().map_or(path, |(actual, _)| actual))?;
+        let (parent, place) = new_place(disk.as_ref(), at)?;
         let name = place.file_name().unwrap_or_default();
         let prefix = staging::prefix(Some(name));
-        leftovers::settle(disk.as_ref(), &place, say);
         let staging = Staging::new(&disk, &parent, &prefix).map_err(|error| unwritable(path, &error))?;
         let name = name.to_string_lossy().into_owned();
         Ok(FilePlace { named, way: Way::Staged { path: place, name, replaces, staging } })
@@ -163,16 +162,22 @@ impl FilePlace {
 }
 
 impl Put {
-    /// Takes the new text away again, and puts the earlier one back.
-    pub(super) fn take_back(self) {
-        let Some((path, replaces, staging)) = self.0 else { return };
+    /// Takes the new text away again, and puts the earlier one back; adds to an error if that fails too.
+    pub(super) fn take_back(self, error: Error) -> Error {
+        let Some((path, replaces, staging)) = self.0 else { return error };
         let disk = staging.disk.as_ref();
-        let old = path.file_name().map(|name| staging.folder.join(OLD).join(name));
-        // Nobody can be told more than that the results were not written.
-        let _ = match old.filter(|_| replaces) {
+        let old = path.file_name().map(|name| staging.old_files().join(name));
+        let taken = match old.filter(|_| replaces) {
             Some(old) => disk.rename(&old, &path),
             None => disk.remove_file(&path),
         };
+        match taken {
+            Ok(()) => error,
+            Err(cause) => error.with_more(&format!(
+                "but {} holds the new report, which could not be taken back ({cause})",
+                path.display()
+            )),
+        }
     }
 
     /// Keeps the new text.

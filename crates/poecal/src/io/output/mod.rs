@@ -188,8 +188,7 @@ fn write_files(
     match place.put(&names) {
         Ok(said) => notes.extend(said),
         Err(error) => {
-            put.into_iter().for_each(file::Put::take_back);
-            return Err(error);
+            return Err(put.into_iter().fold(error, |error, put| put.take_back(error)));
         }
     }
     put.into_iter().for_each(file::Put::finish);
