@@ -172,6 +172,6 @@ fn a_mapping_that_is_not_there_is_refused() {
     let folder = Folder::new();
     assert_eq!(
         folder.without_path(&ColumnMap::read(folder.path("none.toml")).unwrap_err().to_string()),
-        "none.toml: found no file of this name, expected a column mapping (TOML); check the name"
+        "none.toml: found no such file, expected a column mapping (TOML): check the path"
     );
 }

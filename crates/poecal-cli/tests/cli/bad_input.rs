@@ -36,6 +36,7 @@ fn folder() -> Folder {
     folder.write("good.csv", format!("{HEADER}{}", ROW.repeat(3)));
     folder.write("joints.csv", "id,a,lift,b\none,0.1,0.2,0.3\n");
     std::fs::create_dir(folder.path("results")).unwrap();
+    folder.write("results/notes.txt", "mine");
     folder
 }
 
@@ -201,9 +202,9 @@ fn bad_use_gets_one_sentence_each() {
         case("calibrate robot.urdf good.csv", "",
              "found 3 measurements to fit with 9 measured numbers, expected at least 13 numbers (10 of the screws, 3 of the targets): measure more configurations, or hold out fewer"),
         case("calibrate robot.urdf missing.csv", "",
-             "missing.csv: found no file of this name, expected a measurement file (CSV); check the name"),
+             "missing.csv: found no such file, expected a measurement file (CSV): check the path"),
         case("calibrate robot.urdf results", "",
-             "results: found a directory, expected a measurement file (CSV); check the name"),
+             "results: found a directory, expected a measurement file (CSV)"),
         case("calibrate robot.urdf good.csv --out results", "",
              "results: the output folder exists, expected a new one: choose another with --out, or overwrite its results with --force"),
         case("calibrate robot.urdf good.csv --out good.csv", "",
@@ -272,7 +273,7 @@ fn bad_use_gets_one_sentence_each() {
         case("convert robot.urdf --out robot.txt", "",
              "found no form in the name `robot.txt`, expected .urdf or .toml, or --to urdf|toml"),
         case("check robot.urdf good.csv missing.csv", "",
-             "missing.csv: found no file of this name, expected a measurement file (CSV); check the name"),
+             "missing.csv: found no such file, expected a measurement file (CSV): check the path"),
     ]);
 }
 

@@ -84,7 +84,7 @@ fn mistakes_get_a_sentence() {
     folder.write("empty.csv", "turn[deg],slide[mm],nod[deg]\n");
     folder.write("huge.csv", "turn,slide,nod\n0.1,1e300,0.1\n0.2,-1e300,0.2\n");
     for (arguments, sentence) in [
-        ("identify column.toml missing.csv", "missing.csv: found no file of this name"),
+        ("identify column.toml missing.csv", "missing.csv: found no such file"),
         ("identify column.toml all.csv all.csv", "all.csv: found this measurement file named twice"),
         ("identify column.toml empty.csv", "empty.csv:1: found a header and no rows"),
         (

@@ -65,8 +65,7 @@ fn settle_one<'a>(disk: &dyn Disk, staging: &Path, target: Option<&'a Path>) -> 
         Settled::Completed(target)
     } else {
         // Whatever it was that the run wrote.
-        let is_own = |name: &str| Contents::ALL.into_iter().any(|contents| contents.is_own(name));
-        give_back(disk, &staging.join(staging::NEW), target, &is_own)?;
+        give_back(disk, &staging.join(staging::NEW), target, &Contents::is_of_any)?;
         Settled::Removed
     };
     staging::remove(disk, staging)?;

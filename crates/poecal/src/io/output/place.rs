@@ -53,9 +53,11 @@ pub enum Contents {
 }
 
 impl Contents {
-    /// All of them.
-    pub(super) const ALL: [Contents; 4] =
-        [Contents::Calibration, Contents::Simulation, Contents::Reproduction, Contents::Project];
+    /// Whether a run of any kind may have written a file of this name.
+    pub(super) fn is_of_any(name: &str) -> bool {
+        let all = [Contents::Calibration, Contents::Simulation, Contents::Reproduction, Contents::Project];
+        all.into_iter().any(|contents| contents.is_own(name)) || super::project::MODELS.contains(&name)
+    }
 
     /// Whether a file of this name is one that may be written, so that one of an earlier run goes.
     #[must_use]
@@ -173,7 +175,9 @@ impl FolderPlace {
                 (actual.clone(), staging::prefix(None), actual.clone())
             }
             Some(_) => {
-                let message = "found a file, expected a folder for the results: choose another with --out";
+                let what = if contents == Contents::Project { "project" } else { "results" };
+                let message =
+                    format!("found a file, expected a folder for the {what}: choose another with --out");
                 return Err(refused(folder, message));
             }
         };
@@ -211,11 +215,8 @@ pub(super) fn check_existing(
     names: &[String],
 ) -> Result<()> {
     if contents == Contents::Project {
-        return match names.first() {
-            Some(name) => Err(refused(
-                &folder.join(name),
-                "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out",
-            )),
+        return match super::project::OWN_NAMES.into_iter().find(|own| names.iter().any(|name| name == own)) {
+            Some(name) => Err(super::project::taken(&folder.join(name))),
             None => Ok(()),
         };
     }

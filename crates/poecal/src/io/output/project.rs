@@ -3,16 +3,25 @@
 use std::path::Path;
 
 use super::{Contents, Existing, FolderPlace, NewFile, Written, write_files};
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::disk;
 use crate::io::measurements::{plan, template};
 use crate::io::model::{Model, ModelSource};
 use crate::io::source_text;
 use crate::io::urdf::ChainSelection;
 use crate::simulate::Kind;
 
-/// Every name that a project may have.
-pub(super) const OWN_NAMES: [&str; 7] =
-    ["robot.urdf", "robot.toml", "robot.json", "measurements.csv", "joints.csv", "poecal.toml", "README.md"];
+/// Names that every project has.
+pub(super) const OWN_NAMES: [&str; 4] = ["measurements.csv", "joints.csv", "poecal.toml", "README.md"];
+/// Names of its model, of which it has one.
+pub(super) const MODELS: [&str; 3] = ["robot.urdf", "robot.toml", "robot.json"];
+
+/// The error of a file that is in the way.
+pub(super) fn taken(path: &Path) -> Error {
+    let message = "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out";
+    Error::new(ErrorKind::File, message).in_file(path)
+}
+
 const SETTINGS: &str = include_str!("project/poecal.toml");
 const README: &str = include_str!("project/README.md");
 
@@ -102,6 +111,10 @@ const ROTATION_NOISE: &str =
 /// [`ErrorKind::Model`](crate::ErrorKind::Model) if a joint has the name of a measured
 /// column. Nothing is left behind then.
 pub fn write_project(folder: &Path, project: &Project) -> Result<Written> {
+    let model = folder.join(project.model_name());
+    if disk::here().look(&model).is_ok() {
+        return Err(taken(&model));
+    }
     let mut notes = Vec::new();
     let place =
         FolderPlace::reserve(folder, Contents::Project, Existing::Kept, &[], &mut |note| notes.push(note))?;
