@@ -8,7 +8,7 @@ use super::layout::Layout;
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::scale::JointWatch;
-use super::table::Table;
+use super::table::{Table, refuse_more_rows};
 use super::text::Blocks;
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Robot;
@@ -87,6 +87,7 @@ fn of_blocks<'p>(
             inputs.take_readings(&row)?;
             joints.readings.extend_from_slice(inputs.readings());
             joints.rows += 1;
+            refuse_more_rows(joints.rows, &row)?;
             joints.lines.push(row.line);
             if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
                 joints.ids.push(cell.text().into_owned());

@@ -11,7 +11,7 @@ use super::number::Numbers;
 use super::row::{measurement, sigma};
 use super::scale::{self, JointWatch};
 use super::spread;
-use super::table::{Row, Table};
+use super::table::{Row, Table, refuse_more_rows};
 use super::text::Blocks;
 use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
@@ -129,6 +129,7 @@ impl<'a> Reader<'a> {
                 watch.observe(&row, &inputs);
                 turns.observe(&row, &layout, &inputs);
                 self.row(&row, &layout, &inputs)?;
+                refuse_more_rows(self.data.len(), &row)?;
             }
         }
         self.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));

@@ -188,6 +188,18 @@ pub(super) fn split_line<'a>(
     })
 }
 
+/// Measurements, or rows of joint readings, that are read at most: they are held in memory, and an endless pipe has more.
+pub(super) const MOST_ROWS: usize = 10_000_000;
+
+/// Refuses a row that is one too many.
+pub(super) fn refuse_more_rows(read: usize, row: &Row<'_>) -> Result<()> {
+    if read <= MOST_ROWS {
+        return Ok(());
+    }
+    let message = "found more than 10,000,000 measurements, expected fewer: leave some out";
+    Err(Error::new(ErrorKind::Measurement, message).at_line(row.path, row.line))
+}
+
 impl Row<'_> {
     /// Line and column (characters, from 1) of a cell.
     pub(super) fn place(&self, index: usize) -> (usize, usize) {
@@ -205,6 +217,14 @@ impl Row<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_row_too_many_is_refused() {
+        let row = Row { path: Path::new(PATH), line: 7, text: "", cells: &[] };
+        assert!(refuse_more_rows(MOST_ROWS, &row).is_ok());
+        let error = refuse_more_rows(MOST_ROWS + 1, &row).unwrap_err().to_string();
+        assert!(error.starts_with("x.csv:7: found more than 10,000,000 measurements"), "{error}");
+    }
 
     const PATH: &str = "x.csv";
     /// More bytes than any text here has, but one.
