@@ -111,12 +111,12 @@ const ROTATION_NOISE: &str =
 /// [`ErrorKind::Model`](crate::ErrorKind::Model) if a joint has the name of a measured
 /// column. Nothing is left behind then.
 pub fn write_project(folder: &Path, project: &Project) -> Result<Written> {
+    let mut notes = Vec::new();
+    let place =
+        FolderPlace::reserve(folder, Contents::Project, Existing::Kept, &[], &mut |note| notes.push(note))?;
     let model = folder.join(project.model_name());
     if disk::here().look(&model).is_ok() {
         return Err(taken(&model));
     }
-    let mut notes = Vec::new();
-    let place =
-        FolderPlace::reserve(folder, Contents::Project, Existing::Kept, &[], &mut |note| notes.push(note))?;
     write_files(place, &project.files()?, None, notes)
 }
