@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use poecal::io::model::Model;
-use poecal::io::output::{Project, write_project};
+use poecal::io::output::{Contents, Existing, Project, write_project};
 use poecal::io::urdf::ChainSelection;
 use poecal::simulate::Kind;
 use pyo3::prelude::*;
 
 use crate::errors::{argument, raise};
+use crate::places::reserved_folder;
 use crate::words::chosen;
 
 /// Most configurations that are suggested, as by the program.
@@ -43,9 +44,10 @@ pub(crate) fn init(
         return Err(argument("count", format!("found {count}, expected a number from 1 to {MOST}")));
     }
     let chain = ChainSelection { base_link, tip_link };
-    let write = || {
-        let model = Model::read(&model, &chain)?;
-        write_project(&out, &Project { model: &model, chain: &chain, kind, count, seed })
-    };
-    Ok(py.detach(write).map_err(raise)?.files)
+    let model = py.detach(|| Model::read(&model, &chain)).map_err(raise)?;
+    let place = reserved_folder(py, &out, Contents::Project, Existing::Kept, &[])?;
+    let project = Project { model: &model, chain: &chain, kind, count, seed };
+    let written = py.detach(|| write_project(place, &project)).map_err(raise)?;
+    crate::warn(py, &written.notes)?;
+    Ok(written.files)
 }

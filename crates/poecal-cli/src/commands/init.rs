@@ -2,7 +2,7 @@
 
 use poecal::Result;
 use poecal::io::model::Model;
-use poecal::io::output::{Project, write_project};
+use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project};
 
 use crate::DONE;
 use crate::args::Init;
@@ -19,7 +19,10 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
         count: arguments.count as usize,
         seed: arguments.seed,
     };
-    let written = write_project(&arguments.out, &project)?;
+    let (contents, existing) = (Contents::Project, Existing::Kept);
+    let place = FolderPlace::reserve(&arguments.out, contents, existing, &[], &mut console.warner())?;
+    let written = write_project(place, &project)?;
+    written.notes.iter().for_each(|note| console.warning(note));
     let next = format!(
         "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
         shown(&written.folder.join("README.md"))

@@ -29,6 +29,7 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> 
     bar.finish_and_clear();
     let (files, words) = found?;
     let written = output::write_reproduction(place, &files)?;
+    written.notes.iter().for_each(|note| console.warning(note));
     console.say(&words)?;
     console
         .say(&labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", "))))?;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Contents, Existing, FolderPlace, NewFile, Written, write_files};
+use super::{FolderPlace, NewFile, Written, write_files};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::disk;
 use crate::io::measurements::{plan, template};
@@ -28,12 +28,14 @@ const README: &str = include_str!("project/README.md");
 /// What a project folder is to hold.
 ///
 /// ```no_run
-/// use poecal::io::{model::Model, output::{Project, write_project}, urdf::ChainSelection};
+/// use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project};
+/// use poecal::io::{model::Model, urdf::ChainSelection};
 /// use poecal::simulate::Kind;
 /// let chain = ChainSelection::default();
 /// let model = Model::read("robot.urdf", &chain)?;
 /// let project = Project { model: &model, chain: &chain, kind: Kind::Point, count: 60, seed: 1 };
-/// let written = write_project("cell4".as_ref(), &project)?;
+/// let place = FolderPlace::reserve("cell4".as_ref(), Contents::Project, Existing::Kept, &[], &mut |_| ())?;
+/// let written = write_project(place, &project)?;
 /// assert_eq!(written.files, ["robot.urdf", "measurements.csv", "joints.csv", "poecal.toml", "README.md"]);
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -110,13 +112,10 @@ const ROTATION_NOISE: &str =
 /// [`ErrorKind::File`](crate::ErrorKind::File) if one of the files exists or cannot be written;
 /// [`ErrorKind::Model`](crate::ErrorKind::Model) if a joint has the name of a measured
 /// column. Nothing is left behind then.
-pub fn write_project(folder: &Path, project: &Project) -> Result<Written> {
-    let mut notes = Vec::new();
-    let place =
-        FolderPlace::reserve(folder, Contents::Project, Existing::Kept, &[], &mut |note| notes.push(note))?;
-    let model = folder.join(project.model_name());
+pub fn write_project(place: FolderPlace, project: &Project) -> Result<Written> {
+    let model = place.named.join(project.model_name());
     if disk::here().look(&model).is_ok() {
         return Err(taken(&model));
     }
-    write_files(place, &project.files()?, None, notes)
+    write_files(place, &project.files()?, None, Vec::new())
 }
