@@ -158,7 +158,7 @@ def test_files_tell_line_and_column(tmp_path):
     assert (str(again), again.line) == (str(raised.value), 3)
     with pytest.raises(poecal.OptionError, match="named twice"):
         poecal.Measurements.from_csv([path, path], elbow())
-    with pytest.raises(poecal.FileError, match="no file of this name"):
+    with pytest.raises(poecal.FileError, match="no such file"):
         poecal.Measurements.from_csv("nowhere.csv", elbow())
 
 

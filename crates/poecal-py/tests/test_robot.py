@@ -97,12 +97,29 @@ def test_what_a_robot_says_of_itself():
 def test_files_read_back(tmp_path):
     robot, joints = elbow(), configurations(9)
     for name, read in [("a.urdf", poecal.Robot.from_urdf), ("a.toml", poecal.Robot.from_toml), ("a.toml", poecal.Robot.read)]:
-        robot.write(tmp_path / name)
+        robot.write(tmp_path / name, force=True)
         again = read(str(tmp_path / name))
         assert np.abs(again.forward_kinematics(joints) - robot.forward_kinematics(joints)).max() < 1e-12
         assert again.path == str(tmp_path / name)
     assert robot.to_text("toml") == (tmp_path / "a.toml").read_text()
     assert poecal.convert(robot, out=tmp_path / "b.toml") == robot.to_text("toml")
+
+
+def test_nothing_is_replaced_without_force(tmp_path):
+    robot, mine = elbow(), tmp_path / "mine.toml"
+    mine.write_text("mine")
+    for write in [lambda **more: robot.write(mine, **more), lambda **more: poecal.convert(robot, out=mine, **more)]:
+        with pytest.raises(poecal.FileError, match="found this file, expected none"):
+            write()
+        assert mine.read_text() == "mine"
+        write(force=True)
+        assert mine.read_text() == robot.to_text("toml")
+        mine.write_text("mine")
+    robot.write(tmp_path / "robot.toml")
+    robot = poecal.Robot.read(tmp_path / "robot.toml")
+    with pytest.raises(poecal.FileError, match="found a file that this run reads"):
+        poecal.convert(robot, out=tmp_path / "robot.toml", force=True)
+    assert [path.name for path in sorted(tmp_path.iterdir())] == ["mine.toml", "robot.toml"]
 
 
 def test_offsets_of_unknown_joints_are_refused():
