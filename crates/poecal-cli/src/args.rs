@@ -29,8 +29,8 @@ use crate::console::Console;
 use crate::quantity::threads;
 
 /// What the program ends with.
-const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the verdict is worse than --require asks for; \
-                          2 wrong input or usage, nothing was written; 3 the fit did not converge";
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the verdict is worse than --require asks for, or \
+                          standard output could not be written to; 2 wrong input or usage, nothing was written; 3 the fit did not converge";
 
 /// Finds the robot that is really there: kinematic calibration by the product of exponentials.
 #[derive(Debug, Parser)]

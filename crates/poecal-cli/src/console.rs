@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::fmt::Display;
 use std::io::{ErrorKind, IsTerminal as _, Write as _};
+use std::path::Path;
 use std::time::Duration;
 
 use anstream::{AutoStream, ColorChoice};
@@ -11,7 +12,7 @@ use poecal::Result;
 use poecal::io::output::FilePlace;
 use poecal::text::{visible, visible_lines};
 
-use crate::{Said, style};
+use crate::{DONE, Said, WORSE, style};
 
 thread_local! {
     /// What is said, where it is kept and not printed.
@@ -89,6 +90,22 @@ impl Console {
         };
         let plain = AutoStream::choice(&stdout) == ColorChoice::Never;
         self.data(&if plain { text } else { style::painted(&text) })
+    }
+
+    /// A result about what has been written. If it cannot be said, what was written is there all the same: gives the code to end with.
+    pub(crate) fn say_of(&self, text: &str, written: &Path) -> u8 {
+        self.told(self.say(text), written)
+    }
+
+    /// [`Console::say_of`] for data.
+    pub(crate) fn data_of(&self, text: &str, written: &Path) -> u8 {
+        self.told(self.data(text), written)
+    }
+
+    fn told(&self, said: Result<()>, written: &Path) -> u8 {
+        let Err(error) = said else { return DONE };
+        self.error(format!("{error}; what was to be written is in {}", written.display()));
+        WORSE
     }
 
     /// Says warnings as they come.

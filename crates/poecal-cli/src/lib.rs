@@ -1,7 +1,7 @@
 //! The `poecal` program as a function: arguments in, exit code out. Commands read files, call the library and print; they compute
 //! nothing.
 //!
-//! Exit codes: 0 done; 1 the verdict is worse than `--require` asks; 2 a mistake in the input or its use; 3 the fit did not converge.
+//! Exit codes: 0 done; 1 the verdict is worse than `--require` asks, or standard output could not be written to; 2 a mistake in the input or its use; 3 the fit did not converge.
 
 mod args;
 mod commands;

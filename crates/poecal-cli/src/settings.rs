@@ -52,6 +52,10 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
     let keys: Vec<&str> = kept(command).map(|arg| arg.get_id().as_str()).collect();
     let settings = Settings::read(path, &keys)?;
     let (mut options, mut files) = (Vec::new(), Vec::new());
+    if named.is_none() {
+        // So that the command knows that it reads them.
+        options.push(OsString::from(format!("--settings={USUAL}")));
+    }
     for arg in kept(command) {
         let entry = settings.entries.iter().find(|entry| arg.get_id() == entry.key.as_str());
         if let Some(entry) = entry.filter(|_| !is_replaced(arg, command, matches)) {

@@ -20,16 +20,25 @@ pub(crate) fn clean_up_on_signals() {
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
-    // What was ignored when the program was started, as by `nohup` or a shell's `&`, stays so.
-    let ignored = ignored();
-    let heeded = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored & (1 << (signal - 1)) == 0);
-    let Ok(mut signals) = Signals::new(heeded) else { return };
     // Without a thread to spare signals end the program at once, and the next run cleans up.
-    let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
-        if let Some(signal) = signals.forever().next() {
-            ENDING.store(true, Ordering::SeqCst);
-            poecal::io::output::clean_up();
-            let _ = emulate_default_handler(signal);
+    let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(|| {
+        // What was ignored when the program was started, as by `nohup` or a shell's `&`, stays so. Only Linux tells that, and only
+        // SIGHUP is ignored elsewhere as a rule.
+        let ignored = ignored();
+        let all =
+            if cfg!(target_os = "linux") { &[SIGINT, SIGTERM, SIGHUP][..] } else { &[SIGINT, SIGTERM][..] };
+        let heeded = all.iter().filter(|signal| ignored & (1 << (*signal - 1)) == 0);
+        let Ok(mut signals) = Signals::new(heeded) else { return };
+        for signal in signals.forever() {
+            // Who asks twice does not wait.
+            if !ENDING.swap(true, Ordering::SeqCst) {
+                let _ = std::thread::Builder::new().spawn(move || {
+                    poecal::io::output::clean_up();
+                    let _ = emulate_default_handler(signal);
+                });
+            } else {
+                let _ = emulate_default_handler(signal);
+            }
         }
     });
 }

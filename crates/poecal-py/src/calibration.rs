@@ -25,7 +25,7 @@ use crate::findings::{self, Findings};
 use crate::html::Html;
 use crate::measurements::Measurements;
 use crate::pickle;
-use crate::places::{reserved_file, reserved_folder};
+use crate::places::{reserved_file, reserved_folder, said};
 use crate::prediction::Prediction;
 use crate::robot::{Robot, poses};
 use crate::words::chosen;
@@ -167,7 +167,7 @@ impl Calibration {
         let inputs: Vec<&Path> = std::iter::once(model.path.as_path()).chain(measured).collect();
         let place = reserved_folder(py, &folder, Contents::Calibration, existing, &inputs)?;
         let elsewhere = match &report {
-            ReportPlace::File(path) => Some(reserved_file(py, path, existing, &inputs)?),
+            ReportPlace::File(path) => said(py, |say| place.reserve_report(path, &inputs, say))?,
             ReportPlace::Among(_) => None,
         };
         let written = py.detach(|| {

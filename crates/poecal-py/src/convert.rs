@@ -17,7 +17,7 @@ use crate::errors::{argument, raise};
 use crate::places::reserved_file;
 use crate::robot::{Robot, form};
 
-/// A robot in another form, as a text; written to the file `out` too, over an old one, if one is named.
+/// A robot in another form, as a text; written to the file `out` too, over one that exists only with `force`, if one is named.
 ///
 /// Parameters
 /// ----------

@@ -26,7 +26,11 @@ pub(crate) fn reserved_folder(
     said(py, |say| FolderPlace::reserve(folder, contents, existing, inputs, say))
 }
 
-fn said<T>(py: Python<'_>, reserve: impl FnOnce(&mut dyn FnMut(String)) -> poecal::Result<T>) -> PyResult<T> {
+/// What `reserve` gives; what it says becomes warnings.
+pub(crate) fn said<T>(
+    py: Python<'_>,
+    reserve: impl FnOnce(&mut dyn FnMut(String)) -> poecal::Result<T>,
+) -> PyResult<T> {
     let mut notes = Vec::new();
     let place = reserve(&mut |note| notes.push(note));
     crate::warn(py, &notes)?;

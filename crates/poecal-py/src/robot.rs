@@ -314,7 +314,7 @@ impl Robot {
     #[pyo3(signature = (path, *, to=None, force=false))]
     fn write(&self, py: Python<'_>, path: PathBuf, to: Option<&str>, force: bool) -> PyResult<()> {
         let form = form(to, Some(&path))?;
-        let place = reserved_file(py, &path, Existing::forced(force), &[])?;
+        let place = reserved_file(py, &path, Existing::forced(force), &[&self.model.path])?;
         place.write(vec![self.converted(py, form)?.into()]).map_err(raise)
     }
 

@@ -20,7 +20,7 @@ use crate::args::{Calibrate, Frame, ReportPlace};
 use crate::console::Console;
 use crate::style::{labelled, shown};
 use crate::timings::Timings;
-use crate::{DONE, NOT_CONVERGED, WORSE};
+use crate::{NOT_CONVERGED, WORSE};
 
 pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<u8> {
     let mut timings = Timings::start();
@@ -60,18 +60,15 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     if arguments.timings {
         console.note(timings.line(|| calibration.solve_again(&data, &options)));
     }
-    match json {
-        Some(json) => console.data(&json)?,
-        None => {
-            console.say(&report::summary(&calibration, &data))?;
-            console.say(&words)?;
-        }
-    }
+    let said = match json {
+        Some(json) => console.data_of(&json, &arguments.out),
+        None => console.say_of(&(report::summary(&calibration, &data) + &words), &arguments.out),
+    };
     if !calibration.solver.termination.is_success() {
         return Ok(NOT_CONVERGED);
     }
     let worse = arguments.require.is_some_and(|required| calibration.verdict.level < required.into());
-    Ok(if worse { WORSE } else { DONE })
+    Ok(if worse { WORSE } else { said })
 }
 
 /// The model, if it and measurements are named, by arguments or settings.
@@ -167,9 +164,7 @@ impl Places {
             &mut console.warner(),
         )?;
         let report = match &arguments.report {
-            Some(ReportPlace::File(path)) => {
-                Some(FilePlace::reserve(path, existing, &inputs, &mut console.warner())?)
-            }
+            Some(ReportPlace::File(path)) => folder.reserve_report(path, &inputs, &mut console.warner())?,
             Some(ReportPlace::None) | None => None,
         };
         Ok(Places { folder, report })

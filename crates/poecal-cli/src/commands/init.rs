@@ -4,7 +4,6 @@ use poecal::Result;
 use poecal::io::model::Model;
 use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project};
 
-use crate::DONE;
 use crate::args::Init;
 use crate::console::Console;
 use crate::style::{labelled, shown};
@@ -28,6 +27,6 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
         shown(&written.folder.join("README.md"))
     );
     let files = format!("{}\n{}", shown(&written.folder), written.files.join(", "));
-    console.say(&(labelled("written", &files) + &labelled("next", &next)))?;
-    Ok(DONE)
+    let words = labelled("written", &files) + &labelled("next", &next);
+    Ok(console.say_of(&words, &written.folder))
 }

@@ -5,7 +5,6 @@ use poecal::io::output::{self, Existing, FilePlace};
 use poecal::io::residuals::Residuals;
 use poecal::{Result, report as text};
 
-use crate::DONE;
 use crate::args::Report;
 use crate::console::Console;
 use crate::style::{labelled, shown};
@@ -20,6 +19,5 @@ pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
     let residuals = Residuals::read(&path)?;
     let page = text::calibration_page(&file, &residuals).map_err(|error| error.in_file(&path))?;
     place.write(page)?;
-    console.say(&labelled("written", &shown(&out)))?;
-    Ok(DONE)
+    Ok(console.say_of(&labelled("written", &shown(&out)), &out))
 }

@@ -4,7 +4,6 @@ use poecal::io::output::{self, Contents, Existing, FolderPlace};
 use poecal::reproduce::{Options, breakdown, lou2009};
 use poecal::{Result, report};
 
-use crate::DONE;
 use crate::args::{Experiment, Reproduce};
 use crate::console::Console;
 use crate::style::{labelled, shown};
@@ -30,8 +29,6 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> 
     let (files, words) = found?;
     let written = output::write_reproduction(place, &files)?;
     written.notes.iter().for_each(|note| console.warning(note));
-    console.say(&words)?;
-    console
-        .say(&labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", "))))?;
-    Ok(DONE)
+    let files = labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", ")));
+    Ok(console.say_of(&(words + &files), &written.folder))
 }

@@ -5,7 +5,6 @@ use poecal::io::model::Model;
 use poecal::io::output::{self, Contents, Existing, FolderPlace, Session};
 use poecal::simulate::{Kind, Simulation};
 
-use crate::DONE;
 use crate::args::{Chain, Frame, Simulate};
 use crate::console::Console;
 use crate::style::{labelled, shown};
@@ -47,9 +46,8 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     for note in &written.notes {
         console.warning(note);
     }
-    console
-        .say(&labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", "))))?;
-    Ok(DONE)
+    let words = labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", ")));
+    Ok(console.say_of(&words, &written.folder))
 }
 
 /// The command that makes the same files anywhere: with every option that they depend on, and no output folder.

@@ -212,6 +212,10 @@ fn what_an_interrupted_run_left_is_settled_and_said() {
     let unfinished = "out/.poecal-unfinished-79-0";
     fs::create_dir_all(folder.path(unfinished).join("new")).unwrap();
     folder.write(&format!("{unfinished}/new/residuals.csv"), "new");
+    fs::create_dir_all(folder.path(unfinished).join("old")).unwrap();
+    for name in ["residuals.csv", "report.html"] {
+        fs::hard_link(folder.path("out").join(name), folder.path(unfinished).join("old").join(name)).unwrap();
+    }
     folder.write(
         &format!("{unfinished}/journal"),
         "poecal-journal-1\nput calibration.json\nput residuals.csv\nremove report.html\nend\n",
@@ -227,6 +231,94 @@ fn what_an_interrupted_run_left_is_settled_and_said() {
     let run = folder.run("calibrate robot.urdf measurements.csv --out out --force");
     assert!(run.code == 0 && run.err.contains("it cannot be settled"), "{}", run.err);
     assert!(folder.path("robot.urdf").exists());
+}
+
+#[test]
+fn what_somebody_planted_leads_nowhere() {
+    let folder = calibrated();
+    fs::create_dir(folder.path("victim")).unwrap();
+    folder.write("victim/calibration.json", "theirs");
+    folder.write("victim/thesis.tex", "theirs");
+    folder.write("out/thesis.tex", "mine");
+    // Links in the place of what a run leaves, inside and beside, for a folder and for a file.
+    for unfinished in
+        ["out/.poecal-unfinished-1-0", ".out.poecal-unfinished-1-0", ".new.toml.poecal-unfinished-1-0"]
+    {
+        fs::create_dir_all(folder.path(unfinished)).unwrap();
+        symlink(folder.path("victim"), folder.path(unfinished).join("new")).unwrap();
+        symlink(folder.path("victim/made"), folder.path(unfinished).join("lock")).unwrap();
+    }
+    symlink(folder.path("victim"), folder.path("out/.poecal-unfinished-2-0")).unwrap();
+    // A journal of files that no run writes.
+    fs::create_dir_all(folder.path("out/.poecal-unfinished-3-0/new")).unwrap();
+    folder.write("out/.poecal-unfinished-3-0/journal", "poecal-journal-1\nremove thesis.tex\nend\n");
+    folder.run("calibrate robot.urdf measurements.csv --out out");
+    folder.done("calibrate robot.urdf measurements.csv --out out --force");
+    folder.done("convert robot.urdf --out new.toml");
+    let names: Vec<_> =
+        fs::read_dir(folder.path("victim")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names.len(), 2, "{names:?}");
+    assert_eq!(
+        (folder.read("victim/calibration.json"), folder.read("out/thesis.tex")),
+        ("theirs".into(), "mine".into())
+    );
+}
+
+#[test]
+fn what_was_changed_since_an_interrupted_run_stays() {
+    let folder = calibrated();
+    let unfinished = "out/.poecal-unfinished-79-0";
+    for half in ["new", "old"] {
+        fs::create_dir_all(folder.path(unfinished).join(half)).unwrap();
+    }
+    for name in ["calibration.json", "residuals.csv"] {
+        fs::hard_link(folder.path("out").join(name), folder.path(unfinished).join("old").join(name)).unwrap();
+        folder.write(&format!("{unfinished}/new/{name}"), "new");
+    }
+    let text = "poecal-journal-1\nput calibration.json\nput residuals.csv\nadd calibrated.toml\nremove report.html\nend\n";
+    folder.write(&format!("{unfinished}/journal"), text);
+    folder.write(&format!("{unfinished}/new/calibrated.toml"), "new");
+    // A backup was put back, a model made by hand, and a report written anew.
+    fs::remove_file(folder.path("out/calibration.json")).unwrap();
+    folder.write("out/calibration.json", "a backup");
+    folder.write("out/calibrated.toml", "by hand");
+    folder.run("calibrate robot.urdf measurements.csv --out out");
+    assert_eq!(folder.read("out/calibration.json"), "a backup");
+    assert_eq!(folder.read("out/calibrated.toml"), "by hand");
+    assert_eq!(folder.read("out/residuals.csv"), "new");
+    assert!(folder.path("out/report.html").exists() && !folder.path(unfinished).exists());
+}
+
+#[test]
+fn a_report_named_inside_the_results_is_one_of_them() {
+    let folder = calibrated();
+    let calibrate = "calibrate robot.urdf measurements.csv --out out --force --report";
+    folder.done(&format!("{calibrate} out/report.html"));
+    assert!(folder.read("out/report.html").contains("<!DOCTYPE html>"));
+    folder.done(&format!("{calibrate} ./out/../out/page.html"));
+    assert!(folder.path("out/page.html").exists() && !folder.path("out/report.html").exists());
+    refused(&folder, &format!("{calibrate} out/calibration.json"), "found the place of another result");
+    refused(&folder, &format!("{calibrate} out"), "found the folder of the results");
+    refused(
+        &folder,
+        "calibrate robot.urdf measurements.csv --out x --report x",
+        "found the folder of the results",
+    );
+    folder.done("calibrate robot.urdf measurements.csv --out y --report y/report.html");
+    assert!(folder.path("y/report.html").exists());
+}
+
+#[test]
+fn results_are_there_when_nobody_can_be_told() {
+    let folder = session(Kind::Point);
+    let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    for more in ["", " --json"] {
+        let run = folder
+            .run_into(&format!("calibrate robot.urdf measurements.csv --out out --force{more}"), full());
+        assert_eq!(run.code, 1, "{}", run.err);
+        assert!(run.err.contains("; what was to be written is in out"), "{}", run.err);
+        assert!(folder.path("out/calibration.json").exists());
+    }
 }
 
 /// Two runs at once; their exit codes, sorted, and what they said.
@@ -338,6 +430,16 @@ fn settings_lead_nowhere_else_and_let_only_results_go() {
     }
     settings("out = '../outside/x'");
     folder.done("calibrate --settings cell/poecal.toml --out typed");
+    // Settings are an input, read by default or not.
+    folder.write(
+        "poecal.toml",
+        "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\n",
+    );
+    refused(
+        &folder,
+        "calibrate --out by_default --report poecal.toml --force",
+        "found a file that this run reads",
+    );
     // A folder of others is let go by what is typed only.
     fs::create_dir(folder.path("cell/results")).unwrap();
     folder.write("cell/results/report.html", "mine");

@@ -343,9 +343,9 @@ impl Disk for SimulatedDisk {
         let mut state = self.state();
         state.begin()?;
         match state.tree.get(&whole(path)) {
-            Some(Node::Folder) => Ok(Found { kind: FoundKind::Folder, identity: None }),
+            Some(Node::Folder) => Ok(Found { kind: FoundKind::Folder, identity: None, is_mine: true }),
             Some(Node::File(number)) => {
-                Ok(Found { kind: FoundKind::File, identity: Some((1, *number as u64)) })
+                Ok(Found { kind: FoundKind::File, identity: Some((1, *number as u64)), is_mine: true })
             }
             None => Err(error(ErrorKind::NotFound)),
         }

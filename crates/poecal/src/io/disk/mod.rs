@@ -41,6 +41,8 @@ pub struct Found {
     pub kind: FoundKind,
     /// Device and number of the file, the same for every path that leads to it; none where the system has no such numbers.
     pub identity: Option<(u64, u64)>,
+    /// Whether it belongs to the user who runs the program; where files have no owners, it does.
+    pub is_mine: bool,
 }
 
 /// Holds a lock until it is dropped.
@@ -111,7 +113,7 @@ pub trait Disk: Send + Sync {
     fn sync_folder(&self, path: &Path) -> io::Result<()>;
     /// Locks a file, created if need be; none if somebody else holds it. [`io::ErrorKind::Unsupported`] where there are no locks.
     fn lock(&self, path: &Path) -> io::Result<Option<Lock>>;
-    /// Locks a folder, and waits for whoever holds it; where there are no locks, without one.
+    /// Locks a folder, and waits some seconds for whoever holds it; where there are no locks, without one.
     fn lock_folder(&self, path: &Path) -> io::Result<Lock>;
 }
 

@@ -5,6 +5,8 @@ use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
+#[cfg(unix)]
+use std::time::{Duration, Instant};
 
 use super::{Disk, Found, FoundKind, Lock, Output};
 
@@ -49,7 +51,18 @@ fn found(metadata: &Metadata) -> Found {
         kind if kind.is_symlink() => FoundKind::Link,
         _ => FoundKind::Other,
     };
-    Found { kind, identity: identity(metadata) }
+    Found { kind, identity: identity(metadata), is_mine: is_mine(metadata) }
+}
+
+#[cfg(unix)]
+fn is_mine(metadata: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    metadata.uid() == rustix::process::geteuid().as_raw()
+}
+
+#[cfg(not(unix))]
+fn is_mine(_: &Metadata) -> bool {
+    true
 }
 
 #[cfg(unix)]
@@ -61,6 +74,50 @@ fn identity(metadata: &Metadata) -> Option<(u64, u64)> {
 #[cfg(not(unix))]
 fn identity(_: &Metadata) -> Option<(u64, u64)> {
     None
+}
+
+/// How long a folder's lock is waited for, and how often it is asked for. Whoever works with it is done in less.
+#[cfg(unix)]
+const PATIENCE: Duration = Duration::from_secs(20);
+#[cfg(unix)]
+const PAUSE: Duration = Duration::from_millis(2);
+
+/// Whether the file system does not know what was asked of it.
+fn is_unknown(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported)
+}
+
+/// Whether the file system has no locks.
+fn has_no_locks(error: &io::Error) -> bool {
+    #[cfg(unix)]
+    if error.raw_os_error() == Some(rustix::io::Errno::NOLCK.raw_os_error()) {
+        return true;
+    }
+    error.kind() == io::ErrorKind::Unsupported
+}
+
+/// Extended attributes with their values: access lists and labels.
+#[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
+fn attributes(path: &Path) -> io::Result<Vec<(Vec<u8>, Vec<u8>)>> {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+    const LARGEST: usize = 1 << 16;
+    let mut names = vec![0; LARGEST];
+    let length = match rustix::fs::listxattr(path, &mut names[..]).map_err(io::Error::from) {
+        Err(error) if is_unknown(&error) => 0,
+        listed => listed?,
+    };
+    let names =
+        names.get(..length).unwrap_or_default().split(|byte| *byte == 0).filter(|name| !name.is_empty());
+    let valued = names.map(|name| {
+        let mut value = vec![0; LARGEST];
+        let length = rustix::fs::getxattr(path, OsStr::from_bytes(name), &mut value[..])?;
+        value.truncate(length);
+        Ok((name.to_vec(), value))
+    });
+    let mut valued = valued.collect::<io::Result<Vec<_>>>()?;
+    valued.sort();
+    Ok(valued)
 }
 
 /// What a rename that must not replace comes to where the system has no such call: a second name, or a folder, which replaces no
@@ -82,7 +139,7 @@ mod renames {
 
     pub(super) fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
         match renameat_with(CWD, from, CWD, to, RenameFlags::NOREPLACE).map_err(io::Error::from) {
-            Err(error) if is_unknown(&error) => super::rename_new_in_steps(from, to),
+            Err(error) if super::is_unknown(&error) => super::rename_new_in_steps(from, to),
             done => done,
         }
     }
@@ -90,13 +147,8 @@ mod renames {
     pub(super) fn exchange(one: &Path, other: &Path) -> io::Result<()> {
         renameat_with(CWD, one, CWD, other, RenameFlags::EXCHANGE).map_err(|error| {
             let error = io::Error::from(error);
-            if is_unknown(&error) { io::ErrorKind::Unsupported.into() } else { error }
+            if super::is_unknown(&error) { io::ErrorKind::Unsupported.into() } else { error }
         })
-    }
-
-    /// Whether the file system does not know such a rename.
-    fn is_unknown(error: &io::Error) -> bool {
-        matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported)
     }
 }
 
@@ -196,8 +248,7 @@ impl Disk for SystemDisk {
         #[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
         {
             // Access lists and labels would be lost.
-            let attributes = rustix::fs::listxattr(from, &mut [0u8; 0][..]).unwrap_or(0);
-            if attributes > rustix::fs::listxattr(to, &mut [0u8; 0][..]).unwrap_or(0) {
+            if attributes(from)? != attributes(to)? {
                 return Err(io::ErrorKind::Unsupported.into());
             }
         }
@@ -218,7 +269,11 @@ impl Disk for SystemDisk {
 
     #[cfg(unix)]
     fn sync_folder(&self, path: &Path) -> io::Result<()> {
-        File::open(path)?.sync_all()
+        match File::open(path)?.sync_all() {
+            // Some file systems have nothing to sync in a folder.
+            Err(error) if is_unknown(&error) => Ok(()),
+            synced => synced,
+        }
     }
 
     #[cfg(not(unix))]
@@ -231,6 +286,7 @@ impl Disk for SystemDisk {
         match file.try_lock() {
             Ok(()) => Ok(Some(Box::new(file))),
             Err(TryLockError::WouldBlock) => Ok(None),
+            Err(TryLockError::Error(error)) if has_no_locks(&error) => Err(io::ErrorKind::Unsupported.into()),
             Err(TryLockError::Error(error)) => Err(error),
         }
     }
@@ -238,9 +294,18 @@ impl Disk for SystemDisk {
     #[cfg(unix)]
     fn lock_folder(&self, path: &Path) -> io::Result<Lock> {
         let folder = File::open(path)?;
-        match folder.lock() {
-            Err(error) if error.kind() != io::ErrorKind::Unsupported => Err(error),
-            _ => Ok(Box::new(folder)),
+        let end = Instant::now() + PATIENCE;
+        loop {
+            match folder.try_lock() {
+                Ok(()) => return Ok(Box::new(folder)),
+                Err(TryLockError::Error(error)) if has_no_locks(&error) => return Ok(Box::new(folder)),
+                Err(TryLockError::Error(error)) => return Err(error),
+                Err(TryLockError::WouldBlock) if Instant::now() > end => {
+                    let message = "another program holds a lock on the folder";
+                    return Err(io::Error::new(io::ErrorKind::TimedOut, message));
+                }
+                Err(TryLockError::WouldBlock) => std::thread::sleep(PAUSE),
+            }
         }
     }
 

@@ -49,11 +49,20 @@ impl FolderPlace {
             }
         }
         let _lock = lock(self.staging.disk.as_ref(), &self.folder).map_err(failed)?;
+        // Whoever was at work before this run had the lock may have been killed at it.
+        let mut notes = Vec::new();
+        leftovers::settle_inside(self.staging.disk.as_ref(), &self.folder, &mut |note| notes.push(note));
         let replaced = self.look_again(failed)?;
-        if let Some(notes) = self.exchange_folders().map_err(failed)? {
-            return Ok(notes);
+        for name in names.iter().filter(|name| replaced.contains(*name)) {
+            // A file whose owner and permissions cannot be kept gets the usual ones.
+            let (from, to) = (self.folder.join(name), self.staging.new_files().join(name));
+            let _ = self.staging.disk.copy_access(&from, &to);
         }
-        self.exchange_files(names, &replaced)
+        let more = match self.exchange_folders().map_err(failed)? {
+            Some(more) => more,
+            None => self.exchange_files(names, &replaced)?,
+        };
+        Ok([notes, more].concat())
     }
 
     /// What is to be said after a folder's names were synced, or could not be.
@@ -162,14 +171,14 @@ impl FolderPlace {
             self.staging.abandoned = Journal::end(disk, &staging).is_err();
             return error(format!("the results cannot be put in place ({cause}): nothing was changed"));
         }
-        let Err(cause) = journal.carry_out(disk, &staging, &folder) else {
+        let Err(cause) = journal.carry_out(disk, &staging, &folder, false) else {
             let notes = self.synced(Some(&folder));
             let _ = Journal::end(disk, &staging);
             return Ok(notes);
         };
         let returned = Journal::turn_back(disk, &staging)
             .and_then(|()| Journal::kept(disk, &staging))
-            .and_then(|back| back.map_or(Ok(()), |back| back.carry_out(disk, &staging, &folder)))
+            .and_then(|back| back.map_or(Ok(()), |back| back.carry_out(disk, &staging, &folder, false)))
             .and_then(|()| disk.sync_folder(&folder))
             .and_then(|()| Journal::end(disk, &staging));
         if returned.is_ok() {

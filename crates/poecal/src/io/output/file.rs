@@ -7,10 +7,20 @@ use super::place::{Existing, GENERATOR, found, is_of_poecal, led_to, new_place, 
 use super::staging::{self, Staging};
 use super::{NewFile, Page, interrupted, leftovers};
 use crate::error::{Error, Result};
-use crate::io::disk::{self, FoundKind};
+use crate::io::disk::{self, Disk, FoundKind};
 
-/// Streams, by whatever path.
-const STREAMS: [&str; 4] = ["/dev/stdout", "/dev/stderr", "/dev/fd/", "/proc/self/fd/"];
+/// The name of the file in its staging folder, whatever it will be called.
+const NAME: &str = "file";
+
+/// Whether a path is that of a stream of this process.
+fn is_stream(path: &Path) -> bool {
+    let number = |path: &str| {
+        let number = path.strip_prefix("/dev/fd/").or_else(|| path.strip_prefix("/proc/self/fd/"))?;
+        Some(!number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    path.to_str()
+        .is_some_and(|path| ["/dev/stdout", "/dev/stderr"].contains(&path) || number(path).unwrap_or(false))
+}
 
 /// A file that is about to be written. Nothing has changed yet.
 ///
@@ -33,7 +43,7 @@ enum Way {
     /// To what is no regular file.
     Stream(PathBuf),
     /// Beside its place first, then moved there.
-    Staged { path: PathBuf, name: String, replaces: bool, staging: Staging },
+    Staged { path: PathBuf, existing: Existing, replaces: bool, staging: Staging },
 }
 
 impl std::fmt::Debug for FilePlace {
@@ -61,12 +71,7 @@ impl FilePlace {
     ) -> Result<Self> {
         let disk = disk::here();
         let named = path.to_owned();
-        let is_stream = |start: &&str| {
-            path.to_str().is_some_and(|path| {
-                if start.ends_with('/') { path.starts_with(*start) } else { path == *start }
-            })
-        };
-        if STREAMS.iter().any(is_stream) {
+        if is_stream(path) {
             return Ok(FilePlace { named, way: Way::Stream(path.to_owned()) });
         }
         let there = match found(disk.as_ref(), path)? {
@@ -88,26 +93,17 @@ impl FilePlace {
             }
             Some(FoundKind::File) => {
                 refuse_input(disk.as_ref(), path, inputs)?;
-                let may = match existing {
-                    Existing::Kept => false,
-                    Existing::Own => is_of_poecal(disk.as_ref(), at, GENERATOR),
-                    Existing::Replaced => true,
-                };
-                if !may {
-                    let message =
-                        "found this file, expected none: choose another, or write over this one with --force";
-                    return Err(refused(path, message));
+                if !may_go(disk.as_ref(), at, existing) {
+                    return Err(refused(path, IN_THE_WAY));
                 }
             }
             None => {}
         }
         let replaces = there.is_some();
         let (parent, place) = new_place(disk.as_ref(), at)?;
-        let name = place.file_name().unwrap_or_default();
-        let prefix = staging::prefix(Some(name));
+        let prefix = staging::prefix(place.file_name());
         let staging = Staging::new(&disk, &parent, &prefix).map_err(|error| unwritable(path, &error))?;
-        let name = name.to_string_lossy().into_owned();
-        Ok(FilePlace { named, way: Way::Staged { path: place, name, replaces, staging } })
+        Ok(FilePlace { named, way: Way::Staged { path: place, existing, replaces, staging } })
     }
 
     /// Writes the file, of pieces that follow each other.
@@ -131,8 +127,8 @@ impl FilePlace {
                     written => written,
                 }
             }),
-            Way::Staged { name, staging, .. } => {
-                staging.write(&NewFile::of_page(name, page)).and_then(|()| staging.sync())
+            Way::Staged { staging, .. } => {
+                staging.write(&NewFile::of_page(NAME, page)).and_then(|()| staging.sync())
             }
         };
         staged.map_err(|error| unwritable(&self.named, &error))
@@ -140,12 +136,17 @@ impl FilePlace {
 
     /// Puts the new text in place.
     pub(super) fn put(self) -> Result<Put> {
-        let Way::Staged { path, name, replaces, staging } = self.way else { return Ok(Put(None)) };
-        let (disk, new) = (staging.disk.clone(), staging.new_files().join(&name));
+        let Way::Staged { path, existing, replaces, staging } = self.way else { return Ok(Put(None)) };
+        let (disk, new, old) = (staging.disk.clone(), staging.new_files().join(NAME), staging.old_files());
+        let replaces = replaces && disk.look(&path).is_ok();
+        if replaces && !may_go(disk.as_ref(), &path, existing) {
+            return Err(refused(&self.named, IN_THE_WAY));
+        }
         let moved = if replaces {
-            let old = staging.old_files();
+            // A file whose owner and permissions cannot be kept gets the usual ones.
+            let _ = disk.copy_access(&path, &new);
             let kept =
-                disk.create_folder(&old).and_then(|()| staging::keep(disk.as_ref(), &path, &old.join(&name)));
+                disk.create_folder(&old).and_then(|()| staging::keep(disk.as_ref(), &path, &old.join(NAME)));
             kept.and_then(|()| disk.rename(&new, &path))
         } else {
             disk.rename_new(&new, &path)
@@ -166,10 +167,10 @@ impl Put {
     pub(super) fn take_back(self, error: Error) -> Error {
         let Some((path, replaces, staging)) = self.0 else { return error };
         let disk = staging.disk.as_ref();
-        let old = path.file_name().map(|name| staging.old_files().join(name));
-        let taken = match old.filter(|_| replaces) {
-            Some(old) => disk.rename(&old, &path),
-            None => disk.remove_file(&path),
+        let taken = if replaces {
+            disk.rename(&staging.old_files().join(NAME), &path)
+        } else {
+            disk.remove_file(&path)
         };
         match taken {
             Ok(()) => error,
@@ -188,6 +189,19 @@ impl Put {
             // It is in place, whatever becomes of it if power fails now.
             let _ = staging.disk.sync_folder(parent);
         }
+    }
+}
+
+/// What is said of a file that must stay.
+const IN_THE_WAY: &str =
+    "found this file, expected none: choose another, or write over this one with --force";
+
+/// Whether a file may be replaced.
+fn may_go(disk: &dyn Disk, path: &Path, existing: Existing) -> bool {
+    match existing {
+        Existing::Kept => false,
+        Existing::Own => is_of_poecal(disk, path, GENERATOR),
+        Existing::Replaced => true,
     }
 }
 

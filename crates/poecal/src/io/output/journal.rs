@@ -2,10 +2,12 @@
 
 use std::collections::BTreeSet;
 use std::io::{self, Read as _, Write as _};
-use std::path::{Component, Path};
+use std::path::Path;
 
+use super::place::Contents;
 use super::staging::{NEW, OLD, gone};
 use crate::io::disk::{Disk, FoundKind};
+use crate::io::named_files;
 
 /// The first line, with the version of the form.
 const HEAD: &str = "poecal-journal-1";
@@ -55,7 +57,8 @@ impl Journal {
         let lines = text.strip_prefix(HEAD)?.strip_prefix('\n')?.strip_suffix('\n')?.strip_suffix(END)?;
         let step = |line: &str| {
             let (word, name) = line.split_once(' ')?;
-            let name = is_plain(name).then(|| name.to_owned())?;
+            // Nothing else was ever to be written, whoever wrote the journal.
+            let name = Contents::is_of_any(name).then(|| name.to_owned())?;
             match word {
                 "put" => Some(Step::Put(name)),
                 "add" => Some(Step::Add(name)),
@@ -99,14 +102,31 @@ impl Journal {
         Journal::parse(&text).ok_or_else(|| io::ErrorKind::InvalidData.into()).map(Some)
     }
 
-    /// Does each step that is not done, in a folder.
-    pub(super) fn carry_out(&self, disk: &dyn Disk, staging: &Path, folder: &Path) -> io::Result<()> {
+    /// Does each step that is not done, in a folder. Where a place does not hold what it held when the journal was written, somebody
+    /// else has changed it: that is an error, or for one who does it `again` no matter, and it stays.
+    pub(super) fn carry_out(
+        &self,
+        disk: &dyn Disk,
+        staging: &Path,
+        folder: &Path,
+        again: bool,
+    ) -> io::Result<()> {
         for step in &self.0 {
+            if let Step::Put(name) | Step::Remove(name) = step
+                && is_changed(disk, &staging.join(OLD).join(name), &folder.join(name))?
+            {
+                let is_done = matches!(step, Step::Put(_)) && !is_file(disk, &staging.join(NEW).join(name))?;
+                if !is_done && !again {
+                    return Err(io::Error::other(format!("{name} was changed meanwhile")));
+                }
+                continue;
+            }
             match step {
                 Step::Remove(name) if is_file(disk, &folder.join(name))? => {
                     disk.remove_file(&folder.join(name))?
                 }
                 Step::Remove(_) => {}
+                Step::Add(name) if again && is_file(disk, &folder.join(name))? => {}
                 Step::Take(name) => {
                     if !is_file(disk, &staging.join(NEW).join(name))? && is_file(disk, &folder.join(name))? {
                         disk.remove_file(&folder.join(name))?;
@@ -142,6 +162,25 @@ impl Journal {
     }
 }
 
+/// Whether there is a file that is not the one that was kept.
+fn is_changed(disk: &dyn Disk, kept: &Path, place: &Path) -> io::Result<bool> {
+    if !is_file(disk, place)? {
+        return Ok(false);
+    }
+    if !is_file(disk, kept)? {
+        return Ok(true);
+    }
+    if named_files::are_same(disk, kept, place) {
+        return Ok(false);
+    }
+    // Where there are no second names, it is a copy.
+    let (mut kept, mut place) = (disk.open(kept)?, disk.open(place)?);
+    let (mut one, mut other) = (Vec::new(), Vec::new());
+    kept.read_to_end(&mut one)?;
+    place.read_to_end(&mut other)?;
+    Ok(one != other)
+}
+
 /// Whether a file is there.
 fn is_file(disk: &dyn Disk, path: &Path) -> io::Result<bool> {
     match disk.look(path) {
@@ -154,12 +193,6 @@ fn is_file(disk: &dyn Disk, path: &Path) -> io::Result<bool> {
 /// Names that a staging folder has for its journal.
 pub(super) const NAMES: [&str; 3] = [UNFINISHED, NAME, BACK];
 
-/// Whether it is the name of a file, and nothing else.
-fn is_plain(name: &str) -> bool {
-    let mut parts = Path::new(name).components();
-    matches!((parts.next(), parts.next()), (Some(Component::Normal(part)), None) if part == name)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,17 +201,20 @@ mod tests {
     fn a_journal_reads_back_and_leads_nowhere_else() {
         let name = |name: &str| name.to_owned();
         let journal = Journal(vec![
-            Step::Put(name("a b.csv")),
-            Step::Add(name("e")),
-            Step::Remove(name("c")),
-            Step::Back(name("d")),
+            Step::Put(name("calibration.json")),
+            Step::Add(name("figure-accuracy.svg")),
+            Step::Remove(name("report.html")),
+            Step::Back(name("residuals.csv")),
+            Step::Take(name("robot.urdf")),
         ]);
         assert_eq!(Journal::parse(&journal.text()), Some(journal.clone()));
         let text = journal.text();
         for cut in 1..text.len() {
             assert_eq!(Journal::parse(&text[..cut]), None, "{cut}");
         }
-        for hostile in ["../a", "/etc/passwd", "a/b", "..", ".", "", "a/"] {
+        for hostile in
+            ["../a", "/etc/passwd", "a/b", "..", ".", "", "thesis.tex", ".bashrc", "figure-../../a.svg"]
+        {
             assert_eq!(Journal::parse(&format!("{HEAD}\nput {hostile}\n{END}\n")), None, "{hostile}");
         }
     }

@@ -2,45 +2,55 @@
 
 use std::ffi::OsStr;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::journal::Journal;
 use super::place::Contents;
 use super::staging;
-use crate::io::disk::{Disk, FoundKind};
+use crate::io::disk::{Disk, FoundKind, Lock};
 
 /// Settles what lies at a place without links, beside it and inside if it is a folder. Says what was done, a sentence each.
 pub(super) fn settle(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String)) {
     let is_folder = disk.look(place).is_ok_and(|found| found.kind == FoundKind::Folder);
-    let target = is_folder.then_some(place);
     // What lies beside it may have to go inside first.
     if let (Some(parent), Some(name)) = (place.parent(), place.file_name()) {
-        settle_in(disk, parent, &staging::prefix(Some(name)), target, say);
+        for (folder, lock) in left(disk, parent, &staging::prefix(Some(name))) {
+            let target = is_folder.then_some(place);
+            say(told(&folder, place, settle_beside(disk, &folder, target).map(|()| false)));
+            drop(lock);
+        }
     }
-    if is_folder {
-        settle_in(disk, place, &staging::prefix(None), target, say);
+    // Nobody puts files in place meanwhile.
+    if is_folder
+        && !left(disk, place, &staging::prefix(None)).is_empty()
+        && let Ok(_locked) = disk.lock_folder(place)
+    {
+        settle_inside(disk, place, say);
     }
 }
 
-fn settle_in(
-    disk: &dyn Disk,
-    parent: &Path,
-    prefix: &OsStr,
-    target: Option<&Path>,
-    say: &mut dyn FnMut(String),
-) {
-    // A folder that cannot be listed cannot be written to either, which is then said.
-    for (folder, _lock) in staging::left(disk, parent, prefix).unwrap_or_default() {
-        say(match settle_one(disk, &folder, target) {
-            Ok(Settled::Completed(target)) => {
-                format!(
-                    "{}: an interrupted run had not put all of its files in place: completed",
-                    target.display()
-                )
-            }
-            Ok(Settled::Removed) => format!("{}: removed what an interrupted run left", folder.display()),
-            Err(error) => unsettled(&folder, &error),
-        });
+/// Settles what lies inside a folder that is locked.
+pub(super) fn settle_inside(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String)) {
+    for (folder, _lock) in left(disk, place, &staging::prefix(None)) {
+        say(told(&folder, place, settle_one(disk, &folder, place)));
+    }
+}
+
+/// A folder that cannot be listed cannot be written to either, which is then said.
+fn left(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> Vec<(PathBuf, Lock)> {
+    staging::left(disk, parent, prefix).unwrap_or_default()
+}
+
+fn told(staging: &Path, place: &Path, settled: io::Result<bool>) -> String {
+    match settled {
+        Ok(true) => {
+            format!(
+                "{}: an interrupted run had not put all of its files in place: completed",
+                place.display()
+            )
+        }
+        Ok(false) => format!("{}: removed what an interrupted run left", staging.display()),
+        Err(error) => unsettled(staging, &error),
     }
 }
 
@@ -51,25 +61,23 @@ fn unsettled(staging: &Path, error: &io::Error) -> String {
     )
 }
 
-enum Settled<'a> {
-    Completed(&'a Path),
-    Removed,
+/// Settles what lies beside a place; `target` is the folder there, which may have been exchanged, if there is one.
+fn settle_beside(disk: &dyn Disk, staging: &Path, target: Option<&Path>) -> io::Result<()> {
+    if let Some(target) = target {
+        give_back(disk, &staging.join(staging::NEW), target, &Contents::is_of_any)?;
+    }
+    staging::remove(disk, staging)
 }
 
-/// `target` is the folder that the files are for, if there is one.
-fn settle_one<'a>(disk: &dyn Disk, staging: &Path, target: Option<&'a Path>) -> io::Result<Settled<'a>> {
-    let Some(target) = target else { return staging::remove(disk, staging).map(|()| Settled::Removed) };
-    let settled = if let Some(journal) = Journal::kept(disk, staging)? {
-        journal.carry_out(disk, staging, target)?;
+/// Settles what lies inside a folder; whether there was something to complete.
+fn settle_one(disk: &dyn Disk, staging: &Path, target: &Path) -> io::Result<bool> {
+    let journal = Journal::kept(disk, staging)?;
+    if let Some(journal) = &journal {
+        journal.carry_out(disk, staging, target, true)?;
         disk.sync_folder(target)?;
-        Settled::Completed(target)
-    } else {
-        // Whatever it was that the run wrote.
-        give_back(disk, &staging.join(staging::NEW), target, &Contents::is_of_any)?;
-        Settled::Removed
-    };
+    }
     staging::remove(disk, staging)?;
-    Ok(settled)
+    Ok(journal.is_some())
 }
 
 /// Removes a folder that has been exchanged for `target`, or was to be: own files go, all else moves to the target.

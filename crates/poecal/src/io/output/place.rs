@@ -4,8 +4,8 @@ use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::leftovers;
 use super::staging::{self, Staging};
+use super::{FilePlace, REPORT, leftovers};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::disk::{self, Disk, Found, FoundKind};
 use crate::io::named_files;
@@ -190,6 +190,40 @@ impl FolderPlace {
         let staging = Staging::new(&disk, &parent, &prefix).map_err(cannot)?;
         let (named, was_there) = (folder.to_owned(), there.is_some());
         Ok(FolderPlace { named, folder: actual, contents, existing, was_there, staging })
+    }
+
+    /// The place of a report that does not lie among these results; none if its path is that among them.
+    ///
+    /// # Errors
+    /// As [`FilePlace::reserve`], and if it is the folder itself or has the name of another result in it.
+    pub fn reserve_report(
+        &self,
+        path: &Path,
+        inputs: &[&Path],
+        say: &mut dyn FnMut(String),
+    ) -> Result<Option<FilePlace>> {
+        let disk = &self.staging.disk;
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let actual = disk.actual(parent).unwrap_or_else(|_| parent.to_owned());
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        if path == self.named || actual.join(name) == self.folder {
+            return Err(refused(
+                path,
+                "found the folder of the results, expected a file for the report: choose another",
+            ));
+        }
+        if actual == self.folder || parent == self.named {
+            if name == REPORT {
+                return Ok(None);
+            }
+            if self.contents.is_own(name) {
+                return Err(refused(
+                    path,
+                    "found the place of another result, expected one for the report: choose another",
+                ));
+            }
+        }
+        FilePlace::reserve(path, self.existing, inputs, say).map(Some)
     }
 }
 

@@ -5,8 +5,9 @@ use crate::error::Result;
 
 /// Whether a reproduction may write a file of this name.
 pub(super) fn is_own(name: &str) -> bool {
+    let figure = name.strip_prefix("figure-").and_then(|rest| rest.strip_suffix(".svg"));
     ["report.html", "report.md", "results.json"].contains(&name)
-        || (name.starts_with("figure-") && name.ends_with(".svg"))
+        || figure.is_some_and(|figure| figure.chars().all(|c| c.is_ascii_alphanumeric() || c == '-'))
 }
 
 /// Writes a reproduction's files, each a name and a text as [`reproduction_files`](crate::report::reproduction_files) makes them,

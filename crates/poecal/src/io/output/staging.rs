@@ -73,15 +73,18 @@ impl Staging {
                     return Err(error);
                 }
             };
-            let staging = Staging {
+            let mut staging = Staging {
                 disk: Arc::clone(disk),
                 folder,
                 _lock: lock,
                 unsynced: Vec::new(),
                 abandoned: false,
             };
-            staging.disk.create_folder(&staging.new_files())?;
-            return Ok(staging);
+            match staging.disk.create_folder(&staging.new_files()) {
+                // A run that looks for what others left was faster.
+                Err(error) if error.kind() == io::ErrorKind::NotFound => staging.abandoned = true,
+                made => return made.map(|()| staging),
+            }
         }
         Err(io::ErrorKind::AlreadyExists.into())
     }
@@ -127,11 +130,17 @@ fn discard(disk: &dyn Disk, folder: &Path) {
     interrupted::ended(folder);
 }
 
-/// Removes a staging folder, and nothing in it that is not of its kind: then it stays, with an error.
+/// Removes a staging folder with the new and old files in it. If there is anything else, it stays, with an error.
 pub(super) fn remove(disk: &dyn Disk, folder: &Path) -> io::Result<()> {
     // The journal first, and for good: without its files it would tell the next run half of what there was to do.
-    let journals = journal::NAMES.into_iter().map(|name| disk.remove_file(&folder.join(name)));
-    if journals.filter(Result::is_ok).count() > 0 {
+    let mut had_one = false;
+    for name in journal::NAMES {
+        match disk.remove_file(&folder.join(name)) {
+            Ok(()) => had_one = true,
+            removed => gone(removed)?,
+        }
+    }
+    if had_one {
         disk.sync_folder(folder)?;
     }
     for half in [NEW, OLD] {
@@ -180,13 +189,24 @@ pub(super) fn is_staging(name: &OsStr, prefix: &OsStr) -> bool {
     })
 }
 
+/// Whether a staging folder and what belongs into it are what they seem, and this user's: whoever can write beside a place could
+/// have put links there that lead elsewhere.
+fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
+    let is = |path: &Path, kind: FoundKind| match disk.look(path) {
+        Ok(found) => found.kind == kind && found.is_mine,
+        Err(error) => error.kind() == io::ErrorKind::NotFound,
+    };
+    is(folder, FoundKind::Folder)
+        && [NEW, OLD].into_iter().all(|half| is(&folder.join(half), FoundKind::Folder))
+        && journal::NAMES.into_iter().chain([LOCK]).all(|name| is(&folder.join(name), FoundKind::File))
+}
+
 /// Staging folders in a folder that nobody has locked, each with its lock, now ours.
 pub(super) fn left(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> io::Result<Vec<(PathBuf, Lock)>> {
     let mut left = Vec::new();
     for name in names(disk, parent)? {
         let folder = parent.join(&name);
-        let is_left = is_staging(&name, prefix)
-            && disk.look(&folder).is_ok_and(|found| found.kind == FoundKind::Folder);
+        let is_left = is_staging(&name, prefix) && is_real(disk, &folder);
         // Where there are no locks, nobody can tell whether a run is still at work.
         if is_left && let Ok(Some(lock)) = disk.lock(&folder.join(LOCK)) {
             left.push((folder, lock));
