@@ -20,8 +20,9 @@ pub(crate) fn clean_up_on_signals() {
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
+    let (installed, wait) = std::sync::mpsc::channel::<()>();
     // Without a thread to spare signals end the program at once, and the next run cleans up.
-    let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(|| {
+    let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
         // What was ignored when the program was started, as by `nohup` or a shell's `&`, stays so. Only Linux tells that, and only
         // SIGHUP is ignored elsewhere as a rule.
         let ignored = ignored();
@@ -29,6 +30,7 @@ pub(crate) fn clean_up_on_signals() {
             if cfg!(target_os = "linux") { &[SIGINT, SIGTERM, SIGHUP][..] } else { &[SIGINT, SIGTERM][..] };
         let heeded = all.iter().filter(|signal| ignored & (1 << (*signal - 1)) == 0);
         let Ok(mut signals) = Signals::new(heeded) else { return };
+        drop(installed);
         for signal in signals.forever() {
             // Who asks twice does not wait.
             if !ENDING.swap(true, Ordering::SeqCst) {
@@ -41,6 +43,8 @@ pub(crate) fn clean_up_on_signals() {
             }
         }
     });
+    // Nothing is written before signals are heeded: the channel ends when they are, or cannot be.
+    let _ = wait.recv();
 }
 
 /// The signals that this process ignores, a bit each; none where the system does not tell.
