@@ -5,15 +5,12 @@
 //! bytes of a file that was not synced are anything afterwards: all there, none, some, or zeros.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ffi::OsString;
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use poecal::io::disk::{Disk, Found, FoundKind, Lock, Output};
-
 /// The folder that relative paths begin in.
-const HERE: &str = "/work";
+const HERE: &str = "/cell";
 /// What a run gets from then on when the machine has stopped.
 const STOPPED: &str = "the machine has stopped";
 
@@ -50,49 +47,49 @@ pub(crate) struct Faults {
     pub(crate) no_exchange: bool,
     /// Files have one name only.
     pub(crate) no_links: bool,
-    /// The folder `/work/out` is a disk of its own.
+    /// The folder `/cell/out` is a disk of its own.
     pub(crate) mounted: bool,
     /// What else is left to chance.
     pub(crate) chance: Option<Chance>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Node {
+pub(crate) enum Node {
     Folder,
     File(usize),
 }
 
-type Tree = BTreeMap<PathBuf, Node>;
+pub(crate) type Tree = BTreeMap<PathBuf, Node>;
 
 #[derive(Clone, Debug, Default)]
-struct Content {
-    bytes: Vec<u8>,
+pub(crate) struct Content {
+    pub(crate) bytes: Vec<u8>,
     /// What is on the disk for certain.
-    synced: Option<Vec<u8>>,
+    pub(crate) synced: Option<Vec<u8>>,
 }
 
-struct State {
-    files: Vec<Content>,
-    tree: Tree,
+pub(crate) struct State {
+    pub(crate) files: Vec<Content>,
+    pub(crate) tree: Tree,
     /// The names as they were before each change since the last that is on the disk for certain, with the folders it touched.
-    unsynced: Vec<(Tree, Vec<PathBuf>)>,
-    locks: BTreeSet<PathBuf>,
-    faults: Faults,
-    operations: usize,
-    stopped: bool,
-    written: usize,
-    failures: usize,
+    pub(crate) unsynced: Vec<(Tree, Vec<PathBuf>)>,
+    pub(crate) locks: BTreeSet<PathBuf>,
+    pub(crate) faults: Faults,
+    pub(crate) operations: usize,
+    pub(crate) stopped: bool,
+    pub(crate) written: usize,
+    pub(crate) failures: usize,
 }
 
 /// The disk. Its clones are the same disk.
 #[derive(Clone)]
 pub(crate) struct SimulatedDisk(Arc<Mutex<State>>);
 
-fn error(kind: ErrorKind) -> io::Error {
+pub(crate) fn error(kind: ErrorKind) -> io::Error {
     kind.into()
 }
 
-fn whole(path: &Path) -> PathBuf {
+pub(crate) fn whole(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for part in Path::new(HERE).join(path).components() {
         match part {
@@ -106,7 +103,7 @@ fn whole(path: &Path) -> PathBuf {
 
 impl State {
     /// Counts an operation, which may fail.
-    fn begin(&mut self) -> io::Result<()> {
+    pub(crate) fn begin(&mut self) -> io::Result<()> {
         if self.stopped || self.faults.stop_before == Some(self.operations) {
             self.stopped = true;
             return Err(io::Error::other(STOPPED));
@@ -121,7 +118,7 @@ impl State {
         Ok(())
     }
 
-    fn folder(&self, path: &Path) -> io::Result<()> {
+    pub(crate) fn folder(&self, path: &Path) -> io::Result<()> {
         match self.tree.get(path) {
             Some(Node::Folder) => Ok(()),
             Some(_) => Err(error(ErrorKind::NotADirectory)),
@@ -129,29 +126,29 @@ impl State {
         }
     }
 
-    fn children(&self, path: &Path) -> Vec<PathBuf> {
+    pub(crate) fn children(&self, path: &Path) -> Vec<PathBuf> {
         self.tree.keys().filter(|other| other.parent() == Some(path)).cloned().collect()
     }
 
     /// Changes names.
-    fn change(&mut self, touched: &[&Path], change: impl FnOnce(&mut Tree)) {
+    pub(crate) fn change(&mut self, touched: &[&Path], change: impl FnOnce(&mut Tree)) {
         let parents = touched.iter().filter_map(|path| path.parent()).map(Path::to_owned).collect();
         self.unsynced.push((self.tree.clone(), parents));
         change(&mut self.tree);
     }
 
-    fn same_disk(&self, one: &Path, other: &Path) -> io::Result<()> {
-        let inside = |path: &Path| path.starts_with("/work/out") && path != Path::new("/work/out");
+    pub(crate) fn same_disk(&self, one: &Path, other: &Path) -> io::Result<()> {
+        let inside = |path: &Path| path.starts_with("/cell/out") && path != Path::new("/cell/out");
         if self.faults.mounted && inside(one) != inside(other) {
             return Err(error(ErrorKind::CrossesDevices));
         }
-        if self.faults.mounted && [one, other].contains(&Path::new("/work/out")) {
+        if self.faults.mounted && [one, other].contains(&Path::new("/cell/out")) {
             return Err(error(ErrorKind::ResourceBusy));
         }
         Ok(())
     }
 
-    fn moved(&mut self, from: &Path, to: &Path) {
+    pub(crate) fn moved(&mut self, from: &Path, to: &Path) {
         let under: Vec<PathBuf> = self.tree.keys().filter(|path| path.starts_with(from)).cloned().collect();
         let (from, to) = (from.to_owned(), to.to_owned());
         self.change(&[&from.clone(), &to.clone()], |tree| {
@@ -181,7 +178,7 @@ impl SimulatedDisk {
         })))
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    pub(crate) fn state(&self) -> MutexGuard<'_, State> {
         self.0.lock().unwrap()
     }
 
@@ -267,290 +264,5 @@ impl SimulatedDisk {
             Node::File(number) => Some(state.files[*number].bytes.clone()),
         };
         below.map(|(path, node)| (path.clone(), content(node))).collect()
-    }
-}
-
-/// A file that is read or written.
-struct Handle {
-    disk: SimulatedDisk,
-    number: usize,
-    at: usize,
-}
-
-impl Read for Handle {
-    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let mut state = self.disk.state();
-        state.begin()?;
-        let bytes = &state.files[self.number].bytes;
-        let count = into.len().min(bytes.len() - self.at);
-        into[..count].copy_from_slice(&bytes[self.at..self.at + count]);
-        self.at += count;
-        Ok(count)
-    }
-}
-
-impl Write for Handle {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let mut state = self.disk.state();
-        state.begin()?;
-        let mut count = bytes.len();
-        if state.faults.short_writes && count > 1 {
-            let chance = state.faults.chance.get_or_insert(Chance(1));
-            // Not so short that a page would take long.
-            count = (1 + chance.below(count)).max(count / 4);
-        }
-        if let Some(room) = state.faults.room {
-            count = count.min(room.saturating_sub(state.written));
-            if count == 0 && !bytes.is_empty() {
-                state.failures += 1;
-                return Err(error(ErrorKind::StorageFull));
-            }
-        }
-        state.written += count;
-        state.files[self.number].bytes.extend(&bytes[..count]);
-        Ok(count)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Output for Handle {
-    fn sync(&mut self) -> io::Result<()> {
-        let mut state = self.disk.state();
-        state.begin()?;
-        let file = &mut state.files[self.number];
-        file.synced = Some(file.bytes.clone());
-        Ok(())
-    }
-}
-
-/// A lock, until it is dropped.
-struct Held(SimulatedDisk, PathBuf);
-
-impl Drop for Held {
-    fn drop(&mut self) {
-        let mut state = self.0.state();
-        if !state.stopped {
-            state.locks.remove(&self.1);
-        }
-    }
-}
-
-impl Disk for SimulatedDisk {
-    fn look(&self, path: &Path) -> io::Result<Found> {
-        let mut state = self.state();
-        state.begin()?;
-        match state.tree.get(&whole(path)) {
-            Some(Node::Folder) => Ok(Found { kind: FoundKind::Folder, identity: None, is_mine: true }),
-            Some(Node::File(number)) => {
-                Ok(Found { kind: FoundKind::File, identity: Some((1, *number as u64)), is_mine: true })
-            }
-            None => Err(error(ErrorKind::NotFound)),
-        }
-    }
-
-    fn follow(&self, path: &Path) -> io::Result<Found> {
-        self.look(path)
-    }
-
-    fn actual(&self, path: &Path) -> io::Result<PathBuf> {
-        self.look(path).map(|_| whole(path))
-    }
-
-    fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
-        let mut state = self.state();
-        state.begin()?;
-        state.folder(&whole(folder))?;
-        let children = state.children(&whole(folder));
-        Ok(children.iter().map(|path| path.file_name().unwrap().to_owned()).collect())
-    }
-
-    fn open(&self, path: &Path) -> io::Result<Box<dyn Read + Send>> {
-        let mut state = self.state();
-        state.begin()?;
-        match state.tree.get(&whole(path)) {
-            Some(Node::File(number)) => Ok(Box::new(Handle { disk: self.clone(), number: *number, at: 0 })),
-            Some(Node::Folder) => Err(error(ErrorKind::IsADirectory)),
-            None => Err(error(ErrorKind::NotFound)),
-        }
-    }
-
-    fn standard_input(&self) -> io::Result<Box<dyn Read + Send>> {
-        Ok(Box::new(io::empty()))
-    }
-
-    fn create(&self, path: &Path) -> io::Result<Box<dyn Output>> {
-        let mut state = self.state();
-        state.begin()?;
-        let path = whole(path);
-        state.folder(path.parent().unwrap())?;
-        if state.tree.contains_key(&path) {
-            return Err(error(ErrorKind::AlreadyExists));
-        }
-        state.files.push(Content::default());
-        let number = state.files.len() - 1;
-        state.change(&[&path.clone()], |tree| {
-            tree.insert(path, Node::File(number));
-        });
-        Ok(Box::new(Handle { disk: self.clone(), number, at: 0 }))
-    }
-
-    fn stream(&self, _: &Path) -> io::Result<Box<dyn Output>> {
-        Err(error(ErrorKind::Unsupported))
-    }
-
-    fn create_folder(&self, path: &Path) -> io::Result<()> {
-        let mut state = self.state();
-        state.begin()?;
-        let path = whole(path);
-        state.folder(path.parent().unwrap())?;
-        if state.tree.contains_key(&path) {
-            return Err(error(ErrorKind::AlreadyExists));
-        }
-        state.change(&[&path.clone()], |tree| {
-            tree.insert(path, Node::Folder);
-        });
-        Ok(())
-    }
-
-    fn remove_file(&self, path: &Path) -> io::Result<()> {
-        let mut state = self.state();
-        state.begin()?;
-        let path = whole(path);
-        match state.tree.get(&path) {
-            Some(Node::File(_)) => {
-                state.change(&[&path.clone()], |tree| {
-                    tree.remove(&path);
-                });
-                Ok(())
-            }
-            Some(Node::Folder) => Err(error(ErrorKind::IsADirectory)),
-            None => Err(error(ErrorKind::NotFound)),
-        }
-    }
-
-    fn remove_folder(&self, path: &Path) -> io::Result<()> {
-        let mut state = self.state();
-        state.begin()?;
-        let path = whole(path);
-        state.folder(&path)?;
-        if !state.children(&path).is_empty() {
-            return Err(error(ErrorKind::DirectoryNotEmpty));
-        }
-        state.change(&[&path.clone()], |tree| {
-            tree.remove(&path);
-        });
-        Ok(())
-    }
-
-    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
-        let mut state = self.state();
-        state.begin()?;
-        let (from, to) = (whole(from), whole(to));
-        state.same_disk(&from, &to)?;
-        state.folder(to.parent().unwrap())?;
-        match (state.tree.get(&from), state.tree.get(&to)) {
-            (None, _) => Err(error(ErrorKind::NotFound)),
-            (Some(Node::File(one)), Some(Node::File(other))) if one == other => Ok(()),
-            (Some(Node::File(_)), Some(Node::File(_)) | None) => {
-                state.moved(&from, &to);
-                Ok(())
-            }
-            _ => Err(error(ErrorKind::IsADirectory)),
-        }
-    }
-
-    fn rename_new(&self, from: &Path, to: &Path) -> io::Result<()> {
-        let mut state = self.state();
-        state.begin()?;
-        let (from, to) = (whole(from), whole(to));
-        state.same_disk(&from, &to)?;
-        state.folder(to.parent().unwrap())?;
-        if !state.tree.contains_key(&from) {
-            return Err(error(ErrorKind::NotFound));
-        }
-        if state.tree.contains_key(&to) {
-            return Err(error(ErrorKind::AlreadyExists));
-        }
-        state.moved(&from, &to);
-        Ok(())
-    }
-
-    fn exchange(&self, one: &Path, other: &Path) -> io::Result<()> {
-        let mut state = self.state();
-        state.begin()?;
-        let (one, other) = (whole(one), whole(other));
-        if state.faults.no_exchange {
-            return Err(error(ErrorKind::Unsupported));
-        }
-        state.same_disk(&one, &other)?;
-        state.folder(&one)?;
-        state.folder(&other)?;
-        let swapped = |path: &PathBuf| {
-            if let Ok(rest) = path.strip_prefix(&one) {
-                other.join(rest)
-            } else if let Ok(rest) = path.strip_prefix(&other) {
-                one.join(rest)
-            } else {
-                path.clone()
-            }
-        };
-        // A path that is joined with nothing keeps a mark at its end.
-        let tidy = |path: PathBuf| path.components().collect::<PathBuf>();
-        let tree = state.tree.iter().map(|(path, node)| (tidy(swapped(path)), *node)).collect();
-        state.change(&[&one, &other], |old| *old = tree);
-        Ok(())
-    }
-
-    fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
-        let mut state = self.state();
-        state.begin()?;
-        if state.faults.no_links {
-            return Err(error(ErrorKind::Unsupported));
-        }
-        let (from, to) = (whole(from), whole(to));
-        state.same_disk(&from, &to)?;
-        let Some(&node) = state.tree.get(&from) else { return Err(error(ErrorKind::NotFound)) };
-        if state.tree.contains_key(&to) {
-            return Err(error(ErrorKind::AlreadyExists));
-        }
-        state.change(&[&to.clone()], |tree| {
-            tree.insert(to, node);
-        });
-        Ok(())
-    }
-
-    fn copy_access(&self, _: &Path, _: &Path) -> io::Result<()> {
-        self.state().begin()
-    }
-
-    fn sync_folder(&self, path: &Path) -> io::Result<()> {
-        let mut state = self.state();
-        state.begin()?;
-        let path = whole(path);
-        state.folder(&path)?;
-        let last = state.unsynced.iter().rposition(|(_, touched)| touched.contains(&path));
-        if let Some(last) = last {
-            state.unsynced.drain(..=last);
-        }
-        Ok(())
-    }
-
-    fn lock(&self, path: &Path) -> io::Result<Option<Lock>> {
-        if self.look(path).is_err_and(|error| error.kind() == ErrorKind::NotFound) {
-            self.create(path)?;
-        }
-        let path = whole(path);
-        if !self.state().locks.insert(path.clone()) {
-            return Ok(None);
-        }
-        Ok(Some(Box::new(Held(self.clone(), path))))
-    }
-
-    fn lock_folder(&self, _: &Path) -> io::Result<Lock> {
-        self.state().begin()?;
-        Ok(Box::new(()))
     }
 }

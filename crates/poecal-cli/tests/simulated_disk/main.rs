@@ -6,6 +6,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod disk;
+mod operations;
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
