@@ -103,7 +103,7 @@ impl UrdfDocument {
         let tree = Tree::read(source)?;
         let chain = chain::select(&tree, selection)?;
         let (parts, joints, home) = parts::read(&tree, &chain)?;
-        let name = robot_element.attribute("name").unwrap_or("robot");
+        let name = robot_element.attribute("name").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
         let mut robot = Robot::new(name, joints, home).map_err(|error| error.in_file(path))?;
         tree.link_name(chain.base).clone_into(&mut robot.base_name);
         tree.link_name(chain.tip).clone_into(&mut robot.tip_name);
