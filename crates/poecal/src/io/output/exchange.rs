@@ -85,7 +85,7 @@ impl FolderPlace {
             return Err(refused(&self.named, message));
         }
         let inside =
-            Staging::new(&self.staging.disk, &self.folder, &staging::prefix(None)).map_err(&failed)?;
+            Staging::make(&self.staging.disk, &self.folder, &staging::prefix(None)).map_err(&failed)?;
         let disk = &inside.disk;
         let moved = disk
             .remove_folder(&inside.new_files())
@@ -133,7 +133,7 @@ impl FolderPlace {
         }
         disk.copy_access(&self.folder, &self.staging.new_files()).ok()?;
         let parent = self.folder.parent()?;
-        let beside = Staging::new(&disk, parent, &staging::prefix(self.folder.file_name())).ok()?;
+        let beside = Staging::make(&disk, parent, &staging::prefix(self.folder.file_name())).ok()?;
         disk.remove_folder(&beside.new_files()).ok()?;
         disk.rename_new(&self.staging.new_files(), &beside.new_files()).ok()?;
         Some(beside)

@@ -47,6 +47,13 @@ pub(super) fn prefix(beside: Option<&OsStr>) -> OsString {
 impl Staging {
     /// Makes one in a folder, whose name begins with `prefix`.
     pub(super) fn new(disk: &Arc<dyn Disk>, parent: &Path, prefix: &OsStr) -> io::Result<Self> {
+        // Otherwise a signal could come when the folder is made and not yet known.
+        let _undisturbed = interrupted::undisturbed();
+        Staging::make(disk, parent, prefix)
+    }
+
+    /// [`Staging::new`] for who holds [`interrupted::undisturbed`].
+    pub(super) fn make(disk: &Arc<dyn Disk>, parent: &Path, prefix: &OsStr) -> io::Result<Self> {
         for attempt in 0..ATTEMPTS {
             let mut name = prefix.to_owned();
             name.push(format!("{}-{attempt}", std::process::id()));
