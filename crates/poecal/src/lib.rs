@@ -65,6 +65,7 @@
 
 pub mod analysis;
 pub mod calibration;
+mod distributions;
 pub mod error;
 pub mod estimate;
 pub mod forensics;

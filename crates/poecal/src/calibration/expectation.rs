@@ -8,7 +8,7 @@ use crate::analysis::JointCoverage;
 use crate::estimate::{Packed, RowError};
 use crate::measurement::{Dataset, Noise};
 use crate::robot::Robot;
-use crate::uncertainty::{Uncertainty, bound};
+use crate::uncertainty::{Quantile, Uncertainty};
 
 /// What a calibration promises of its predictions.
 ///
@@ -17,8 +17,7 @@ use crate::uncertainty::{Uncertainty, bound};
 /// use poecal::io::calibration_file::CalibrationFile;
 /// let file = CalibrationFile::read("calibration.json")?;
 /// let (uncertainty, targets) = file.uncertainty(&[None])?;
-/// let noise = file.noise()?;
-/// let promise = Promise { uncertainty: &uncertainty, targets: &targets, noise, noise_is_stated: false, coverage: &file.coverage };
+/// let promise = Promise { uncertainty: &uncertainty, targets: &targets, coverage: &file.coverage };
 /// assert_eq!(promise.targets.len(), 1);
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -28,10 +27,6 @@ pub struct Promise<'a> {
     pub uncertainty: &'a Uncertainty,
     /// For each target of the judging measurements, which of the uncertainty's targets it is.
     pub targets: &'a [usize],
-    /// Noise of a measurement that states none itself.
-    pub noise: Noise,
-    /// Whether that noise was stated, and not what the residuals showed.
-    pub noise_is_stated: bool,
     /// What of each joint's range was sampled.
     pub coverage: &'a [JointCoverage],
 }
@@ -81,9 +76,9 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, promised: &Matrix3<f64>, error: &Vector3<f64>) {
+    fn add(&mut self, promised: &Matrix3<f64>, quantile: &Quantile, error: &Vector3<f64>) {
         self.squares += promised.trace();
-        self.within += usize::from(error.norm() <= bound(promised));
+        self.within += usize::from(error.norm() <= quantile.bound(promised));
         self.count += 1;
     }
 
@@ -104,23 +99,19 @@ impl Promise<'_> {
             (row, self.targets.get(observation.target).copied().unwrap_or_default())
         });
         let promised = self.uncertainty.predictions_of(rows, packed);
-        // What the residuals showed holds the noise already, unless it was stated or nothing but noise was found.
-        let beside = |discrepancy: f64, sigma: f64| {
-            if self.noise_is_stated || discrepancy == 0.0 { sigma } else { 0.0 }
-        };
-        let found = self.uncertainty.discrepancy;
-        let usual_position = beside(found.position_m, self.noise.position_m);
-        let usual_rotation = beside(found.rotation_rad, self.noise.rotation_rad);
+        // What is the robot's holds the noise already, unless that was told from it.
+        let Noise { position_m, rotation_rad } = self.uncertainty.discrepancy.noise;
         let (mut position, mut rotation) = (Sums::default(), Sums::default());
         for ((promised, error), observation) in promised.into_iter().zip(errors).zip(&data.observations) {
             let own = |sigma: Option<f64>, usual: f64| Matrix3::identity() * sigma.unwrap_or(usual).powi(2);
             position.add(
-                &(promised.position + own(observation.sigma_position_m, usual_position)),
+                &(promised.position + own(observation.sigma_position_m, position_m)),
+                &promised.quantiles[0],
                 &error.position_m,
             );
             if let Some(turn) = error.rotation_rad {
                 rotation
-                    .add(&(promised.rotation + own(observation.sigma_rotation_rad, usual_rotation)), &turn);
+                    .add(&(promised.rotation + own(observation.sigma_rotation_rad, rotation_rad)), &promised.quantiles[1], &turn);
             }
         }
         let sampled = (0..data.len()).filter(|&row| inside(robot, self.coverage, data.readings(row))).count();

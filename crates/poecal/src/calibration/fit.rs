@@ -9,12 +9,14 @@ use super::{
     row_errors,
 };
 use crate::analysis::unknowns_told;
+use crate::distributions::is_within_band;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge;
+use crate::linalg;
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::{Formulation, Parameter};
-use crate::problem::{Layout, Problem};
+use crate::problem::{Layout, Prior, Problem};
 use crate::robot::Robot;
 use crate::simulate::random;
 use crate::solve::{LeastSquares, Normal, Options, Summary, minimize};
@@ -87,7 +89,9 @@ pub(super) fn free_parameters(
 }
 
 /// One fit of all screws and targets from a start, the device's frame staying where it is: by the formulation and the solver that
-/// the options state, begun on a sample if the rows are many. As [`minimize`] says, `JᵀJ` may be that of a state close by.
+/// the options state, begun on a sample if the rows are many. A prior counts by its weight ([`Problem::with_prior`]). As [`minimize`]
+/// says, `JᵀJ` may be that of a state close by.
+#[allow(clippy::too_many_arguments)]
 pub fn fit_screws(
     data: &Dataset,
     packed: &Packed,
@@ -95,10 +99,17 @@ pub fn fit_screws(
     start: Estimate,
     noise: Noise,
     length_m: f64,
+    prior: Option<(&Prior, f64)>,
     options: &CalibrationOptions,
 ) -> (Estimate, Normal, Summary) {
     let free = free_parameters(&start, data, rows, options.formulation);
-    let problem = |rows: Vec<u32>| Problem::new(data, packed, rows, free.clone(), noise, length_m);
+    let problem = |rows: Vec<u32>| {
+        let problem = Problem::new(data, packed, rows, free.clone(), noise, length_m);
+        match prior {
+            Some((prior, weight)) => problem.with_prior(prior, weight),
+            None => problem,
+        }
+    };
     let mut start = start;
     let (mut solver, mut before) = (options.solver, None);
     let unknowns: usize = free.iter().map(|parameter| parameter.model().columns().len()).sum();
@@ -135,6 +146,19 @@ pub(super) fn minimal(
     (problem.layout().clone(), problem.normal(estimate))
 }
 
+/// What an undamped step promises.
+fn promised(normal: &Normal) -> f64 {
+    let n = normal.dim();
+    let largest = (0..n).map(|k| normal.gram[k * n + k]).fold(0.0, f64::max);
+    linalg::cholesky(&normal.gram, n, 1e-13 * largest)
+        .map_or(0.0, |factor| normal.promise(&linalg::cholesky_solve(&factor, &normal.gradient)))
+}
+
+/// Whether stated noise explains a variance of the whitened residuals.
+pub(super) fn explains(variance: f64, freedom: f64) -> bool {
+    is_within_band(variance, freedom) == std::cmp::Ordering::Equal
+}
+
 /// What is fitted to what.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
@@ -145,15 +169,46 @@ pub(super) struct Task<'a> {
     /// Weights of all rows of the data, where they differ.
     pub(super) weights: Option<&'a [f64]>,
     pub(super) length_m: f64,
+    /// What the drawing is worth, and by how much it counts: as much as the variance of the whitened residuals.
+    pub(super) prior: Option<(&'a Prior, f64)>,
     pub(super) options: &'a CalibrationOptions,
 }
 
 impl Task<'_> {
+    /// The same with the prior counting so much.
+    pub(super) fn believing(&self, weight: f64) -> Self {
+        Task { prior: self.prior.map(|(prior, _)| (prior, weight)), ..*self }
+    }
+
+    /// Before the screws are fitted, an estimated noise is mostly what they will take in: the prior counts as beside what gears and
+    /// links will leave.
+    pub(super) fn beginning(&self, noise: Noise, source: NoiseSource) -> Self {
+        let usual = 0.1 * SUSPICIOUS * 3.0 * self.length_m / noise.position_m;
+        let is_open = source == NoiseSource::Estimated;
+        self.believing(if is_open { (usual * usual).min(1.0) } else { 1.0 })
+    }
+
     /// The first fit from a registration.
     pub(super) fn begin(&self, registered: &Estimate, noise: Noise) -> Found {
         let mut start = registered.clone();
         start.recentre(self.data, self.packed, self.rows);
         Found::new(self.fit(start, noise))
+    }
+
+    /// How many unknowns the measurements tell and not the prior: theory.md §6 (34).
+    pub(super) fn told(&self, found: &Found) -> f64 {
+        let unknowns = found.normal.dim();
+        let Some((prior, weight)) = self.prior else { return unknowns as f64 };
+        let layout = self.problem(&found.estimate, Noise { position_m: 1.0, rotation_rad: 1.0 });
+        let mut believed = Normal::new(unknowns);
+        prior.add(&found.estimate, layout.layout(), weight, &mut believed);
+        unknowns as f64 - unknowns_told(&found.normal, &believed)
+    }
+
+    /// Mean squared whitened residual, without what the prior adds.
+    fn mean_square(&self, found: &Found) -> f64 {
+        let believed = self.prior.map_or(0.0, |(prior, weight)| weight * prior.cost(&found.estimate));
+        2.0 * (found.normal.cost - believed).max(0.0) / found.normal.residuals.max(1) as f64
     }
 
     /// The rest of the way: further starts if need be, and noise estimated anew unless its source says that it is known.
@@ -170,35 +225,44 @@ impl Task<'_> {
                 found.follow(self.fit(better, noise));
             }
         }
-        let (mut noise, mut source) = (noise, source);
-        if source == NoiseSource::Estimated {
-            for _ in 0..6 {
-                let unknowns = found.normal.dim();
-                let told = self.told_by_rotations(&found, noise);
+        let (mut task, mut noise, mut source) = (*self, noise, source);
+        for _ in 0..6 {
+            let told = task.told(&found);
+            let before = noise;
+            let mut weight = 1.0;
+            if source == NoiseSource::Estimated {
+                let by_rotations = task.told_by_rotations(&found, noise);
                 let (data, packed, rows) = (self.data, self.packed, self.rows);
-                let Some(estimated) =
-                    estimate_noise(data, packed, rows, &found.estimate, unknowns, told, noise)
-                else {
-                    source = NoiseSource::Exact;
-                    break;
-                };
-                let change = (estimated.position_m * noise.rotation_rad
-                    / (estimated.rotation_rad * noise.position_m))
-                    .ln();
-                let unchanged = estimated == noise;
-                noise = stated(self.options, estimated);
-                if unchanged || change.abs() < 0.02 && found.normal.mean_square().ln().abs() < 0.5 {
-                    break;
+                match estimate_noise(data, packed, rows, &found.estimate, told, by_rotations, noise) {
+                    Some(estimated) => noise = stated(self.options, estimated),
+                    None => source = NoiseSource::Exact,
                 }
-                let estimate = found.estimate.clone();
-                found.follow(self.fit(estimate, noise));
             }
+            let mean_square = task.mean_square(&found);
+            if source != NoiseSource::Estimated {
+                // Stated noise weighs the prior as long as it explains the residuals.
+                let freedom = (found.normal.residuals as f64 - told).max(1.0);
+                let variance = mean_square * found.normal.residuals as f64 / freedom;
+                weight = if source != NoiseSource::Exact && explains(variance, freedom) { 1.0 } else { variance };
+            }
+            let change =
+                (noise.position_m * before.rotation_rad / (noise.rotation_rad * before.position_m)).ln();
+            let weighed = task.prior.is_none_or(|(_, counted)| (weight / counted).ln().abs() < 0.5);
+            let fits = source != NoiseSource::Estimated
+                || noise == before
+                || change.abs() < 0.02 && mean_square.ln().abs() < 0.5;
+            task = task.believing(weight);
+            if fits && (weighed || !(weight.is_finite() && weight > 0.0)) {
+                break;
+            }
+            let estimate = found.estimate.clone();
+            found.follow(task.fit(estimate, noise));
         }
-        self.finish(found, noise, source)
+        task.finish(found, noise, source)
     }
 
     /// How many unknowns rotations tell rather than positions, where few rows make that matter.
-    fn told_by_rotations(&self, found: &Found, noise: Noise) -> Option<f64> {
+    pub(super) fn told_by_rotations(&self, found: &Found, noise: Noise) -> Option<f64> {
         const FEW: usize = 300;
         // Positions as good as not measured; what is left is the information of rotations.
         const UNMEASURED_M: f64 = 1e9;
@@ -207,21 +271,31 @@ impl Task<'_> {
             return None;
         }
         let rotations = Noise { position_m: UNMEASURED_M, ..noise };
-        let part = self.problem(&found.estimate, rotations).normal(&found.estimate);
+        let seen = Task { prior: None, ..*self };
+        let part = seen.problem(&found.estimate, rotations).normal(&found.estimate);
         Some(unknowns_told(&found.normal, &part))
     }
 
     /// What a fit at its optimum comes to.
     pub(super) fn finish(&self, found: Found, noise: Noise, source: NoiseSource) -> Result<Fitted> {
+        let mut found = found;
+        let mut normal = self.problem(&found.estimate, noise).normal(&found.estimate);
+        // The optimum moved with the last noise.
+        if promised(&normal) > self.options.solver.decrement * normal.mean_square() {
+            let start = found.estimate.clone();
+            found.follow(minimize(&self.problem(&start, noise), start, &self.options.solver));
+            normal = self.problem(&found.estimate, noise).normal(&found.estimate);
+        }
         let Found { mut estimate, mut report, .. } = found;
-        let mut normal = self.problem(&estimate, noise).normal(&estimate);
         if !normal.cost.is_finite() {
             return Err(Error::new(
                 ErrorKind::Solver,
                 "found residuals that are not finite numbers, expected a fit: check the measurements' units and joint columns",
             ));
         }
-        if self.options.formulation == Formulation::Adjoint {
+        if self.prior.is_some() {
+            normal = Task { prior: None, ..*self }.problem(&estimate, noise).normal(&estimate);
+        } else if self.options.formulation == Formulation::Adjoint {
             (estimate, normal) = self.settle_null_directions(estimate, normal, noise, &mut report);
         }
         report.joint_offsets = self.options.formulation.has_offsets().then(|| estimate.joint_offset.clone());
@@ -234,15 +308,19 @@ impl Task<'_> {
         if self.weights.is_some() {
             return minimize(&self.problem(&start, noise), start, &self.options.solver);
         }
-        fit_screws(self.data, self.packed, self.rows, start, noise, self.length_m, self.options)
+        fit_screws(self.data, self.packed, self.rows, start, noise, self.length_m, self.prior, self.options)
     }
 
     /// The problem of these rows with these weights.
     pub(super) fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
         let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
         let problem = Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m);
-        match self.weights {
+        let problem = match self.weights {
             Some(weights) => problem.with_weights(weights),
+            None => problem,
+        };
+        match self.prior {
+            Some((prior, weight)) => problem.with_prior(prior, weight),
             None => problem,
         }
     }
@@ -263,7 +341,11 @@ impl Task<'_> {
         let sample = sample_rows(self.rows, RESTART_SAMPLE);
         let problem = |estimate: &Estimate| {
             let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
-            Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m)
+            let problem = Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m);
+            match self.prior {
+                Some((prior, weight)) => problem.with_prior(prior, weight),
+                None => problem,
+            }
         };
         if self.options.restarts == 0 || !self.is_suspicious(self.position_rms(fitted)) {
             return None;

@@ -56,6 +56,16 @@ pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
     (stated(options, noise), source)
 }
 
+/// Whether the noise of positions, and that of rotations, is stated, by the options or by every row.
+pub(super) fn is_stated(data: &Dataset, options: &CalibrationOptions) -> [bool; 2] {
+    let by_rows = |of: fn(&Observation) -> bool| !data.is_empty() && data.observations.iter().all(of);
+    [
+        options.sigma_position_m.is_some() || by_rows(|row| row.sigma_position_m.is_some()),
+        options.sigma_rotation_rad.is_some()
+            || by_rows(|row| row.sigma_rotation_rad.is_some() || !row.measurement.sees_orientation()),
+    ]
+}
+
 /// A noise with the parts that the user has stated put in their place.
 pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
     Noise {
@@ -73,7 +83,7 @@ pub fn estimate_noise(
     packed: &Packed,
     rows: &[u32],
     estimate: &Estimate,
-    unknowns: usize,
+    unknowns: f64,
     told_by_rotations: Option<f64>,
     before: Noise,
 ) -> Option<Noise> {
@@ -95,10 +105,10 @@ pub fn estimate_noise(
     // Each target's orientation (3 unknowns) is told by rotations alone; all other unknowns are shared in proportion.
     let turned = 3 * data.frames(rows).iter().filter(|&&is_frame| is_frame).count();
     let total = (position.count + rotation.count + stated) as f64;
-    let others = (unknowns.saturating_sub(turned) as f64 / (total - turned as f64).max(1.0)).min(1.0);
+    let others = ((unknowns - turned as f64).max(0.0) / (total - turned as f64).max(1.0)).min(1.0);
     let (position_m, rotation_rad) = match told_by_rotations {
         Some(told) if stated == 0 => {
-            (position.less(unknowns as f64 - told, 0.0), rotation.less(told, turned as f64))
+            (position.less(unknowns - told, 0.0), rotation.less(told, turned as f64))
         }
         _ => (position.deviation(0, others), rotation.deviation(turned, others)),
     };

@@ -1,6 +1,7 @@
 //! How to calibrate.
 
 use crate::measurement::PoseResidual;
+use crate::robot::Tolerance;
 use crate::parameters::Formulation;
 use crate::solve;
 
@@ -39,6 +40,9 @@ pub struct CalibrationOptions {
     pub formulation: Formulation,
     /// How the errors of measured frames are written. The paper's is for comparison.
     pub pose_residual: PoseResidual,
+    /// How far the axes may stand off the drawing: a belief that counts beside the measurements where these say little, and for a joint
+    /// whose model states its own tolerance that one. `None` believes nothing. It has no part in the formulations for comparison.
+    pub tolerance: Option<Tolerance>,
     /// What to do about grossly wrong rows.
     pub robust: Robust,
     /// Options of the solver.
@@ -59,6 +63,7 @@ impl Default for CalibrationOptions {
             seed: 1,
             formulation: Formulation::default(),
             pose_residual: PoseResidual::default(),
+            tolerance: Some(Tolerance::default()),
             robust: Robust::default(),
             solver: solve::Options::default(),
             diagnose: true,
@@ -85,5 +90,15 @@ impl CalibrationOptions {
             solve::Method::LevenbergMarquardt
         };
         self
+    }
+
+    /// The tolerance that counts in the fit: none with formulations, residuals and methods that are there for comparison.
+    #[must_use]
+    pub(super) fn believed(&self) -> Option<Tolerance> {
+        let usual = Self::default();
+        let is_usual = self.formulation == usual.formulation
+            && self.pose_residual == usual.pose_residual
+            && self.solver.method == usual.solver.method;
+        self.tolerance.filter(|_| is_usual)
     }
 }

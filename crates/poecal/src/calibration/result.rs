@@ -10,6 +10,7 @@ use crate::forensics::Diagnosis;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise, PoseResidual};
 use crate::parameters::Formulation;
+use crate::problem::Prior;
 use crate::robot::Robot;
 use crate::solve;
 use crate::threads;
@@ -118,17 +119,6 @@ impl Calibration {
         Robot { targets: self.targets.iter().filter_map(named).collect(), ..self.robot.clone() }
     }
 
-    /// Root mean square distance to expect where it was measured if all that the fit leaves were error of the robot and none noise of
-    /// measuring, metres; none where that was settled (noise stated, or found to be no noise, or nothing left). The truth lies between:
-    /// few rows cannot tell.
-    #[must_use]
-    pub fn sigma_if_robot_m(&self) -> Option<f64> {
-        let found = self.trust.uncertainty.as_ref()?;
-        let settled = self.noise_source != NoiseSource::Estimated || found.discrepancy.position_m > 0.0;
-        let measured = self.trust.measured?;
-        (!settled).then(|| (measured.sigma_m.powi(2) + 3.0 * self.noise.position_m.powi(2)).sqrt())
-    }
-
     /// Solves the least-squares problem of a finished calibration once more, from the nominal model to the optimum (where the device stands
     /// anywhere, from the registered one): packing of the readings and minimisation, with the noise that was found and all fitted rows at
     /// their full weight. It is what solvers are compared by.
@@ -144,7 +134,10 @@ impl Calibration {
             DeviceFrameKnowledge::Base => self.models.nominal.clone(),
             DeviceFrameKnowledge::Unknown => self.models.registered.clone(),
         };
-        fit_screws(data, &packed, &self.fit_rows, start, self.noise, length_m, options).2
+        let base_free = self.frame == DeviceFrameKnowledge::Unknown;
+        let prior = options.believed().map(|tolerance| Prior::new(&self.nominal, tolerance, base_free));
+        let prior = prior.as_ref().map(|prior| (prior, 1.0));
+        fit_screws(data, &packed, &self.fit_rows, start, self.noise, length_m, prior, options).2
     }
 }
 

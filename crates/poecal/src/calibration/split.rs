@@ -69,12 +69,12 @@ pub fn settle_sets(data: &mut Dataset, held_out: Option<f64>, stated_by: &str) -
     Ok(true)
 }
 
-/// A seeded share of the configurations (rows with the same readings are one).
+/// A seeded share of the configurations (rows with the same readings, but for what encoders jitter by, are one).
 fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     // Named by its first row, so that the choice does not depend on the values of the readings.
     let mut configurations = data.all_rows();
     let mut configuration = configurations.clone();
-    for group in data.repeated(&configurations) {
+    for group in data.configurations(&configurations) {
         group.iter().for_each(|&row| configuration[row as usize] = group[0]);
     }
     configurations.retain(|&row| configuration[row as usize] == row);

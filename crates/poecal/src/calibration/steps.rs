@@ -10,17 +10,20 @@ use super::{
     Accuracy, Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, Models, NoiseSource, Robustness,
     Trust, delivered, estimate_noise, measurements_words, noise, radian_m, set_accuracy, split_rows,
 };
-use crate::analysis::{Identifiability, Setup, identifiability, residual_variance};
+use crate::analysis::{Identifiability, Setup, identifiability};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed, row_errors};
 use crate::forensics::{self, Diagnosis, DiagnosisKind};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
-use crate::parameters::Formulation;
-use crate::problem::MOST_UNKNOWNS;
+use crate::parameters::{Formulation, Parameter};
+use crate::problem::{MOST_UNKNOWNS, Prior};
 use crate::robot::{JointKind, Robot};
 use crate::start::{Registration, register, register_again};
-use crate::uncertainty::View;
+use crate::uncertainty::{Belief, Remainder, View, remainder};
+
+/// Share of the information of normal noise that the robust losses use.
+const EFFICIENCY: f64 = 0.95;
 
 /// Data and rows, ready to be fitted.
 pub(super) struct Prepared<'a> {
@@ -30,6 +33,8 @@ pub(super) struct Prepared<'a> {
     packed: Packed,
     delivered: Estimate,
     length_m: f64,
+    /// What the drawing is worth, if it counts in the fit.
+    prior: Option<Prior>,
     fit_rows: Vec<u32>,
     held_out_rows: Vec<u32>,
 }
@@ -41,7 +46,9 @@ impl<'a> Prepared<'a> {
         check_count(robot, data, &fit_rows)?;
         let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
         let (delivered, length_m) = (delivered(robot, data), radian_m(robot, &packed));
-        Ok(Prepared { robot, data, options, packed, delivered, length_m, fit_rows, held_out_rows })
+        let base_free = options.frame == DeviceFrameKnowledge::Unknown;
+        let prior = options.believed().map(|tolerance| Prior::new(robot, tolerance, base_free));
+        Ok(Prepared { robot, data, options, packed, delivered, length_m, prior, fit_rows, held_out_rows })
     }
 
     fn device_free(&self) -> bool {
@@ -66,7 +73,7 @@ impl<'a> Prepared<'a> {
         let (mut registered, _) = register(&self.registration(&self.fit_rows, noise, true), &self.delivered);
         if source == NoiseSource::Estimated
             && let Some(found) =
-                estimate_noise(self.data, &self.packed, &self.fit_rows, &registered, 6, None, noise)
+                estimate_noise(self.data, &self.packed, &self.fit_rows, &registered, 6.0, None, noise)
         {
             noise = noise::stated(self.options, found);
             registered = register_again(&self.registration(&self.fit_rows, noise, true), &registered);
@@ -83,6 +90,7 @@ impl<'a> Prepared<'a> {
             rows: &self.fit_rows,
             weights: None,
             length_m: self.length_m,
+            prior: self.prior.as_ref().map(|prior| (prior, 1.0)),
             options: self.options,
         };
         robust::fit(&task, &self.registration(&self.fit_rows, noise, true), registered, source)
@@ -98,8 +106,8 @@ impl<'a> Prepared<'a> {
         };
         let models = self.models(registered, &fitted, &kept, loss.is_some());
         let accuracy = self.accuracy(&models);
-        let identifiability = self.identifiability(&fitted);
-        let mut trust = self.trust(&fitted, &models, &kept, loss.is_some());
+        let (mut trust, remainder) = self.trust(&fitted, &models, &kept, loss.is_some());
+        let identifiability = self.identifiability(&fitted, remainder.variance);
         let diagnosis = self.diagnosis(&models.calibrated, loss.is_some().then_some(&kept[..]));
         let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(self.data, &self.packed, rows, &models)
@@ -178,7 +186,7 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    fn identifiability(&self, fitted: &Fitted) -> Identifiability {
+    fn identifiability(&self, fitted: &Fitted, variance: f64) -> Identifiability {
         let setup = Setup {
             robot: self.robot,
             data: self.data,
@@ -190,34 +198,43 @@ impl<'a> Prepared<'a> {
             length_m: self.length_m,
             device_free: self.device_free(),
         };
-        identifiability(&setup, &fitted.normal.gram, residual_variance(&fitted.normal))
+        identifiability(&setup, &fitted.normal.gram, variance)
     }
 
     /// Whatever the unknowns and the loss of the fit were: what is delivered is judged in the minimal basis, by the rows that it believes.
-    fn trust(&self, fitted: &Fitted, models: &Models, kept: &[u32], is_robust: bool) -> Trust {
+    fn trust(&self, fitted: &Fitted, models: &Models, kept: &[u32], is_robust: bool) -> (Trust, Remainder) {
         let (layout, normal) = if self.options.formulation == Formulation::Adjoint && !is_robust {
             (fitted.layout.clone(), fitted.normal.clone())
         } else {
             fit::minimal(self.data, &self.packed, kept, &models.calibrated, fitted.noise, self.length_m)
         };
-        trust(&Finished {
-            view: View {
-                robot: self.robot,
-                data: self.data,
-                packed: &self.packed,
-                rows: kept,
-                free: &layout.parameters().map(|(parameter, _)| *parameter).collect::<Vec<_>>(),
-                noise: fitted.noise,
-                noise_is_stated: matches!(fitted.noise_source, NoiseSource::Given | NoiseSource::Rows),
-                length_m: self.length_m,
-                estimate: &models.calibrated,
-            },
+        let belief = Belief::new(self.prior.as_ref(), &models.calibrated, &layout, self.length_m);
+        let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();
+        let mut view = View {
+            robot: self.robot,
+            data: self.data,
+            packed: &self.packed,
+            rows: kept,
+            free: &free,
+            noise: fitted.noise,
+            noise_is_stated: noise::is_stated(self.data, self.options),
+            belief: &belief,
+            variance: 1.0,
+            length_m: self.length_m,
+            estimate: &models.calibrated,
+        };
+        let remainder = remainder(&view, &normal, &layout);
+        view.variance = remainder.variance / if is_robust { EFFICIENCY } else { 1.0 };
+        let found = trust(&Finished {
+            view,
             layout: &layout,
             normal: &normal,
+            remainder: &remainder,
             models,
             base_free: self.device_free(),
             seed: self.options.seed,
-        })
+        });
+        (found, remainder)
     }
 
     /// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing. After a robust fit first in the rows

@@ -7,7 +7,7 @@ use rand_core::SeedableRng;
 
 use super::suspicion::suspicions;
 use super::{Models, row_errors};
-use crate::analysis::{JointCoverage, PLAUSIBLE, coverage, residual_variance};
+use crate::analysis::{JointCoverage, PLAUSIBLE, coverage};
 use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge::{Deviation, screw_deviations};
 use crate::problem::Layout;
@@ -16,13 +16,16 @@ use crate::simulate::random;
 use crate::solve::Normal;
 use crate::start::{Registration, register_again};
 use crate::uncertainty::{
-    Bootstrap, CrossValidation, Discrepancy, Uncertainty, View, bootstrap, bound, cross_validate, discrepancy,
+    Bootstrap, CrossValidation, Discrepancy, Quantile, Remainder, Uncertainty, View, bootstrap,
+    cross_validate, discrepancy,
 };
 
 /// Random configurations by which the joint range is judged.
 const CONFIGURATIONS: usize = 400;
 /// Parts into which each joint's range is divided.
 const PARTS: usize = 6;
+/// Targets over which expected errors are taken, at most.
+const MOST_TARGETS: usize = 12;
 /// Rows on which the worth of each joint's correction is judged.
 const WORTH_SAMPLE: usize = 300;
 
@@ -38,10 +41,10 @@ pub struct Expected {
 }
 
 impl Expected {
-    /// From covariances of positions.
-    fn of(errors: &[Matrix3<f64>]) -> Self {
+    /// From covariances of positions, and how well these are known.
+    fn of(errors: &[Matrix3<f64>], quantile: Quantile) -> Self {
         let count = errors.len().max(1) as f64;
-        let bounds = errors.iter().map(bound);
+        let bounds = errors.iter().map(|covariance| quantile.bound(covariance));
         Expected {
             sigma_m: (errors.iter().map(Matrix3::trace).sum::<f64>() / count).sqrt(),
             bound_m: bounds.clone().sum::<f64>() / count,
@@ -104,6 +107,7 @@ pub(super) struct Finished<'a> {
     pub(super) view: View<'a>,
     pub(super) layout: &'a Layout,
     pub(super) normal: &'a Normal,
+    pub(super) remainder: &'a Remainder,
     pub(super) models: &'a Models,
     pub(super) base_free: bool,
     pub(super) seed: u64,
@@ -113,19 +117,23 @@ pub(super) struct Finished<'a> {
 pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let view = &finished.view;
     let cross_validation = cross_validate(view, finished.seed);
-    let found = discrepancy(view, finished.normal, cross_validation.as_ref());
+    let found = discrepancy(view, finished.normal, finished.remainder, cross_validation.as_ref());
     let uncertainty = uncertainty(finished, &found);
     let sampled = sampled_values(view, view.rows);
     let coverage = coverage(view.robot, view.packed, view.rows);
     let ranges = ranges(view.robot, &coverage);
-    let anywhere = anywhere(&ranges, finished.seed);
+    let anywhere = anywhere(view.robot, &ranges, finished.seed);
     let (mut measured, mut range, mut parts) = (None, None, Vec::new());
     if let Some(uncertainty) = &uncertainty {
-        let target = 0;
-        measured =
-            Some(Expected::of(&uncertainty.positions(&Packed::of_values(view.robot, &sampled), target)));
-        let errors = uncertainty.positions(&Packed::of_values(view.robot, &anywhere), target);
-        range = Some(Expected::of(&errors));
+        let quantile = uncertainty.quantiles()[0];
+        let targets = view.data.targets.len().clamp(1, MOST_TARGETS);
+        let of = |values: &[f64]| -> Vec<Vec<Matrix3<f64>>> {
+            let packed = Packed::of_values(view.robot, values);
+            (0..targets).map(|target| uncertainty.positions(&packed, target)).collect()
+        };
+        measured = Some(Expected::of(&of(&sampled).concat(), quantile));
+        let errors = of(&anywhere);
+        range = Some(Expected::of(&errors.concat(), quantile));
         parts = range_parts(&ranges, &anywhere, &errors);
     }
     Trust {
@@ -145,11 +153,7 @@ fn uncertainty(finished: &Finished<'_>, found: &Discrepancy) -> Option<Uncertain
     if normal.residuals <= normal.dim() {
         return None;
     }
-    let variance = residual_variance(normal);
-    // Stated noise is believed where few residuals could tell otherwise.
-    let variance = if finished.view.noise_is_stated { variance.max(1.0) } else { variance };
-    let estimate = finished.view.estimate.clone();
-    Uncertainty::new(estimate, finished.layout.clone(), &normal.gram, variance, finished.view.length_m, found)
+    Uncertainty::new(&finished.view, finished.layout.clone(), &normal.gram, found)
 }
 
 /// Joint values of at most some hundred of the rows.
@@ -174,20 +178,32 @@ fn ranges(robot: &Robot, coverage: &[JointCoverage]) -> Vec<[f64; 2]> {
     robot.joints.iter().zip(coverage).map(of).collect()
 }
 
-/// Random joint values within ranges.
-fn anywhere(ranges: &[[f64; 2]], seed: u64) -> Vec<f64> {
+/// Random readings that keep all joints within their ranges, as joint values: joints of one reading move together.
+fn anywhere(robot: &Robot, ranges: &[[f64; 2]], seed: u64) -> Vec<f64> {
+    let indices = robot.reading_indices();
+    let readings = indices.iter().max().map_or(0, |last| last + 1);
+    let mut allowed = vec![[f64::NEG_INFINITY, f64::INFINITY]; readings];
+    for ((joint, &index), [lower, upper]) in robot.joints.iter().zip(&indices).zip(ranges) {
+        let ends = [lower, upper].map(|value| (value - joint.reading.offset) / joint.reading.multiplier);
+        if let Some(both) = allowed.get_mut(index).filter(|_| ends.iter().all(|end| end.is_finite())) {
+            *both = [both[0].max(ends[0].min(ends[1])), both[1].min(ends[0].max(ends[1]))];
+        }
+    }
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x616e_7977);
     let mut values = Vec::with_capacity(CONFIGURATIONS * ranges.len());
     for _ in 0..CONFIGURATIONS {
-        values.extend(
-            ranges.iter().map(|[lower, upper]| lower + (upper - lower) * random::uniform(&mut generator)),
-        );
+        let drawn: Vec<f64> = allowed
+            .iter()
+            .map(|[lower, upper]| lower + (upper - lower).max(0.0) * random::uniform(&mut generator))
+            .map(|reading| if reading.is_finite() { reading } else { 0.0 })
+            .collect();
+        values.extend(robot.joints.iter().zip(&indices).map(|(joint, &index)| joint.reading.value(drawn[index])));
     }
     values
 }
 
-/// Mean squares of the expected errors by parts of each joint's range.
-fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[Matrix3<f64>]) -> Vec<RangePart> {
+/// Mean squares of the expected errors of all targets by parts of each joint's range.
+fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[Vec<Matrix3<f64>>]) -> Vec<RangePart> {
     let joints = ranges.len();
     let mut parts = Vec::new();
     for (joint, &[lower, upper]) in ranges.iter().enumerate() {
@@ -197,10 +213,11 @@ fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[Matrix3<f64>]) -> 
         }
         for part in 0..PARTS {
             let from = lower + width * part as f64;
+            let is_here = |values: &[f64]| (from..=from + width).contains(&values[joint]);
             let here = errors
                 .iter()
-                .zip(values.chunks_exact(joints))
-                .filter(|(_, values)| (from..=from + width).contains(&values[joint]))
+                .flat_map(|errors| errors.iter().zip(values.chunks_exact(joints)))
+                .filter(|(_, values)| is_here(values))
                 .map(|(error, _)| error.trace());
             let count = here.clone().count();
             if count > 0 {

@@ -6,7 +6,59 @@ use crate::threads;
 /// An odd number whose bits look random: the golden ratio's.
 const MIXER: u64 = 0x9e37_79b9_7f4a_7c15;
 
+/// Readings (radians, metres) that differ by no more are of one configuration: what a robot errs by is the same there, whatever its
+/// encoders jitter by.
+const SAME: f64 = 1e-3;
+/// Rows above which only readings that are the same to the last bit are of one configuration.
+const MANY: usize = 100_000;
+
 impl Dataset {
+    /// These rows by configuration, each group and its rows in the order of their numbers: readings that differ by no more than 0.001
+    /// rad or 1 mm are of one.
+    pub(crate) fn configurations(&self, rows: &[u32]) -> Vec<Vec<u32>> {
+        let mut groups = if rows.len() > MANY { self.repeated(rows) } else { self.alike(rows, SAME) };
+        let mut grouped: Vec<u32> = groups.iter().flatten().copied().collect();
+        grouped.sort_unstable();
+        groups.extend(rows.iter().filter(|row| grouped.binary_search(row).is_err()).map(|&row| vec![row]));
+        groups.sort_unstable();
+        groups
+    }
+
+    /// Groups of two rows or more among these whose readings are those of the group's first row but for `same`.
+    pub(crate) fn alike(&self, rows: &[u32], same: f64) -> Vec<Vec<u32>> {
+        let readings = |row: u32| self.readings(row as usize);
+        // Rows of equal readings lie together by any sum of their readings; by this one, others seldom do.
+        let weight = |k: usize| 1.0 + 0.618_033_988_749_895 * (k as f64).sqrt();
+        let key =
+            |row: u32| readings(row).iter().enumerate().map(|(k, value)| weight(k) * value).sum::<f64>();
+        let window = same * (0..self.reading_names().len()).map(weight).sum::<f64>();
+        let mut order: Vec<(f64, u32)> = rows.iter().map(|&row| (key(row), row)).collect();
+        threads::sort_by(&mut order, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let is_same = |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= same);
+        let mut taken = vec![false; order.len()];
+        let mut groups = Vec::new();
+        for first in 0..order.len() {
+            if taken[first] {
+                continue;
+            }
+            let (start, row) = order[first];
+            let near = (first + 1..order.len()).take_while(|&k| order[k].0 - start <= window);
+            let mut group = vec![row];
+            for k in near {
+                if !taken[k] && is_same(row, order[k].1) {
+                    taken[k] = true;
+                    group.push(order[k].1);
+                }
+            }
+            if group.len() > 1 {
+                group.sort_unstable();
+                groups.push(group);
+            }
+        }
+        groups.sort_unstable();
+        groups
+    }
+
     /// The rows among these whose readings are the same to the last bit, each group and its rows in the order of their numbers;
     /// configurations of one row are left out.
     pub(crate) fn repeated(&self, rows: &[u32]) -> Vec<Vec<u32>> {
@@ -33,6 +85,17 @@ mod tests {
     use super::*;
     use crate::measurement::{Measurement, PointMeasurement};
     use nalgebra::Vector3;
+
+    #[test]
+    fn rows_that_jitter_are_of_one_configuration() {
+        let mut data = Dataset::new(vec!["a".to_owned(), "b".to_owned()]);
+        for readings in [[0.3, 1.0], [0.0, 1.0], [0.3004, 0.9997], [0.3, 1.002], [-0.0009, 1.0]] {
+            let seen = Measurement::Point(PointMeasurement { position: Vector3::zeros() });
+            data.push(&readings, None, seen).unwrap();
+        }
+        assert_eq!(data.configurations(&data.all_rows()), [vec![0, 2], vec![1, 4], vec![3]]);
+        assert_eq!(data.configurations(&[4, 2, 3]), [vec![2], vec![3], vec![4]]);
+    }
 
     #[test]
     fn rows_of_the_same_readings_are_found() {

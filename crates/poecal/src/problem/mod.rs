@@ -5,12 +5,14 @@ mod alike;
 mod arrangement;
 mod fast;
 mod layout;
+mod prior;
 mod refit;
 mod scatter;
 
 pub use crate::lanes::{Level, levels};
 pub(crate) use abreast::Abreast;
 pub use layout::Layout;
+pub use prior::Prior;
 pub use refit::Refit;
 
 use crate::estimate::{Chain, Estimate, Linkage, Packed};
@@ -67,6 +69,8 @@ pub struct Problem<'a> {
     layout: Layout,
     noise: Noise,
     weights: Option<&'a [f64]>,
+    /// What the drawing is worth, and by how much it counts.
+    prior: Option<(&'a Prior, f64)>,
     /// What is taken for measured instead of the data, one a row of the data.
     measured: Option<Vec<Measurement>>,
     rounding_m: f64,
@@ -99,6 +103,7 @@ impl<'a> Problem<'a> {
             layout: Layout::new(free, length_m),
             noise,
             weights: None,
+            prior: None,
             measured: None,
             rounding_m,
             level: Level::best(),
@@ -128,6 +133,22 @@ impl<'a> Problem<'a> {
         self.weights = Some(weights);
         self.fast = OnceLock::new();
         self
+    }
+
+    /// The same problem with a belief about the axes beside the measurements. It counts `weight` times: as much as the variance of
+    /// the whitened residuals really is (theory.md §6 (27a)).
+    #[must_use]
+    pub fn with_prior(mut self, prior: &'a Prior, weight: f64) -> Self {
+        self.prior = Some((prior, weight));
+        self
+    }
+
+    /// Adds the belief to what measurements say.
+    fn believing(&self, state: &Estimate, mut normal: Normal) -> Normal {
+        if let Some((prior, weight)) = self.prior {
+            prior.add(state, &self.layout, weight, &mut normal);
+        }
+        normal
     }
 
     /// The arrangement of the unknowns.
@@ -281,7 +302,7 @@ impl Problem<'_> {
     #[must_use]
     pub fn normal_row_by_row(&self, state: &Estimate) -> Normal {
         let linkage = Linkage::new(state);
-        self.sum_chunks(|rows| {
+        let seen = self.sum_chunks(|rows| {
             let mut normal = Normal::new(self.layout.dim());
             self.for_blocks(
                 &linkage,
@@ -293,7 +314,8 @@ impl Problem<'_> {
                 &mut normal,
             );
             normal
-        })
+        });
+        self.believing(state, seen)
     }
 }
 
@@ -306,20 +328,20 @@ impl LeastSquares for Problem<'_> {
 
     fn normal(&self, state: &Estimate) -> Normal {
         match self.fast(state) {
-            Some(fast) => fast.normal(self, state, Sums::All),
+            Some(fast) => self.believing(state, fast.normal(self, state, Sums::All)),
             None => self.normal_row_by_row(state),
         }
     }
 
     fn nearly_normal(&self, state: &Estimate) -> Normal {
         match self.fast(state) {
-            Some(fast) => fast.normal(self, state, Sums::Nearly),
+            Some(fast) => self.believing(state, fast.normal(self, state, Sums::Nearly)),
             None => self.normal_row_by_row(state),
         }
     }
 
     fn gradient(&self, state: &Estimate) -> Option<Normal> {
-        self.fast(state).map(|fast| fast.normal(self, state, Sums::Gradient))
+        self.fast(state).map(|fast| self.believing(state, fast.normal(self, state, Sums::Gradient)))
     }
 
     fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {

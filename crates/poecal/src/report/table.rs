@@ -216,14 +216,8 @@ fn trust_lines(out: &mut String, calibration: &Calibration) {
     if calibration.verdict.level != Level::DoNotUse
         && let (Some(measured), Some(range)) = (trust.measured, trust.range)
     {
-        let other = calibration.sigma_if_robot_m().map_or(String::new(), |sigma_m| {
-            format!(
-                "; {} mm if what the fit leaves is the robot and no noise of measuring",
-                number(sigma_m * 1e3)
-            )
-        });
         let words = format!(
-            "true place within {} mm (RMS) where it was measured, {} mm anywhere within the limits{other}",
+            "true place within {} mm (RMS) where it was measured, {} mm anywhere within the limits",
             number(measured.sigma_m * 1e3),
             number(range.sigma_m * 1e3)
         );

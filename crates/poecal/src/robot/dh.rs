@@ -81,6 +81,7 @@ impl Robot {
                 frame: base_from_joint,
                 limits: row.limits,
                 reading: Reading::own(&row.name),
+                tolerance: None,
             });
             let base_from_row = match convention {
                 DhConvention::Standard => base_from_joint * along_z * along_x,

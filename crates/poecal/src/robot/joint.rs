@@ -70,6 +70,27 @@ impl Reading {
     }
 }
 
+/// Standard deviations by which an axis may stand off its drawing: what is believed of it before anything is measured.
+///
+/// ```
+/// let usual = poecal::robot::Tolerance::default();
+/// assert_eq!((usual.angle_rad.to_degrees(), usual.length_m), (0.5, 0.005));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tolerance {
+    /// Of each component of the direction, radians.
+    pub angle_rad: f64,
+    /// Of each component of the place, metres.
+    pub length_m: f64,
+}
+
+impl Default for Tolerance {
+    /// Half a degree and 5 mm: wider than machining, so that it costs nothing where the data tell.
+    fn default() -> Self {
+        Tolerance { angle_rad: 0.5f64.to_radians(), length_m: 5e-3 }
+    }
+}
+
 /// A moving joint. Its frame is fixed to the link that it moves; at zero joint value it stands at `base_from_joint`, with the
 /// origin on the axis.
 ///
@@ -93,6 +114,9 @@ pub struct Joint {
     pub limits: Option<Limits>,
     /// How the value is read.
     pub reading: Reading,
+    /// How far its axis may stand off this model, where that is not what is said of all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<Tolerance>,
 }
 
 impl Joint {
@@ -116,6 +140,7 @@ impl Joint {
             frame: axis_frame(&screw),
             limits: None,
             reading: Reading::own(name),
+            tolerance: None,
         }
     }
 }

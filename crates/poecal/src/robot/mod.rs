@@ -5,7 +5,7 @@ mod joint;
 mod kinematics;
 
 pub use dh::{DhConvention, DhRow};
-pub use joint::{Joint, JointKind, Limits, Reading};
+pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
 
 use std::collections::{BTreeMap, BTreeSet};
 

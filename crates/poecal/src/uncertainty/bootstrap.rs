@@ -6,7 +6,6 @@ use rand_core::SeedableRng;
 use super::clusters::clusters;
 use super::view::View;
 use super::{covariance, factor, position_information};
-use crate::analysis::residual_variance;
 use crate::estimate::sample_rows;
 use crate::linalg;
 use crate::simulate::random;
@@ -51,8 +50,8 @@ pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
     if n == 0 || whole.residuals <= n {
         return None;
     }
-    let variance = residual_variance(&whole);
-    let factor = factor(&whole.gram, n, variance, view.length_m)?;
+    let variance = view.variance;
+    let factor = factor(&whole.gram, n, view.belief, variance)?;
     let sample = View { rows: &rows, ..*view };
     let units = clusters(&sample, count);
     let steps: Vec<Vec<f64>> = units

@@ -4,7 +4,6 @@ use nalgebra::DMatrix;
 
 use super::factor;
 use super::view::View;
-use crate::analysis::residual_variance;
 use crate::linalg;
 use crate::solve::{LeastSquares, Normal};
 
@@ -15,13 +14,17 @@ const CLUSTERS: usize = 16;
 
 /// `Σ gᵀ N⁻¹ g` over clusters, g being the gradient of a cluster's rows, against what white noise makes of it: the cluster-robust
 /// covariance over the ordinary one, on average over all directions (liang1986, theory.md §9 (41)). `None` if it is no more than chance.
-pub(super) fn inflation(view: &View<'_>, whole: &Normal) -> Option<f64> {
+pub(super) fn inflation(
+    view: &View<'_>,
+    whole: &Normal,
+    clusters: impl Fn(&View<'_>, usize) -> Vec<Vec<u32>>,
+) -> Option<f64> {
     let n = whole.dim();
     if n == 0 || whole.residuals < 2 * n {
         return None;
     }
-    let variance = residual_variance(whole);
-    let factor = factor(&whole.gram, n, variance, view.length_m)?;
+    let variance = view.variance;
+    let factor = factor(&whole.gram, n, view.belief, variance)?;
     let inverse = DMatrix::from_vec(n, n, linalg::inverse(&factor));
     let count = (whole.residuals / n).clamp(2, CLUSTERS);
     let (mut found, mut expected, mut spread) = (0.0, 0.0, 0.0);
@@ -46,10 +49,11 @@ fn share_of(inverse: &DMatrix<f64>, part: &[f64]) -> (f64, f64) {
     (d.trace(), d.dot(&d.transpose()))
 }
 
-/// About `count` clusters: rows are halved at the median of the joint that moves most in them.
+/// About `count` clusters: rows are halved at the median of the joint that moves most in them, rows of one configuration together.
 pub(super) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
     let spans = view.spans(view.rows);
-    let mut clusters = vec![view.rows.to_vec()];
+    let configurations = view.data.configurations(view.rows);
+    let mut clusters: Vec<Vec<&[u32]>> = vec![configurations.iter().map(Vec::as_slice).collect()];
     while clusters.len() < count {
         // The largest, of equal ones the first, so that the order is settled.
         let Some(largest) = (0..clusters.len()).max_by_key(|&k| (clusters[k].len(), usize::MAX - k)) else {
@@ -59,16 +63,25 @@ pub(super) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
             break;
         }
         let first = clusters.swap_remove(largest);
-        let here = view.spans(&first);
+        let here = view.spans(&first.iter().map(|rows| rows[0]).collect::<Vec<u32>>());
         let share = |joint: usize| if spans[joint] > 0.0 { here[joint] / spans[joint] } else { 0.0 };
         let widest =
             (0..here.len()).max_by(|&a, &b| share(a).total_cmp(&share(b)).then(b.cmp(&a))).unwrap_or(0);
         let middle = first.len() / 2;
-        let mut values: Vec<(f64, u32)> = first.iter().map(|&row| (view.values(row)[widest], row)).collect();
-        values.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut values: Vec<(f64, &[u32])> =
+            first.iter().map(|&rows| (view.values(rows[0])[widest], rows)).collect();
+        values.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(b.1)));
         let (low, high) = values.split_at(middle);
-        clusters.extend([low, high].map(|half| half.iter().map(|&(_, row)| row).collect()));
+        clusters.extend([low, high].map(|half| half.iter().map(|&(_, rows)| rows).collect()));
     }
+    let mut clusters: Vec<Vec<u32>> = clusters.into_iter().map(|rows| rows.concat()).collect();
     clusters.iter_mut().for_each(|cluster| cluster.sort_unstable());
     clusters
+}
+
+/// About `count` clusters of rows that follow each other in the order of the data.
+pub(super) fn in_order(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
+    let mut rows = view.rows.to_vec();
+    rows.sort_unstable();
+    rows.chunks(rows.len().div_ceil(count.max(1)).max(1)).map(<[u32]>::to_vec).collect()
 }

@@ -1,79 +1,97 @@
 //! What the model does not describe, as the residuals show it.
 
+use serde::{Deserialize, Serialize};
+
 use super::folds::CrossValidation;
+use super::remainder::Remainder;
 use super::view::View;
-use super::{clusters, neighbours};
+use super::{clusters, neighbours, order};
 use crate::measurement::Noise;
 use crate::solve::Normal;
+
+/// Whose what the fit leaves is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Attribution {
+    /// The robot's: nothing shows that it is noise of measuring.
+    Robot,
+    /// The instrument's: stated noise explains it, and no structure is found in it.
+    StatedNoise,
+    /// The instrument's: measurements that were repeated in one configuration scatter as much as the others.
+    Repeats,
+}
 
 /// What residuals show beside noise.
 ///
 /// ```
 /// let none = poecal::uncertainty::Discrepancy::none();
-/// assert_eq!((none.inflation, none.standard_deviation.position_m), (1.0, 0.0));
+/// assert_eq!((none.scatter, none.standard_deviation.position_m), (1.0, 0.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discrepancy {
-    /// By how much the covariance of the unknowns is larger than white noise would make it, at least 1.
-    pub inflation: f64,
-    /// Standard deviation of each component of the residuals, stated noise taken off, where they are no mere noise; else zero.
+    /// By how much the covariance of the unknowns is larger than residuals that are independent would make it, at least 1.
+    pub scatter: f64,
+    /// The same outside the range that was sampled: there what the model does not describe is a bias, which does not average out.
+    pub extrapolation: f64,
+    /// Standard deviation of each component of what is the robot's.
     pub standard_deviation: Noise,
+    /// Standard deviation of each component of what is the instrument's.
+    pub noise: Noise,
+    /// Whose the residuals of position are, and those of rotation.
+    pub attribution: [Attribution; 2],
+    /// Degrees of freedom by which these and the variance of the residuals are known, of positions and of rotations; infinite where
+    /// they are stated.
+    pub freedom: [f64; 2],
+    /// Correlation of residuals that follow each other in the order of the rows, where it is no chance.
+    pub lag_one: Option<f64>,
 }
 
 impl Discrepancy {
-    /// Nothing but noise.
+    /// Nothing but noise that is known.
     #[must_use]
     pub fn none() -> Self {
-        Discrepancy { inflation: 1.0, standard_deviation: Noise { position_m: 0.0, rotation_rad: 0.0 } }
+        let zero = Noise { position_m: 0.0, rotation_rad: 0.0 };
+        Discrepancy {
+            scatter: 1.0,
+            extrapolation: 1.0,
+            standard_deviation: zero,
+            noise: zero,
+            attribution: [Attribution::StatedNoise; 2],
+            freedom: [f64::INFINITY; 2],
+            lag_one: None,
+        }
     }
 }
 
-/// Judges by a fit and its normal information whether the residuals are more than noise: alike in neighbouring configurations, or clusters of them pulling together. If so, they
-/// count as error of the model wherever it is used, and the covariance grows to what the clusters show, or to what leaving out blocks
-/// showed (root mean square of their growths: the worse ones count more, since a robot is used where nobody measured).
+/// Whose the residuals of a fit are, and what they make of its covariance (theory.md §9 (41)). They are the robot's wherever it is
+/// used, unless stated noise explains them or repeated measurements scatter as much, and no structure is found in them.
 #[must_use]
 pub fn discrepancy(
     view: &View<'_>,
     normal: &Normal,
+    remainder: &Remainder,
     cross_validation: Option<&CrossValidation>,
 ) -> Discrepancy {
-    let clusters = clusters::inflation(view, normal);
+    let lag_one = order::correlation(view);
+    let by_place = clusters::inflation(view, normal, clusters::clusters);
+    let by_time = lag_one.and_then(|_| clusters::inflation(view, normal, clusters::in_order));
     let (position_alike, rotation_alike) = neighbours::alike(view);
-    if clusters.is_none() && !position_alike && !rotation_alike {
-        return Discrepancy::none();
-    }
-    let blocks = cross_validation.map_or(1.0, |found| {
+    let structured = by_place.is_some() || lag_one.is_some();
+    let position = remainder.position.settled(structured || position_alike);
+    let rotation = remainder.rotation.settled(structured || rotation_alike);
+    let scatter = by_place.unwrap_or(1.0).max(by_time.unwrap_or(1.0));
+    let blocks = cross_validation.filter(|_| position.attribution == Attribution::Robot).map_or(1.0, |found| {
         let squares = found.blocked.iter().map(|block| block.growth.max(0.0).powi(2)).sum::<f64>();
         // On a sample the unknowns are known less well, so that the same error is a smaller multiple.
         (squares / found.blocked.len().max(1) as f64).sqrt() / found.sampled
     });
     Discrepancy {
-        inflation: clusters.unwrap_or(1.0).max(blocks),
-        standard_deviation: beyond_stated_noise(view),
+        scatter,
+        extrapolation: scatter.max(blocks),
+        standard_deviation: Noise { position_m: position.robot, rotation_rad: rotation.robot },
+        noise: Noise { position_m: position.instrument, rotation_rad: rotation.instrument },
+        attribution: [position.attribution, rotation.attribution],
+        freedom: [position.freedom, rotation.freedom],
+        lag_one,
     }
-}
-
-/// Standard deviation of each residual component, stated noise taken off.
-fn beyond_stated_noise(view: &View<'_>) -> Noise {
-    let mut sums = [(0.0, 0.0, 0usize); 2];
-    for (&row, error) in view.rows.iter().zip(view.errors(view.rows, view.estimate)) {
-        let observation = &view.data.observations[row as usize];
-        let usual = |sigma| if view.noise_is_stated { sigma } else { 0.0 };
-        let sigmas = [
-            observation.sigma_position_m.unwrap_or(usual(view.noise.position_m)),
-            observation.sigma_rotation_rad.unwrap_or(usual(view.noise.rotation_rad)),
-        ];
-        for (sum, (part, sigma)) in
-            sums.iter_mut().zip([(Some(error.position_m), sigmas[0]), (error.rotation_rad, sigmas[1])])
-        {
-            if let Some(part) = part {
-                sum.0 += part.norm_squared();
-                sum.1 += 3.0 * sigma * sigma;
-                sum.2 += 3;
-            }
-        }
-    }
-    let [position_m, rotation_rad] =
-        sums.map(|(found, stated, count)| ((found - stated).max(0.0) / count.max(1) as f64).sqrt());
-    Noise { position_m, rotation_rad }
 }

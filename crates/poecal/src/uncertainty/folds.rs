@@ -8,7 +8,6 @@ use rand_core::SeedableRng;
 
 use super::view::View;
 use super::{TOGETHER, covariance, factor, motions};
-use crate::analysis::residual_variance;
 use crate::estimate::{Estimate, Linkage, sample_rows};
 use crate::linalg;
 use crate::problem::Layout;
@@ -94,10 +93,7 @@ pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
 
 fn random_folds(view: &View<'_>, sample: &[u32], seed: u64) -> Vec<Fold> {
     // Rows of one configuration are left out together: a copy would tell the fit what it is asked for.
-    let key = |row: u32| view.values(row).iter().map(|value| value.to_bits());
-    let mut sorted = sample.to_vec();
-    sorted.sort_by(|&a, &b| key(a).cmp(key(b)).then(a.cmp(&b)));
-    let mut configurations: Vec<&[u32]> = sorted.chunk_by(|&a, &b| key(a).eq(key(b))).collect();
+    let mut configurations = view.data.configurations(sample);
     random::shuffle(&mut ChaCha8Rng::seed_from_u64(seed ^ 0xf01d), &mut configurations);
     let part = configurations.len().div_ceil(FOLDS);
     configurations.chunks(part).map(|part| Fold { name: String::new(), rows: part.concat() }).collect()
@@ -190,9 +186,15 @@ impl<'a> Left<'a> {
         let problem = view.problem(sample.to_vec());
         let normal = problem.normal(view.estimate);
         let n = problem.dim();
-        let variance = residual_variance(&normal);
-        let factor = factor(&normal.gram, n, variance, view.length_m)?;
-        let step = linalg::cholesky_solve(&factor, &normal.gradient);
+        let variance = view.variance;
+        let factor = factor(&normal.gram, n, view.belief, variance)?;
+        let pull: Vec<f64> = normal
+            .gradient
+            .iter()
+            .zip(&view.belief.normal.gradient)
+            .map(|(seen, believed)| seen + variance * believed)
+            .collect();
+        let step = linalg::cholesky_solve(&factor, &pull);
         Some(Left {
             view: *view,
             estimate: problem.retract(view.estimate, &step),
@@ -209,7 +211,7 @@ impl<'a> Left<'a> {
         let rest: Vec<f64> = self.gram.iter().zip(&part.gram).map(|(all, part)| all - part).collect();
         let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
         let n = gradient.len();
-        let factor = factor(&rest, n, self.variance, self.view.length_m)?;
+        let factor = factor(&rest, n, self.view.belief, self.variance)?;
         let without = problem.retract(&self.estimate, &linalg::cholesky_solve(&factor, &gradient));
         let covariance = covariance(&factor, self.variance)?;
         let both = DMatrix::from_iterator(n, n, covariance.iter().zip(&self.covariance).map(|(a, b)| a + b));

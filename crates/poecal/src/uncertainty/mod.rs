@@ -6,29 +6,36 @@ mod discrepancy;
 mod folds;
 mod motions;
 mod neighbours;
+mod order;
 mod pattern;
 mod prediction;
+mod remainder;
 mod view;
 
 pub use bootstrap::{Bootstrap, bootstrap};
-pub use discrepancy::{Discrepancy, discrepancy};
+pub use discrepancy::{Attribution, Discrepancy, discrepancy};
+pub use remainder::{Remainder, remainder};
 pub use folds::{CrossValidation, LeftOut, cross_validate};
 pub use pattern::{Pattern, strongest_pattern};
-pub use prediction::{PredictedError, bound};
-pub use view::View;
+pub use prediction::{PredictedError, Quantile, bound};
+pub use view::{Belief, View};
 
 use motions::{motions, products};
 
+use std::f64::consts::TAU;
+
 use nalgebra::{DMatrix, Matrix3};
 
-use crate::analysis::PLAUSIBLE;
+use crate::analysis::ranges;
 use crate::estimate::{Estimate, Linkage, Packed};
 use crate::linalg::{self, Factor};
-use crate::measurement::Noise;
 use crate::problem::Layout;
+use crate::robot::JointKind;
 
 /// Configurations whose motions are worked out together: enough for a quick product, few enough for the cache.
 const TOGETHER: usize = 32;
+/// Share of the largest diagonal element that rounding makes of the normal equations.
+const ROUNDING: f64 = 1e-15;
 
 /// Covariance of an estimate's unknowns, and what the model does not describe.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,36 +44,33 @@ pub struct Uncertainty {
     pub estimate: Estimate,
     /// The unknowns and their scales.
     pub layout: Layout,
-    /// Covariance of the scaled unknowns (square metres), row-major `n × n`, with [`Uncertainty::inflation`] in it.
+    /// Covariance of the scaled unknowns (square metres), row-major `n × n`, with [`Discrepancy::scatter`] in it.
     pub covariance: Vec<f64>,
-    /// By how much the covariance is larger than white noise alone would make it.
-    pub inflation: f64,
-    /// Standard deviation of each component of what the model does not describe, device axes: the same at every configuration.
-    pub discrepancy: Noise,
+    /// The same with [`Discrepancy::extrapolation`], where that is more: what holds outside the sampled range.
+    pub covariance_outside: Option<Vec<f64>>,
+    /// The range of each joint's values that was sampled.
+    pub sampled: Vec<[f64; 2]>,
+    /// What residuals show beside noise.
+    pub discrepancy: Discrepancy,
     /// Metres that a radian counts in the scaled unknowns.
     pub length_m: f64,
 }
 
 impl Uncertainty {
-    /// From whitened information (upper triangle of `JᵀJ`) with residuals of this variance. `None` if a number is not finite.
+    /// Of a fit with whitened information (upper triangle of `JᵀJ`) whose unknowns are `layout`. `None` if a number is not finite.
     #[must_use]
-    pub fn new(
-        estimate: Estimate,
-        layout: Layout,
-        gram: &[f64],
-        variance: f64,
-        length_m: f64,
-        found: &Discrepancy,
-    ) -> Option<Self> {
-        let variance = variance * found.inflation;
-        let covariance = covariance(&factor(gram, layout.dim(), variance, length_m)?, variance)?;
+    pub fn new(view: &View<'_>, layout: Layout, gram: &[f64], found: &Discrepancy) -> Option<Self> {
+        let spread = |inflation: f64| inflated(gram, layout.dim(), view, inflation);
+        let outside = (found.extrapolation > found.scatter).then(|| spread(found.extrapolation));
+        let sampled = ranges(view.robot.joints.len(), view.packed, view.rows);
         Some(Uncertainty {
-            estimate,
+            estimate: view.estimate.clone(),
+            covariance: spread(found.scatter)?,
+            covariance_outside: outside.flatten(),
+            sampled: sampled.into_iter().map(|(least, most)| [least, most]).collect(),
             layout,
-            covariance,
-            inflation: found.inflation,
-            discrepancy: found.standard_deviation,
-            length_m,
+            discrepancy: *found,
+            length_m: view.length_m,
         })
     }
 
@@ -95,13 +99,39 @@ impl Uncertainty {
         rows: impl Iterator<Item = (usize, usize)>,
         packed: &Packed,
     ) -> Vec<PredictedError> {
+        let quantiles = self.quantiles();
         let errors = self.spread::<2>(rows, packed).into_iter();
-        errors.map(|[position, rotation]| PredictedError { position, rotation }).collect()
+        errors.map(|[position, rotation]| PredictedError { position, rotation, quantiles }).collect()
+    }
+
+    /// By how much bounds are wider than those of a known covariance, of positions and of rotations.
+    #[must_use]
+    pub fn quantiles(&self) -> [Quantile; 2] {
+        self.discrepancy.freedom.map(Quantile::new)
     }
 
     /// [`Uncertainty::predictions`], covariances of the place alone, square metres.
     pub(crate) fn positions(&self, packed: &Packed, target: usize) -> Vec<Matrix3<f64>> {
         self.spread::<1>((0..packed.rows()).map(|row| (row, target)), packed).into_flattened()
+    }
+
+    /// How far outside the sampled range a configuration is: 0 inside, 1 from a fifth of the range on, which is how far the blocks of
+    /// cross-validation are.
+    fn outside(&self, values: &[f64]) -> f64 {
+        const FULLY: f64 = 0.2;
+        let joints = values.iter().zip(&self.sampled).zip(&self.estimate.kinds);
+        let beyond = joints.map(|((value, [least, most]), kind)| {
+            let way = match kind {
+                JointKind::Prismatic => (least - value).max(value - most),
+                // Whole turns change nothing.
+                JointKind::Revolute => {
+                    let value = value - TAU * ((value - least) / TAU).floor();
+                    (value - most).min(least + TAU - value)
+                }
+            };
+            if way > 1e-6 { way / (FULLY * (most - least)) } else { 0.0 }
+        });
+        beyond.fold(0.0, f64::max).min(1.0)
     }
 
     /// Covariances of the place, and of the turn if they are two.
@@ -112,28 +142,59 @@ impl Uncertainty {
     ) -> Vec<[Matrix3<f64>; PARTS]> {
         let linkage = Linkage::new(&self.estimate);
         let n = self.layout.dim();
-        let covariance = DMatrix::from_row_slice(n, n, &self.covariance);
-        let own = [self.discrepancy.position_m, self.discrepancy.rotation_rad]
-            .map(|sigma| Matrix3::identity() * (sigma * sigma));
+        let inside = DMatrix::from_row_slice(n, n, &self.covariance);
+        let beyond = self.covariance_outside.as_ref().map(|outside| DMatrix::from_row_slice(n, n, outside));
+        let own = [
+            self.discrepancy.standard_deviation.position_m,
+            self.discrepancy.standard_deviation.rotation_rad,
+        ]
+        .map(|sigma| Matrix3::identity() * (sigma * sigma));
         let rows: Vec<(usize, usize)> = rows.collect();
         let mut found = Vec::with_capacity(rows.len());
         for some in rows.chunks(TOGETHER) {
             let motions = motions(&self.layout, &linkage, packed, some, PARTS);
-            let spread = &motions * &covariance;
-            found.extend((0..some.len()).map(|at| {
-                std::array::from_fn(|part| products(&motions, &spread, 3 * (PARTS * at + part)) + own[part])
+            let spread = &motions * &inside;
+            let farther: Vec<f64> =
+                some.iter().map(|&(row, _)| self.outside(packed.joint_values(row))).collect();
+            let wider = beyond.as_ref().filter(|_| farther.iter().any(|share| *share > 0.0));
+            let wider = wider.map(|covariance| &motions * covariance);
+            found.extend(farther.into_iter().enumerate().map(|(at, share)| {
+                std::array::from_fn(|part| {
+                    let first = 3 * (PARTS * at + part);
+                    let here = products(&motions, &spread, first);
+                    let there = wider.as_ref().filter(|_| share > 0.0);
+                    let there = there.map(|spread| products(&motions, spread, first));
+                    there.map_or(here, |there| here * (1.0 - share) + there * share) + own[part]
+                })
             }));
         }
         found
     }
 }
 
-/// Factor of `JᵀJ + variance · I / prior²`.
-fn factor(gram: &[f64], n: usize, variance: f64, length_m: f64) -> Option<Factor> {
-    linalg::cholesky(gram, n, prior_information(length_m) * variance)
+/// Factor of `JᵀJ + variance · belief`.
+fn factor(gram: &[f64], n: usize, belief: &Belief, variance: f64) -> Option<Factor> {
+    let both = belief.with(gram, variance);
+    let largest = (0..n).map(|k| both[k * n + k]).fold(0.0, f64::max);
+    linalg::cholesky(&both, n, ROUNDING * largest)
 }
 
-/// `(JᵀJ / variance + I / prior²)⁻¹` from [`factor`], row-major; `None` if a number is not finite.
+/// Covariance of an estimate whose residuals scatter by `inflation` times what independent ones do: with `H = N + s²Λ` and a belief Λ that
+/// the fit holds, `s² H⁻¹ (κ N + s²Λ) H⁻¹`, which is `s² H⁻¹` for κ = 1; of a fit without it, `κ s² (N + κ s²Λ)⁻¹` (theory.md §9 (39)).
+fn inflated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<Vec<f64>> {
+    if !view.belief.is_fitted || inflation == 1.0 {
+        let variance = view.variance * inflation;
+        return covariance(&factor(gram, n, view.belief, variance)?, variance);
+    }
+    let formal = covariance(&factor(gram, n, view.belief, view.variance)?, view.variance)?;
+    let formal = DMatrix::from_row_slice(n, n, &formal);
+    let belief = &view.belief.normal.gram;
+    let believed = DMatrix::from_fn(n, n, |i, j| belief[i.min(j) * n + i.max(j)]);
+    let spread = &formal * inflation - &formal * believed * &formal * (inflation - 1.0);
+    Some((&spread + spread.transpose()).scale(0.5).as_slice().to_vec())
+}
+
+/// `(JᵀJ / variance + belief)⁻¹` from [`factor`], row-major; `None` if a number is not finite.
 fn covariance(factor: &Factor, variance: f64) -> Option<Vec<f64>> {
     let mut covariance = linalg::inverse(factor);
     covariance.iter_mut().for_each(|value| *value *= variance);
@@ -151,9 +212,4 @@ fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
         sum += motions.transpose() * motions;
     }
     (sum / rows.len().max(1) as f64).as_slice().to_vec()
-}
-
-/// Information of the drawing about each scaled unknown, per square metre: it bounds what the data leave open.
-fn prior_information(length_m: f64) -> f64 {
-    1.0 / (PLAUSIBLE * length_m).powi(2)
 }

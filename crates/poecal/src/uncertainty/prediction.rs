@@ -2,12 +2,15 @@
 
 use nalgebra::Matrix3;
 
+use crate::distributions::f_quantile;
+
 /// Covariances of a predicted target's place (square metres) and turn (square radians), device axes (theory.md §9 (40)).
 ///
 /// ```
 /// use nalgebra::Matrix3;
 /// use poecal::uncertainty::PredictedError;
-/// let error = PredictedError { position: Matrix3::identity() * 1e-8, rotation: Matrix3::zeros() };
+/// let quantiles = [poecal::uncertainty::Quantile::KNOWN; 2];
+/// let error = PredictedError { position: Matrix3::identity() * 1e-8, rotation: Matrix3::zeros(), quantiles };
 /// assert!((error.sigma_position_m() - 3f64.sqrt() * 1e-4).abs() < 1e-15);
 /// // Of three equal components, the distance is below 2.7955 standard deviations in 95 % of all cases.
 /// assert!((error.bound_position_m() - 2.7955e-4).abs() < 1e-6);
@@ -18,6 +21,8 @@ pub struct PredictedError {
     pub position: Matrix3<f64>,
     /// Of the rotation vector, square radians.
     pub rotation: Matrix3<f64>,
+    /// By how much the bounds are wider than those of known covariances, of positions and of rotations.
+    pub quantiles: [Quantile; 2],
 }
 
 impl PredictedError {
@@ -36,13 +41,13 @@ impl PredictedError {
     /// Distance that is not exceeded in 95 % of all cases, metres.
     #[must_use]
     pub fn bound_position_m(&self) -> f64 {
-        bound(&self.position)
+        self.quantiles[0].bound(&self.position)
     }
 
     /// Angle that is not exceeded in 95 % of all cases, radians.
     #[must_use]
     pub fn bound_rotation_rad(&self) -> f64 {
-        bound(&self.rotation)
+        self.quantiles[1].bound(&self.rotation)
     }
 }
 
@@ -60,4 +65,51 @@ pub fn bound(covariance: &Matrix3<f64>) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
     let quantile = freedom * (1.0 - spread + Z * spread.sqrt()).powi(3);
     (squares / trace * quantile).sqrt()
+}
+
+/// By how much 95 % bounds grow because the variance itself was found from few residuals: F instead of χ².
+///
+/// ```
+/// use poecal::uncertainty::Quantile;
+/// use nalgebra::Matrix3;
+/// let covariance = Matrix3::identity();
+/// // F of 3 and 9 degrees of freedom is 3.863 at 95 %, χ² of 3 over 3 is 2.605.
+/// let ratio = Quantile::new(9.0).bound(&covariance) / Quantile::KNOWN.bound(&covariance);
+/// assert!((ratio - (3.863f64 / 2.605).sqrt()).abs() < 1e-3);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantile {
+    /// Squares of the factors for distributions of 1, 2 and 3 degrees of freedom.
+    growth: [f64; 3],
+}
+
+impl Quantile {
+    /// A variance that is known.
+    pub const KNOWN: Quantile = Quantile { growth: [1.0; 3] };
+
+    /// A variance that was found with so many degrees of freedom.
+    #[must_use]
+    pub fn new(freedom: f64) -> Self {
+        const MANY: f64 = 1e5;
+        if freedom >= MANY {
+            return Quantile::KNOWN;
+        }
+        let freedom = freedom.max(1.0);
+        let known = [3.841_458_820_694_124, 2.995_732_273_553_991, 2.604_909_302_600_548];
+        Quantile {
+            growth: std::array::from_fn(|k| f_quantile(0.05, (k + 1) as f64, freedom) / known[k]),
+        }
+    }
+
+    /// [`bound`] of a covariance whose size was found so.
+    #[must_use]
+    pub fn bound(&self, covariance: &Matrix3<f64>) -> f64 {
+        let (trace, squares) = (covariance.trace(), covariance.norm_squared());
+        let freedom = if squares > 0.0 { (trace * trace / squares).clamp(1.0, 3.0) } else { 3.0 };
+        // A parabola through the three.
+        let [one, two, three] = self.growth;
+        let t = freedom - 2.0;
+        let growth = two + 0.5 * t * (three - one) + 0.5 * t * t * (three - 2.0 * two + one);
+        bound(covariance) * growth.sqrt()
+    }
 }

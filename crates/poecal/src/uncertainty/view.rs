@@ -2,12 +2,46 @@
 
 use std::cmp::Ordering;
 
-use crate::analysis::ranges;
+use crate::analysis::{PLAUSIBLE, ranges};
 use crate::estimate::{Estimate, Packed, RowError, row_errors};
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::Parameter;
-use crate::problem::Problem;
+use crate::problem::{Layout, Prior, Problem};
 use crate::robot::Robot;
+use crate::solve::Normal;
+
+/// What is believed of the unknowns, whatever the measurements say: information and direction of descent at the optimum, in the units
+/// of the unknowns and not of the noise.
+#[derive(Clone, Debug)]
+pub struct Belief {
+    /// Upper triangle of the information, and the gradient.
+    pub normal: Normal,
+    /// Whether the fit holds it too; if not, it only bounds what the data leave open.
+    pub is_fitted: bool,
+}
+
+impl Belief {
+    /// Of these unknowns of an estimate: a prior's, or that each unknown is what a drawing leaves of it.
+    #[must_use]
+    pub fn new(prior: Option<&Prior>, estimate: &Estimate, layout: &Layout, length_m: f64) -> Self {
+        let n = layout.dim();
+        let mut normal = Normal::new(n);
+        match prior {
+            Some(prior) => prior.add(estimate, layout, 1.0, &mut normal),
+            None => {
+                let information = 1.0 / (PLAUSIBLE * length_m).powi(2);
+                normal.gram.iter_mut().step_by(n + 1).for_each(|value| *value = information);
+            }
+        }
+        Belief { normal, is_fitted: prior.is_some() }
+    }
+
+    /// The information of measurements with that of the belief, upper triangle, where whitened residuals have this variance.
+    #[must_use]
+    pub fn with(&self, gram: &[f64], variance: f64) -> Vec<f64> {
+        gram.iter().zip(&self.normal.gram).map(|(seen, believed)| seen + variance * believed).collect()
+    }
+}
 
 /// Data, rows, unknowns and optimum of a fit.
 #[derive(Clone, Copy, Debug)]
@@ -24,8 +58,12 @@ pub struct View<'a> {
     pub free: &'a [Parameter],
     /// The noise by which residuals were whitened.
     pub noise: Noise,
-    /// Whether that noise is stated, and not what the residuals show.
-    pub noise_is_stated: bool,
+    /// Whether that noise is stated, of positions and of rotations, and not what the residuals show.
+    pub noise_is_stated: [bool; 2],
+    /// What is believed of the unknowns beside the measurements.
+    pub belief: &'a Belief,
+    /// Variance of the whitened residuals.
+    pub variance: f64,
     /// Metres that a radian counts.
     pub length_m: f64,
     /// Where the fit ended.

@@ -1,7 +1,6 @@
 //! Fits that a few grossly wrong rows cannot spoil: iteratively reweighted least squares, and when it is called for (theory.md §6,
 //! *Outliers*).
 
-mod chi_square;
 mod loss;
 mod rows;
 mod scale;
@@ -46,10 +45,13 @@ pub(super) fn fit(
     let noise = registration.noise;
     let attempt = |loss, other| attempt(task, registration, registered, source, loss, other);
     match task.options.robust {
-        Robust::Off => ordinary(task, task.begin(registered, noise), registered, noise, source),
+        Robust::Off => {
+            let found = task.beginning(noise, source).begin(registered, noise);
+            ordinary(task, found, registered, noise, source)
+        }
         Robust::Loss(loss) => attempt(loss, None),
         Robust::Auto => {
-            let found = task.begin(registered, noise);
+            let found = task.beginning(noise, source).begin(registered, noise);
             if !shows_outliers(task, &found, noise, source) {
                 return ordinary(task, found, registered, noise, source);
             }
@@ -92,7 +94,7 @@ fn ordinary(
     noise: Noise,
     source: NoiseSource,
 ) -> Result<RobustFit> {
-    let fitted = task.complete(found, registered, noise, source)?;
+    let fitted = task.beginning(noise, source).complete(found, registered, noise, source)?;
     let weights = vec![1.0; task.data.len()];
     let judged = judge_rows(task, &fitted, &weights, None);
     Ok(RobustFit { fitted, loss: None, judged })
@@ -174,6 +176,11 @@ impl Reweighted {
         self.scale.0[0] * self.noise.position_m
     }
 
+    /// The task with the prior counting as much as the residuals really are.
+    fn believing<'t>(&self, task: &Task<'t>, source: NoiseSource) -> Task<'t> {
+        task.believing(if source == NoiseSource::Estimated { 1.0 } else { self.scale.0[0].powi(2) })
+    }
+
     /// Reweights until the weights have settled.
     fn run(&mut self, task: &Task<'_>, loss: Loss, source: NoiseSource) {
         let quick = CalibrationOptions {
@@ -187,7 +194,7 @@ impl Reweighted {
             if self.reweight(task, &parts, loss) < SETTLED {
                 break;
             }
-            let weighted = Task { weights: Some(&self.weights), options: &quick, ..*task };
+            let weighted = Task { weights: Some(&self.weights), options: &quick, ..self.believing(task, source) };
             let (estimate, _, summary) = weighted.fit(self.estimate.clone(), self.noise);
             self.iterations += summary.iterations;
             self.trace.extend(summary.trace);
@@ -227,7 +234,11 @@ impl Reweighted {
                 .collect();
             if source == NoiseSource::Estimated {
                 let before = self.noise;
-                match estimate_noise(task.data, task.packed, &kept, &self.estimate, unknowns, None, before) {
+                let of_kept = Task { rows: &kept, ..*task };
+                let told = found.as_ref().map_or(unknowns as f64, |found| of_kept.told(found));
+                let by_rotations = found.as_ref().and_then(|found| of_kept.told_by_rotations(found, before));
+                let (data, packed) = (task.data, task.packed);
+                match estimate_noise(data, packed, &kept, &self.estimate, told, by_rotations, before) {
                     Some(noise) => self.noise = stated(task.options, noise),
                     None => source = NoiseSource::Exact,
                 }
@@ -239,7 +250,7 @@ impl Reweighted {
             if change < SETTLED && found.is_some() {
                 break;
             }
-            let weighted = Task { weights: Some(&self.weights), ..*task };
+            let weighted = Task { weights: Some(&self.weights), ..self.believing(task, source) };
             let renewed = weighted.fit(self.estimate, self.noise);
             self.estimate = renewed.0.clone();
             match &mut found {
@@ -247,7 +258,7 @@ impl Reweighted {
                 None => found = Some(Found::new(renewed)),
             }
         }
-        let weighted = Task { weights: Some(&self.weights), ..*task };
+        let weighted = Task { weights: Some(&self.weights), ..self.believing(task, source) };
         let mut found = match found {
             Some(found) => found,
             None => Found::new(weighted.fit(self.estimate, self.noise)),

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::{Loss, Parts, Scale, chi_square, parts};
+use super::{Loss, Parts, Scale, parts};
 use crate::analysis::{Influence, influence};
 use crate::calibration::fit::{self, Fitted, Task};
 use crate::calibration::{Calibration, SetAccuracy, measurements_words, radian_m};
+use crate::distributions;
 use crate::estimate::Packed;
 use crate::measurement::{Dataset, PoseResidual};
 use crate::parameters::{Formulation, Parameter};
@@ -122,7 +123,7 @@ impl Bounds {
     /// The length that normal noise exceeds in one of a thousand sets of so many rows, times a factor (theory.md §6 (34f)).
     pub(super) fn new(rows: usize, factor: f64) -> Self {
         let probability = FAMILY / rows.max(1) as f64;
-        Bounds([1, 2, 3, 4, 5, 6].map(|dof| factor * chi_square::upper_quantile(probability, dof).sqrt()))
+        Bounds([1, 2, 3, 4, 5, 6].map(|dof| factor * distributions::upper_quantile(probability, dof).sqrt()))
     }
 
     /// Beyond these a row is suspected.

@@ -1,7 +1,7 @@
 //! Robust scale: the noise that the middle of the rows shows, whatever the worst half does (theory.md §6 (34a)).
 
-use super::chi_square;
 use crate::calibration::CalibrationOptions;
+use crate::distributions;
 use crate::calibration::noise::{ROUNDING, stated};
 use crate::estimate::{Estimate, Packed, map_squares};
 use crate::measurement::{Dataset, Noise};
@@ -94,7 +94,7 @@ pub(super) fn settle(
 fn median_scale<'a>(rows: impl Iterator<Item = &'a Part>, left: f64) -> Option<f64> {
     let mut squares: Vec<f64> = rows
         .filter(|part| part.components > 0)
-        .map(|part| part.squares / chi_square::median(part.components))
+        .map(|part| part.squares / distributions::median(part.components))
         .collect();
     if squares.is_empty() {
         return None;

@@ -269,6 +269,7 @@ impl JointEntry {
                 multiplier: self.reading.multiplier,
                 offset: self.reading.offset,
             },
+            tolerance: None,
         })
     }
 }

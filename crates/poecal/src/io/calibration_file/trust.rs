@@ -12,7 +12,7 @@ use crate::lie::Pose;
 use crate::measurement::Noise;
 use crate::parameters::{Formulation, Parameter, TargetFrame, TargetPlace};
 use crate::problem::Layout;
-use crate::uncertainty::{Bootstrap, LeftOut, Uncertainty};
+use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
 
 /// Rows left out together, and how the others predict them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -94,20 +94,40 @@ pub struct CorrectionEntry {
 /// What predictions need to state their error, and what is to be expected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct UncertaintyEntry {
-    /// By how much the covariance is larger than white noise alone would make it.
+    /// By how much the covariance is larger than independent residuals would make it.
     pub inflation: f64,
+    /// The same outside the sampled range; as inside if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extrapolation: Option<f64>,
     /// What the model does not describe: standard deviation of each position component, millimetres.
     pub discrepancy_position_mm: f64,
     /// Of each rotation component, degrees.
     pub discrepancy_rotation_deg: f64,
+    /// What of the residuals is noise of measuring: standard deviation of each position component, millimetres.
+    #[serde(default)]
+    pub noise_position_mm: f64,
+    /// Of each rotation component, degrees.
+    #[serde(default)]
+    pub noise_rotation_deg: f64,
+    /// Whose the residuals of position are.
+    #[serde(default = "robot")]
+    pub residuals_position: Attribution,
+    /// Whose the residuals of rotation are.
+    #[serde(default = "robot")]
+    pub residuals_rotation: Attribution,
+    /// Degrees of freedom by which the residuals of position are known; null where their noise is stated.
+    #[serde(default)]
+    pub freedom_position: Option<f64>,
+    /// The same of rotations.
+    #[serde(default)]
+    pub freedom_rotation: Option<f64>,
+    /// Correlation of residuals that follow each other in the order of the rows; null where it is chance.
+    #[serde(default)]
+    pub lag_one_correlation: Option<f64>,
     /// In the configurations that were measured.
     pub measured: ExpectedEntry,
     /// In configurations anywhere within the limits.
     pub range: ExpectedEntry,
-    /// The root mean square distance to expect where it was measured if all that the fit leaves were error of the robot and none noise of
-    /// measuring, millimetres; null where that is settled.
-    #[serde(default)]
-    pub sigma_position_if_robot_mm: Option<f64>,
     /// The spread of predictions where it was measured, by drawing rows anew; null if they are too few.
     #[serde(default)]
     pub bootstrap: Option<BootstrapEntry>,
@@ -124,6 +144,13 @@ pub struct UncertaintyEntry {
     /// The unknowns' covariance, square metres, turns multiplied by `length_m`: the upper triangle by rows, in the order of the fit, those
     /// that only shift a target first.
     pub covariance_m2: Vec<f64>,
+    /// The same outside the sampled range; as inside if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub covariance_outside_m2: Option<Vec<f64>>,
+}
+
+fn robot() -> Attribution {
+    Attribution::Robot
 }
 
 impl LeftOutEntry {
@@ -186,15 +213,27 @@ impl UncertaintyEntry {
         let trust = &calibration.trust;
         let found = trust.uncertainty.as_ref()?;
         let n = found.layout.dim();
-        let upper = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
+        let upper = |matrix: &[f64]| -> Vec<f64> {
+            (0..n).flat_map(|i| (i..n).map(move |j| i * n + j)).map(|place| matrix[place]).collect()
+        };
+        let Discrepancy { scatter, extrapolation, standard_deviation, noise, attribution, freedom, lag_one } =
+            found.discrepancy;
+        let freedom = freedom.map(|freedom| Some(freedom).filter(|it| it.is_finite()));
         let names = calibration.targets.iter();
         Some(UncertaintyEntry {
-            inflation: found.inflation,
-            discrepancy_position_mm: found.discrepancy.position_m * 1e3,
-            discrepancy_rotation_deg: found.discrepancy.rotation_rad.to_degrees(),
+            inflation: scatter,
+            extrapolation: Some(extrapolation).filter(|it| *it > scatter),
+            discrepancy_position_mm: standard_deviation.position_m * 1e3,
+            discrepancy_rotation_deg: standard_deviation.rotation_rad.to_degrees(),
+            noise_position_mm: noise.position_m * 1e3,
+            noise_rotation_deg: noise.rotation_rad.to_degrees(),
+            residuals_position: attribution[0],
+            residuals_rotation: attribution[1],
+            freedom_position: freedom[0],
+            freedom_rotation: freedom[1],
+            lag_one_correlation: lag_one,
             measured: ExpectedEntry::of(trust.measured.as_ref()?),
             range: ExpectedEntry::of(trust.range.as_ref()?),
-            sigma_position_if_robot_mm: calibration.sigma_if_robot_m().map(|sigma_m| sigma_m * 1e3),
             bootstrap: trust.bootstrap.as_ref().map(BootstrapEntry::of),
             parts: trust
                 .parts
@@ -209,7 +248,8 @@ impl UncertaintyEntry {
             length_m: found.length_m,
             axes: found.estimate.base_from_axis.iter().map(PoseEntry::from).collect(),
             targets: names.map(|it| (it.name.clone().unwrap_or_default(), it.is_frame)).collect(),
-            covariance_m2: upper.map(|(i, j)| found.covariance[i * n + j]).collect(),
+            covariance_m2: upper(&found.covariance),
+            covariance_outside_m2: found.covariance_outside.as_deref().map(upper),
         })
     }
 }
@@ -263,27 +303,45 @@ impl CalibrationFile {
         let indices = targets.iter().map(&mut index).collect();
         let layout = Layout::new(free, entry.length_m);
         let n = layout.dim();
-        if entry.covariance_m2.len() != n * (n + 1) / 2 {
+        let outside = entry.covariance_outside_m2.as_ref();
+        let is_whole = |upper: &Vec<f64>| upper.len() == n * (n + 1) / 2;
+        if !is_whole(&entry.covariance_m2) || !outside.is_none_or(is_whole) {
             return Err(bad("a covariance of another size than the unknowns make"));
         }
-        let mut covariance = vec![0.0; n * n];
-        let upper = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
-        for ((i, j), &value) in upper.zip(&entry.covariance_m2) {
-            covariance[i * n + j] = value;
-            covariance[j * n + i] = value;
-        }
-        let discrepancy = Noise {
-            position_m: entry.discrepancy_position_mm * 1e-3,
-            rotation_rad: entry.discrepancy_rotation_deg.to_radians(),
+        let known = |freedom: Option<f64>| freedom.unwrap_or(f64::INFINITY);
+        let noise = |position_mm: f64, rotation_deg: f64| Noise {
+            position_m: position_mm * 1e-3,
+            rotation_rad: rotation_deg.to_radians(),
+        };
+        let discrepancy = Discrepancy {
+            scatter: entry.inflation,
+            extrapolation: entry.extrapolation.unwrap_or(entry.inflation),
+            standard_deviation: noise(entry.discrepancy_position_mm, entry.discrepancy_rotation_deg),
+            noise: noise(entry.noise_position_mm, entry.noise_rotation_deg),
+            attribution: [entry.residuals_position, entry.residuals_rotation],
+            freedom: [known(entry.freedom_position), known(entry.freedom_rotation)],
+            lag_one: entry.lag_one_correlation,
         };
         let uncertainty = Uncertainty {
             estimate,
             layout,
-            covariance,
-            inflation: entry.inflation,
+            covariance: symmetric(&entry.covariance_m2, n),
+            covariance_outside: outside.map(|upper| symmetric(upper, n)),
+            sampled: self.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect(),
             discrepancy,
             length_m: entry.length_m,
         };
         Ok((uncertainty, indices))
     }
+}
+
+/// A symmetric matrix from its upper triangle by rows.
+fn symmetric(upper: &[f64], n: usize) -> Vec<f64> {
+    let mut matrix = vec![0.0; n * n];
+    let places = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
+    for ((i, j), &value) in places.zip(upper) {
+        matrix[i * n + j] = value;
+        matrix[j * n + i] = value;
+    }
+    matrix
 }

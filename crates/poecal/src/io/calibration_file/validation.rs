@@ -31,8 +31,6 @@ impl CalibrationFile {
         let promise = found.as_ref().map(|(uncertainty, targets)| Promise {
             uncertainty,
             targets,
-            noise,
-            noise_is_stated: self.noise_is_stated(),
             coverage: &self.coverage,
         });
         let subject = Subject {

@@ -67,6 +67,7 @@ fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_j
         frame: base_from_joint,
         limits: read_limits(&tree.source, joint)?,
         reading: read_reading(tree, joint)?,
+        tolerance: None,
     })
 }
 

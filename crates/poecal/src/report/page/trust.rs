@@ -5,6 +5,7 @@ use super::html::{Html, Table, count, decimal, figure, quoted, scaled};
 use crate::analysis::Direction;
 use crate::io::calibration_file::{CalibrationFile, KindWord, LeftOutEntry, RangeEntry, UncertaintyEntry};
 use crate::report::plot::escape;
+use crate::uncertainty::Attribution;
 
 pub(super) fn sections(page: &mut Html, file: &CalibrationFile) {
     page.section("trust", "How far to trust it");
@@ -41,23 +42,20 @@ fn expected(page: &mut Html, found: &UncertaintyEntry) {
         ]);
     }
     page.table(&table);
-    if found.discrepancy_position_mm > 0.0 {
-        page.text(&format!(
-            "The residuals are more than noise: {} mm a component are errors of the robot that the model does not describe (gears, links that \
-             give), and they count in the figures above. The covariance is taken {} times as large as noise alone would make it.",
-            figure(found.discrepancy_position_mm, "uncertainty.discrepancy_position_mm"),
-            figure(found.inflation, "uncertainty.inflation")
-        ));
-    } else {
-        page.text("The residuals look like noise, so predictions are better than any single measurement.");
-    }
-    if let Some(sigma) = found.sigma_position_if_robot_mm {
-        page.text(&format!(
-            "So few rows cannot tell noise from errors of the robot for certain. If all that the fit leaves were the robot and none of it noise \
-             of measuring, {} mm (RMS) would be to be expected as measured.",
-            figure(sigma, "uncertainty.sigma_position_if_robot_mm")
-        ));
-    }
+    page.text(&match found.residuals_position {
+        Attribution::Robot => format!(
+            "{} mm a component of what the fit leaves count as errors of the robot in the figures above: nothing shows that they are noise of \
+             measuring. A stated noise (--sigma-position) that explains them, or repeated measurements, would.",
+            figure(found.discrepancy_position_mm, "uncertainty.discrepancy_position_mm")
+        ),
+        Attribution::StatedNoise => {
+            "The stated noise explains what the fit leaves, so predictions are better than any single measurement.".to_owned()
+        }
+        Attribution::Repeats => {
+            "What the fit leaves is no more than what repeated measurements scatter by, so predictions are better than any single measurement."
+                .to_owned()
+        }
+    });
     if let Some(drawn) = &found.bootstrap {
         page.text(&format!(
             "Drawing neighbourhoods of rows anew {} times spreads the predictions there by {} mm (RMS); if rows err independently and alike it \

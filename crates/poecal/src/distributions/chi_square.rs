@@ -6,12 +6,12 @@ use std::f64::consts::PI;
 const MEDIANS: [f64; 6] = [0.4549, 1.3863, 2.3660, 3.3567, 4.3515, 5.3481];
 
 /// The median for 1 to 6 degrees of freedom.
-pub(super) fn median(freedom: usize) -> f64 {
+pub(crate) fn median(freedom: usize) -> f64 {
     MEDIANS[freedom.clamp(1, 6) - 1]
 }
 
 /// What is exceeded with a probability of at most 0.1, by Newton's steps on the logarithm of the tail.
-pub(super) fn upper_quantile(probability: f64, freedom: usize) -> f64 {
+pub(crate) fn upper_quantile(probability: f64, freedom: usize) -> f64 {
     let mut x = freedom as f64;
     for _ in 0..60 {
         let (survival, density) = upper_tail(x, freedom);
@@ -22,6 +22,22 @@ pub(super) fn upper_quantile(probability: f64, freedom: usize) -> f64 {
         }
     }
     x
+}
+
+/// Normal quantile of the band that a mean square of so many degrees of freedom leaves in one of a hundred cases.
+const BAND: f64 = 2.575_829;
+
+/// Whether a mean square of variables of variance 1 is within the band that holds 99 of 100 such (wilson1931): below, inside, above.
+pub(crate) fn is_within_band(mean_square: f64, freedom: f64) -> std::cmp::Ordering {
+    let spread = 2.0 / (9.0 * freedom);
+    let deviation = (mean_square.cbrt() - (1.0 - spread)) / spread.sqrt();
+    if deviation > BAND {
+        std::cmp::Ordering::Greater
+    } else if deviation < -BAND {
+        std::cmp::Ordering::Less
+    } else {
+        std::cmp::Ordering::Equal
+    }
 }
 
 /// Probability to exceed `x ≥ 1`, and the density there: `Q(x; ν + 2) = Q(x; ν) + (x/2)^(ν/2) e^(-x/2) / Γ(ν/2 + 1)` from ν = 1 or 2

@@ -1,0 +1,186 @@
+//! What a drawing is worth: the axes are near nominal (theory.md §6, *What a drawing is worth*).
+
+use nalgebra::{Cholesky, Matrix6, U6, Vector3, Vector6};
+
+use super::Layout;
+use crate::estimate::Estimate;
+use crate::lie::{Pose, Twist};
+use crate::parameters::Parameter;
+use crate::robot::{Robot, Tolerance};
+use crate::solve::Normal;
+
+/// Iterations that find the base, at most: it converges quadratically.
+const ITERATIONS: usize = 20;
+/// A base that moves by less than this (metres, radians) has been found.
+const FOUND: f64 = 1e-12;
+/// Share of the trace of the base's information below which it is rounding: axes that are all parallel leave some of it open.
+const ROUNDING: f64 = 1e-12;
+
+/// A Gaussian belief about the axes: each stands about its nominal place, its direction and its place known to within a
+/// [`Tolerance`]. With the direction d of an axis, the nominal one d⁰, and the point q of the axis that is nearest to the nominal
+/// joint's origin o, an axis deviates by `u = ((d - d⁰) / σ_angle; (q - o) / σ_length)`, of a prismatic joint by the first part
+/// alone; the cost of it all is `½ Σ |u|²`. Where the device stands anywhere the base frame is a choice, and the cost is that of the
+/// base that fits best: a motion of all axes costs nothing (theory.md §6 (27a)).
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::estimate::Estimate;
+/// use poecal::lie::{Pose, Screw};
+/// use poecal::problem::Prior;
+/// use poecal::robot::{Joint, Robot, Tolerance};
+/// let joint = |name: &str, x: f64| Joint::revolute(name, Screw::revolute(&Vector3::z(), &(x * Vector3::x())));
+/// let robot = Robot::new("r", vec![joint("a", 0.0), joint("b", 0.5)], Pose::identity())?;
+/// let prior = Prior::new(&robot, Tolerance::default(), true);
+/// let mut estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
+/// // Both axes 10 mm farther apart: half of it each, two standard deviations in all.
+/// estimate.base_from_axis[1].translation.x += 0.01;
+/// assert!((prior.cost(&estimate) - 2.0 * 0.5 * (0.005f64 / 0.005).powi(2)).abs() < 1e-9);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prior {
+    axes: Vec<Nominal>,
+    base_free: bool,
+}
+
+/// A nominal axis.
+#[derive(Clone, Debug, PartialEq)]
+struct Nominal {
+    direction: Vector3<f64>,
+    origin: Vector3<f64>,
+    turns: bool,
+    tolerance: Tolerance,
+}
+
+/// How an axis deviates, and what motions do to that; tilts before shifts, each over its standard deviation.
+struct Deviation {
+    value: Vector6<f64>,
+    /// By shifts along x and y and turns about x and y of the axis' own frame.
+    own: [Vector6<f64>; 4],
+    /// By a motion of the base, as a twist.
+    base: Matrix6<f64>,
+}
+
+impl Nominal {
+    /// Of an axis that stands in this frame.
+    fn deviation(&self, frame: &Pose) -> Deviation {
+        let [x, y, d] = [0, 1, 2].map(|k| frame.rotation.column(k).into_owned());
+        let (tilt, shift) = (1.0 / self.tolerance.angle_rad, 1.0 / self.tolerance.length_m);
+        let shift = if self.turns { shift } else { 0.0 };
+        let along = d.dot(&(self.origin - frame.translation));
+        let nearest = frame.translation + d * along;
+        let missing = self.origin - nearest;
+        let both = |tilted: Vector3<f64>, shifted: Vector3<f64>| {
+            let (a, b) = (tilted * tilt, shifted * shift);
+            Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
+        };
+        // A turn carries the direction by `turned`, a point of the axis by `moved`, and the nearest point also along the axis.
+        let change = |turned: Vector3<f64>, moved: Vector3<f64>| {
+            both(turned, moved - d * d.dot(&moved) + d * turned.dot(&missing))
+        };
+        let zero = Vector3::zeros();
+        let mut base = Matrix6::zeros();
+        for k in 0..3 {
+            let unit = Vector3::ith(k, 1.0);
+            base.set_column(k, &change(zero, unit));
+            base.set_column(3 + k, &change(unit.cross(&d), unit.cross(&nearest)));
+        }
+        Deviation {
+            value: both(d - self.direction, -missing),
+            own: [change(zero, x), change(zero, y), change(-y, -y * along), change(x, x * along)],
+            base,
+        }
+    }
+}
+
+impl Prior {
+    /// The belief about a robot's axes; a joint's own tolerance comes before the common one. `base_free` says that the device
+    /// stands anywhere.
+    #[must_use]
+    pub fn new(robot: &Robot, common: Tolerance, base_free: bool) -> Self {
+        let axes = robot.joints.iter().map(|joint| Nominal {
+            direction: joint.screw.direction(),
+            origin: joint.frame.translation,
+            turns: !joint.screw.is_prismatic(),
+            tolerance: joint.tolerance.unwrap_or(common),
+        });
+        Prior { axes: axes.collect(), base_free }
+    }
+
+    /// `½ Σ |u|²`.
+    #[must_use]
+    pub fn cost(&self, estimate: &Estimate) -> f64 {
+        let (deviations, _) = self.at_best_base(estimate);
+        deviations.iter().map(|deviation| 0.5 * deviation.value.norm_squared()).sum()
+    }
+
+    /// Deviations in the base that fits best, and the factor of that base's information.
+    fn at_best_base(&self, estimate: &Estimate) -> (Vec<Deviation>, Option<Cholesky<f64, U6>>) {
+        let deviations = |motion: &Pose| -> Vec<Deviation> {
+            let frames = estimate.base_from_axis.iter().map(|frame| *motion * *frame);
+            self.axes.iter().zip(frames).map(|(nominal, frame)| nominal.deviation(&frame)).collect()
+        };
+        let mut motion = Pose::identity();
+        let mut found = deviations(&motion);
+        if !self.base_free {
+            return (found, None);
+        }
+        for _ in 0..ITERATIONS {
+            let Some(factor) = base_factor(&found) else { return (found, None) };
+            let pull: Vector6<f64> = found.iter().map(|it| it.base.tr_mul(&it.value)).sum();
+            let step = factor.solve(&-pull);
+            if step.amax() < FOUND || !step.amax().is_finite() {
+                break;
+            }
+            motion = (Pose::exp(&Twist::from_vector(&step)) * motion).orthonormalized();
+            found = deviations(&motion);
+        }
+        let factor = base_factor(&found);
+        (found, factor)
+    }
+
+    /// Adds `weight` times the belief to the information of measurements about the unknowns of a layout: to the upper triangle of
+    /// `JᵀJ` (unless that is left empty), to the direction of descent and to the cost, with the base eliminated.
+    pub fn add(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
+        let (deviations, base) = self.at_best_base(estimate);
+        let n = layout.dim();
+        let is_wanted = !normal.gram.is_empty();
+        // What each unknown does to the base's equations.
+        let mut shared: Vec<(usize, Vector6<f64>)> = Vec::with_capacity(n);
+        for (parameter, places) in layout.parameters() {
+            let Parameter::ScrewAxis(axis) = parameter else { continue };
+            let Some(deviation) = deviations.get(axis.joint) else { continue };
+            let own = &deviation.own[4 - places.len()..];
+            for (k, (&(place, scale), column)) in places.iter().zip(own).enumerate() {
+                normal.gradient[place] -= weight / scale * column.dot(&deviation.value);
+                if !is_wanted {
+                    continue;
+                }
+                shared.push((place, deviation.base.tr_mul(column) / scale));
+                for (&(other, other_scale), other_column) in places.iter().zip(own).skip(k) {
+                    normal.gram[place.min(other) * n + place.max(other)] +=
+                        weight / (scale * other_scale) * column.dot(other_column);
+                }
+            }
+        }
+        normal.cost += deviations.iter().map(|it| 0.5 * weight * it.value.norm_squared()).sum::<f64>();
+        let Some(base) = base else { return };
+        let lower = base.l_dirty();
+        for (_, pull) in &mut shared {
+            lower.solve_lower_triangular_mut(pull);
+        }
+        for (k, (place, followed)) in shared.iter().enumerate() {
+            for (other, also) in &shared[k..] {
+                normal.gram[place.min(other) * n + place.max(other)] -= weight * followed.dot(also);
+            }
+        }
+    }
+}
+
+/// Factor of the information of a motion of the base.
+fn base_factor(deviations: &[Deviation]) -> Option<Cholesky<f64, U6>> {
+    let mut gram = Matrix6::zeros();
+    deviations.iter().for_each(|deviation| gram += deviation.base.tr_mul(&deviation.base));
+    let least = ROUNDING * gram.trace();
+    Cholesky::new(gram + Matrix6::identity() * least)
+}

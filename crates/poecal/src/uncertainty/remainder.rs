@@ -1,0 +1,267 @@
+//! What a fit leaves, by its kinds and by configurations: sums of squares and their degrees of freedom.
+
+use nalgebra::Vector3;
+
+use super::discrepancy::Attribution;
+use super::factor;
+use super::view::View;
+use crate::distributions::{f_quantile, is_within_band};
+use crate::linalg;
+use crate::problem::Layout;
+use crate::solve::{LeastSquares, Normal};
+
+/// Degrees of freedom of repeated measurements from which on they can show that the rest is no more than their scatter.
+const REPEATED: f64 = 20.0;
+/// Probability of noise alone to be taken for a lack of fit.
+const CHANCE: f64 = 0.01;
+/// Rows up to which it is worked out which unknowns rotations tell.
+const FEW: usize = 300;
+/// Positions as good as not measured.
+const UNMEASURED_M: f64 = 1e9;
+/// Residuals below this (metres, radians) are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// What is left of one kind of residuals, position or rotation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// Mean square of a component, the unknowns taken off: of the configurations, if rows are repeated.
+    pub mean_square: f64,
+    /// Its degrees of freedom.
+    pub freedom: f64,
+    /// Mean square of a component within configurations, and its degrees of freedom; none of either without repeated rows.
+    pub within: (f64, f64),
+    /// Rows of a configuration, on average.
+    pub repeats: f64,
+    /// Mean variance that is stated of a component, and the mean square in its units; if all rows state it, or it holds for all.
+    pub stated: Option<(f64, f64)>,
+}
+
+/// Whose a part is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settled {
+    /// Standard deviation of a component that is the robot's.
+    pub robot: f64,
+    /// Standard deviation of a component that is the instrument's.
+    pub instrument: f64,
+    /// Whose the part is.
+    pub attribution: Attribution,
+    /// Degrees of freedom of the variance; infinite if it is stated.
+    pub freedom: f64,
+}
+
+impl Part {
+    /// Whether the stated noise explains it: less, equal, more.
+    #[must_use]
+    pub fn against_stated(&self) -> Option<std::cmp::Ordering> {
+        let (_, ratio) = self.stated?;
+        Some(is_within_band(ratio, self.freedom))
+    }
+
+    /// Whether configurations differ by more than what repeated rows of one scatter by; `None` if there are too few of these.
+    fn lacks_fit(&self) -> Option<bool> {
+        let (within, freedom) = self.within;
+        (freedom >= REPEATED)
+            .then(|| self.mean_square > within * f_quantile(CHANCE, self.freedom.max(1.0), freedom))
+    }
+
+    /// Whose it is, if residuals do or do not show structure.
+    #[must_use]
+    pub fn settled(&self, structured: bool) -> Settled {
+        let robot = |variance: f64, instrument: f64| Settled {
+            robot: variance.max(0.0).sqrt(),
+            instrument: instrument.sqrt(),
+            attribution: Attribution::Robot,
+            freedom: self.freedom,
+        };
+        if self.mean_square.sqrt() < ROUNDING {
+            return Settled { robot: 0.0, instrument: 0.0, attribution: Attribution::Robot, freedom: f64::INFINITY };
+        }
+        if let (Some((variance, _)), Some(against)) = (self.stated, self.against_stated()) {
+            return match against {
+                // What is less than stated noise shows that this is not what it is.
+                std::cmp::Ordering::Less => robot(self.mean_square, 0.0),
+                std::cmp::Ordering::Equal if !structured => Settled {
+                    robot: 0.0,
+                    instrument: variance.sqrt(),
+                    attribution: Attribution::StatedNoise,
+                    freedom: f64::INFINITY,
+                },
+                std::cmp::Ordering::Equal => robot(self.mean_square, 0.0),
+                std::cmp::Ordering::Greater => robot(self.mean_square - variance, variance),
+            };
+        }
+        let (within, _) = self.within;
+        match self.lacks_fit() {
+            Some(false) if !structured => Settled {
+                robot: 0.0,
+                instrument: self.mean_square.max(within).sqrt(),
+                attribution: Attribution::Repeats,
+                freedom: self.freedom,
+            },
+            Some(_) => robot((self.mean_square - within) / self.repeats, within),
+            None => robot(self.mean_square, 0.0),
+        }
+    }
+}
+
+/// What a fit leaves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Remainder {
+    /// Of positions.
+    pub position: Part,
+    /// Of rotations.
+    pub rotation: Part,
+    /// Variance of the whitened residuals, of configurations if rows are repeated; 1 where stated noise explains it.
+    pub variance: f64,
+    /// Unknowns that the measurements tell.
+    pub told: f64,
+}
+
+/// Sums of one kind.
+#[derive(Default)]
+struct Sums {
+    /// Of squares, whitened squares, whitened squares within configurations, squares within configurations, variances by which they are whitened.
+    squares: f64,
+    whitened: f64,
+    whitened_within: f64,
+    within: f64,
+    variances: f64,
+    components: usize,
+    groups: usize,
+}
+
+impl Sums {
+    /// Adds the rows of one target in one configuration: errors with their standard deviations.
+    fn add(&mut self, rows: &[(Vector3<f64>, f64)]) {
+        if rows.is_empty() {
+            return;
+        }
+        let mean = rows.iter().map(|(error, _)| error).sum::<Vector3<f64>>() / rows.len() as f64;
+        for (error, sigma) in rows {
+            let (square, apart) = (error.norm_squared(), (error - mean).norm_squared());
+            self.squares += square;
+            self.whitened += square / (sigma * sigma);
+            self.within += apart;
+            self.whitened_within += apart / (sigma * sigma);
+            self.variances += 3.0 * sigma * sigma;
+            self.components += 3;
+        }
+        self.groups += 3;
+    }
+
+    fn part(&self, told: f64, stated: bool) -> Part {
+        let freedom = (self.groups as f64 - told).max(1.0);
+        let within_freedom = (self.components - self.groups) as f64;
+        let repeats = self.components as f64 / self.groups.max(1) as f64;
+        let whole = (self.components as f64 - told).max(1.0);
+        let is_repeated = within_freedom > 0.0;
+        let mean_square = if is_repeated { (self.squares - self.within).max(0.0) / freedom } else { self.squares / freedom };
+        let variance = self.variances / self.components.max(1) as f64;
+        Part {
+            mean_square,
+            freedom,
+            within: (if is_repeated { self.within / within_freedom } else { 0.0 }, within_freedom),
+            repeats,
+            // Of all rows: noise alone explains those within configurations as well as the others.
+            stated: (stated && self.components > 0).then(|| (variance, if is_repeated { self.between(freedom) } else { self.whitened / whole })),
+        }
+    }
+
+    /// Mean whitened square of configurations.
+    fn between(&self, freedom: f64) -> f64 {
+        (self.whitened - self.whitened_within).max(0.0) / freedom
+    }
+}
+
+/// Sums up what the fit leaves, given its normal information at the optimum.
+#[must_use]
+pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder {
+    let (mut position, mut rotation) = (Sums::default(), Sums::default());
+    let errors = view.errors(view.rows, view.estimate);
+    let configurations = view.data.configurations(view.rows);
+    let place = |row: u32| view.rows.binary_search(&row).ok().and_then(|at| errors.get(at));
+    for rows in &configurations {
+        let mut rows: Vec<u32> = rows.clone();
+        rows.sort_by_key(|&row| (view.data.observations[row as usize].target, row));
+        let target = |row: &u32| view.data.observations[*row as usize].target;
+        for same in rows.chunk_by(|a, b| target(a) == target(b)) {
+            let noise = |row: u32| view.data.observations[row as usize].noise_or(view.noise);
+            let of = |row: u32| place(row).map(|error| (error, noise(row)));
+            let seen: Vec<_> = same.iter().filter_map(|&row| of(row)).collect();
+            position.add(&seen.iter().map(|(error, noise)| (error.position_m, noise.position_m)).collect::<Vec<_>>());
+            rotation.add(
+                &seen
+                    .iter()
+                    .filter_map(|(error, noise)| Some((error.rotation_rad?, noise.rotation_rad)))
+                    .collect::<Vec<_>>(),
+            );
+        }
+    }
+    let total = (position.groups + rotation.groups) as f64;
+    let told = told(view, normal, total);
+    let by_rotations = told_by_rotations(view, normal, layout, told, &rotation, total);
+    let variance = {
+        let between = position.between(1.0) + rotation.between(1.0);
+        let whole = position.whitened + rotation.whitened;
+        let is_repeated = position.components > position.groups;
+        (if is_repeated { between } else { whole }) / (total - told).max(1.0)
+    };
+    let parts = [
+        position.part(told - by_rotations, view.noise_is_stated[0]),
+        rotation.part(by_rotations, view.noise_is_stated[1]),
+    ];
+    let explained = parts.iter().zip([&position, &rotation]).all(|(part, sums)| {
+        sums.components == 0 || part.against_stated() == Some(std::cmp::Ordering::Equal)
+    });
+    let variance = if explained { 1.0 } else { variance };
+    Remainder { position: parts[0], rotation: parts[1], variance, told }
+}
+
+/// How many unknowns the measurements tell beside what is believed: theory.md §6 (34).
+fn told(view: &View<'_>, normal: &Normal, total: f64) -> f64 {
+    let n = normal.dim();
+    if !view.belief.is_fitted {
+        return n as f64;
+    }
+    let variance = 2.0 * normal.cost / (total - n as f64).max(1.0);
+    let Some(factor) = factor(&normal.gram, n, view.belief, variance) else { return n as f64 };
+    n as f64 - variance * trace(&factor, &view.belief.normal.gram, n)
+}
+
+/// How many of them rotations tell.
+fn told_by_rotations(
+    view: &View<'_>,
+    normal: &Normal,
+    layout: &Layout,
+    told: f64,
+    rotation: &Sums,
+    total: f64,
+) -> f64 {
+    let turned = 3.0 * view.data.frames(view.rows).iter().filter(|&&is_frame| is_frame).count() as f64;
+    if rotation.components == 0 {
+        return 0.0;
+    }
+    let in_proportion = turned + (told - turned).max(0.0) * (rotation.groups as f64 - turned) / (total - turned).max(1.0);
+    if view.rows.len() > FEW {
+        return in_proportion;
+    }
+    let n = layout.dim();
+    let mut unmeasured = *view;
+    unmeasured.noise.position_m = UNMEASURED_M;
+    let stated = view.rows.iter().any(|&row| view.data.observations[row as usize].sigma_position_m.is_some());
+    let part = unmeasured.problem(view.rows.to_vec()).normal(view.estimate);
+    match factor(&normal.gram, n, view.belief, if view.belief.is_fitted { 1.0 } else { 0.0 }) {
+        Some(factor) if !stated => trace(&factor, &part.gram, n).min(told),
+        _ => in_proportion,
+    }
+}
+
+/// `tr(H⁻¹ P)` from the factor of H and the upper triangle of P.
+fn trace(factor: &linalg::Factor, part: &[f64], n: usize) -> f64 {
+    (0..n)
+        .map(|j| {
+            let column: Vec<f64> = (0..n).map(|i| part[i.min(j) * n + i.max(j)]).collect();
+            linalg::cholesky_solve(factor, &column)[j]
+        })
+        .sum()
+}
