@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use poecal::io::measurements::{Quantity, Unit};
+use poecal::robot::Tolerance;
 use poecal::{Error, ErrorKind, MOST_THREADS, Result};
 
 /// A number with its unit, in SI: metres for a length, radians for an angle.
@@ -83,6 +84,26 @@ impl FromStr for LengthAndAngle {
             length_m: length_m.unwrap_or(0.0),
             angle_rad: angle_rad.unwrap_or(0.0),
         })
+    }
+}
+
+/// How far axes may stand off the drawing, or that nothing is believed of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BelievedTolerance(pub(crate) Option<Tolerance>);
+
+impl FromStr for BelievedTolerance {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        if text == "none" {
+            return Ok(BelievedTolerance(None));
+        }
+        let LengthAndAngle { length_m, angle_rad, .. } = text.parse()?;
+        if length_m > 0.0 && angle_rad > 0.0 {
+            return Ok(BelievedTolerance(Some(Tolerance { angle_rad, length_m })));
+        }
+        let message = format!("found `{text}`, expected an angle and a length above 0, like 0.5deg,5mm, or none");
+        Err(Error::new(ErrorKind::Option, message))
     }
 }
 

@@ -8,6 +8,7 @@ use poecal::calibration::{CalibrationOptions, Stage, calibrate_with_progress, se
 use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
 use poecal::measurement::{Dataset, Measurement, PoseResidual};
+use poecal::robot::Tolerance;
 use poecal::solve;
 use pyo3::prelude::*;
 
@@ -28,6 +29,8 @@ use crate::words::{
 /// measurements : what was measured of it
 /// frame : the measuring device's frame: "unknown" (it stands anywhere) or "base"
 /// sigma_position_mm, sigma_rotation_deg : standard deviation of each measured component, default estimated from the data
+/// tolerance_deg_mm : how far each axis may stand off the drawing, standard deviations of angle and place (default 0.5 deg and 5 mm), or
+///     None: a belief that decides what the measurements do not tell
 /// held_out : share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row
 /// seed : seed of that choice (default 1)
 /// robust : what to do about grossly wrong rows: "auto", "off", "huber", "cauchy" or "tukey"
@@ -41,8 +44,8 @@ use crate::words::{
 /// ------
 /// ProblemError if there are too few measurements, OptionError for options out of range, SolverError if no finite result is reached.
 #[pyfunction]
-#[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, held_out=None, seed=None,
-                    robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, progress=None))]
+#[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Some((0.5, 5.0)),
+                    held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
@@ -51,6 +54,7 @@ pub(crate) fn calibrate(
     frame: &str,
     sigma_position_mm: Option<f64>,
     sigma_rotation_deg: Option<f64>,
+    tolerance_deg_mm: Option<(f64, f64)>,
     held_out: Option<f64>,
     seed: Option<u64>,
     robust: &str,
@@ -65,6 +69,7 @@ pub(crate) fn calibrate(
         frame: frame_word(frame)?,
         sigma_position_m: sigma("sigma_position_mm", sigma_position_mm, from_mm)?,
         sigma_rotation_rad: sigma("sigma_rotation_deg", sigma_rotation_deg, from_deg)?,
+        tolerance: tolerance_deg_mm.map(tolerance).transpose()?,
         held_out: held_out.unwrap_or(usual.held_out),
         seed: seed.unwrap_or(usual.seed),
         robust: robust_word(robust)?,
@@ -170,4 +175,15 @@ fn inputs(robot: &Robot, measurements: &Measurements, validate: Option<&Measurem
         sha256,
         command: None,
     }
+}
+
+/// A tolerance in SI.
+fn tolerance((angle_deg, length_mm): (f64, f64)) -> PyResult<Tolerance> {
+    let angle_rad = sigma("tolerance_deg_mm", Some(angle_deg), from_deg)?;
+    let length_m = sigma("tolerance_deg_mm", Some(length_mm), from_mm)?;
+    let usual = Tolerance::default();
+    Ok(Tolerance {
+        angle_rad: angle_rad.unwrap_or(usual.angle_rad),
+        length_m: length_m.unwrap_or(usual.length_m),
+    })
 }

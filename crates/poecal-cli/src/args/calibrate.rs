@@ -10,7 +10,7 @@ use poecal::parameters::Formulation;
 use poecal::solve::Method;
 
 use super::{Chain, Reading, ReportPlace};
-use crate::quantity::{share, sigma_m, sigma_rad, whole};
+use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 
 /// What is known of the measuring device's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -131,6 +131,10 @@ pub(crate) struct Calibrate {
     /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
     pub(crate) sigma_rotation: Option<f64>,
+    /// How far each axis may stand off the drawing, as standard deviations, or none: a belief that decides what the measurements do not
+    /// tell. A joint of a TOML model may state its own
+    #[arg(long, value_name = "ANGLE,LENGTH|none", default_value = "0.5deg,5mm")]
+    pub(crate) tolerance: BelievedTolerance,
     /// Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     pub(crate) held_out: Option<f64>,

@@ -134,6 +134,7 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
         },
         sigma_position_m: arguments.sigma_position,
         sigma_rotation_rad: arguments.sigma_rotation,
+        tolerance: arguments.tolerance.0,
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
         robust: arguments.robust.into(),

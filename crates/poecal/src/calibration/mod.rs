@@ -6,6 +6,7 @@ mod expectation;
 mod fit;
 mod judge;
 mod noise;
+mod noise_doubts;
 mod options;
 mod repeatability;
 mod result;

@@ -40,7 +40,43 @@ pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u
             format!("found {count} rows of which none is to be fitted, expected some in the set `fit`"),
         ));
     }
+    if stated {
+        refuse_copies(data, &held_out, kept_back.len())?;
+    }
     Ok((fitted, kept_back))
+}
+
+/// Refuses rows to judge by of which half or more are fitted rows over again: their errors would promise what nobody knows.
+fn refuse_copies(data: &Dataset, held_out: &[bool], kept_back: usize) -> Result<()> {
+    // Numbers that were written in another unit come back with other last digits.
+    const SAME: f64 = 1e-9;
+    let pose = |row: u32| data.observations[row as usize].measurement.pose();
+    let is_held_out = |row: &u32| held_out[*row as usize];
+    let is_copy = |row: u32, other: u32| {
+        let (a, b) = (pose(row), pose(other));
+        let targets = [row, other].map(|row| data.observations[row as usize].target);
+        targets[0] == targets[1]
+            && (a.translation - b.translation).amax() < SAME
+            && (a.rotation - b.rotation).amax() < SAME
+    };
+    let mut copies: Vec<(u32, u32)> = Vec::new();
+    for group in data.alike(&data.all_rows(), SAME) {
+        let (judging, fitted): (Vec<u32>, Vec<u32>) = group.into_iter().partition(is_held_out);
+        copies.extend(
+            judging.into_iter().filter_map(|row| Some((row, *fitted.iter().find(|&&other| is_copy(row, other))?))),
+        );
+    }
+    let Some(&(row, other)) = copies.first().filter(|_| 2 * copies.len() >= kept_back) else { return Ok(()) };
+    Err(Error::new(
+        ErrorKind::Problem,
+        format!(
+            "found {} of {kept_back} held-out rows to be fitted rows over again ({} as {}), expected rows that were not fitted: judge by \
+             others, or fit all rows and let a share be held out (--held-out)",
+            copies.len(),
+            data.place(row),
+            data.place(other)
+        ),
+    ))
 }
 
 /// Where rows state which of them are held out, a share of them has no meaning, unless it is none: then every row is fitted, but for

@@ -1,7 +1,8 @@
 //! The steps of a calibration, each from what the ones before it found.
 
-use super::doubts::{doubts, moved, noise_doubts};
+use super::doubts::{doubts, moved};
 use super::fit::{self, Fitted, Task};
+use super::noise_doubts::noise_doubts;
 use super::result::place_tip;
 use super::robust::{self, RobustFit};
 use super::trust::{Finished, trust};
@@ -22,6 +23,8 @@ use crate::robot::{JointKind, Robot};
 use crate::start::{Registration, register, register_again};
 use crate::uncertainty::{Belief, Remainder, View, remainder};
 
+/// By how much the noise of rotations is taken larger than it is where tool and frame are to be the best for positions.
+const POSITIONS_FIRST: f64 = 100.0;
 /// Share of the information of normal noise that the robust losses use.
 const EFFICIENCY: f64 = 0.95;
 
@@ -112,9 +115,19 @@ impl<'a> Prepared<'a> {
         let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(self.data, &self.packed, rows, &models)
         });
-        let (mut warnings, moved) = self.doubts(&accuracy, &models.calibrated, &kept);
+        let (input, moved) = self.doubts(&accuracy, &models.calibrated, &kept);
+        let noise_doubts = noise_doubts(&remainder, &trust);
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
-        let mistakes: Vec<String> = grave.map(|it| it.statement.clone()).chain(moved.clone()).collect();
+        let mistakes: Vec<String> = grave
+            .map(|it| it.statement.clone())
+            .chain(input.iter().cloned())
+            .chain(moved.clone())
+            .collect();
+        let mut warnings: Vec<String> = input
+            .into_iter()
+            .chain(noise_doubts.iter().map(|doubt| doubt.statement.clone()))
+            .chain(moved.clone())
+            .collect();
         let verdict = verdict(&Grounds {
             accuracy: &accuracy,
             solver: &fitted.report,
@@ -123,7 +136,9 @@ impl<'a> Prepared<'a> {
             robot: self.robot,
             robustness: &robustness,
             rows: self.fit_rows.len(),
-            residuals: fitted.normal.residuals,
+            numbers: remainder.numbers,
+            has_other_zeros: diagnosis.iter().any(|it| it.kind == DiagnosisKind::JointZero),
+            noise: &noise_doubts,
             reach_m: 3.0 * self.length_m,
             mistakes: &mistakes,
         });
@@ -161,8 +176,11 @@ impl<'a> Prepared<'a> {
 
     /// The three models, of which the first two are registered by the rows that a robust fit believes; the third keeps the nominal base.
     fn models(&self, registered: Estimate, fitted: &Fitted, kept: &[u32], is_robust: bool) -> Models {
+        // As well as tool and frame do it for positions: orientations decide what these leave open.
+        let Noise { position_m, rotation_rad } = fitted.noise;
+        let positions = Noise { position_m, rotation_rad: POSITIONS_FIRST * rotation_rad };
         let again =
-            |targets_free| register(&self.registration(kept, fitted.noise, targets_free), &self.delivered).0;
+            |targets_free| register(&self.registration(kept, positions, targets_free), &self.delivered).0;
         let found = fitted.estimate.without_offsets();
         let calibrated = if self.device_free() {
             let targets = &self.delivered.base_from_target;
@@ -173,7 +191,11 @@ impl<'a> Prepared<'a> {
         };
         Models {
             nominal: again(false),
-            registered: if is_robust { again(true) } else { registered },
+            registered: if is_robust {
+                again(true)
+            } else {
+                register_again(&self.registration(kept, positions, true), &registered)
+            },
             calibrated,
         }
     }
@@ -255,7 +277,7 @@ impl<'a> Prepared<'a> {
         found
     }
 
-    /// What makes the result doubtful, the last of it whether the device was moved.
+    /// What makes the input doubtful, and whether the device was moved.
     fn doubts(
         &self,
         accuracy: &Accuracy,
@@ -265,10 +287,7 @@ impl<'a> Prepared<'a> {
         let errors = row_errors(self.data, &self.packed, kept, calibrated);
         let moved = moved(self.data, kept, &errors);
         let registered = &accuracy.training.registered;
-        let mut warnings = doubts(self.data, &self.fit_rows, registered, self.options.frame);
-        warnings.extend(noise_doubts(self.data, kept, &errors, self.options));
-        warnings.extend(moved.clone());
-        (warnings, moved)
+        (doubts(self.data, &self.fit_rows, registered, self.options.frame), moved)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::noise_doubts::NoiseDoubt;
 use super::trust::Trust;
 use super::{Accuracy, Robustness, SolverReport};
 use crate::analysis::{Direction, Identifiability};
@@ -68,9 +69,11 @@ const REDUNDANCY: f64 = 1.5;
 const TESTED: f64 = 3.0;
 /// Share of suspected rows from which a session as a whole is doubtful.
 const SUSPECTED: f64 = 0.2;
-/// Distance of an axis from the drawing, as a share of the length that a radian counts and as an angle, that no robot has. An axis that the
-/// data do not tell may have drifted there.
-const DRIFTED: f64 = 0.1;
+/// Distance of an axis from the drawing, as a share of the reach and as an angle, that no robot of that drawing has.
+const ANOTHER_SHARE: f64 = 0.1;
+const ANOTHER_RAD: f64 = 0.35;
+/// Axes that are named for it.
+const MOST_NAMED: usize = 3;
 /// Share of its range through which a joint must have moved.
 const COVERED: f64 = 0.5;
 /// Multiple of the random cross-validation's error that the worst block may have.
@@ -87,7 +90,12 @@ pub(super) struct Grounds<'a> {
     pub(super) robot: &'a Robot,
     pub(super) robustness: &'a Robustness,
     pub(super) rows: usize,
-    pub(super) residuals: usize,
+    /// Numbers measured in different configurations.
+    pub(super) numbers: usize,
+    /// Whether a joint's zero is known to be another.
+    pub(super) has_other_zeros: bool,
+    /// What speaks against the stated noise.
+    pub(super) noise: &'a [NoiseDoubt],
     pub(super) reach_m: f64,
     /// What was found wrong with the input, a sentence each.
     pub(super) mistakes: &'a [String],
@@ -112,10 +120,10 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
         reasons.push("the fit did not converge".to_owned());
     }
     let unknowns = grounds.identifiability.parameters;
-    if (grounds.residuals as f64) < REDUNDANCY * unknowns as f64 {
+    if (grounds.numbers as f64) < REDUNDANCY * unknowns as f64 {
         reasons.push(format!(
-            "{} measured numbers for {unknowns} unknowns leave too little to judge the fit by",
-            grounds.residuals
+            "{} numbers measured in different configurations for {unknowns} unknowns leave too little to judge the fit by",
+            grounds.numbers
         ));
     }
     // Rows that are named as grossly wrong say nothing of the robot.
@@ -141,21 +149,24 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
     reasons
 }
 
-/// Axes that ended where no robot has them, the data not telling where they are.
+/// Axes that ended where no axis of this robot can be. A joint whose zero is another turns all later ones.
 fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
-    let length_m = grounds.reach_m / 3.0;
+    if grounds.has_other_zeros {
+        return Vec::new();
+    }
     let joints = grounds.robot.joints.iter().zip(&grounds.trust.joints);
     joints
-        .filter(|(_, it)| it.sigma_shift_m.is_none())
-        .filter(|(_, it)| it.shift_m > DRIFTED * length_m || it.tilt_rad > DRIFTED)
+        .filter(|(_, it)| it.shift_m > ANOTHER_SHARE * grounds.reach_m || it.tilt_rad > ANOTHER_RAD)
         .map(|(joint, it)| {
             format!(
-                "the axis of {} ended {:.0} mm and {:.1} deg from the drawing, and the data do not tell it",
+                "the axis of {} ended {:.0} mm and {:.1} deg from the drawing: look whether the model is that of this robot, and its columns \
+                 those of its joints",
                 joint.name,
                 1e3 * it.shift_m,
                 it.tilt_rad.to_degrees()
             )
         })
+        .take(MOST_NAMED)
         .collect()
 }
 
@@ -176,7 +187,8 @@ fn open_directions(grounds: &Grounds<'_>) -> usize {
 
 fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     let trust = grounds.trust;
-    let mut reasons = Vec::new();
+    let absurd = grounds.noise.iter().filter(|doubt| doubt.is_absurd);
+    let mut reasons: Vec<String> = absurd.map(|doubt| doubt.statement.clone()).collect();
     let suspects = grounds.robustness.suspects().count();
     if suspects as f64 > SUSPECTED * grounds.robustness.rows.len() as f64 {
         reasons.push(format!(
@@ -185,10 +197,10 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
         ));
     }
     let unknowns = grounds.identifiability.parameters;
-    if trust.cross_validation.is_none() || (grounds.residuals as f64) < TESTED * unknowns as f64 {
+    if trust.cross_validation.is_none() || (grounds.numbers as f64) < TESTED * unknowns as f64 {
         reasons.push(format!(
             "{} rows with {} measured numbers for {unknowns} unknowns are too few to test it",
-            grounds.rows, grounds.residuals
+            grounds.rows, grounds.numbers
         ));
     }
     for (coverage, joint) in trust.coverage.iter().zip(&grounds.robot.joints) {

@@ -6,9 +6,10 @@ use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::clusters::clusters;
 use super::view::View;
 use super::{TOGETHER, covariance, factor, motions};
-use crate::estimate::{Estimate, Linkage, sample_rows};
+use crate::estimate::{Estimate, Linkage, RowError, sample_rows};
 use crate::linalg;
 use crate::problem::Layout;
 use crate::simulate::random;
@@ -238,4 +239,33 @@ impl<'a> Left<'a> {
         };
         rows.chunks(TOGETHER).map(of).sum()
     }
+}
+
+/// Clusters of configurations that are left out together when fits are compared.
+const CLUSTERS: usize = 10;
+
+/// Mean loss of the rows of each of some clusters of configurations by the fit of the others (theory.md §9 (42)), whose rows, one weight a
+/// row of the data, count as they do in the fit; on a sample of the rows if they are many. `None` where a part of them tells too little.
+#[must_use]
+pub fn leave_clusters_out(
+    view: &View<'_>,
+    weights: &[f64],
+    loss: impl Fn(u32, &RowError) -> f64,
+) -> Option<f64> {
+    let rows = sample_rows(view.rows, SAMPLE);
+    let sample = View { rows: &rows, ..*view };
+    let whole = view.problem(rows.clone()).with_weights(weights).normal(view.estimate);
+    let n = whole.dim();
+    let mut sum = 0.0;
+    for cluster in clusters(&sample, CLUSTERS) {
+        let problem = view.problem(cluster.clone()).with_weights(weights);
+        let part = problem.normal(view.estimate);
+        let rest: Vec<f64> = whole.gram.iter().zip(&part.gram).map(|(all, part)| all - part).collect();
+        let factor = factor(&rest, n, view.belief, view.variance)?;
+        let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
+        let without = problem.retract(view.estimate, &linalg::cholesky_solve(&factor, &gradient));
+        let errors = view.errors(&cluster, &without);
+        sum += cluster.iter().zip(&errors).map(|(&row, error)| loss(row, error)).sum::<f64>();
+    }
+    Some(sum / rows.len().max(1) as f64)
 }

@@ -14,8 +14,8 @@ mod view;
 
 pub use bootstrap::{Bootstrap, bootstrap};
 pub use discrepancy::{Attribution, Discrepancy, discrepancy};
-pub use remainder::{Remainder, remainder};
-pub use folds::{CrossValidation, LeftOut, cross_validate};
+pub use remainder::{Part, Remainder, Settled, remainder};
+pub use folds::{CrossValidation, LeftOut, cross_validate, leave_clusters_out};
 pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, Quantile, bound};
 pub use view::{Belief, View};
@@ -60,12 +60,12 @@ impl Uncertainty {
     /// Of a fit with whitened information (upper triangle of `JᵀJ`) whose unknowns are `layout`. `None` if a number is not finite.
     #[must_use]
     pub fn new(view: &View<'_>, layout: Layout, gram: &[f64], found: &Discrepancy) -> Option<Self> {
-        let spread = |inflation: f64| inflated(gram, layout.dim(), view, inflation);
-        let outside = (found.extrapolation > found.scatter).then(|| spread(found.extrapolation));
+        let outside = (found.extrapolation > found.scatter)
+            .then(|| extrapolated(gram, layout.dim(), view, found.extrapolation));
         let sampled = ranges(view.robot.joints.len(), view.packed, view.rows);
         Some(Uncertainty {
             estimate: view.estimate.clone(),
-            covariance: spread(found.scatter)?,
+            covariance: inflated(gram, layout.dim(), view, found.scatter)?,
             covariance_outside: outside.flatten(),
             sampled: sampled.into_iter().map(|(least, most)| [least, most]).collect(),
             layout,
@@ -192,6 +192,17 @@ fn inflated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<V
     let believed = DMatrix::from_fn(n, n, |i, j| belief[i.min(j) * n + i.max(j)]);
     let spread = &formal * inflation - &formal * believed * &formal * (inflation - 1.0);
     Some((&spread + spread.transpose()).scale(0.5).as_slice().to_vec())
+}
+
+/// Covariance for configurations outside the sampled range, where what the model does not describe is a bias: `κ s² (N + κ s²Λ)⁻¹`, with the
+/// belief Λ and that no unknown is farther off than a tenth of the length that a radian counts.
+fn extrapolated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<Vec<f64>> {
+    const FARTHEST: f64 = 0.1;
+    let variance = view.variance * inflation;
+    let mut both = view.belief.with(gram, variance);
+    let bound = variance / (FARTHEST * view.length_m).powi(2);
+    both.iter_mut().step_by(n + 1).for_each(|value| *value += bound);
+    covariance(&linalg::cholesky(&both, n, 0.0)?, variance)
 }
 
 /// `(JᵀJ / variance + belief)⁻¹` from [`factor`], row-major; `None` if a number is not finite.

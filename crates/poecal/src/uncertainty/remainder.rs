@@ -115,6 +115,8 @@ pub struct Remainder {
     pub variance: f64,
     /// Unknowns that the measurements tell.
     pub told: f64,
+    /// Numbers measured, those of one target in one configuration counted once.
+    pub numbers: usize,
 }
 
 /// Sums of one kind.
@@ -214,7 +216,8 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
         sums.components == 0 || part.against_stated() == Some(std::cmp::Ordering::Equal)
     });
     let variance = if explained { 1.0 } else { variance };
-    Remainder { position: parts[0], rotation: parts[1], variance, told }
+    let numbers = position.groups + rotation.groups;
+    Remainder { position: parts[0], rotation: parts[1], variance, told, numbers }
 }
 
 /// How many unknowns the measurements tell beside what is believed: theory.md §6 (34).

@@ -1,10 +1,12 @@
 //! Fits that a few grossly wrong rows cannot spoil: iteratively reweighted least squares, and when it is called for (theory.md §6,
 //! *Outliers*).
 
+mod alike;
 mod loss;
 mod rows;
 mod scale;
 
+use alike::Configurations;
 pub use loss::{Loss, Robust};
 pub(crate) use rows::RowInfluence;
 pub(super) use rows::registrable;
@@ -16,8 +18,10 @@ use super::{CalibrationOptions, estimate_noise};
 use crate::error::Result;
 use crate::estimate::Estimate;
 use crate::measurement::Noise;
+use crate::parameters::Parameter;
 use crate::solve;
 use crate::start::{Registration, register_robustly};
+use crate::uncertainty::{Belief, View, leave_clusters_out};
 use rows::{Bounds, Judged, is_judgeable, judge_rows};
 use scale::{Parts, Scale, parts, settle};
 
@@ -43,31 +47,36 @@ pub(super) fn fit(
     source: NoiseSource,
 ) -> Result<RobustFit> {
     let noise = registration.noise;
-    let attempt = |loss, other| attempt(task, registration, registered, source, loss, other);
+    let configurations = &Configurations::new(task.data, task.rows);
+    let attempt = |loss, other| attempt(task, configurations, registration, registered, source, loss, other);
+    let ordinary = |found| ordinary(task, configurations, found, registered, noise, source);
     match task.options.robust {
         Robust::Off => {
             let found = task.beginning(noise, source).begin(registered, noise);
-            ordinary(task, found, registered, noise, source)
+            ordinary(found)
         }
         Robust::Loss(loss) => attempt(loss, None),
         Robust::Auto => {
             let found = task.beginning(noise, source).begin(registered, noise);
-            if !shows_outliers(task, &found, noise, source) {
-                return ordinary(task, found, registered, noise, source);
+            if !shows_outliers(task, configurations, &found, noise, source) {
+                return ordinary(found);
             }
             let tried = attempt(Loss::Tukey, None)?;
-            if tried.is_evident(task) && !tried.is_suspicious(task) {
-                return Ok(tried);
+            if !tried.is_evident(task) {
+                return ordinary(found);
             }
-            // What looked like outliers may have been a fit beside the optimum: further starts come first.
-            let ordinary = ordinary(task, found, registered, noise, source)?;
-            if tried.is_evident(task) && ordinary.is_evident(task) {
-                let again = attempt(Loss::Tukey, Some(&ordinary.fitted.estimate))?;
-                if again.is_evident(task) {
-                    return Ok(again);
+            let plain = ordinary(found)?;
+            let tried = if tried.is_suspicious(task) {
+                // What looked like outliers may have been a fit beside the optimum: further starts come first.
+                if !plain.is_evident(task) {
+                    return Ok(plain);
                 }
-            }
-            Ok(ordinary)
+                attempt(Loss::Tukey, Some(&plain.fitted.estimate))?
+            } else {
+                tried
+            };
+            // A row that bends the fit may be the only one that tells something: the others are asked.
+            Ok(if tried.is_evident(task) && tried.predicts_better(task, &plain) { tried } else { plain })
         }
     }
 }
@@ -78,10 +87,51 @@ impl RobustFit {
         task.rows.iter().any(|&row| self.judged.rows[row as usize].suspected)
     }
 
+    /// Whether it predicts parts of the rows that are left out better than another fit, by a loss that gross rows cannot decide.
+    fn predicts_better(&self, task: &Task<'_>, other: &RobustFit) -> bool {
+        let scale = self.judged.scale();
+        let Noise { position_m, rotation_rad } = self.fitted.noise;
+        let noise = Noise { position_m: scale[0] * position_m, rotation_rad: scale[1] * rotation_rad };
+        match (self.left_out_loss(task, noise), other.left_out_loss(task, noise)) {
+            (Some(own), Some(others)) => own < others,
+            _ => true,
+        }
+    }
+
+    /// Mean bounded loss of the rows of each cluster of configurations by the fit of the others, in units of this noise.
+    fn left_out_loss(&self, task: &Task<'_>, noise: Noise) -> Option<f64> {
+        let Fitted { estimate, layout, noise: own, .. } = &self.fitted;
+        let belief = Belief::new(task.prior.map(|(prior, _)| prior), estimate, layout, task.length_m);
+        let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();
+        let weights: Vec<f64> = self.judged.rows.iter().map(|row| row.weight).collect();
+        let view = View {
+            robot: task.robot,
+            data: task.data,
+            packed: task.packed,
+            rows: task.rows,
+            free: &free,
+            noise: *own,
+            noise_is_stated: [false; 2],
+            belief: &belief,
+            variance: 1.0,
+            length_m: task.length_m,
+            estimate,
+        };
+        let bound = Bounds::new(task.rows.len(), 1.0);
+        leave_clusters_out(&view, &weights, |row, error| {
+            let usual = task.data.observations[row as usize].noise_or(noise);
+            let position = error.position_m.norm_squared() / usual.position_m.powi(2);
+            let rotation = error.rotation_rad.map(|turn| turn.norm_squared() / usual.rotation_rad.powi(2));
+            let components = if rotation.is_some() { 6 } else { 3 };
+            let ratio = (position + rotation.unwrap_or(0.0)) / bound.of(components).powi(2);
+            1.0 - (1.0 - ratio.min(1.0)).powi(3)
+        })
+    }
+
     /// Whether the rows in the middle are missed by more than gears and links explain.
     fn is_suspicious(&self, task: &Task<'_>) -> bool {
         let parts = parts(task.data, task.packed, task.rows, &self.fitted.estimate, self.fitted.noise);
-        let scale = Scale::of(parts.iter(), self.fitted.normal.dim());
+        let scale = Scale::of(parts.iter(), self.fitted.normal.dim() as f64);
         task.is_suspicious(3f64.sqrt() * scale.0[0] * self.fitted.noise.position_m)
     }
 }
@@ -89,6 +139,7 @@ impl RobustFit {
 /// Least squares to the end.
 fn ordinary(
     task: &Task<'_>,
+    configurations: &Configurations,
     found: Found,
     registered: &Estimate,
     noise: Noise,
@@ -96,23 +147,30 @@ fn ordinary(
 ) -> Result<RobustFit> {
     let fitted = task.beginning(noise, source).complete(found, registered, noise, source)?;
     let weights = vec![1.0; task.data.len()];
-    let judged = judge_rows(task, &fitted, &weights, None);
+    let judged = judge_rows(task, configurations, &fitted, &weights, None);
     Ok(RobustFit { fitted, loss: None, judged })
 }
 
 /// Whether some residual of a least squares fit is longer than normal noise, as its middle shows it, would make one row of a thousand
 /// such data sets. That costs little, and only begs the question.
-fn shows_outliers(task: &Task<'_>, found: &Found, noise: Noise, source: NoiseSource) -> bool {
-    let unknowns = found.normal.dim();
+fn shows_outliers(
+    task: &Task<'_>,
+    configurations: &Configurations,
+    found: &Found,
+    noise: Noise,
+    source: NoiseSource,
+) -> bool {
+    let unknowns = configurations.repeats * found.normal.dim() as f64;
     let mut parts = parts(task.data, task.packed, task.rows, &found.estimate, noise);
     if !is_judgeable(parts.iter(), unknowns) {
         return false;
     }
     let (_, scale) = settle(&mut parts, unknowns, noise, open(task, source));
     let bounds = Bounds::new(task.rows.len(), 1.0);
-    parts.iter().any(|row| {
-        let (length, components) = scale.length(row);
-        length > bounds.of(components)
+    let shares = configurations.shares(task.data, task.packed, &found.estimate);
+    task.rows.iter().zip(&parts).any(|(&row, part)| {
+        let (length, components) = scale.length(part);
+        shares[row as usize] * length > bounds.of(components)
     })
 }
 
@@ -125,6 +183,7 @@ fn open<'a>(task: &Task<'a>, source: NoiseSource) -> Option<&'a CalibrationOptio
 /// for. `other` is a further start, used if the middle of the rows is missed by much.
 fn attempt(
     task: &Task<'_>,
+    configurations: &Configurations,
     registration: &Registration<'_>,
     registered: &Estimate,
     source: NoiseSource,
@@ -132,10 +191,10 @@ fn attempt(
     other: Option<&Estimate>,
 ) -> Result<RobustFit> {
     let start = register_robustly(registration, registered);
-    let mut best = Reweighted::new(task, start, registration.noise);
+    let mut best = Reweighted::new(task, configurations, start, registration.noise);
     best.run(task, Loss::Huber, source);
     if let Some(other) = other.filter(|_| task.is_suspicious(3f64.sqrt() * best.position_m())) {
-        let mut second = Reweighted::new(task, other.clone(), registration.noise);
+        let mut second = Reweighted::new(task, configurations, other.clone(), registration.noise);
         second.run(task, Loss::Huber, source);
         if second.position_m() < best.position_m() {
             best = second;
@@ -148,7 +207,8 @@ fn attempt(
 }
 
 /// A fit under reweighting.
-struct Reweighted {
+struct Reweighted<'c> {
+    configurations: &'c Configurations,
     estimate: Estimate,
     noise: Noise,
     scale: Scale,
@@ -157,11 +217,12 @@ struct Reweighted {
     trace: Vec<f64>,
 }
 
-impl Reweighted {
-    fn new(task: &Task<'_>, mut start: Estimate, noise: Noise) -> Self {
+impl<'c> Reweighted<'c> {
+    fn new(task: &Task<'_>, configurations: &'c Configurations, mut start: Estimate, noise: Noise) -> Self {
         start.recentre(task.data, task.packed, task.rows);
         let weights = vec![1.0; task.data.len()];
         Reweighted {
+            configurations,
             estimate: start,
             noise,
             scale: Scale([1.0; 2]),
@@ -174,6 +235,11 @@ impl Reweighted {
     /// Standard deviation of a position component as the middle of the rows shows it.
     fn position_m(&self) -> f64 {
         self.scale.0[0] * self.noise.position_m
+    }
+
+    /// Unknowns beside as many numbers as there are rows: what is repeated tells nothing new.
+    fn unknowns(&self, task: &Task<'_>) -> f64 {
+        self.configurations.repeats * task.problem(&self.estimate, self.noise).layout().dim() as f64
     }
 
     /// The task with the prior counting as much as the residuals really are.
@@ -189,7 +255,7 @@ impl Reweighted {
         };
         for _ in 0..REWEIGHTINGS {
             let mut parts = parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
-            let unknowns = task.problem(&self.estimate, self.noise).layout().dim();
+            let unknowns = self.unknowns(task);
             (self.noise, self.scale) = settle(&mut parts, unknowns, self.noise, open(task, source));
             if self.reweight(task, &parts, loss) < SETTLED {
                 break;
@@ -205,9 +271,10 @@ impl Reweighted {
     /// Weights of the fitted rows by their residuals; returns the largest change.
     fn reweight(&mut self, task: &Task<'_>, parts: &[Parts], loss: Loss) -> f64 {
         let mut change: f64 = 0.0;
+        let shares = self.configurations.shares(task.data, task.packed, &self.estimate);
         for (&row, part) in task.rows.iter().zip(parts) {
             let (length, components) = self.scale.length(part);
-            let weight = loss.weight(length, components);
+            let weight = loss.weight(shares[row as usize] * length, components);
             let old = std::mem::replace(&mut self.weights[row as usize], weight);
             change = change.max((weight - old).abs());
         }
@@ -221,21 +288,22 @@ impl Reweighted {
         let mut found: Option<Found> = None;
         for _ in 0..ITERATIONS {
             let mut parts = parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
-            let unknowns = task.problem(&self.estimate, self.noise).layout().dim();
+            let unknowns = self.unknowns(task);
+            let shares = self.configurations.shares(task.data, task.packed, &self.estimate);
             let kept: Vec<u32> = task
                 .rows
                 .iter()
                 .zip(&parts)
-                .filter(|(_, part)| {
+                .filter(|(row, part)| {
                     let (length, components) = self.scale.length(part);
-                    length <= bounds.of(components)
+                    shares[**row as usize] * length <= bounds.of(components)
                 })
                 .map(|(&row, _)| row)
                 .collect();
             if source == NoiseSource::Estimated {
                 let before = self.noise;
                 let of_kept = Task { rows: &kept, ..*task };
-                let told = found.as_ref().map_or(unknowns as f64, |found| of_kept.told(found));
+                let told = found.as_ref().map_or(unknowns, |found| of_kept.told(found));
                 let by_rotations = found.as_ref().and_then(|found| of_kept.told_by_rotations(found, before));
                 let (data, packed) = (task.data, task.packed);
                 match estimate_noise(data, packed, &kept, &self.estimate, told, by_rotations, before) {
@@ -266,7 +334,7 @@ impl Reweighted {
         found.report.iterations += self.iterations;
         found.report.trace.splice(0..0, self.trace);
         let fitted = weighted.finish(found, self.noise, source)?;
-        let judged = judge_rows(&weighted, &fitted, &self.weights, Some(loss));
+        let judged = judge_rows(&weighted, self.configurations, &fitted, &self.weights, Some(loss));
         Ok(RobustFit { fitted, loss: Some(loss), judged })
     }
 }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::{Loss, Parts, Scale, parts};
+use super::{Configurations, Loss, Parts, Scale, parts};
 use crate::analysis::{Influence, influence};
 use crate::calibration::fit::{self, Fitted, Task};
 use crate::calibration::{Calibration, SetAccuracy, measurements_words, radian_m};
@@ -17,7 +17,7 @@ use crate::solve::{LeastSquares, Normal};
 const FAMILY: f64 = 1e-3;
 /// A row is suspected beyond so many times that bound: what real robots leave has heavier tails than noise, and no row of these is
 /// wrong.
-const TAILS: f64 = 2.0;
+pub(super) const TAILS: f64 = 2.0;
 
 /// What a fit says of one row.
 ///
@@ -137,8 +137,8 @@ impl Bounds {
 }
 
 /// Whether there are numbers enough to tell a scale by: twice the unknowns. Fewer leave residuals that show the fit, not the noise.
-pub(super) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a Parts>, unknowns: usize) -> bool {
-    parts.flatten().map(|part| part.components).sum::<usize>() >= 2 * unknowns
+pub(super) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a Parts>, unknowns: f64) -> bool {
+    parts.flatten().map(|part| part.components).sum::<usize>() as f64 >= 2.0 * unknowns
 }
 
 /// Every row of the data judged, with the scale that they were judged by.
@@ -147,27 +147,44 @@ pub(in crate::calibration) struct Judged {
     scale: Scale,
 }
 
+impl Judged {
+    /// How many times the noise of the fit the residuals in the middle are, positions and rotations.
+    pub(super) fn scale(&self) -> [f64; 2] {
+        self.scale.0
+    }
+}
+
 /// Judges every row of the data by a fit with these weights. Rows held out count with weight 0.
-pub(super) fn judge_rows(task: &Task<'_>, fitted: &Fitted, weights: &[f64], loss: Option<Loss>) -> Judged {
+pub(super) fn judge_rows(
+    task: &Task<'_>,
+    configurations: &Configurations,
+    fitted: &Fitted,
+    weights: &[f64],
+    loss: Option<Loss>,
+) -> Judged {
     let all: Vec<u32> = (0..u32::try_from(task.data.len()).unwrap_or(u32::MAX)).collect();
     let mut is_fitted = vec![false; all.len()];
     task.rows.iter().for_each(|&row| is_fitted[row as usize] = true);
     let bounds = Bounds::suspected(all.len());
     let parts = parts(task.data, task.packed, &all, &fitted.estimate, fitted.noise);
-    let unknowns = fitted.normal.dim();
+    let unknowns = configurations.repeats * fitted.normal.dim() as f64;
+    let shares = configurations.shares(task.data, task.packed, &fitted.estimate);
     let judge = |scale: Scale| -> Judged {
         // Influence is worked out only where it may matter: of rows that decide most of their own prediction little can be said.
         let lengths = parts.iter().map(|row| scale.length(row));
         let near: Vec<u32> = all
             .iter()
             .zip(lengths)
-            .filter(|(_, (length, components))| *length > 0.5 * bounds.of(*components))
+            .filter(|(row, (length, components))| {
+                shares[**row as usize] * length > 0.5 * bounds.of(*components)
+            })
             .map(|(&row, _)| row)
             .collect();
         let mut rows: Vec<RowJudgement> = all
             .iter()
             .map(|&row| {
                 let (length, components) = scale.length(&parts[row as usize]);
+                let length = shares[row as usize] * length;
                 let usual = loss.map_or(1.0, |loss| loss.weight(length, components));
                 let weight = if is_fitted[row as usize] { weights[row as usize] } else { usual };
                 RowJudgement { weight, suspected: false }
@@ -185,7 +202,8 @@ pub(super) fn judge_rows(task: &Task<'_>, fitted: &Fitted, weights: &[f64], loss
             });
         for (&row, influence) in near.iter().zip(&found) {
             let (_, components) = scale.length(&parts[row as usize]);
-            rows[row as usize].suspected = influence.studentized > bounds.of(components);
+            rows[row as usize].suspected =
+                shares[row as usize] * influence.studentized > bounds.of(components);
         }
         Judged { rows, scale }
     };

@@ -43,9 +43,9 @@ pub(super) struct Scale(pub(super) [f64; 2]);
 
 impl Scale {
     /// Of these rows, with the unknowns taken off in proportion; 1 for a part that no row has.
-    pub(super) fn of<'a>(rows: impl Iterator<Item = &'a Parts> + Clone, unknowns: usize) -> Self {
+    pub(super) fn of<'a>(rows: impl Iterator<Item = &'a Parts> + Clone, unknowns: f64) -> Self {
         let count: usize = rows.clone().flatten().map(|part| part.components).sum();
-        let left = (1.0 - unknowns as f64 / count.max(1) as f64).max(0.05);
+        let left = (1.0 - unknowns / count.max(1) as f64).max(0.05);
         Scale([0, 1].map(|side| median_scale(rows.clone().map(|row| &row[side]), left).unwrap_or(1.0)))
     }
 
@@ -66,14 +66,14 @@ impl Scale {
 /// with the scale of all rows then.
 pub(super) fn settle(
     parts: &mut [Parts],
-    unknowns: usize,
+    unknowns: f64,
     noise: Noise,
     options: Option<&CalibrationOptions>,
 ) -> (Noise, Scale) {
     let mut settled = noise;
     if let Some(options) = options {
         let count: usize = parts.iter().flatten().map(|part| part.components).sum();
-        let left = (1.0 - unknowns as f64 / count.max(1) as f64).max(0.05);
+        let left = (1.0 - unknowns / count.max(1) as f64).max(0.05);
         let of = |side: usize, sigma: f64| {
             let open = parts.iter().map(|row| &row[side]).filter(|part| !part.stated);
             median_scale(open, left).map_or(sigma, |scale| (scale * sigma).max(ROUNDING))

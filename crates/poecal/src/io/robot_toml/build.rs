@@ -10,7 +10,7 @@ use super::file::{Convention, File, JointTable, PoseTable, ScrewTable};
 use crate::error::Result;
 use crate::io::mimic::{self, Mimic};
 use crate::lie::{Pose, Screw, Twist};
-use crate::robot::{DhConvention, DhRow, Joint, JointKind, Limits, Reading, Robot};
+use crate::robot::{DhConvention, DhRow, Joint, JointKind, Limits, Reading, Robot, Tolerance};
 
 /// The largest `v·ω` that is taken for rounding, as a share of the robot's size.
 const PITCH_ROUNDING: f64 = 1e-3;
@@ -28,6 +28,7 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
     for (joint, table) in robot.joints.iter_mut().zip(&file.joint) {
         joint.limits = limits(context, table)?;
         joint.reading = reading(context, &tables, table)?;
+        joint.tolerance = tolerance(context, table)?;
     }
     if let Some(base) = &file.base_link {
         robot.base_name = context.name(base, "the base link")?;
@@ -50,6 +51,23 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
         robot.targets.push((name, pose));
     }
     Ok(robot)
+}
+
+/// How far a joint's axis may stand off the table.
+fn tolerance(context: &Context, table: &JointTable) -> Result<Option<Tolerance>> {
+    let Some(stated) = &table.tolerance else { return Ok(None) };
+    let found = Tolerance {
+        angle_rad: context.angle.to_radians(stated.get_ref().angle),
+        length_m: context.length.to_metres(stated.get_ref().length),
+    };
+    if [found.angle_rad, found.length_m].iter().all(|value| value.is_finite() && *value > 0.0) {
+        return Ok(Some(found));
+    }
+    let message = format!(
+        "the tolerance of joint `{}` is not above 0, expected standard deviations, like {{ angle = 0.5, length = 5 }} in degrees and mm",
+        table.name()
+    );
+    Err(context.error(stated.span(), message))
 }
 
 fn check_version(context: &Context, file: &File) -> Result<()> {

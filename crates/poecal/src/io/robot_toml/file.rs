@@ -98,6 +98,7 @@ pub(super) struct JointTable {
     pub(super) fixed: Option<Spanned<PoseTable>>,
     pub(super) limits: Option<Spanned<[f64; 2]>>,
     pub(super) mimic: Option<Spanned<MimicTable>>,
+    pub(super) tolerance: Option<Spanned<ToleranceTable>>,
 }
 
 impl JointTable {
@@ -129,6 +130,13 @@ pub(super) struct MimicTable {
     pub(super) multiplier: f64,
     #[serde(default)]
     pub(super) offset: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ToleranceTable {
+    pub(super) angle: f64,
+    pub(super) length: f64,
 }
 
 fn one() -> f64 {

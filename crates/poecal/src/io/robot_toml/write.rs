@@ -50,6 +50,10 @@ fn joint_keys(joint: &Joint) -> String {
     if let Some(limits) = joint.limits {
         let _ = write!(keys, ", limits = [{}, {}]", shortest(limits.lower), shortest(limits.upper));
     }
+    if let Some(tolerance) = joint.tolerance {
+        let (angle, length) = (shortest(tolerance.angle_rad), shortest(tolerance.length_m));
+        let _ = write!(keys, ", tolerance = {{ angle = {angle}, length = {length} }}");
+    }
     let reading = &joint.reading;
     if reading.name != joint.name {
         let _ = write!(

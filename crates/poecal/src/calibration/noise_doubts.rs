@@ -1,0 +1,81 @@
+//! Stated noise against what the fit leaves.
+
+use std::cmp::Ordering;
+
+use super::Trust;
+use crate::uncertainty::{Part, Remainder};
+
+/// What speaks against the stated noise.
+pub(super) struct NoiseDoubt {
+    /// In a sentence.
+    pub(super) statement: String,
+    /// Whether what the fit leaves is so much less or more that the noise cannot be in the unit that it is read in.
+    pub(super) is_absurd: bool,
+}
+
+/// Times that residuals may be larger than the noise of a good instrument: robots leave that. Times that they may be smaller: data sheets
+/// are careful.
+const MORE: f64 = 30.0;
+const LESS: f64 = 4.0;
+/// Errors of a joint's reading along its rows are found in time, beyond this correlation of rows that follow each other.
+const IN_TIME: f64 = 0.5;
+
+/// What of the stated noise the residuals contradict, and whether they hang together in time (theory.md §9 (41)).
+pub(super) fn noise_doubts(remainder: &Remainder, trust: &Trust) -> Vec<NoiseDoubt> {
+    let mut doubts: Vec<NoiseDoubt> =
+        [("position", &remainder.position, 1e3, "mm"), ("rotation", &remainder.rotation, 1f64.to_degrees(), "deg")]
+            .into_iter()
+            .filter_map(|(what, part, unit, name)| of_part(what, part, unit, name))
+            .collect();
+    let lag_one = trust.uncertainty.as_ref().and_then(|it| it.discrepancy.lag_one);
+    if let Some(correlation) = lag_one.filter(|correlation| *correlation > IN_TIME) {
+        doubts.push(NoiseDoubt {
+            statement: format!(
+                "what the fit leaves hangs together from row to row (correlation {correlation:.2}): a slow drift, noise that is not \
+                 independent, or errors of the robot along its way; expected errors allow for it"
+            ),
+            is_absurd: false,
+        });
+    }
+    doubts
+}
+
+fn of_part(what: &str, part: &Part, unit: f64, name: &str) -> Option<NoiseDoubt> {
+    let (variance, square) = part.stated?;
+    let (stated, ratio) = (variance.sqrt(), square.sqrt());
+    // Exact data with a stated noise are a test, and no mistake.
+    if ratio < 1e-6 {
+        return None;
+    }
+    let number = |value: f64| {
+        let value = value * unit;
+        let digits = (2 - value.log10().floor() as i32).clamp(0, 9) as usize;
+        format!("{value:.digits$}")
+    };
+    let (left, stated) = (number(ratio * stated), number(stated));
+    match part.against_stated()? {
+        Ordering::Equal => None,
+        Ordering::Greater => {
+            let advice = if ratio > MORE {
+                ": look for a wrong unit of the noise, a device that was moved, or mistakes in the rows"
+            } else {
+                ", and what it does not explain counts as error of the robot"
+            };
+            Some(NoiseDoubt {
+                statement: format!(
+                    "the {what} errors that the fit leaves ({left} {name} a component) are {ratio:.1} times the noise that is stated ({stated} \
+                     {name}){advice}"
+                ),
+                is_absurd: ratio > MORE,
+            })
+        }
+        Ordering::Less => (ratio < 1.0 / LESS).then(|| NoiseDoubt {
+            statement: format!(
+                "the {what} errors that the fit leaves ({left} {name} a component) are {:.0} times less than the noise that is stated \
+                 ({stated} {name}): look for a wrong unit of the noise; it is not believed",
+                1.0 / ratio
+            ),
+            is_absurd: true,
+        }),
+    }
+}

@@ -1,0 +1,63 @@
+//! Rows of one configuration: what they have in common is the robot until shown otherwise.
+
+use nalgebra::Vector3;
+
+use super::rows::TAILS;
+use super::super::row_errors;
+use crate::estimate::{Estimate, Packed};
+use crate::measurement::Dataset;
+
+/// A row is off like the others of its configuration if it differs from their mean by less than this share of its own error.
+const SHARE: f64 = 0.5;
+/// Configurations whose rows are off alike are suspected beyond so many times the bound of normal noise: gears and links give by less.
+const COMMON_TAILS: f64 = 8.0;
+
+/// Configurations that were measured several times, or with several targets.
+pub(in crate::calibration) struct Configurations {
+    /// Those of two rows or more.
+    groups: Vec<Vec<u32>>,
+    /// Rows for each configuration and target of the fit, on average.
+    pub(in crate::calibration) repeats: f64,
+}
+
+impl Configurations {
+    /// Of the data, and of the rows that are fitted.
+    pub(in crate::calibration) fn new(data: &Dataset, fitted: &[u32]) -> Self {
+        let target = |row: u32| data.observations[row as usize].target;
+        let distinct: usize = data
+            .configurations(fitted)
+            .into_iter()
+            .map(|mut rows| {
+                rows.sort_by_key(|&row| target(row));
+                rows.dedup_by_key(|row| target(*row));
+                rows.len()
+            })
+            .sum();
+        let mut groups = data.configurations(&data.all_rows());
+        groups.retain(|rows| rows.len() > 1);
+        Configurations { groups, repeats: fitted.len() as f64 / distinct.max(1) as f64 }
+    }
+
+    /// For each row of the data the share of its length that counts: less where the other rows of its configuration are off alike.
+    pub(in crate::calibration) fn shares(&self, data: &Dataset, packed: &Packed, estimate: &Estimate) -> Vec<f64> {
+        let mut shares = vec![1.0; data.len()];
+        let rows: Vec<u32> = self.groups.concat();
+        if rows.is_empty() {
+            return shares;
+        }
+        let errors = row_errors(data, packed, &rows, estimate);
+        let mut rest = &errors[..];
+        for group in &self.groups {
+            let (own, others) = rest.split_at(group.len());
+            rest = others;
+            let sum: Vector3<f64> = own.iter().map(|error| error.position_m).sum();
+            for (&row, error) in group.iter().zip(own) {
+                let others = (sum - error.position_m) / (group.len() - 1) as f64;
+                if (error.position_m - others).norm() < SHARE * error.position_m.norm() {
+                    shares[row as usize] = TAILS / COMMON_TAILS;
+                }
+            }
+        }
+        shares
+    }
+}
