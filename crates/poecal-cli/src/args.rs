@@ -29,8 +29,9 @@ use crate::console::Console;
 use crate::quantity::threads;
 
 /// What the program ends with.
-const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the verdict is worse than --require asks for, or \
-                          standard output could not be written to; 2 wrong input or usage, nothing was written; 3 the fit did not converge";
+const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
+                          worse than --require asks for, or they could not be printed; 2 refused: wrong input or usage, nothing was \
+                          written; 3 no result at all";
 
 /// Finds the robot that is really there: kinematic calibration by the product of exponentials.
 #[derive(Debug, Parser)]
