@@ -8,7 +8,7 @@ mod report;
 mod reproduce;
 mod simulate;
 
-pub(crate) use calibrate::{Calibrate, Frame};
+pub(crate) use calibrate::{Calibrate, Frame, RequiredLevel};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
@@ -174,6 +174,10 @@ pub(crate) struct Validate {
     /// Find the targets anew from these measurements
     #[arg(long)]
     pub(crate) refit_tool: bool,
+    /// End with code 1 unless the measurements bear this out: `good` if 80 % of all errors are inside their own 95 % bounds and the error
+    /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
+    #[arg(long, value_enum, value_name = "VERDICT")]
+    pub(crate) require: Option<RequiredLevel>,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,

@@ -78,7 +78,9 @@ enum Said {
 impl Said {
     fn table(file: &CalibrationFile, detail: Detail) -> Self {
         let more = match detail {
-            Detail::Short => labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, every joint"),
+            Detail::Short => {
+                labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, every joint")
+            }
             Detail::Full => String::new(),
         };
         Said::Table(report::summary(file, detail) + &more)

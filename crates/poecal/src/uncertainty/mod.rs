@@ -8,6 +8,7 @@ mod motions;
 mod neighbours;
 mod pattern;
 mod prediction;
+mod refit;
 mod view;
 
 pub use bootstrap::{Bootstrap, bootstrap};
@@ -15,6 +16,7 @@ pub use discrepancy::{Discrepancy, discrepancy};
 pub use folds::{CrossValidation, LeftOut, cross_validate};
 pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, bound};
+pub use refit::Refit;
 pub use view::View;
 
 use motions::{motions, products};

@@ -201,16 +201,18 @@ fn told(page: &mut Html, file: &CalibrationFile) {
 }
 
 fn items(directions: &[Direction], key: &str) -> Vec<String> {
-    let item = |(k, direction): (usize, &Direction)| {
-        let key = |name: &str| format!("identifiability.{key}.{k}.{name}");
-        let times = if direction.directions > 1 {
-            format!(" ({} directions)", count(direction.directions, &key("directions")))
-        } else {
-            String::new()
-        };
-        format!("{}{times}", quoted(&direction.description, &key("description")))
-    };
+    let item = |(k, direction)| direction_words(direction, &format!("identifiability.{key}.{k}"));
     directions.iter().enumerate().map(item).collect()
+}
+
+/// A direction with the keys of its words.
+pub(super) fn direction_words(direction: &Direction, key: &str) -> String {
+    let times = if direction.directions > 1 {
+        format!(" ({} directions)", count(direction.directions, &format!("{key}.directions")))
+    } else {
+        String::new()
+    };
+    format!("{}{times}", quoted(&direction.description, &format!("{key}.description")))
 }
 
 fn observability(page: &mut Html, file: &CalibrationFile) {

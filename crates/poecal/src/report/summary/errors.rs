@@ -13,9 +13,7 @@ const LABEL: usize = 36;
 pub(super) fn table(out: &mut String, file: &CalibrationFile) {
     let held_out = file.accuracy.held_out.as_ref();
     let (set, rest, suspected) = match held_out {
-        Some(set) => {
-            (set, file.robust.held_out_without_suspected.as_ref(), file.robust.suspected_held_out)
-        }
+        Some(set) => (set, file.robust.held_out_without_suspected.as_ref(), file.robust.suspected_held_out),
         None => (
             &file.accuracy.training,
             file.robust.training_without_suspected.as_ref(),

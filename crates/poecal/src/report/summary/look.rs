@@ -86,7 +86,13 @@ fn suspects_words(file: &CalibrationFile) -> String {
     let robust = &file.robust;
     let all = file.accuracy.training.count + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
     let count = robust.suspected_fit + robust.suspected_held_out;
-    let rows = if all == 1 { "row is" } else if count == 1 { "rows is" } else { "rows are" };
+    let rows = if all == 1 {
+        "row is"
+    } else if count == 1 {
+        "rows is"
+    } else {
+        "rows are"
+    };
     let counted = match robust.loss {
         _ if robust.suspected_fit == 0 => "none of them was fitted".to_owned(),
         Some(loss) => format!("{}, and {}", sets(file), weight_words(loss)),
@@ -122,8 +128,11 @@ fn named<'a>(outlier: &'a OutlierEntry, last: &mut &'a str) -> String {
 
 /// What of the robot is open or hardly told; in few words where there are many joints to name.
 fn direction_words(degree: &str, direction: &Direction) -> String {
-    let times =
-        if direction.directions > 1 { format!(" ({} directions)", direction.directions) } else { String::new() };
+    let times = if direction.directions > 1 {
+        format!(" ({} directions)", direction.directions)
+    } else {
+        String::new()
+    };
     let is_short = direction.description.chars().count() <= SHORT && direction.joints.len() <= super::MOST;
     if is_short || direction.joints.is_empty() {
         return format!("{degree}: {}{times}", direction.description);

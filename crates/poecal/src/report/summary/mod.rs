@@ -68,17 +68,11 @@ pub(super) fn expected_words(file: &CalibrationFile, figure: impl Fn(f64, &str) 
     let expected = file.uncertainty.as_ref()?;
     let (sigma, key, place) = match level {
         Level::DoNotUse => return None,
-        Level::InsideSampledRange => (expected.measured.sigma_position_mm, "measured", "there"),
+        Level::InsideSampledRange => (expected.measured.sigma_position_mm, "measured", "inside it"),
         Level::Good => (expected.range.sigma_position_mm, "range", "anywhere within the limits"),
     };
     let key = format!("uncertainty.{key}.sigma_position_mm");
-    let other = expected.sigma_position_if_robot_mm.map_or_else(String::new, |sigma| {
-        format!(
-            "; {} mm if the residual is robot error, not measurement noise",
-            figure(sigma, "uncertainty.sigma_position_if_robot_mm")
-        )
-    });
-    Some(format!("expected error {} mm (RMS) {place}{other}", figure(sigma, &key)))
+    Some(format!("expected error {} mm (RMS) {place}", figure(sigma, &key)))
 }
 
 fn verdict(out: &mut String, file: &CalibrationFile) {
@@ -114,7 +108,8 @@ fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
     if points.len() <= MOST || detail == Detail::Full {
         return (points, Vec::new());
     }
-    let earlier = |k: usize| points[..k].iter().filter(|it| it.place.sort() == points[k].place.sort()).count();
+    let earlier =
+        |k: usize| points[..k].iter().filter(|it| it.place.sort() == points[k].place.sort()).count();
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by_key(|&k| (earlier(k), k));
     let chosen = &order[..MOST - 1];
