@@ -79,7 +79,7 @@ impl Said {
     fn table(file: &CalibrationFile, detail: Detail) -> Self {
         let more = match detail {
             Detail::Short => {
-                labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, every joint")
+                labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, joints")
             }
             Detail::Full => String::new(),
         };

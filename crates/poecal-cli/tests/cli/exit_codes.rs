@@ -42,28 +42,25 @@ fn a_calibration_that_should_not_be_used_is_written_and_ends_with_1() {
 #[test]
 fn a_fit_that_did_not_converge_is_written_and_ends_with_1() {
     let folder = session(Kind::Point);
-    // Full steps of free screws from far away.
-    let text = folder.read("measurements.csv");
-    let scrambled: Vec<String> = text
-        .lines()
-        .enumerate()
-        .map(|(k, line)| {
-            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
-            for (column, cell) in
-                cells.iter_mut().enumerate().filter(|(column, _)| k > 0 && (9..12).contains(column))
-            {
-                *cell = format!("{}", ((k * 7919 + column * 104_729) % 1000) as f64 / 1000.0);
-            }
-            cells.join(",")
-        })
-        .collect();
-    folder.write("scrambled.csv", scrambled.join("\n") + "\n");
-    let run = folder.run("calibrate robot.urdf scrambled.csv --method gauss-newton --robust off");
-    println!("{}{}", run.out, run.err);
-    assert_eq!(run.code, 1);
+    folder.done("simulate robot.urdf --kind point --count 14 --errors 60deg,500mm --seed 4 --out far");
+    // Full steps of free screws and offsets, with hardly more numbers than unknowns, from far away.
+    let run = folder.run(
+        "calibrate far/nominal.urdf far/measurements.csv --formulation screw-offsets --method gauss-newton --robust off --held-out 0",
+    );
+    assert_eq!(run.code, 1, "{}{}", run.out, run.err);
     let file = calibration(&folder, "poecal-out");
     assert!(!file.solver.converged);
     assert!(file.verdict.unwrap().reasons.iter().any(|reason| reason == "the fit did not converge"));
+}
+
+#[test]
+fn without_any_result_it_ends_with_3_and_nothing_is_written() {
+    let folder = session(Kind::Point);
+    let before = folder.listing();
+    let run = folder.run("calibrate robot.urdf measurements.csv --sigma-position 1e-200mm");
+    assert_eq!(run.code, 3, "{}{}", run.out, run.err);
+    assert!(run.err.contains("error: found residuals that are not finite numbers"), "{}", run.err);
+    assert_eq!(folder.listing(), before);
 }
 
 #[test]

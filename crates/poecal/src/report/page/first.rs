@@ -46,7 +46,7 @@ pub(super) fn screen(page: &mut Html, file: &CalibrationFile, residuals: &Residu
     }
     if let (None, Some(found)) = (held_out, &file.cross_validation) {
         let rms = figure(found.random.position_rms_mm, "cross_validation.random.position_rms_mm");
-        page.note(&format!("Cross-validation: {rms} mm (RMS) on rows left out at random."));
+        page.note(&format!("Cross-validation: {rms} mm (RMS) on rows that were not fitted."));
     }
     page.note(
         "<b>As drawn</b>: axes of the model, tool and measuring device fitted. <b>Calibrated</b>: the axes fitted too. The gain of the \
@@ -157,7 +157,7 @@ fn point_words(file: &CalibrationFile, point: &Point) -> Option<String> {
     };
     let known = &file.identifiability;
     match point.place {
-        Place::Reason(_) => None,
+        Place::Reason => None,
         Place::Diagnosis(k) => Some(quoted(&point.text, &format!("diagnosis.{k}.statement"))),
         Place::Warning(k) => Some(quoted(&point.text, &format!("warnings.{k}"))),
         Place::Suspects => Some(format!("<a href=\"#suspects\">{}</a>", escape(&point.text))),

@@ -28,7 +28,7 @@ fn unit_of(file: &CalibrationFile, joint: &str) -> (f64, &'static str) {
 
 fn expected(page: &mut Html, found: &UncertaintyEntry) {
     let head = ["configurations", "RMS", "95 % bound, mean", "95 % bound, worst"];
-    let mut table = Table::new("Errors to expect of predicted positions, mm", 1, &head);
+    let mut table = Table::new("Expected errors of predicted positions, mm", 1, &head);
     for (words, set, key) in
         [("as measured", &found.measured, "measured"), ("anywhere within the limits", &found.range, "range")]
     {
@@ -140,7 +140,7 @@ fn parts(page: &mut Html, file: &CalibrationFile, found: &UncertaintyEntry) {
     }
     page.heading("Where errors are to be expected");
     page.text(
-        "Errors of position to expect, mm (RMS), by parts of each joint's range, with the other joints anywhere in theirs. The darker a \
+        "Expected errors of position, mm (RMS), by parts of each joint's range, with the other joints anywhere in theirs. The darker a \
          cell, the larger the error: the palest is the least of the table, the darkest the largest.",
     );
     let most = file
@@ -150,7 +150,7 @@ fn parts(page: &mut Html, file: &CalibrationFile, found: &UncertaintyEntry) {
         .max();
     let names: Vec<String> = (1..=most.unwrap_or(0)).map(|part| format!("part {part}")).collect();
     let head: Vec<&str> = std::iter::once("joint").chain(names.iter().map(String::as_str)).collect();
-    let mut table = Table::new("Errors to expect by parts of each joint's range, mm (RMS)", 1, &head);
+    let mut table = Table::new("Expected errors by parts of each joint's range, mm (RMS)", 1, &head);
     for joint in &file.joints {
         let (factor, unit) = unit_of(file, &joint.name);
         let cells = found.parts.iter().enumerate().filter(|(_, part)| part.joint == joint.name);

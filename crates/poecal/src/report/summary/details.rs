@@ -26,6 +26,9 @@ pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
     out.push('\n');
     outliers::suspected(out, file);
     line(out, "solver", &solver_words(file));
+    if let Some(words) = formulation_words(file) {
+        line(out, "formulation", &words);
+    }
     if let Some(condition) = file.identifiability.condition {
         line(out, "condition", &format!("{condition:.3e} over what is known"));
     }
@@ -77,8 +80,7 @@ fn solver_words(file: &CalibrationFile) -> String {
         1 => ", 1 further start tried".to_owned(),
         count => format!(", {count} further starts tried"),
     };
-    let words = formulation_words(file).map_or_else(String::new, |words| format!("; {words}"));
-    format!("{} iterations, {end}{restarts}{words}", solver.iterations)
+    format!("{} iterations, {end}{restarts}", solver.iterations)
 }
 
 /// How the problem was written, where not as usual, and what follows from that.
@@ -117,8 +119,8 @@ fn trust(out: &mut String, file: &CalibrationFile) {
         let worst = worst.map_or_else(String::new, |worst| {
             format!("; worst block: {}, {} mm", worst.left_out, number(worst.position_rms_mm))
         });
-        let words = format!("cross-validation: {} mm (RMS){worst}", number(found.random.position_rms_mm));
-        line(out, "rows left out", &words);
+        let words = format!("{} mm (RMS) on random rows{worst}", number(found.random.position_rms_mm));
+        line(out, "not fitted", &format!("cross-validation: {words}"));
     }
     let mut joints: Vec<_> = file.corrections.iter().collect();
     joints.sort_by(|a, b| b.left_nominal_rms_mm.total_cmp(&a.left_nominal_rms_mm));

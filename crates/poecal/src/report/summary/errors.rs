@@ -41,7 +41,7 @@ pub(super) fn table(out: &mut String, file: &CalibrationFile) {
         line(out, "", "no row was held out: these errors are of fitted rows");
         if let Some(found) = &file.cross_validation {
             let rms = number(found.random.position_rms_mm);
-            line(out, "", &format!("cross-validation: {rms} mm (RMS) on rows left out at random"));
+            line(out, "", &format!("cross-validation: {rms} mm (RMS) on rows that were not fitted"));
         }
     }
 }

@@ -18,7 +18,7 @@ const SUSPECTS: &str = "grossly off";
 pub(in crate::report) enum Place {
     Diagnosis(usize),
     Warning(usize),
-    Reason(usize),
+    Reason,
     Suspects,
     Joint(usize),
     Open(usize),
@@ -31,7 +31,7 @@ impl Place {
         match self {
             Place::Diagnosis(_) => 0,
             Place::Warning(_) => 1,
-            Place::Reason(_) => 2,
+            Place::Reason => 2,
             Place::Suspects => 3,
             Place::Joint(_) => 4,
             Place::Open(_) => 5,
@@ -49,11 +49,10 @@ pub(in crate::report) struct Point {
 
 /// What needs attention, the gravest first. The verdict's first reason stands beside the verdict.
 pub(in crate::report) fn look_at(file: &CalibrationFile) -> Vec<Point> {
-    let verdict = file.verdict.as_ref().filter(|verdict| verdict.level != Level::Good);
-    let reasons = verdict.map_or(&[][..], |verdict| &verdict.reasons);
+    let stated = file.verdict.as_ref().map_or(&[][..], |verdict| &verdict.reasons);
     let suspects = file.robust.suspected_fit + file.robust.suspected_held_out;
     let point = |place: Place, text: &str| Point { text: text.to_owned(), place };
-    let is_new = |text: &str| !reasons.iter().any(|reason| reason == text);
+    let is_new = |text: &str| !stated.iter().any(|reason| reason == text);
 
     let mut points = Vec::new();
     let found = file.diagnosis.iter().enumerate().filter(|(_, found)| is_new(&found.statement));
@@ -61,8 +60,7 @@ pub(in crate::report) fn look_at(file: &CalibrationFile) -> Vec<Point> {
     let warnings = file.warnings.iter().enumerate().filter(|(_, text)| is_new(text));
     let warnings = warnings.filter(|(_, text)| suspects == 0 || !text.contains(SUSPECTS));
     points.extend(warnings.map(|(k, text)| point(Place::Warning(k), text)));
-    let others = reasons.iter().enumerate().skip(1);
-    points.extend(others.map(|(k, text)| point(Place::Reason(k), text)));
+    points.extend(reasons(file).iter().skip(1).map(|text| point(Place::Reason, text)));
     if suspects > 0 {
         points.push(point(Place::Suspects, &suspects_words(file)));
     }
@@ -75,10 +73,42 @@ pub(in crate::report) fn look_at(file: &CalibrationFile) -> Vec<Point> {
     if known.rank > 0 || known.parameters == 0 {
         let open = known.unidentifiable.iter().enumerate();
         points.extend(open.map(|(k, it)| point(Place::Open(k), &direction_words("unknown", it))));
-        let weak = known.weak.iter().enumerate();
+        // What is open for a reason is also weak beside it for the same one.
+        let is_told = |weak: &Direction| {
+            known.unidentifiable.iter().any(|open| (open.cause, &open.joints) == (weak.cause, &weak.joints))
+        };
+        let weak = known.weak.iter().enumerate().filter(|(_, it)| !is_told(it));
         points.extend(weak.map(|(k, it)| point(Place::Weak(k), &direction_words("weak", it))));
     }
     points
+}
+
+/// Why the verdict is no better, in the verdict's words; joints that moved by little are named together.
+pub(super) fn reasons(file: &CalibrationFile) -> Vec<String> {
+    let Some(verdict) = file.verdict.as_ref().filter(|verdict| verdict.level != Level::Good) else {
+        return Vec::new();
+    };
+    let moved = |reason: &str| {
+        let joints =
+            file.coverage.iter().filter_map(|it| Some((&it.joint, reason.strip_prefix(&*it.joint)?)));
+        let mut shares = joints.filter_map(|(joint, rest)| {
+            let (share, _) = rest.strip_prefix(" was moved through ")?.split_once(" %")?;
+            Some(format!("{joint} {share} %"))
+        });
+        shares.next()
+    };
+    let little: Vec<String> = verdict.reasons.iter().filter_map(|reason| moved(reason)).collect();
+    if little.len() < 2 {
+        return verdict.reasons.clone();
+    }
+    let little: Vec<&str> = little.iter().map(String::as_str).collect();
+    let together = format!("joints moved through a part of their range only: {}", names(&little));
+    let mut together = Some(together);
+    let told = verdict.reasons.iter().filter_map(|reason| match moved(reason) {
+        Some(_) => together.take(),
+        None => Some(reason.clone()),
+    });
+    told.collect()
 }
 
 /// How many rows are suspected, what that means for the fit, and the worst of them.
@@ -94,25 +124,16 @@ fn suspects_words(file: &CalibrationFile) -> String {
         "rows are"
     };
     let counted = match robust.loss {
-        _ if robust.suspected_fit == 0 => "none of them was fitted".to_owned(),
-        Some(loss) => format!("{}, and {}", sets(file), weight_words(loss)),
-        None => format!("{}, and counted in full: see --robust", sets(file)),
+        _ if robust.suspected_fit == 0 => "",
+        Some(Loss::Tukey) => ", hardly counted",
+        Some(Loss::Huber | Loss::Cauchy) => ", counted less",
+        None => ", counted in full: see --robust",
     };
+    let sets = format!("{} fitted{counted}; {} held out", robust.suspected_fit, robust.suspected_held_out);
     let worst: Vec<String> =
         file.outliers.iter().take(WORST).scan("", |last, outlier| Some(named(outlier, last))).collect();
     let worst = if worst.is_empty() { String::new() } else { format!("; worst {}", worst.join(", ")) };
-    format!("{count} of {all} {rows} grossly off ({counted}){worst}")
-}
-
-fn sets(file: &CalibrationFile) -> String {
-    format!("{} fitted, {} held out", file.robust.suspected_fit, file.robust.suspected_held_out)
-}
-
-fn weight_words(loss: Loss) -> &'static str {
-    match loss {
-        Loss::Tukey => "hardly counted",
-        Loss::Huber | Loss::Cauchy => "counted less",
-    }
+    format!("{count} of {all} {rows} grossly off ({sets}){worst}")
 }
 
 /// A row by file and line, the file only where it is another one than before.

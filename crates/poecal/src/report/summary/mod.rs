@@ -4,6 +4,7 @@ mod details;
 mod errors;
 mod look;
 
+use look::reasons;
 pub(super) use look::{Place, Point, look_at};
 
 use super::table::{line, number};
@@ -68,7 +69,7 @@ pub(super) fn expected_words(file: &CalibrationFile, figure: impl Fn(f64, &str) 
     let expected = file.uncertainty.as_ref()?;
     let (sigma, key, place) = match level {
         Level::DoNotUse => return None,
-        Level::InsideSampledRange => (expected.measured.sigma_position_mm, "measured", "inside it"),
+        Level::InsideSampledRange => (expected.measured.sigma_position_mm, "measured", "there"),
         Level::Good => (expected.range.sigma_position_mm, "range", "anywhere within the limits"),
     };
     let key = format!("uncertainty.{key}.sigma_position_mm");
@@ -81,11 +82,11 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
         return;
     };
     let level = verdict.level.words();
-    let reason = verdict.reasons.first().filter(|_| verdict.level != Level::Good);
+    let reason = reasons(file).into_iter().next();
     match (expected_words(file, |sigma, _| number(sigma)), reason) {
         (Some(expected), reason) => {
             line(out, "verdict", &format!("{level}: {expected}"));
-            reason.into_iter().for_each(|reason| line(out, "", reason));
+            reason.into_iter().for_each(|reason| line(out, "", &reason));
         }
         (None, Some(reason)) => line(out, "verdict", &format!("{level}: {reason}")),
         (None, None) => line(out, "verdict", level),
