@@ -8,7 +8,7 @@ mod report;
 mod reproduce;
 mod simulate;
 
-pub(crate) use calibrate::{Calibrate, Frame};
+pub(crate) use calibrate::{Calibrate, Frame, RequiredLevel};
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
@@ -29,8 +29,9 @@ use crate::console::Console;
 use crate::quantity::threads;
 
 /// What the program ends with.
-const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the verdict is worse than --require asks for, or \
-                          standard output could not be written to; 2 wrong input or usage, nothing was written; 3 the fit did not converge";
+const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
+                          worse than --require asks for, or they could not be printed; 2 refused: wrong input or usage, nothing was \
+                          written; 3 no result at all";
 
 /// Finds the robot that is really there: kinematic calibration by the product of exponentials.
 #[derive(Debug, Parser)]
@@ -173,6 +174,10 @@ pub(crate) struct Validate {
     /// Find the targets anew from these measurements
     #[arg(long)]
     pub(crate) refit_tool: bool,
+    /// End with code 1 unless the measurements bear this out: `good` if 80 % of all errors are inside their own 95 % bounds and the error
+    /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
+    #[arg(long, value_enum, value_name = "VERDICT")]
+    pub(crate) require: Option<RequiredLevel>,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,

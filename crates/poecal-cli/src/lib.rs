@@ -1,7 +1,8 @@
 //! The `poecal` program as a function: arguments in, exit code out. Commands read files, call the library and print; they compute
 //! nothing.
 //!
-//! Exit codes: 0 done; 1 the verdict is worse than `--require` asks, or standard output could not be written to; 2 a mistake in the input or its use; 3 the fit did not converge.
+//! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` asks, or
+//! could not be printed; 2 refused: a mistake in the input or its use, and nothing was written; 3 there is no result.
 
 mod args;
 mod commands;
@@ -25,12 +26,12 @@ use poecal::{Error, ErrorKind};
 
 /// Done.
 pub(crate) const DONE: u8 = 0;
-/// Done, but the verdict is worse than `--require` asks.
+/// Done, but what was found should not be used, or is worse than `--require` asks.
 pub(crate) const WORSE: u8 = 1;
-/// Wrong input or usage.
-const WRONG: u8 = 2;
-/// The fit did not converge.
-pub(crate) const NOT_CONVERGED: u8 = 3;
+/// Refused: wrong input or usage.
+const REFUSED: u8 = 2;
+/// Begun, but without a result.
+const NO_RESULT: u8 = 3;
 
 /// The words of a command line as people may see them. What is wrong with them is told of these, since clap quotes them as they are.
 fn shown(typed: &[OsString]) -> Vec<OsString> {
@@ -47,14 +48,14 @@ fn usage(error: &clap::Error) -> u8 {
         }
         _ => console::usage(error),
     }
-    if error.use_stderr() { WRONG } else { DONE }
+    if error.use_stderr() { REFUSED } else { DONE }
 }
 
 /// The command line, with what its settings file adds, and what it means; or else the code to end with.
 fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
     let refused = |error: &Error| {
         Console::new(false).error(error);
-        WRONG
+        REFUSED
     };
     let parsed = |words: &[OsString]| {
         let matches = Arguments::command().try_get_matches_from(words)?;
@@ -144,7 +145,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             // A run that is being ended fails over what was cleaned up, which is no news.
             signals::wait_if_ending();
             console.error(&error);
-            WRONG
+            if error.kind() == ErrorKind::Solver { NO_RESULT } else { REFUSED }
         }
     }
 }

@@ -102,7 +102,8 @@ impl FromStr for BelievedTolerance {
         if length_m > 0.0 && angle_rad > 0.0 {
             return Ok(BelievedTolerance(Some(Tolerance { angle_rad, length_m })));
         }
-        let message = format!("found `{text}`, expected an angle and a length above 0, like 0.5deg,5mm, or none");
+        let message =
+            format!("found `{text}`, expected an angle and a length above 0, like 0.5deg,5mm, or none");
         Err(Error::new(ErrorKind::Option, message))
     }
 }

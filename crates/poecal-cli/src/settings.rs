@@ -18,7 +18,8 @@ const USUAL: &str = "poecal.toml";
 /// The command that reads settings.
 const COMMAND: &str = "calibrate";
 /// Options that are not kept in a file: those of one run of the program.
-const NOT_KEPT: [&str; 7] = ["settings", "json", "timings", "quiet", "threads", "help", "force_own"];
+const NOT_KEPT: [&str; 8] =
+    ["settings", "verbose", "json", "timings", "quiet", "threads", "help", "force_own"];
 /// Settings that say where something is written.
 const OUTPUTS: [&str; 2] = ["out", "report"];
 /// Settings that name files, which are seen from the settings' folder.

@@ -17,7 +17,7 @@ const LABELS: usize = 14;
 /// Width of lines that are not as wide as a terminal.
 const WIDTH: usize = 80;
 /// Labels of what a reader must look at.
-const LOOK: [&str; 3] = ["outliers", "warnings", "diagnosis"];
+const LOOK: [&str; 4] = ["look at", "outliers", "warnings", "diagnosis"];
 /// How each verdict begins.
 const VERDICTS: [(&str, Style); 3] =
     [("good", GOOD), ("use inside the sampled range", WARNING), ("do not use", ERROR)];

@@ -62,10 +62,7 @@ impl Calibration {
         let beside = path.with_file_name("residuals.csv");
         let residuals = residuals.or_else(|| beside.is_file().then_some(beside));
         let residuals = residuals.map(Residuals::read).transpose().map_err(raise)?;
-        let mut summary = report::accuracy_table(&file.accuracy.training, file.accuracy.held_out.as_ref());
-        if let Some(verdict) = &file.verdict {
-            summary.push_str(&format!("\nverdict       {}\n", verdict.level.words()));
-        }
+        let summary = report::summary(&file, report::Detail::Short);
         let nominal = Robot::new(Model { robot: nominal, source: ModelSource::Toml, path });
         Ok(Calibration::written(nominal, robot, file, residuals, summary))
     }

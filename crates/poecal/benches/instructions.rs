@@ -32,7 +32,7 @@ fn main() {
     let fit = || {
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
         let (start, length_m) = (delivered(&made.nominal, &made.data), made.nominal.reach_m() / 3.0);
-        std::hint::black_box(fit_screws(&made.data, &packed, &all, start, noise, length_m, &options));
+        std::hint::black_box(fit_screws(&made.data, &packed, &all, start, noise, length_m, None, &options));
     };
     if repeats == 0 {
         return fit();

@@ -53,7 +53,7 @@ fn solve_session(bencher: Bencher<'_, '_>, made: &Simulated) {
     bencher.bench_local(|| {
         let packed = Packed::new(&made.nominal, made.data.all_readings(), made.data.reading_names().len());
         let length_m = made.nominal.reach_m() / 3.0;
-        black_box(fit_screws(&made.data, &packed, &all, start.clone(), NOISE, length_m, &options))
+        black_box(fit_screws(&made.data, &packed, &all, start.clone(), NOISE, length_m, None, &options))
     });
 }
 

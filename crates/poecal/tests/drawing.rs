@@ -63,7 +63,10 @@ fn gradient_and_information_of_the_prior_are_those_of_its_cost() {
                     worst[1] = worst[1].max((second - at_nominal.gram[i * n + j]).abs() / scale);
                 }
             }
-            println!("{} base {base_free}: gradient {:.1e}, information {:.1e}", robot.name, worst[0], worst[1]);
+            println!(
+                "{} base {base_free}: gradient {:.1e}, information {:.1e}",
+                robot.name, worst[0], worst[1]
+            );
             // Rounding of differences of a cost of some thousand, and their third derivatives.
             assert!(worst[0] < 1e-6 && worst[1] < 1e-5);
         }
@@ -104,7 +107,12 @@ fn observed(robot: &Robot, actual: &Robot, kind: Kind, readings: &[Vec<f64>], se
 }
 
 /// Random configurations, changed by what a session does.
-fn configurations(robot: &Robot, count: usize, seed: u64, change: impl Fn(&mut Vec<f64>, &mut ChaCha8Rng)) -> Vec<Vec<f64>> {
+fn configurations(
+    robot: &Robot,
+    count: usize,
+    seed: u64,
+    change: impl Fn(&mut Vec<f64>, &mut ChaCha8Rng),
+) -> Vec<Vec<f64>> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x51);
     (0..count)
         .map(|_| {
@@ -157,7 +165,14 @@ fn an_axis_that_only_jitters_stays_at_the_drawing() {
             let kind = if seed % 4 < 2 { Kind::Pose } else { Kind::Point };
             let truth = actual(&robot, seed);
             // What the encoder says is noise: the joint does not move.
-            let real: Vec<Vec<f64>> = readings.iter().map(|row| { let mut row = row.clone(); row[3] = 0.7; row }).collect();
+            let real: Vec<Vec<f64>> = readings
+                .iter()
+                .map(|row| {
+                    let mut row = row.clone();
+                    row[3] = 0.7;
+                    row
+                })
+                .collect();
             let seen = observed(&robot, &truth, kind, &real, seed);
             let mut data = Dataset::new(robot.reading_names());
             for (row, observation) in readings.iter().zip(&seen.observations) {
@@ -165,7 +180,13 @@ fn an_axis_that_only_jitters_stays_at_the_drawing() {
             }
             let found = fitted(&robot, &data);
             let joint = &found.trust.joints[3];
-            println!("{seed}: {:.3} deg, {:.2} mm, {} iterations, {:?}", joint.tilt_rad.to_degrees(), 1e3 * joint.shift_m, found.solver.iterations, found.verdict.level);
+            println!(
+                "{seed}: {:.3} deg, {:.2} mm, {} iterations, {:?}",
+                joint.tilt_rad.to_degrees(),
+                1e3 * joint.shift_m,
+                found.solver.iterations,
+                found.verdict.level
+            );
             assert!(found.solver.termination.is_success());
             (joint.tilt_rad, joint.shift_m)
         })
@@ -181,11 +202,19 @@ fn an_axis_through_the_target_stays_at_the_drawing() {
     let found: Vec<(f64, usize, String)> = (0..40_u64)
         .into_par_iter()
         .map(|seed| {
-            let simulation = Simulation { error_rotation_rad: 0.05f64.to_radians(), error_position_m: 1e-4, ..Simulation::default() };
+            let simulation = Simulation {
+                error_rotation_rad: 0.05f64.to_radians(),
+                error_position_m: 1e-4,
+                ..Simulation::default()
+            };
             let truth = simulation.perturbed(&robot, &mut ChaCha8Rng::seed_from_u64(11));
             let readings = configurations(&robot, 60, 3, |_, _| {});
             let found = fitted(&robot, &observed(&robot, &truth, Kind::Point, &readings, seed));
-            (found.trust.joints[5].tilt_rad.to_degrees(), found.identifiability.rank, format!("{:?}", found.verdict.level))
+            (
+                found.trust.joints[5].tilt_rad.to_degrees(),
+                found.identifiability.rank,
+                format!("{:?}", found.verdict.level),
+            )
         })
         .collect();
     let worst = found.iter().map(|it| it.0).fold(0.0, f64::max);
@@ -213,12 +242,18 @@ fn few_poses_of_poor_orientation_are_never_worse_than_registered() {
             };
             let readings = configurations(&robot, count, seed, keep);
             let others = configurations(&robot, 100, seed ^ 0x99, keep);
-            let simulation = Simulation { error_rotation_rad: 0.2f64.to_radians(), error_position_m: 1e-3, ..Simulation::default() };
+            let simulation = Simulation {
+                error_rotation_rad: 0.2f64.to_radians(),
+                error_position_m: 1e-3,
+                ..Simulation::default()
+            };
             let truth = simulation.perturbed(&robot, &mut generator);
             let found = fitted(&robot, &observed(&robot, &truth, Kind::Pose, &readings, seed));
             let registered = missed_in(&robot, &truth, &found.models.registered, &others);
             let calibrated = missed_in(&robot, &truth, &found.models.calibrated, &others);
-            (calibrated > registered).then(|| format!("{seed}: {count} poses, {:.3} against {:.3} mm", 1e3 * calibrated, 1e3 * registered))
+            (calibrated > registered).then(|| {
+                format!("{seed}: {count} poses, {:.3} against {:.3} mm", 1e3 * calibrated, 1e3 * registered)
+            })
         })
         .collect();
     println!("{} of 60 worse: {worse:#?}", worse.len());
@@ -236,7 +271,11 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
             let readings: Vec<Vec<f64>> = (0..60)
                 .map(|k| {
-                    let t = if circle { f64::from(k) / 60.0 * 6.0 } else { 3.0 * random::uniform(&mut generator) - 1.5 };
+                    let t = if circle {
+                        f64::from(k) / 60.0 * 6.0
+                    } else {
+                        3.0 * random::uniform(&mut generator) - 1.5
+                    };
                     let bend = if circle { 0.6 } else { 0.3 + 0.6 * random::uniform(&mut generator) };
                     // The attitude stays: joints 2, 3 and 5 add up, joint 6 undoes joint 1.
                     vec![0.3 * t, -0.4 - bend, 0.9 + 0.5 * bend, 0.0, 0.2 - 0.5 * bend, -0.3 * t]
@@ -244,7 +283,10 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
                 .collect();
             let kind = if seed % 4 < 2 { Kind::Pose } else { Kind::Point };
             let found = fitted(&robot, &observed(&robot, &actual(&robot, seed), kind, &readings, seed));
-            println!("{seed}: {} iterations, {:?}, rank {}", found.solver.iterations, found.solver.termination, found.identifiability.rank);
+            println!(
+                "{seed}: {} iterations, {:?}, rank {}",
+                found.solver.iterations, found.solver.termination, found.identifiability.rank
+            );
             assert!(found.solver.termination.is_success());
             found.solver.iterations
         })
@@ -273,7 +315,8 @@ fn what_the_data_tell_is_not_touched() {
                 };
                 let made = simulation.run(&robot, kind).unwrap();
                 [Some(Tolerance::default()), None].map(|tolerance| {
-                    let options = CalibrationOptions { held_out: 0.0, tolerance, ..CalibrationOptions::default() };
+                    let options =
+                        CalibrationOptions { held_out: 0.0, tolerance, ..CalibrationOptions::default() };
                     let found = calibrate(&robot, &made.data, &options).unwrap();
                     missed(&robot, &made.actual, &found.models.calibrated, seed).powi(2)
                 })
@@ -282,7 +325,13 @@ fn what_the_data_tell_is_not_touched() {
         println!("{}: mean square with the prior {:.5} of that without", kind.word(), sums[0] / sums[1]);
         assert!(sums[0] < 1.01 * sums[1]);
     }
-    let far = Simulation { count: 60, seed: 3, error_rotation_rad: 0.3, error_position_m: 0.06, ..Simulation::default() };
+    let far = Simulation {
+        count: 60,
+        seed: 3,
+        error_rotation_rad: 0.3,
+        error_position_m: 0.06,
+        ..Simulation::default()
+    };
     let made = far.run(&robot, Kind::Pose).unwrap();
     let found = calibrate(&robot, &made.data, &CalibrationOptions::default()).unwrap();
     let rms = found.accuracy.held_out.unwrap().calibrated.position_mm.rms;

@@ -229,7 +229,7 @@ fn few_passes_have_the_same_optimum() {
         start.device_from_base = made.device_from_base;
         let options = CalibrationOptions::default();
         let (quick, _, summary) =
-            fit_screws(&made.data, &packed, &rows, start.clone(), NOISE, LENGTH_M, &options);
+            fit_screws(&made.data, &packed, &rows, start.clone(), NOISE, LENGTH_M, None, &options);
         let free = parameters(&made.nominal, &made.data, &Case::default());
         let problem = Problem::new(&made.data, &packed, rows.clone(), free, NOISE, LENGTH_M);
         let strict = Options { decrement: 1e-12, ..Options::default() };

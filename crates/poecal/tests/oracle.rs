@@ -34,7 +34,8 @@ fn below(generator: &mut ChaCha8Rng, count: usize) -> usize {
 
 /// What the robot does that its model does not describe: in all rows, those that judge too.
 fn physical(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static str {
-    let kind = one(generator, &["none", "none", "none", "gear", "ripple", "backlash", "sag", "scale", "rounded"]);
+    let kind =
+        one(generator, &["none", "none", "none", "gear", "ripple", "backlash", "sag", "scale", "rounded"]);
     let joint = below(generator, 6);
     match kind {
         "gear" => {
@@ -42,7 +43,8 @@ fn physical(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static str {
             rows.iter_mut().for_each(|row| row.readings[joint] *= factor);
         }
         "ripple" => {
-            let (size, times) = (one(generator, &[0.01f64, 0.03, 0.1]).to_radians(), one(generator, &[1.0, 2.0, 3.0]));
+            let (size, times) =
+                (one(generator, &[0.01f64, 0.03, 0.1]).to_radians(), one(generator, &[1.0, 2.0, 3.0]));
             rows.iter_mut().for_each(|row| row.readings[joint] += size * (times * row.readings[joint]).sin());
         }
         "backlash" => {
@@ -60,7 +62,9 @@ fn physical(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static str {
         }
         "rounded" => {
             let step = one(generator, &[0.01f64, 0.1, 0.5]).to_radians();
-            rows.iter_mut().flat_map(|row| &mut row.readings).for_each(|value| *value = (*value / step).round() * step);
+            rows.iter_mut()
+                .flat_map(|row| &mut row.readings)
+                .for_each(|value| *value = (*value / step).round() * step);
         }
         _ => {}
     }
@@ -70,8 +74,23 @@ fn physical(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static str {
 /// What goes wrong in a session: in the fitted rows alone.
 fn fault(rows: &mut Vec<Row>, generator: &mut ChaCha8Rng) -> &'static str {
     let faults = [
-        "none", "none", "cell", "bias", "duplicates", "repeats", "shuffled", "drift", "noise", "rounded places", "half a joint", "frozen",
-        "few", "zeros", "columns", "sign", "moved",
+        "none",
+        "none",
+        "cell",
+        "bias",
+        "duplicates",
+        "repeats",
+        "shuffled",
+        "drift",
+        "noise",
+        "rounded places",
+        "half a joint",
+        "frozen",
+        "few",
+        "zeros",
+        "columns",
+        "sign",
+        "moved",
     ];
     let kind = one(generator, &faults);
     let count = rows.len();
@@ -136,9 +155,13 @@ fn fault(rows: &mut Vec<Row>, generator: &mut ChaCha8Rng) -> &'static str {
         }
         "few" => rows.truncate(one(generator, &[12, 14, 16, 20, 30])),
         "zeros" => rows[first..last.min(first + 10)].iter_mut().for_each(|row| row.place = Vector3::zeros()),
-        "columns" => rows[first..last].iter_mut().for_each(|row| row.readings.swap(joint.min(4), joint.min(4) + 1)),
+        "columns" => {
+            rows[first..last].iter_mut().for_each(|row| row.readings.swap(joint.min(4), joint.min(4) + 1))
+        }
         "sign" => rows[first..last].iter_mut().for_each(|row| row.readings[joint] = -row.readings[joint]),
-        "moved" => rows[count * 4 / 5..].iter_mut().for_each(|row| row.place += Vector3::new(0.0, 3e-3, 4e-3)),
+        "moved" => {
+            rows[count * 4 / 5..].iter_mut().for_each(|row| row.place += Vector3::new(0.0, 3e-3, 4e-3))
+        }
         _ => {}
     }
     kind
@@ -180,7 +203,9 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
     let sigma_m = NOISE_M * one(&mut generator, &[1.0, 1.0, 1.0, 0.2, 5.0]);
     let options = CalibrationOptions { sigma_position_m: is_stated.then_some(sigma_m), ..options };
     let words = format!("{robot}, {wrong}");
-    let Ok(found) = calibrate(&made.nominal, &dataset(&fitted), &options) else { return (words, is_stated, None) };
+    let Ok(found) = calibrate(&made.nominal, &dataset(&fitted), &options) else {
+        return (words, is_stated, None);
+    };
     let promise = found.trust.uncertainty.as_ref().map(|uncertainty| Promise {
         uncertainty,
         targets: &[0],

@@ -169,9 +169,12 @@ pub(crate) struct Calibrate {
     /// File for the report, or `none` [default: report.html among the results]
     #[arg(long, value_name = "FILE|none")]
     pub(crate) report: Option<ReportPlace>,
-    /// End with code 1 if the verdict is worse than this (results are written all the same)
+    /// End with code 1 if the verdict is worse than this (results are written all the same); it also does if the verdict is `do not use`
     #[arg(long, value_enum, value_name = "VERDICT")]
     pub(crate) require: Option<RequiredLevel>,
+    /// Print everything: errors of fitted rows and of the nominal model, noise, solver, cross-validation, every joint
+    #[arg(long)]
+    pub(crate) verbose: bool,
     /// Print the calibration as JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,

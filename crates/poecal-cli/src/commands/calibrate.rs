@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal::calibration::{
-    Calibration, CalibrationOptions, DeviceFrameKnowledge, Stage, calibrate_with_progress, settle_sets,
+    Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, Stage, calibrate_with_progress, settle_sets,
 };
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
@@ -13,6 +13,7 @@ use poecal::io::named_files::{refuse_fitted, refuse_repeats};
 use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
 use poecal::io::residuals::{Residuals, Rows};
 use poecal::measurement::{Dataset, Measurement, PoseResidual};
+use poecal::report::Detail;
 use poecal::{Error, ErrorKind, Result, report, solve};
 
 use super::typed::command;
@@ -20,7 +21,7 @@ use crate::args::{Calibrate, Frame, ReportPlace};
 use crate::console::Console;
 use crate::style::{labelled, shown};
 use crate::timings::Timings;
-use crate::{NOT_CONVERGED, WORSE};
+use crate::{DONE, WORSE};
 
 pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Console) -> Result<u8> {
     let mut timings = Timings::start();
@@ -49,26 +50,60 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     timings.end("analysis");
     bar.finish_and_clear();
     let calibration = calibration?;
-    let found = calibration.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
-    for warning in calibration.warnings.iter().chain(found) {
+    let file = CalibrationFile::new(&calibration, &data, inputs);
+    let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
+    let said = if arguments.json { Said::Json(file.to_text()?) } else { Said::table(&file, detail) };
+    for warning in said.beside(&file, detail) {
         console.warning(warning);
     }
-    let file = CalibrationFile::new(&calibration, &data, inputs);
-    let json = if arguments.json { Some(file.to_text()?) } else { None };
-    let words = write(places, &arguments.report, (&model, &data, &calibration), file, console)?;
+    let code = code(arguments, &calibration);
+    let written = write(places, arguments, (&model, &data, &calibration), file, console)?;
     timings.end("write");
     if arguments.timings {
         console.note(timings.line(|| calibration.solve_again(&data, &options)));
     }
-    let said = match json {
-        Some(json) => console.data_of(&json, &arguments.out),
-        None => console.say_of(&(report::summary(&calibration, &data) + &words), &arguments.out),
+    let told = match said {
+        Said::Json(json) => console.data_of(&json, &arguments.out),
+        Said::Table(table) => console.say_of(&(table + &written), &arguments.out),
     };
-    if !calibration.solver.termination.is_success() {
-        return Ok(NOT_CONVERGED);
+    Ok(code.max(told))
+}
+
+/// What goes to standard output.
+enum Said {
+    Table(String),
+    Json(String),
+}
+
+impl Said {
+    fn table(file: &CalibrationFile, detail: Detail) -> Self {
+        let more = match detail {
+            Detail::Short => {
+                labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, joints")
+            }
+            Detail::Full => String::new(),
+        };
+        Said::Table(report::summary(file, detail) + &more)
     }
-    let worse = arguments.require.is_some_and(|required| calibration.verdict.level < required.into());
-    Ok(if worse { WORSE } else { said })
+
+    /// The warnings and diagnoses that it does not hold, or not where people read.
+    fn beside(&self, file: &CalibrationFile, detail: Detail) -> Vec<String> {
+        match self {
+            Said::Table(_) => report::unsaid(file, detail),
+            Said::Json(_) => {
+                let found = file.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
+                file.warnings.iter().chain(found).cloned().collect()
+            }
+        }
+    }
+}
+
+/// What a calibration that has been written ends with.
+fn code(arguments: &Calibrate, calibration: &Calibration) -> u8 {
+    let level = calibration.verdict.level;
+    let worse = arguments.require.is_some_and(|required| level < required.into());
+    let converged = calibration.solver.termination.is_success();
+    if worse || level == Level::DoNotUse || !converged { WORSE } else { DONE }
 }
 
 /// The model, if it and measurements are named, by arguments or settings.
@@ -175,12 +210,13 @@ impl Places {
 /// Writes the results; says where.
 fn write(
     places: Places,
-    place: &Option<ReportPlace>,
+    arguments: &Calibrate,
     (model, data, calibration): (&Model, &Dataset, &Calibration),
     file: CalibrationFile,
     console: &Console,
 ) -> Result<String> {
     // Without a report nobody needs all rows at once.
+    let place = &arguments.report;
     let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
     let report = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
     let residuals = residuals.as_ref().map_or(Rows::Of(data, calibration), Rows::AtHand);
@@ -190,16 +226,14 @@ fn write(
         console.warning(note);
     }
     let others = written.files.iter().filter(|name| *name != output::REPORT).cloned().collect::<Vec<_>>();
-    let mut words = labelled(
-        "written",
-        &format!(
-            "{}\n{}\nread back within {:.1e} m and {:.1e} rad in 1,000 configurations",
-            shown(&written.folder),
-            others.join(", "),
-            written.largest.position_m,
-            written.largest.rotation_rad
-        ),
-    );
+    let mut words = labelled("written", &format!("{}: {}", shown(&written.folder), others.join(", ")));
+    if arguments.verbose {
+        let text = format!(
+            "read back within {:.1e} m and {:.1e} rad in 1,000 configurations",
+            written.largest.position_m, written.largest.rotation_rad
+        );
+        words.push_str(&labelled("", &text));
+    }
     let among = written.files.iter().find(|name| *name == output::REPORT);
     let report = match place {
         Some(ReportPlace::File(path)) => Some(path.clone()),

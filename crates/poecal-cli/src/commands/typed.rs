@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 /// Options that say where results go, what is printed and how fast, but not what is computed; settings are among the words already.
 const WITH_VALUE: [&str; 5] = ["--out", "--threads", "--require", "--report", "--settings"];
-const WITHOUT_VALUE: [&str; 4] = ["--force", "--force-own", "--json", "--quiet"];
+const WITHOUT_VALUE: [&str; 5] = ["--force", "--force-own", "--json", "--verbose", "--quiet"];
 
 /// The arguments of a run, the program first, as one would type them, without those that do not change the result.
 pub(super) fn command(arguments: &[OsString]) -> String {

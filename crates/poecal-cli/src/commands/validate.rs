@@ -3,14 +3,15 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use poecal::calibration::Level;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::named_files::{actual, refuse_repeats};
 use poecal::{ErrorKind, Result, report};
 
-use crate::DONE;
 use crate::args::Validate;
 use crate::console::Console;
+use crate::{DONE, WORSE};
 
 pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
@@ -37,7 +38,10 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     if let Some(doubt) = file.doubt(&judgement) {
         console.warning(doubt);
     }
-    Ok(DONE)
+    let Some(required) = arguments.require.map(Level::from) else { return Ok(DONE) };
+    let Some(reason) = judgement.falls_short(required) else { return Ok(DONE) };
+    console.warning(format!("not what --require {} asks for: {reason}", required.word()));
+    Ok(WORSE)
 }
 
 /// The measurement files; those that the calibration was made from are marked.

@@ -10,12 +10,13 @@ use crate::session::{ROBOT, calibration, numbers, session, write_measurements};
 #[test]
 fn calibrate_writes_its_folder_and_tells_three_models() {
     let folder = session(Kind::Pose);
-    let out = folder.done("calibrate robot.urdf measurements.csv");
+    let out = folder.done("calibrate robot.urdf measurements.csv --verbose");
     for words in [
         "nominal    registered    calibrated",
         "training (42)",
         "held out (18)",
-        "60 poses: 42 fitted, 18 held out",
+        "60 rows: 42 fitted, 18 held out",
+        "known         30 of 30 unknowns, from 42 of 60 rows",
     ] {
         assert!(out.contains(words), "`{words}` is not in\n{out}");
     }
@@ -66,14 +67,15 @@ fn training_figures_are_never_shown_without_the_word() {
         &Simulation { count: 25, ..Simulation::default() },
     );
     for arguments in ["--validate other.csv", "--held-out 0", "--fit-where stage=1", ""] {
-        let out = folder.done(&format!("calibrate robot.urdf measurements.csv --force {arguments}"));
+        let out =
+            folder.done(&format!("calibrate robot.urdf measurements.csv --force --verbose {arguments}"));
         // Each block of figures begins with a row that names its set; the first block of a table is the training one.
         let mut set = "";
         for line in out.lines() {
-            if line.starts_with("position, mm") || line.starts_with("rotation, deg") {
+            if line.starts_with("position, mm") || line.starts_with("rotation, deg") || line.is_empty() {
                 set = "";
             }
-            for name in ["training (", "held out ("] {
+            for name in ["training (", "held out (", "fitted ("] {
                 if line.trim_start().starts_with(name) {
                     set = name;
                 }
@@ -92,26 +94,26 @@ fn training_figures_are_never_shown_without_the_word() {
 #[test]
 fn what_is_held_out_can_be_said() {
     let folder = session(Kind::Pose);
-    let out = folder.done("calibrate robot.urdf measurements.csv --held-out 0 --out all");
+    let out = folder.done("calibrate robot.urdf measurements.csv --held-out 0 --out all --verbose");
     assert!(out.contains("held out        none: every measurement was fitted"), "{out}");
+    assert!(out.contains("no row was held out: these errors are of fitted rows"), "{out}");
     let json: serde_json::Value = serde_json::from_str(&folder.read("all/calibration.json")).unwrap();
     assert_eq!(json["accuracy"]["held_out"], serde_json::Value::Null);
     assert_eq!(json["accuracy"]["training"]["count"], 60);
 
     let out = folder.done("calibrate robot.urdf measurements.csv --fit-where stage=1 --out stage");
-    assert!(out.contains("training (40)") && out.contains("held out (20)"), "{out}");
+    assert!(out.contains("from 40 of 60 rows") && out.contains("held out (20)"), "{out}");
 
     let simulation = Simulation { count: 60, seed: 1, ..Simulation::default() };
     write_measurements(&folder, "other.csv", Kind::Pose, "", &Simulation { count: 25, ..simulation });
     let out = folder.done("calibrate robot.urdf measurements.csv --validate other.csv --out other");
-    assert!(out.contains("training (60)") && out.contains("held out (25)"), "{out}");
+    assert!(out.contains("from 60 of 85 rows") && out.contains("held out (25)"), "{out}");
 
     for stated in ["--fit-where stage=1", "--validate other.csv"] {
         let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --held-out 0"));
         assert_eq!(run.code, 0, "{}", run.err);
         // Beside --validate no more is held out than that file.
-        let rows =
-            if stated.starts_with("--validate") { "held out (25)" } else { "every measurement was fitted" };
+        let rows = if stated.starts_with("--validate") { "held out (25)" } else { "no row was held out" };
         assert!(run.out.contains(rows), "{}", run.out);
         let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --seed 2"));
         let seed = "warning: --seed has no effect on which rows are held out: that is stated\n";

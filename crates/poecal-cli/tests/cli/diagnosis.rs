@@ -23,9 +23,12 @@ fn exchanged_columns_are_named_with_evidence() {
         "no diagnosis in\n{checked}"
     );
     let run = folder.run("calibrate robot.urdf measurements.csv");
-    println!("{}", run.err);
-    assert!(run.err.contains("warning: exchanging the readings of joint4 and joint5 lowers the registered"));
-    assert!(run.err.contains("(RMS): check the order of the joint columns"));
+    println!("{}", run.out);
+    let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.starts_with(
+        "verdict do not use: exchanging the readings of joint4 and joint5 lowers the registered"
+    ));
+    assert!(words.contains("(RMS): check the order of the joint columns") && run.code == 1);
     let file = calibration(&folder, "poecal-out");
     assert_eq!(file.diagnosis.len(), 1);
     assert_eq!(file.diagnosis[0].kind, DiagnosisKind::JointsSwapped);
@@ -101,10 +104,10 @@ fn rows_that_stand_twice_are_named_by_their_lines() {
     let copied = text.lines().nth(3).unwrap();
     folder.write("measurements.csv", format!("{text}{copied}\n"));
     let run = folder.run("calibrate robot.urdf measurements.csv");
-    println!("{}", run.err);
-    let expected = "warning: 1 row repeats another to the last digit, readings and measurement \
+    println!("{}", run.out);
+    let expected = "look at 1 row repeats another to the last digit, readings and measurement \
                     (measurements.csv:62 as measurements.csv:4): leave out what was copied, since it counts twice";
-    assert!(run.err.contains(expected));
+    assert!(run.out.split_whitespace().collect::<Vec<_>>().join(" ").contains(expected));
     assert_eq!(calibration(&folder, "poecal-out").diagnosis[0].rows, [60]);
 }
 
@@ -134,8 +137,8 @@ fn targets_without_names_are_told_to_be_named() {
     assert_eq!(checked["diagnosis"][0]["kind"], "targets_unnamed");
     assert_eq!(checked["diagnosis"][0]["statement"], statement);
     let run = folder.run("calibrate robot.urdf measurements.csv");
-    assert!(run.err.contains("add a column `target` that names which one each row saw"), "{}", run.err);
     let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("verdict do not use: "), "{}", run.out);
-    assert!(!run.err.contains("look which is right"), "{}", run.err);
+    assert!(words.contains("add a column `target` that names which one each row saw"), "{}", run.out);
+    assert!(words.starts_with("verdict do not use: ") && run.code == 1, "{}", run.out);
+    assert!(!words.contains("look which is right"), "{}", run.out);
 }

@@ -5,6 +5,7 @@
 mod bad_input;
 mod commands;
 mod diagnosis;
+mod exit_codes;
 mod folder;
 mod hostile;
 mod identify;
@@ -16,5 +17,7 @@ mod places;
 mod report;
 mod reproduce;
 mod session;
+mod table;
 mod targets_and_validation;
 mod trust;
+mod validate;

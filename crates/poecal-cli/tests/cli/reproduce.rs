@@ -107,7 +107,8 @@ fn every_formulation_can_be_chosen() {
 #[test]
 fn residual_and_method_can_be_chosen() {
     let folder = session(Kind::Pose);
-    let out = folder.done("calibrate robot.urdf measurements.csv --residual spatial --method gauss-newton");
+    let out = folder
+        .done("calibrate robot.urdf measurements.csv --residual spatial --method gauss-newton --verbose");
     assert!(out.contains("formulation   adjoint, spatial residual of poses, gauss-newton"), "{out}");
     let run = folder.run("calibrate robot.urdf measurements.csv --formulation screws --out other");
     assert!(run.code == 2 && run.err.contains("screw"), "{run:?}");
@@ -116,12 +117,12 @@ fn residual_and_method_can_be_chosen() {
 #[test]
 fn a_residual_of_poses_says_that_points_have_none() {
     let folder = session(Kind::Point);
-    let run = folder.run("calibrate robot.urdf measurements.csv --residual spatial");
+    let run = folder.run("calibrate robot.urdf measurements.csv --residual spatial --verbose");
     assert_eq!(run.code, 0, "{run:?}");
     let words = "--residual spatial has no effect: it is about measured frames, and there are points only";
     assert!(run.err.contains(words), "{}", run.err);
     assert!(!run.out.contains("residual of poses"), "{}", run.out);
-    let out =
-        folder.done("calibrate robot.urdf measurements.csv --formulation adjoint-offsets --out offsets");
+    let out = folder
+        .done("calibrate robot.urdf measurements.csv --formulation adjoint-offsets --out offsets --verbose");
     assert!(out.contains("formulation   adjoint-offsets, levenberg-marquardt; joint offsets"), "{out}");
 }

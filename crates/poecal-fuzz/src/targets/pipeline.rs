@@ -71,8 +71,10 @@ fn results(model: &Model, read: &MeasurementFile, calibration: &Calibration) -> 
     for sentence in &calibration.warnings {
         one_line(sentence);
     }
-    assert!(!report::summary(calibration, &read.data).is_empty());
     let file = CalibrationFile::new(calibration, &read.data, Inputs::default());
+    for detail in [report::Detail::Short, report::Detail::Full] {
+        assert!(!report::summary(&file, detail).is_empty());
+    }
     same(&file);
     let residuals = Residuals::of(&read.data, calibration);
     let text = residuals.text();

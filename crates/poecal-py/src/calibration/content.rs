@@ -135,7 +135,9 @@ impl Calibration {
     /// The table of the program.
     pub(super) fn summary(&self) -> &str {
         match &self.found {
-            Found::Fit(fit) => fit.summary.get_or_init(|| report::summary(&fit.calibration, &fit.data.data)),
+            Found::Fit(fit) => {
+                fit.summary.get_or_init(|| report::summary(self.file(), report::Detail::Short))
+            }
             Found::Written(written) => &written.summary,
         }
     }

@@ -110,8 +110,11 @@ impl Promise<'_> {
                 &error.position_m,
             );
             if let Some(turn) = error.rotation_rad {
-                rotation
-                    .add(&(promised.rotation + own(observation.sigma_rotation_rad, rotation_rad)), &promised.quantiles[1], &turn);
+                rotation.add(
+                    &(promised.rotation + own(observation.sigma_rotation_rad, rotation_rad)),
+                    &promised.quantiles[1],
+                    &turn,
+                );
             }
         }
         let sampled = (0..data.len()).filter(|&row| inside(robot, self.coverage, data.readings(row))).count();

@@ -243,7 +243,8 @@ impl Task<'_> {
                 // Stated noise weighs the prior as long as it explains the residuals.
                 let freedom = (found.normal.residuals as f64 - told).max(1.0);
                 let variance = mean_square * found.normal.residuals as f64 / freedom;
-                weight = if source != NoiseSource::Exact && explains(variance, freedom) { 1.0 } else { variance };
+                weight =
+                    if source != NoiseSource::Exact && explains(variance, freedom) { 1.0 } else { variance };
             }
             let change =
                 (noise.position_m * before.rotation_rad / (noise.rotation_rad * before.position_m)).ln();

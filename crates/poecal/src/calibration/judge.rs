@@ -4,14 +4,16 @@ use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy};
 use super::expectation::{Kept, Promise};
+use super::promised::{InSampledRange, promised};
 use super::{DeviceFrameKnowledge, delivered, measurements_words, radian_m};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Packed, RowError, row_errors};
+use crate::estimate::{Estimate, Packed, RowError, row_errors};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
+use crate::parameters::Parameter;
 use crate::problem::MOST_UNKNOWNS;
 use crate::robot::Robot;
-use crate::start::{Registration, register};
+use crate::start::{Registration, free_parameters, register};
 
 /// What is judged, and what of it is found anew from the measurements that judge it.
 ///
@@ -52,7 +54,7 @@ pub struct Subject<'a> {
     pub refit_frame: bool,
     /// Find every target that was measured anew.
     pub refit_tool: bool,
-    /// What the calibration promises of its predictions. It says nothing of a tool that is found anew.
+    /// What the calibration promises of its predictions. Of what is found anew it promises what the screws leave.
     pub promise: Option<Promise<'a>>,
 }
 
@@ -72,7 +74,7 @@ pub enum Refitted {
 /// use poecal::calibration::{Judgement, ModelAccuracy, Statistic};
 /// let position_mm = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = ModelAccuracy { position_mm, rotation_deg: None };
-/// let judgement = Judgement { count: 20, refitted: vec![], calibrated, nominal: None, promised: None };
+/// let judgement = Judgement { count: 20, refitted: vec![], calibrated, nominal: None, promised: None, in_sampled_range: None };
 /// assert_eq!(judgement.calibrated.position_mm.max, 0.25);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -88,6 +90,8 @@ pub struct Judgement {
     pub nominal: Option<ModelAccuracy>,
     /// Whether the errors are what the calibration promised, if it promised something.
     pub promised: Option<Kept>,
+    /// The same of the rows inside the range that was sampled for the calibration; none if there is no such row, or no promise.
+    pub in_sampled_range: Option<InSampledRange>,
 }
 
 /// Judges a calibration by measurements. The readings must be those of the robot, and every target must be one of its targets unless
@@ -106,19 +110,30 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     }
     let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
     let nominal = (frame_is_common && subject.refit_tool)
-        .then(|| model_accuracy(&errors(subject, subject.nominal, data).1));
-    let (packed, errors) = errors(subject, subject.calibrated, data);
-    let promise = subject.promise.filter(|_| !subject.refit_tool);
-    let promised = promise.map(|it| it.kept(subject.calibrated, data, &packed, &errors));
-    Ok(Judgement { count: data.len(), refitted, calibrated: model_accuracy(&errors), nominal, promised })
+        .then(|| model_accuracy(&seen(subject, subject.nominal, data).errors));
+    let seen = seen(subject, subject.calibrated, data);
+    let promised = subject.promise.and_then(|promise| promised(&promise, subject, data, &seen));
+    let (promised, in_sampled_range) = promised.map_or((None, None), |(all, some)| (Some(all), some));
+    let calibrated = model_accuracy(&seen.errors);
+    Ok(Judgement { count: data.len(), refitted, calibrated, nominal, promised, in_sampled_range })
+}
+
+/// The judging rows as a robot predicts them.
+pub(super) struct Seen {
+    pub(super) packed: Packed,
+    pub(super) estimate: Estimate,
+    pub(super) errors: Vec<RowError>,
+    /// The unknowns that were found anew.
+    pub(super) free: Vec<Parameter>,
 }
 
 /// Joint values, and the errors of a robot's screws with device frame and targets found anew as asked.
-fn errors(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> (Packed, Vec<RowError>) {
+fn seen(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> Seen {
     let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
     let rows: Vec<u32> = data.all_rows();
     let mut estimate = delivered(robot, data);
     estimate.device_from_base = subject.base_from_device.inverse();
+    let mut free = Vec::new();
     if subject.refit_frame || subject.refit_tool {
         let registration = Registration {
             data,
@@ -130,9 +145,10 @@ fn errors(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> (Packed, Vec<
             targets_free: subject.refit_tool,
         };
         estimate = register(&registration, &estimate).0;
+        free = free_parameters(&registration, &rows);
     }
     let errors = row_errors(data, &packed, &rows, &estimate);
-    (packed, errors)
+    Seen { packed, estimate, errors, free }
 }
 
 /// Refuses measurements that cannot determine what is found anew, and none at all.

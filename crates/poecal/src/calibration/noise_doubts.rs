@@ -22,11 +22,13 @@ const IN_TIME: f64 = 0.5;
 
 /// What of the stated noise the residuals contradict, and whether they hang together in time (theory.md §9 (41)).
 pub(super) fn noise_doubts(remainder: &Remainder, trust: &Trust) -> Vec<NoiseDoubt> {
-    let mut doubts: Vec<NoiseDoubt> =
-        [("position", &remainder.position, 1e3, "mm"), ("rotation", &remainder.rotation, 1f64.to_degrees(), "deg")]
-            .into_iter()
-            .filter_map(|(what, part, unit, name)| of_part(what, part, unit, name))
-            .collect();
+    let mut doubts: Vec<NoiseDoubt> = [
+        ("position", &remainder.position, 1e3, "mm"),
+        ("rotation", &remainder.rotation, 1f64.to_degrees(), "deg"),
+    ]
+    .into_iter()
+    .filter_map(|(what, part, unit, name)| of_part(what, part, unit, name))
+    .collect();
     let lag_one = trust.uncertainty.as_ref().and_then(|it| it.discrepancy.lag_one);
     if let Some(correlation) = lag_one.filter(|correlation| *correlation > IN_TIME) {
         doubts.push(NoiseDoubt {
@@ -72,7 +74,7 @@ fn of_part(what: &str, part: &Part, unit: f64, name: &str) -> Option<NoiseDoubt>
         Ordering::Less => (ratio < 1.0 / LESS).then(|| NoiseDoubt {
             statement: format!(
                 "the {what} errors that the fit leaves ({left} {name} a component) are {:.0} times less than the noise that is stated \
-                 ({stated} {name}): look for a wrong unit of the noise; it is not believed",
+                 ({stated} {name}): look for a wrong unit of the noise; bounds do not rest on it",
                 1.0 / ratio
             ),
             is_absurd: true,

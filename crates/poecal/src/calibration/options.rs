@@ -1,8 +1,8 @@
 //! How to calibrate.
 
 use crate::measurement::PoseResidual;
-use crate::robot::Tolerance;
 use crate::parameters::Formulation;
+use crate::robot::Tolerance;
 use crate::solve;
 
 use super::Robust;

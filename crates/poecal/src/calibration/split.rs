@@ -63,7 +63,9 @@ fn refuse_copies(data: &Dataset, held_out: &[bool], kept_back: usize) -> Result<
     for group in data.alike(&data.all_rows(), SAME) {
         let (judging, fitted): (Vec<u32>, Vec<u32>) = group.into_iter().partition(is_held_out);
         copies.extend(
-            judging.into_iter().filter_map(|row| Some((row, *fitted.iter().find(|&&other| is_copy(row, other))?))),
+            judging
+                .into_iter()
+                .filter_map(|row| Some((row, *fitted.iter().find(|&&other| is_copy(row, other))?))),
         );
     }
     let Some(&(row, other)) = copies.first().filter(|_| 2 * copies.len() >= kept_back) else { return Ok(()) };

@@ -118,11 +118,8 @@ impl<'a> Prepared<'a> {
         let (input, moved) = self.doubts(&accuracy, &models.calibrated, &kept);
         let noise_doubts = noise_doubts(&remainder, &trust);
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
-        let mistakes: Vec<String> = grave
-            .map(|it| it.statement.clone())
-            .chain(input.iter().cloned())
-            .chain(moved.clone())
-            .collect();
+        let mistakes: Vec<String> =
+            grave.map(|it| it.statement.clone()).chain(input.iter().cloned()).chain(moved.clone()).collect();
         let mut warnings: Vec<String> = input
             .into_iter()
             .chain(noise_doubts.iter().map(|doubt| doubt.statement.clone()))

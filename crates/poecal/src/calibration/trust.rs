@@ -197,7 +197,9 @@ fn anywhere(robot: &Robot, ranges: &[[f64; 2]], seed: u64) -> Vec<f64> {
             .map(|[lower, upper]| lower + (upper - lower).max(0.0) * random::uniform(&mut generator))
             .map(|reading| if reading.is_finite() { reading } else { 0.0 })
             .collect();
-        values.extend(robot.joints.iter().zip(&indices).map(|(joint, &index)| joint.reading.value(drawn[index])));
+        values.extend(
+            robot.joints.iter().zip(&indices).map(|(joint, &index)| joint.reading.value(drawn[index])),
+        );
     }
     values
 }

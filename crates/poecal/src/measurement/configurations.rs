@@ -34,7 +34,8 @@ impl Dataset {
         let window = same * (0..self.reading_names().len()).map(weight).sum::<f64>();
         let mut order: Vec<(f64, u32)> = rows.iter().map(|&row| (key(row), row)).collect();
         threads::sort_by(&mut order, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let is_same = |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= same);
+        let is_same =
+            |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= same);
         let mut taken = vec![false; order.len()];
         let mut groups = Vec::new();
         for first in 0..order.len() {

@@ -150,7 +150,7 @@ impl Identify {
     }
 }
 
-fn coverage_row(joint: &JointCoverage, kind: JointKind) -> String {
+pub(super) fn coverage_row(joint: &JointCoverage, kind: JointKind) -> String {
     let (scale, unit) = match kind {
         JointKind::Revolute => (1f64.to_degrees(), "deg"),
         JointKind::Prismatic => (1e3, "mm"),

@@ -25,20 +25,34 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
         if let (Some(part), Some(found)) = (&kept.rotation_deg, judgement.calibrated.rotation_deg) {
             promise(&mut out, "rotation", part, "deg", found.rms);
         }
-        let sampled = 100.0 * kept.inside_sampled_range;
-        line(&mut out, "sampled range", &format!("{sampled:.1} % of the configurations are inside it"));
+        line(&mut out, "sampled range", &range_words(judgement));
     }
     out
 }
 
 fn promise(out: &mut String, what: &str, kept: &KeptPart, unit: &str, found: f64) {
     let words = format!(
-        "{what} {} {unit} (RMS, noise of measuring included), found {}; {:.1} % of the errors are inside their 95 % bounds",
-        number(kept.expected_rms),
+        "{what}: {:.1} % of the errors are inside their 95 % bounds; {} {unit} (RMS), expected {} with the noise of measuring",
+        100.0 * kept.inside_bound95,
         number(found),
-        100.0 * kept.inside_bound95
+        number(kept.expected_rms)
     );
     line(out, "promised", &words);
+}
+
+fn range_words(judgement: &Judgement) -> String {
+    let Some(some) = &judgement.in_sampled_range else {
+        return "none of the configurations lies inside it, so nothing here tells of it".to_owned();
+    };
+    if some.count == judgement.count {
+        return "all configurations lie inside it".to_owned();
+    }
+    let share = 100.0 * some.promised.position_mm.inside_bound95;
+    let rms = number(some.calibrated.position_mm.rms);
+    format!(
+        "{} of {} configurations lie inside it; their position error is {rms} mm (RMS), {share:.1} % of them inside the bounds",
+        some.count, judgement.count
+    )
 }
 
 fn refitted_words(judgement: &Judgement) -> String {

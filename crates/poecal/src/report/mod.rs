@@ -11,6 +11,7 @@ mod outliers;
 mod page;
 mod plot;
 mod reproduction;
+mod summary;
 mod table;
 
 pub use breakdown::{breakdown_files, breakdown_table};
@@ -21,7 +22,7 @@ pub use judgement::judgement;
 pub use offsets::{Offsets, offset_ends};
 pub use page::calibration_page;
 pub use reproduction::reproduction_files;
-pub use table::{accuracy_table, summary};
+pub use summary::{Detail, summary, unsaid};
 
 use serde::Serialize;
 

@@ -6,4 +6,4 @@ mod registration;
 
 pub(crate) use averaging::mean_rotation;
 pub use registration::{Registration, register, register_again, register_robustly};
-pub(crate) use registration::{register_roughly, target_parameters};
+pub(crate) use registration::{free_parameters, register_roughly, target_parameters};

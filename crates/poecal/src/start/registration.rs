@@ -149,7 +149,7 @@ fn polish(problem: &Registration<'_>, start: Estimate, rows: Vec<u32>, iteration
     (estimate, normal.cost)
 }
 
-fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<Parameter> {
+pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<Parameter> {
     let mut free = Vec::new();
     if problem.device_free {
         free.push(Parameter::DeviceFrame(DeviceFrame { about: problem.data.mean_position(rows) }));

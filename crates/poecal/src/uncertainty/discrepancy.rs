@@ -80,11 +80,12 @@ pub fn discrepancy(
     let position = remainder.position.settled(structured || position_alike);
     let rotation = remainder.rotation.settled(structured || rotation_alike);
     let scatter = by_place.unwrap_or(1.0).max(by_time.unwrap_or(1.0));
-    let blocks = cross_validation.filter(|_| position.attribution == Attribution::Robot).map_or(1.0, |found| {
-        let squares = found.blocked.iter().map(|block| block.growth.max(0.0).powi(2)).sum::<f64>();
-        // On a sample the unknowns are known less well, so that the same error is a smaller multiple.
-        (squares / found.blocked.len().max(1) as f64).sqrt() / found.sampled
-    });
+    let blocks =
+        cross_validation.filter(|_| position.attribution == Attribution::Robot).map_or(1.0, |found| {
+            let squares = found.blocked.iter().map(|block| block.growth.max(0.0).powi(2)).sum::<f64>();
+            // On a sample the unknowns are known less well, so that the same error is a smaller multiple.
+            (squares / found.blocked.len().max(1) as f64).sqrt() / found.sampled
+        });
     Discrepancy {
         scatter,
         extrapolation: scatter.max(blocks),

@@ -9,15 +9,17 @@ mod neighbours;
 mod order;
 mod pattern;
 mod prediction;
+mod refit;
 mod remainder;
 mod view;
 
 pub use bootstrap::{Bootstrap, bootstrap};
 pub use discrepancy::{Attribution, Discrepancy, discrepancy};
-pub use remainder::{Part, Remainder, Settled, remainder};
 pub use folds::{CrossValidation, LeftOut, cross_validate, leave_clusters_out};
 pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, Quantile, bound};
+pub use refit::Refit;
+pub use remainder::{Part, Remainder, Settled, remainder};
 pub use view::{Belief, View};
 
 use motions::{motions, products};

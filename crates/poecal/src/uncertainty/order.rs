@@ -20,7 +20,8 @@ pub(super) fn correlation(view: &View<'_>) -> Option<f64> {
         let before = last.replace((at, observation.source.file));
         let Some((before, file)) = before else { continue };
         // Rows of one configuration err alike for another reason.
-        let is_elsewhere = view.values(rows[before]).iter().zip(view.values(row)).any(|(a, b)| (a - b).abs() > 1e-3);
+        let is_elsewhere =
+            view.values(rows[before]).iter().zip(view.values(row)).any(|(a, b)| (a - b).abs() > 1e-3);
         if file != observation.source.file || !is_elsewhere {
             continue;
         }

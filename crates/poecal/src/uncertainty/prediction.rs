@@ -96,9 +96,7 @@ impl Quantile {
         }
         let freedom = freedom.max(1.0);
         let known = [3.841_458_820_694_124, 2.995_732_273_553_991, 2.604_909_302_600_548];
-        Quantile {
-            growth: std::array::from_fn(|k| f_quantile(0.05, (k + 1) as f64, freedom) / known[k]),
-        }
+        Quantile { growth: std::array::from_fn(|k| f_quantile(0.05, (k + 1) as f64, freedom) / known[k]) }
     }
 
     /// [`bound`] of a covariance whose size was found so.

@@ -74,7 +74,12 @@ impl Part {
             freedom: self.freedom,
         };
         if self.mean_square.sqrt() < ROUNDING {
-            return Settled { robot: 0.0, instrument: 0.0, attribution: Attribution::Robot, freedom: f64::INFINITY };
+            return Settled {
+                robot: 0.0,
+                instrument: 0.0,
+                attribution: Attribution::Robot,
+                freedom: f64::INFINITY,
+            };
         }
         if let (Some((variance, _)), Some(against)) = (self.stated, self.against_stated()) {
             return match against {
@@ -157,7 +162,11 @@ impl Sums {
         let repeats = self.components as f64 / self.groups.max(1) as f64;
         let whole = (self.components as f64 - told).max(1.0);
         let is_repeated = within_freedom > 0.0;
-        let mean_square = if is_repeated { (self.squares - self.within).max(0.0) / freedom } else { self.squares / freedom };
+        let mean_square = if is_repeated {
+            (self.squares - self.within).max(0.0) / freedom
+        } else {
+            self.squares / freedom
+        };
         let variance = self.variances / self.components.max(1) as f64;
         Part {
             mean_square,
@@ -165,7 +174,8 @@ impl Sums {
             within: (if is_repeated { self.within / within_freedom } else { 0.0 }, within_freedom),
             repeats,
             // Of all rows: noise alone explains those within configurations as well as the others.
-            stated: (stated && self.components > 0).then(|| (variance, if is_repeated { self.between(freedom) } else { self.whitened / whole })),
+            stated: (stated && self.components > 0)
+                .then(|| (variance, if is_repeated { self.between(freedom) } else { self.whitened / whole })),
         }
     }
 
@@ -190,7 +200,9 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
             let noise = |row: u32| view.data.observations[row as usize].noise_or(view.noise);
             let of = |row: u32| place(row).map(|error| (error, noise(row)));
             let seen: Vec<_> = same.iter().filter_map(|&row| of(row)).collect();
-            position.add(&seen.iter().map(|(error, noise)| (error.position_m, noise.position_m)).collect::<Vec<_>>());
+            position.add(
+                &seen.iter().map(|(error, noise)| (error.position_m, noise.position_m)).collect::<Vec<_>>(),
+            );
             rotation.add(
                 &seen
                     .iter()
@@ -212,9 +224,10 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
         position.part(told - by_rotations, view.noise_is_stated[0]),
         rotation.part(by_rotations, view.noise_is_stated[1]),
     ];
-    let explained = parts.iter().zip([&position, &rotation]).all(|(part, sums)| {
-        sums.components == 0 || part.against_stated() == Some(std::cmp::Ordering::Equal)
-    });
+    let explained = parts
+        .iter()
+        .zip([&position, &rotation])
+        .all(|(part, sums)| sums.components == 0 || part.against_stated() == Some(std::cmp::Ordering::Equal));
     let variance = if explained { 1.0 } else { variance };
     let numbers = position.groups + rotation.groups;
     Remainder { position: parts[0], rotation: parts[1], variance, told, numbers }
@@ -244,7 +257,8 @@ fn told_by_rotations(
     if rotation.components == 0 {
         return 0.0;
     }
-    let in_proportion = turned + (told - turned).max(0.0) * (rotation.groups as f64 - turned) / (total - turned).max(1.0);
+    let in_proportion =
+        turned + (told - turned).max(0.0) * (rotation.groups as f64 - turned) / (total - turned).max(1.0);
     if view.rows.len() > FEW {
         return in_proportion;
     }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::rows::TAILS;
 use super::super::row_errors;
+use super::rows::TAILS;
 use crate::estimate::{Estimate, Packed};
 use crate::measurement::Dataset;
 
@@ -39,7 +39,12 @@ impl Configurations {
     }
 
     /// For each row of the data the share of its length that counts: less where the other rows of its configuration are off alike.
-    pub(in crate::calibration) fn shares(&self, data: &Dataset, packed: &Packed, estimate: &Estimate) -> Vec<f64> {
+    pub(in crate::calibration) fn shares(
+        &self,
+        data: &Dataset,
+        packed: &Packed,
+        estimate: &Estimate,
+    ) -> Vec<f64> {
         let mut shares = vec![1.0; data.len()];
         let rows: Vec<u32> = self.groups.concat();
         if rows.is_empty() {

@@ -260,7 +260,8 @@ impl<'c> Reweighted<'c> {
             if self.reweight(task, &parts, loss) < SETTLED {
                 break;
             }
-            let weighted = Task { weights: Some(&self.weights), options: &quick, ..self.believing(task, source) };
+            let weighted =
+                Task { weights: Some(&self.weights), options: &quick, ..self.believing(task, source) };
             let (estimate, _, summary) = weighted.fit(self.estimate.clone(), self.noise);
             self.iterations += summary.iterations;
             self.trace.extend(summary.trace);

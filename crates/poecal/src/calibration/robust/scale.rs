@@ -1,8 +1,8 @@
 //! Robust scale: the noise that the middle of the rows shows, whatever the worst half does (theory.md §6 (34a)).
 
 use crate::calibration::CalibrationOptions;
-use crate::distributions;
 use crate::calibration::noise::{ROUNDING, stated};
+use crate::distributions;
 use crate::estimate::{Estimate, Packed, map_squares};
 use crate::measurement::{Dataset, Noise};
 

@@ -1,7 +1,7 @@
 //! A calibration judged by measurements that it did not see.
 
 use super::CalibrationFile;
-use crate::calibration::{Judgement, KeptPart, Promise, Refitted, Subject, judge};
+use crate::calibration::{Judgement, Kept, KeptPart, Promise, Refitted, Subject, judge};
 use crate::error::Result;
 use crate::measurement::Dataset;
 
@@ -24,10 +24,10 @@ impl CalibrationFile {
             self.check_targets(data)?;
         }
         let noise = self.noise()?;
-        // A calibration without uncertainty, or of other targets, promises nothing.
-        let stated = self.uncertainty.is_some() && !refit_tool;
-        let names: Vec<Option<&str>> = data.targets.iter().map(Option::as_deref).collect();
-        let found = if stated { Some(self.uncertainty(&names)?) } else { None };
+        // A calibration without uncertainty promises nothing; of targets that are found anew, none is the calibration's.
+        let known = data.targets.iter().map(Option::as_deref).filter(|_| !refit_tool);
+        let names: Vec<Option<&str>> = known.collect();
+        let found = if self.uncertainty.is_some() { Some(self.uncertainty(&names)?) } else { None };
         let promise = found.as_ref().map(|(uncertainty, targets)| Promise {
             uncertainty,
             targets,
@@ -54,29 +54,56 @@ impl CalibrationFile {
         let kept = judgement.promised.filter(|_| rms_mm > ROUNDING_MM);
         // Where most errors are as promised, single rows are wrong, and not the device.
         let mostly = kept.is_some_and(|it| it.position_mm.inside_bound95 > 0.5);
-        let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
-        if !refit_frame && !mostly && rms_mm > MOVED_DEVICE * own_mm {
-            return Some(format!(
-                "the position error is {:.0} times that of the calibration itself ({rms_mm:.2e} mm, {own_mm:.2e} mm): \
-                 if the measuring device was moved, find its frame anew with --refit-frame",
-                rms_mm / own_mm
-            ));
-        }
-        if mostly && rms_mm > MOVED_DEVICE * own_mm {
+        let is_far = rms_mm > MOVED_DEVICE * own_mm;
+        if mostly && is_far {
             return Some(format!(
                 "most errors are as promised, the largest is {:.2} mm: some measurements are grossly wrong",
                 judgement.calibrated.position_mm.max
             ));
         }
-        let kept = kept.filter(|it| it.least_inside() < BROKEN)?;
-        let share = |part: KeptPart| 100.0 * (1.0 - part.inside_bound95);
-        let position = format!("{:.0} % of the position errors", share(kept.position_mm));
-        let rotation =
-            kept.rotation_deg.map(|part| format!(" and {:.0} % of the rotation errors", share(part)));
+        let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
+        let broken = kept.filter(|it| it.least_inside() < BROKEN);
+        let Some(kept) = broken else {
+            let times = rms_mm / own_mm;
+            return (kept.is_none() && is_far && !refit_frame).then(|| moved_words(times, rms_mm, own_mm));
+        };
+        let exceeding = exceeding(&kept);
+        let Some(some) = &judgement.in_sampled_range else {
+            let moved = if refit_frame { "" } else { ", and whether the measuring device was moved" };
+            return Some(format!(
+                "no row lies inside the range that was sampled for the calibration, and {exceeding} exceed their 95 % bound: these rows \
+                 show that it does not hold where they are, but neither whether it holds where it was made{moved}"
+            ));
+        };
+        if some.promised.least_inside() >= BROKEN {
+            return Some(format!(
+                "the {} rows inside the sampled range are as promised; outside it the calibration does not hold ({exceeding} in all exceed \
+                 their 95 % bound)",
+                some.count
+            ));
+        }
+        if !refit_frame && is_far {
+            return Some(moved_words(rms_mm / own_mm, rms_mm, own_mm));
+        }
+        let place = if kept.inside_sampled_range < 1.0 { " inside the sampled range" } else { "" };
         Some(format!(
-            "{position}{} exceed their 95 % bound: the robot, its tool or the measuring device is not as it was calibrated, it is used \
-             outside the sampled range, or orientations are written in another form",
-            rotation.unwrap_or_default()
+            "{}{place} exceed their 95 % bound: the robot, its tool or the measuring device is not as it was calibrated, or orientations \
+             are written in another form",
+            self::exceeding(&some.promised)
         ))
     }
+}
+
+/// How many errors are beyond their bounds.
+fn exceeding(kept: &Kept) -> String {
+    let share = |part: KeptPart| 100.0 * (1.0 - part.inside_bound95);
+    let rotation = kept.rotation_deg.map(|part| format!(" and {:.0} % of the rotation errors", share(part)));
+    format!("{:.0} % of the position errors{}", share(kept.position_mm), rotation.unwrap_or_default())
+}
+
+fn moved_words(times: f64, rms_mm: f64, own_mm: f64) -> String {
+    format!(
+        "the position error is {times:.0} times that of the calibration itself ({rms_mm:.2e} mm, {own_mm:.2e} mm): \
+         if the measuring device was moved, find its frame anew with --refit-frame"
+    )
 }

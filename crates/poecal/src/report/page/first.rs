@@ -1,11 +1,14 @@
-//! The first screen: robot, data, verdict, errors on rows that were not fitted, one picture.
+//! The first screen: verdict, what to look at, errors on rows that were not fitted, one picture; the same words as on the terminal.
 
 use super::figures;
 use super::html::{Html, Table, count, figure, path, quoted};
+use super::trust::direction_words;
+use crate::analysis::Direction;
 use crate::calibration::{Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
-use crate::io::calibration_file::{CalibrationFile, KindWord};
+use crate::io::calibration_file::{CalibrationFile, FrameWord, KindWord};
 use crate::io::residuals::Residuals;
 use crate::report::plot::escape;
+use crate::report::summary::{Place, Point, expected_words, look_at};
 use crate::report::table::STATISTICS;
 
 /// A model: its word, and how to take it from a set.
@@ -32,26 +35,78 @@ pub(super) fn screen(page: &mut Html, file: &CalibrationFile, residuals: &Residu
     verdict(page, file);
     page.raw("<div class=\"first\">\n<div>");
     let held_out = file.accuracy.held_out.as_ref();
-    let (set, key, of) = match held_out {
-        Some(set) => (set, "accuracy.held_out", "rows that were not fitted"),
-        None => (&file.accuracy.training, "accuracy.training", "the fitted rows, since none was held out"),
-    };
-    page.table(&position_table(&format!("Position error on {of}, mm"), set, key));
-    if let Some(table) = rotation_table(&format!("Rotation error on {of}, degrees"), set, key) {
-        page.table(&table);
+    let of = if held_out.is_some() { "rows held out" } else { "the fitted rows, since none was held out" };
+    page.table(&lead_table(&format!("Position error on {of}, mm"), file, "position_mm", |model| {
+        Some(model.position_mm)
+    }));
+    let set = held_out.unwrap_or(&file.accuracy.training);
+    if set.calibrated.rotation_deg.is_some() {
+        let caption = format!("Rotation error on {of}, degrees");
+        page.table(&lead_table(&caption, file, "rotation_deg", |model| model.rotation_deg));
+    }
+    if let (None, Some(found)) = (held_out, &file.cross_validation) {
+        let rms = figure(found.random.position_rms_mm, "cross_validation.random.position_rms_mm");
+        page.note(&format!("Cross-validation: {rms} mm (RMS) on rows that were not fitted."));
     }
     page.note(
-        "<b>Nominal</b>: the model as delivered. <b>Registered</b>: tool and measuring device found too. <b>Calibrated</b>: the joints' \
-         axes found too. What calibrating this robot gained is calibrated against registered.",
+        "<b>As drawn</b>: axes of the model, tool and measuring device fitted. <b>Calibrated</b>: the axes fitted too. The gain of the \
+         calibration is the difference.",
     );
     facts(page, file, residuals);
     page.raw("</div>");
+    let key = if held_out.is_some() { "accuracy.held_out.count" } else { "accuracy.training.count" };
     page.plots(
         &[figures::distributions(residuals, held_out.is_some())],
-        &format!("{} {of}.", count(set.count, &format!("{key}.count"))),
+        &format!("{} {of}. Nominal: the model as delivered, registered: as drawn.", count(set.count, key)),
     );
     page.raw("</div>");
     contents(page, file);
+}
+
+/// Errors before and after, of the rows held out or, if there are none, of those fitted.
+fn lead_table(
+    caption: &str,
+    file: &CalibrationFile,
+    quantity: &str,
+    of: fn(&ModelAccuracy) -> Option<Statistic>,
+) -> Table {
+    let (set, key, rest, rest_key, suspected) = match &file.accuracy.held_out {
+        Some(set) => (
+            set,
+            "accuracy.held_out",
+            &file.robust.held_out_without_suspected,
+            "robust.held_out_without_suspected",
+            file.robust.suspected_held_out,
+        ),
+        None => (
+            &file.accuracy.training,
+            "accuracy.training",
+            &file.robust.training_without_suspected,
+            "robust.training_without_suspected",
+            file.robust.suspected_fit,
+        ),
+    };
+    let drawn = match file.measurement_frame.known {
+        FrameWord::Unknown => "as drawn, tool and device fitted",
+        FrameWord::Base => "as drawn, tool fitted",
+    };
+    let mut rows = vec![
+        (drawn.to_owned(), &set.registered, format!("{key}.registered")),
+        ("calibrated".to_owned(), &set.calibrated, format!("{key}.calibrated")),
+    ];
+    if let Some(rest) = rest {
+        let name = format!("calibrated, without {suspected} suspected");
+        rows.push((name, &rest.calibrated, format!("{rest_key}.calibrated")));
+    }
+    let mut table = Table::new(caption, 1, &["", "mean", "RMS", "95 %", "max"]);
+    for (name, model, key) in rows {
+        let cells = STATISTICS.iter().zip(STATISTIC_KEYS).map(|((_, value), statistic)| {
+            of(model)
+                .map_or_else(String::new, |it| figure(value(&it), &format!("{key}.{quantity}.{statistic}")))
+        });
+        table.rows.push(std::iter::once(name).chain(cells).collect());
+    }
+    table
 }
 
 /// How many joints of which kind, and from where to where.
@@ -74,21 +129,45 @@ fn verdict(page: &mut Html, file: &CalibrationFile) {
         None => ("unknown", "No verdict: the calibration was written by an earlier version", [].as_slice()),
     };
     page.raw(&format!("<section class=\"verdict {class}\" aria-labelledby=\"verdict-title\">\n<h2 id=\"verdict-title\"><span class=\"sign\" aria-hidden=\"true\"></span>{words}</h2>"));
-    let reasons = reasons.iter().enumerate();
+    if let Some(expected) = expected_words(file, figure) {
+        page.text(&format!("E{}.", expected.trim_start_matches('e')));
+    }
+    // What speaks for the best verdict is what the line above says.
+    let is_good = file.verdict.as_ref().is_some_and(|verdict| verdict.level == Level::Good);
+    let reasons = reasons.iter().enumerate().filter(|_| !is_good);
     let reasons: Vec<String> =
         reasons.map(|(k, reason)| quoted(reason, &format!("verdict.reasons.{k}"))).collect();
-    page.list(&reasons);
+    if !reasons.is_empty() {
+        page.list(&reasons);
+    }
     page.raw("</section>");
-    let warnings = file.warnings.iter().enumerate().map(|(k, text)| quoted(text, &format!("warnings.{k}")));
-    let stated =
-        |text: &str| file.verdict.as_ref().is_some_and(|verdict| verdict.reasons.iter().any(|it| it == text));
-    let found = file.diagnosis.iter().enumerate().filter(|(_, found)| !stated(&found.statement));
-    let found = found.map(|(k, found)| quoted(&found.statement, &format!("diagnosis.{k}.statement")));
-    let doubts: Vec<String> = warnings.chain(found).collect();
-    if !doubts.is_empty() {
-        page.raw("<section class=\"doubts\" aria-labelledby=\"doubts-title\">\n<h2 id=\"doubts-title\">Look at this first</h2>");
-        page.list(&doubts);
+    let points: Vec<String> = look_at(file).iter().filter_map(|point| point_words(file, point)).collect();
+    if !points.is_empty() {
+        page.raw("<section class=\"doubts\" aria-labelledby=\"doubts-title\">\n<h2 id=\"doubts-title\">Look at</h2>");
+        page.list(&points);
         page.raw("</section>");
+    }
+}
+
+/// A point with the keys of what it quotes; nothing of reasons, which stand above.
+fn point_words(file: &CalibrationFile, point: &Point) -> Option<String> {
+    let direction = |degree: &str, list: &[Direction], name: &str, k: usize| {
+        let found = list.get(k)?;
+        Some(format!("{degree}: {}", direction_words(found, &format!("identifiability.{name}.{k}"))))
+    };
+    let known = &file.identifiability;
+    match point.place {
+        Place::Reason => None,
+        Place::Diagnosis(k) => Some(quoted(&point.text, &format!("diagnosis.{k}.statement"))),
+        Place::Warning(k) => Some(quoted(&point.text, &format!("warnings.{k}"))),
+        Place::Suspects => Some(format!("<a href=\"#suspects\">{}</a>", escape(&point.text))),
+        Place::Joint(k) => {
+            let joint = file.corrections.get(k)?;
+            let words = quoted(joint.suspicious.as_deref()?, &format!("corrections.{k}.suspicious"));
+            Some(format!("{}: {words}", quoted(&joint.joint, &format!("corrections.{k}.joint"))))
+        }
+        Place::Open(k) => direction("unknown", &known.unidentifiable, "unidentifiable", k),
+        Place::Weak(k) => direction("weak", &known.weak, "weak", k),
     }
 }
 
@@ -163,8 +242,10 @@ fn facts(page: &mut Html, file: &CalibrationFile, residuals: &Residuals) {
             figure(uncertainty.measured.sigma_position_mm, "uncertainty.measured.sigma_position_mm");
         let range = figure(uncertainty.range.sigma_position_mm, "uncertainty.range.sigma_position_mm");
         facts.push((
-            "To expect",
-            format!("{measured} mm (RMS) where it was measured, {range} mm anywhere within the limits"),
+            "Expected error",
+            format!(
+                "{measured} mm (RMS) at the measured configurations, {range} mm anywhere within the limits"
+            ),
         ));
     }
     page.facts(&facts);

@@ -29,7 +29,7 @@ fn unit_of(file: &CalibrationFile, joint: &str) -> (f64, &'static str) {
 
 fn expected(page: &mut Html, found: &UncertaintyEntry) {
     let head = ["configurations", "RMS", "95 % bound, mean", "95 % bound, worst"];
-    let mut table = Table::new("Errors to expect of predicted positions, mm", 1, &head);
+    let mut table = Table::new("Expected errors of predicted positions, mm", 1, &head);
     for (words, set, key) in
         [("as measured", &found.measured, "measured"), ("anywhere within the limits", &found.range, "range")]
     {
@@ -138,7 +138,7 @@ fn parts(page: &mut Html, file: &CalibrationFile, found: &UncertaintyEntry) {
     }
     page.heading("Where errors are to be expected");
     page.text(
-        "Errors of position to expect, mm (RMS), by parts of each joint's range, with the other joints anywhere in theirs. The darker a \
+        "Expected errors of position, mm (RMS), by parts of each joint's range, with the other joints anywhere in theirs. The darker a \
          cell, the larger the error: the palest is the least of the table, the darkest the largest.",
     );
     let most = file
@@ -148,7 +148,7 @@ fn parts(page: &mut Html, file: &CalibrationFile, found: &UncertaintyEntry) {
         .max();
     let names: Vec<String> = (1..=most.unwrap_or(0)).map(|part| format!("part {part}")).collect();
     let head: Vec<&str> = std::iter::once("joint").chain(names.iter().map(String::as_str)).collect();
-    let mut table = Table::new("Errors to expect by parts of each joint's range, mm (RMS)", 1, &head);
+    let mut table = Table::new("Expected errors by parts of each joint's range, mm (RMS)", 1, &head);
     for joint in &file.joints {
         let (factor, unit) = unit_of(file, &joint.name);
         let cells = found.parts.iter().enumerate().filter(|(_, part)| part.joint == joint.name);
@@ -199,16 +199,18 @@ fn told(page: &mut Html, file: &CalibrationFile) {
 }
 
 fn items(directions: &[Direction], key: &str) -> Vec<String> {
-    let item = |(k, direction): (usize, &Direction)| {
-        let key = |name: &str| format!("identifiability.{key}.{k}.{name}");
-        let times = if direction.directions > 1 {
-            format!(" ({} directions)", count(direction.directions, &key("directions")))
-        } else {
-            String::new()
-        };
-        format!("{}{times}", quoted(&direction.description, &key("description")))
-    };
+    let item = |(k, direction)| direction_words(direction, &format!("identifiability.{key}.{k}"));
     directions.iter().enumerate().map(item).collect()
+}
+
+/// A direction with the keys of its words.
+pub(super) fn direction_words(direction: &Direction, key: &str) -> String {
+    let times = if direction.directions > 1 {
+        format!(" ({} directions)", count(direction.directions, &format!("{key}.directions")))
+    } else {
+        String::new()
+    };
+    format!("{}{times}", quoted(&direction.description, &format!("{key}.description")))
 }
 
 fn observability(page: &mut Html, file: &CalibrationFile) {

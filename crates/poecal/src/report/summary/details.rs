@@ -1,0 +1,143 @@
+//! What `--verbose` adds: the robot, the rows, all errors of the fit, what every figure comes from.
+
+use std::fmt::Write as _;
+
+use super::super::identify::coverage_row;
+use super::super::outliers;
+use super::super::table::{accuracy_table, line, number};
+use crate::calibration::NoiseSource;
+use crate::error::shown;
+use crate::io::calibration_file::{CalibrationFile, KindWord};
+use crate::measurement::PoseResidual;
+use crate::parameters::Formulation;
+use crate::solve::{Method, Termination};
+
+pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
+    line(out, "robot", &robot_words(file));
+    line(out, "measurements", &rows_words(file));
+    line(out, "noise", &noise_words(file));
+    out.push('\n');
+    let training = file.robust.training_without_suspected.as_ref().unwrap_or(&file.accuracy.training);
+    let held_out = file.robust.held_out_without_suspected.as_ref().or(file.accuracy.held_out.as_ref());
+    out.push_str(&accuracy_table(training, held_out));
+    if file.robust.suspected_fit + file.robust.suspected_held_out > 0 {
+        out.push_str("  (without suspected rows)\n");
+    }
+    out.push('\n');
+    outliers::suspected(out, file);
+    line(out, "solver", &solver_words(file));
+    if let Some(words) = formulation_words(file) {
+        line(out, "formulation", &words);
+    }
+    if let Some(condition) = file.identifiability.condition {
+        line(out, "condition", &format!("{condition:.3e} over what is known"));
+    }
+    trust(out, file);
+    coverage(out, file);
+}
+
+fn robot_words(file: &CalibrationFile) -> String {
+    let sliding = file.joints.iter().filter(|joint| joint.kind == KindWord::Prismatic).count();
+    let kinds = [(file.joints.len() - sliding, "revolute"), (sliding, "prismatic")];
+    let kinds: Vec<String> =
+        kinds.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
+    let [name, base, tip] =
+        [&file.robot.name, &file.robot.base_link, &file.robot.tip_link].map(|name| shown(name));
+    format!("{name}: {}, from {base} to {tip}", kinds.join(", "))
+}
+
+fn rows_words(file: &CalibrationFile) -> String {
+    let held_out = file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
+    let fitted = file.accuracy.training.count;
+    let targets = match file.targets.len() {
+        0 | 1 => String::new(),
+        count => format!(" of {count} targets"),
+    };
+    format!("{} rows{targets}: {fitted} fitted, {held_out} held out", fitted + held_out)
+}
+
+fn noise_words(file: &CalibrationFile) -> String {
+    let source = match file.noise.source {
+        NoiseSource::Rows => return "as each row states it".to_owned(),
+        NoiseSource::Exact => return "none: the fit leaves nothing but rounding".to_owned(),
+        NoiseSource::Given => "as given",
+        NoiseSource::Estimated => "estimated from the fit",
+    };
+    let rotation = file.noise.sigma_rotation_deg;
+    let rotation = rotation.map_or_else(String::new, |sigma| format!(", {} deg", number(sigma)));
+    format!("{} mm{rotation} each component, {source}", number(file.noise.sigma_position_mm))
+}
+
+fn solver_words(file: &CalibrationFile) -> String {
+    let solver = &file.solver;
+    let end = match solver.termination {
+        Termination::Optimum | Termination::StepVanished | Termination::NoProgress => "at the optimum",
+        Termination::IterationLimit => "NOT converged: the limit of iterations was reached",
+        Termination::NotFinite => "NOT converged: residuals are not finite",
+    };
+    let restarts = match solver.restarts {
+        0 => String::new(),
+        1 => ", 1 further start tried".to_owned(),
+        count => format!(", {count} further starts tried"),
+    };
+    format!("{} iterations, {end}{restarts}", solver.iterations)
+}
+
+/// How the problem was written, where not as usual, and what follows from that.
+fn formulation_words(file: &CalibrationFile) -> Option<String> {
+    let solver = &file.solver;
+    let poses = file.accuracy.training.calibrated.rotation_deg.is_some();
+    let usual_residual = !poses || solver.pose_residual == PoseResidual::default();
+    if usual_residual && (solver.formulation, solver.method) == (Formulation::default(), Method::default()) {
+        return None;
+    }
+    let residual =
+        if poses { format!(" {} residual of poses,", solver.pose_residual.word()) } else { String::new() };
+    let mut words = format!("{},{residual} {}", solver.formulation.word(), solver.method.word());
+    if solver.formulation.has_free_screws() && solver.method == Method::GaussNewton {
+        words
+            .push_str("; screws are normalised after each step, so with noise this is not the least squares");
+    }
+    if solver.formulation.has_offsets() {
+        words.push_str("; joint offsets cannot be told from screws, and stand moved into them");
+    }
+    Some(words)
+}
+
+/// Expected errors, cross-validation, and what each joint's correction is worth.
+fn trust(out: &mut String, file: &CalibrationFile) {
+    if let Some(expected) = &file.uncertainty {
+        let words = format!(
+            "{} mm (RMS) at the measured configurations, {} mm anywhere within the limits",
+            number(expected.measured.sigma_position_mm),
+            number(expected.range.sigma_position_mm)
+        );
+        line(out, "expected", &words);
+    }
+    if let Some(found) = &file.cross_validation {
+        let worst = found.blocked.iter().max_by(|a, b| a.position_rms_mm.total_cmp(&b.position_rms_mm));
+        let worst = worst.map_or_else(String::new, |worst| {
+            format!("; worst block: {}, {} mm", worst.left_out, number(worst.position_rms_mm))
+        });
+        let words = format!("{} mm (RMS) on random rows{worst}", number(found.random.position_rms_mm));
+        line(out, "not fitted", &format!("cross-validation: {words}"));
+    }
+    let mut joints: Vec<_> = file.corrections.iter().collect();
+    joints.sort_by(|a, b| b.left_nominal_rms_mm.total_cmp(&a.left_nominal_rms_mm));
+    let joints: Vec<String> =
+        joints.iter().map(|it| format!("{} {} mm", it.joint, number(it.left_nominal_rms_mm))).collect();
+    if !joints.is_empty() {
+        line(out, "per joint", &format!("errors (RMS) with one joint left nominal: {}", joints.join(", ")));
+    }
+}
+
+fn coverage(out: &mut String, file: &CalibrationFile) {
+    if file.coverage.is_empty() {
+        return;
+    }
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "coverage", "sampled", "limits", "share");
+    for (joint, entry) in file.coverage.iter().zip(&file.joints) {
+        let _ = writeln!(out, "{}", coverage_row(joint, entry.kind.into()));
+    }
+}

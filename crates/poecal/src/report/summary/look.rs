@@ -1,0 +1,182 @@
+//! What of a calibration needs attention.
+
+use super::super::table::number;
+use super::names;
+use crate::analysis::{Cause, Direction};
+use crate::calibration::{Level, Loss};
+use crate::io::calibration_file::{CalibrationFile, OutlierEntry};
+
+/// Suspected rows that are named.
+const WORST: usize = 3;
+/// Characters of a direction's description that are told as they stand.
+const SHORT: usize = 160;
+/// Words of the warning that is about suspected rows, which are told by their figures instead.
+const SUSPECTS: &str = "grossly off";
+
+/// Where in `calibration.json` a point comes from, with its index there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::report) enum Place {
+    Diagnosis(usize),
+    Warning(usize),
+    Reason,
+    Suspects,
+    Joint(usize),
+    Open(usize),
+    Weak(usize),
+}
+
+impl Place {
+    /// Points of one sort compete for room.
+    pub(super) fn sort(self) -> u8 {
+        match self {
+            Place::Diagnosis(_) => 0,
+            Place::Warning(_) => 1,
+            Place::Reason => 2,
+            Place::Suspects => 3,
+            Place::Joint(_) => 4,
+            Place::Open(_) => 5,
+            Place::Weak(_) => 6,
+        }
+    }
+}
+
+/// Something to look at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::report) struct Point {
+    pub(in crate::report) text: String,
+    pub(in crate::report) place: Place,
+}
+
+/// What needs attention, the gravest first. The verdict's first reason stands beside the verdict.
+pub(in crate::report) fn look_at(file: &CalibrationFile) -> Vec<Point> {
+    let stated = file.verdict.as_ref().map_or(&[][..], |verdict| &verdict.reasons);
+    let suspects = file.robust.suspected_fit + file.robust.suspected_held_out;
+    let point = |place: Place, text: &str| Point { text: text.to_owned(), place };
+    let is_new = |text: &str| !stated.iter().any(|reason| reason == text);
+
+    let mut points = Vec::new();
+    let found = file.diagnosis.iter().enumerate().filter(|(_, found)| is_new(&found.statement));
+    points.extend(found.map(|(k, found)| point(Place::Diagnosis(k), &found.statement)));
+    let warnings = file.warnings.iter().enumerate().filter(|(_, text)| is_new(text));
+    let warnings = warnings.filter(|(_, text)| suspects == 0 || !text.contains(SUSPECTS));
+    points.extend(warnings.map(|(k, text)| point(Place::Warning(k), text)));
+    points.extend(reasons(file).iter().skip(1).map(|text| point(Place::Reason, text)));
+    if suspects > 0 {
+        points.push(point(Place::Suspects, &suspects_words(file)));
+    }
+    for (k, joint) in file.corrections.iter().enumerate() {
+        if let Some(words) = &joint.suspicious {
+            points.push(point(Place::Joint(k), &format!("{}: {words}", joint.joint)));
+        }
+    }
+    let known = &file.identifiability;
+    if known.rank > 0 || known.parameters == 0 {
+        let open = known.unidentifiable.iter().enumerate();
+        points.extend(open.map(|(k, it)| point(Place::Open(k), &direction_words("unknown", it))));
+        // What is open for a reason is also weak beside it for the same one.
+        let is_told = |weak: &Direction| {
+            known.unidentifiable.iter().any(|open| (open.cause, &open.joints) == (weak.cause, &weak.joints))
+        };
+        let weak = known.weak.iter().enumerate().filter(|(_, it)| !is_told(it));
+        points.extend(weak.map(|(k, it)| point(Place::Weak(k), &direction_words("weak", it))));
+    }
+    points
+}
+
+/// Why the verdict is no better, in the verdict's words; joints that moved by little are named together.
+pub(super) fn reasons(file: &CalibrationFile) -> Vec<String> {
+    let Some(verdict) = file.verdict.as_ref().filter(|verdict| verdict.level != Level::Good) else {
+        return Vec::new();
+    };
+    let moved = |reason: &str| {
+        let joints =
+            file.coverage.iter().filter_map(|it| Some((&it.joint, reason.strip_prefix(&*it.joint)?)));
+        let mut shares = joints.filter_map(|(joint, rest)| {
+            let (share, _) = rest.strip_prefix(" was moved through ")?.split_once(" %")?;
+            Some(format!("{joint} {share} %"))
+        });
+        shares.next()
+    };
+    let little: Vec<String> = verdict.reasons.iter().filter_map(|reason| moved(reason)).collect();
+    if little.len() < 2 {
+        return verdict.reasons.clone();
+    }
+    let little: Vec<&str> = little.iter().map(String::as_str).collect();
+    let together = format!("joints moved through a part of their range only: {}", names(&little));
+    let mut together = Some(together);
+    let told = verdict.reasons.iter().filter_map(|reason| match moved(reason) {
+        Some(_) => together.take(),
+        None => Some(reason.clone()),
+    });
+    told.collect()
+}
+
+/// How many rows are suspected, what that means for the fit, and the worst of them.
+fn suspects_words(file: &CalibrationFile) -> String {
+    let robust = &file.robust;
+    let all = file.accuracy.training.count + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
+    let count = robust.suspected_fit + robust.suspected_held_out;
+    let rows = if all == 1 {
+        "row is"
+    } else if count == 1 {
+        "rows is"
+    } else {
+        "rows are"
+    };
+    let counted = match robust.loss {
+        _ if robust.suspected_fit == 0 => "",
+        Some(Loss::Tukey) => ", hardly counted",
+        Some(Loss::Huber | Loss::Cauchy) => ", counted less",
+        None => ", counted in full: see --robust",
+    };
+    let sets = format!("{} fitted{counted}; {} held out", robust.suspected_fit, robust.suspected_held_out);
+    let worst: Vec<String> =
+        file.outliers.iter().take(WORST).scan("", |last, outlier| Some(named(outlier, last))).collect();
+    let worst = if worst.is_empty() { String::new() } else { format!("; worst {}", worst.join(", ")) };
+    format!("{count} of {all} {rows} grossly off ({sets}){worst}")
+}
+
+/// A row by file and line, the file only where it is another one than before.
+fn named<'a>(outlier: &'a OutlierEntry, last: &mut &'a str) -> String {
+    let place = if *last == outlier.file {
+        outlier.row.to_string()
+    } else {
+        format!("{}:{}", outlier.file, outlier.row)
+    };
+    *last = &outlier.file;
+    format!("{place} by {} mm", number(outlier.residual_mm))
+}
+
+/// What of the robot is open or hardly told; in few words where there are many joints to name.
+fn direction_words(degree: &str, direction: &Direction) -> String {
+    let times = if direction.directions > 1 {
+        format!(" ({} directions)", direction.directions)
+    } else {
+        String::new()
+    };
+    let is_short = direction.description.chars().count() <= SHORT && direction.joints.len() <= super::MOST;
+    if is_short || direction.joints.is_empty() {
+        return format!("{degree}: {}{times}", direction.description);
+    }
+    let joints: Vec<&str> = direction.joints.iter().map(String::as_str).collect();
+    format!("{degree}: {}: {}{times}", names(&joints), cause_words(direction.cause))
+}
+
+fn cause_words(cause: Cause) -> &'static str {
+    match cause {
+        Cause::OwnAxis => "nothing shows a motion along or about their own axes",
+        Cause::BaseFrame => "where the base stands is a choice",
+        Cause::JointOffsets => "their zeros cannot be told from their axes",
+        Cause::NoOrientation => "no orientation was measured",
+        Cause::StoodStill => "did not move",
+        Cause::TooFew => "too few measurements",
+        Cause::PointOnAxis => "the point measured lies on the axis",
+        Cause::OneOrientation => "the tool kept one orientation",
+        Cause::OneTurningDirection => "the tool turned about one direction only",
+        Cause::MovedTogether => "moved in a fixed relation only",
+        Cause::SmallMotion => "moved by little",
+        Cause::DependentMotion => "moved in combinations that hide their axes",
+        Cause::SeenOnce => "a target was seen once",
+        Cause::Other => "these configurations hardly show their axes",
+    }
+}

@@ -1,0 +1,168 @@
+//! The table of a calibration in 80 columns: the verdict, what to look at, the errors, what is known. All else on demand.
+
+mod details;
+mod errors;
+mod look;
+
+use look::reasons;
+pub(super) use look::{Place, Point, look_at};
+
+use super::table::{line, number};
+use crate::analysis::{Cause, Direction};
+use crate::calibration::Level;
+use crate::io::calibration_file::CalibrationFile;
+
+/// The most that a list of the table names.
+pub(super) const MOST: usize = 5;
+
+/// How much a table tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Detail {
+    /// What everyone needs: about twenty lines.
+    #[default]
+    Short,
+    /// Everything, and lists as long as they are.
+    Full,
+}
+
+/// What a calibration comes to, as text of lines up to 80 characters: the verdict first.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate};
+/// use poecal::io::calibration_file::{CalibrationFile, Inputs};
+/// use poecal::report::{Detail, summary};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+/// assert!(summary(&file, Detail::Short).starts_with("verdict       good: expected error "));
+/// assert!(summary(&file, Detail::Full).contains("solver"));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[must_use]
+pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
+    let mut out = String::new();
+    verdict(&mut out, file);
+    points(&mut out, file, detail);
+    out.push('\n');
+    errors::table(&mut out, file);
+    out.push('\n');
+    known(&mut out, file);
+    if detail == Detail::Full {
+        out.push('\n');
+        details::lines(&mut out, file);
+    }
+    out
+}
+
+/// Warnings and diagnoses of a calibration that its table does not name for want of room.
+#[must_use]
+pub fn unsaid(file: &CalibrationFile, detail: Detail) -> Vec<String> {
+    let (_, rest) = shown(look_at(file), detail);
+    let is_warning = |point: &&Point| matches!(point.place, Place::Warning(_) | Place::Diagnosis(_));
+    rest.iter().filter(is_warning).map(|point| point.text.clone()).collect()
+}
+
+/// What the verdict says of the error, in plain words; nothing where no use is advised or nothing is known.
+pub(super) fn expected_words(file: &CalibrationFile, figure: impl Fn(f64, &str) -> String) -> Option<String> {
+    let level = file.verdict.as_ref()?.level;
+    let expected = file.uncertainty.as_ref()?;
+    let (sigma, key, place) = match level {
+        Level::DoNotUse => return None,
+        Level::InsideSampledRange => (expected.measured.sigma_position_mm, "measured", "there"),
+        Level::Good => (expected.range.sigma_position_mm, "range", "anywhere within the limits"),
+    };
+    let key = format!("uncertainty.{key}.sigma_position_mm");
+    Some(format!("expected error {} mm (RMS) {place}", figure(sigma, &key)))
+}
+
+fn verdict(out: &mut String, file: &CalibrationFile) {
+    let Some(verdict) = &file.verdict else {
+        line(out, "verdict", "none: the calibration was written by an earlier version");
+        return;
+    };
+    let level = verdict.level.words();
+    let reason = reasons(file).into_iter().next();
+    match (expected_words(file, |sigma, _| number(sigma)), reason) {
+        (Some(expected), reason) => {
+            line(out, "verdict", &format!("{level}: {expected}"));
+            reason.into_iter().for_each(|reason| line(out, "", &reason));
+        }
+        (None, Some(reason)) => line(out, "verdict", &format!("{level}: {reason}")),
+        (None, None) => line(out, "verdict", level),
+    }
+}
+
+/// What needs attention.
+fn points(out: &mut String, file: &CalibrationFile, detail: Detail) {
+    let (shown, rest) = shown(look_at(file), detail);
+    for (k, point) in shown.iter().enumerate() {
+        line(out, if k == 0 { "look at" } else { "" }, &point.text);
+    }
+    if !rest.is_empty() {
+        line(out, "", &format!("… and {} more, in the report", rest.len()));
+    }
+}
+
+/// The points of which there is room to tell, and the others. Of every sort one is told before a second one of another.
+fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
+    if points.len() <= MOST || detail == Detail::Full {
+        return (points, Vec::new());
+    }
+    let earlier =
+        |k: usize| points[..k].iter().filter(|it| it.place.sort() == points[k].place.sort()).count();
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by_key(|&k| (earlier(k), k));
+    let chosen = &order[..MOST - 1];
+    let mut parts = (Vec::new(), Vec::new());
+    for (k, point) in points.iter().enumerate() {
+        if chosen.contains(&k) { &mut parts.0 } else { &mut parts.1 }.push(point.clone());
+    }
+    parts
+}
+
+/// What the rows tell, and what they do not.
+fn known(out: &mut String, file: &CalibrationFile) {
+    let found = &file.identifiability;
+    let count = |directions: &[Direction]| directions.iter().map(|it| it.directions).sum::<usize>();
+    let fitted = file.accuracy.training.count;
+    let all = fitted + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
+    let weak = match count(&found.weak) {
+        0 => String::new(),
+        weak => format!(", {weak} of them weakly"),
+    };
+    line(
+        out,
+        "known",
+        &format!("{} of {} unknowns, from {fitted} of {all} rows{weak}", found.rank, found.parameters),
+    );
+    let mut label = "not known";
+    if found.rank == 0 && found.parameters > 0 {
+        line(out, label, "everything: what the fit leaves is as large as what it describes");
+        label = "";
+    } else if found.rank < found.parameters {
+        let mut joints: Vec<&str> = Vec::new();
+        for name in found.unidentifiable.iter().flat_map(|direction| &direction.joints) {
+            if !joints.contains(&name.as_str()) {
+                joints.push(name);
+            }
+        }
+        let open = found.parameters - found.rank;
+        let plural = if open == 1 { "" } else { "s" };
+        let of = if joints.is_empty() { String::new() } else { format!(" of {}", names(&joints)) };
+        line(out, label, &format!("{open} unknown{plural}{of}"));
+        label = "";
+    }
+    for direction in found.structural.iter().filter(|it| it.cause == Cause::NoOrientation) {
+        line(out, label, &direction.description);
+        label = "";
+    }
+}
+
+/// Some names, the first few of many.
+pub(super) fn names(all: &[&str]) -> String {
+    if all.len() <= MOST {
+        return all.join(", ");
+    }
+    format!("{}, … and {} more", all[..MOST - 1].join(", "), all.len() - (MOST - 1))
+}

@@ -1,0 +1,114 @@
+//! What remains uncertain of predictions when device frame and targets are found anew from the very rows that are predicted
+//! (theory.md §9, *A promise kept?*).
+
+use nalgebra::DMatrix;
+
+use super::Uncertainty;
+use crate::estimate::{Estimate, Packed};
+use crate::linalg;
+use crate::measurement::{Dataset, Noise};
+use crate::parameters::Parameter;
+use crate::problem::{Layout, Problem};
+use crate::solve::LeastSquares as _;
+
+/// Share of the largest information of a refitted unknown below which it counts as not determined.
+const SMALL: f64 = 1e-12;
+
+/// What is found anew, and from what.
+#[derive(Clone, Copy, Debug)]
+pub struct Refit<'a> {
+    /// The rows.
+    pub data: &'a Dataset,
+    /// Their joint values.
+    pub packed: &'a Packed,
+    /// Device frame and targets as they were found.
+    pub found: &'a Estimate,
+    /// The unknowns that were found.
+    pub free: &'a [Parameter],
+    /// What the rows scatter by beside the unknowns of the calibration: noise of measuring and what no model describes.
+    pub scatter: Noise,
+    /// For each target of the rows, which of the calibration's targets it is; `None` if it is found anew.
+    pub targets: &'a [Option<usize>],
+}
+
+impl Uncertainty {
+    /// The uncertainty of predictions after a refit, the rows' own targets being its targets. A refit takes off what it can of every error
+    /// in common; so the refitted unknowns count as more unknowns, which err as the others make them. `None` if they are not determined.
+    #[must_use]
+    pub fn refitted(&self, refit: &Refit<'_>) -> Option<Uncertainty> {
+        let (kept, places) = self.kept(refit.targets);
+        let parameters: Vec<Parameter> = kept.iter().chain(refit.free).copied().collect();
+        let layout = Layout::new(parameters.clone(), self.length_m);
+        let estimate =
+            Estimate { base_from_axis: self.estimate.base_from_axis.clone(), ..refit.found.clone() };
+        let rows = refit.data.all_rows();
+        let problem = Problem::new(refit.data, refit.packed, rows, parameters, refit.scatter, self.length_m);
+        let gram = problem.normal(&estimate).gram;
+        let n = layout.dim();
+        let joint: Vec<usize> = layout.parameters().flat_map(|(_, own)| own.iter().map(|it| it.0)).collect();
+        let (before, anew) = joint.split_at(places.len());
+        let information = |a: usize, b: usize| gram[a.min(b) * n + a.max(b)];
+
+        // What the refitted unknowns are known to by these rows, and how they follow the others.
+        let count = anew.len();
+        let own: Vec<f64> = anew
+            .iter()
+            .flat_map(|&a| anew.iter().map(move |&b| (a, b)))
+            .map(|(a, b)| information(a, b))
+            .collect();
+        let largest = (0..count).map(|k| own[k * count + k]).fold(0.0, f64::max);
+        let factor = linalg::cholesky(&own, count, SMALL * largest)?;
+        let inverse = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));
+        let mixed = DMatrix::from_fn(count, before.len(), |i, j| information(anew[i], before[j]));
+        let follow = -(&inverse * mixed);
+
+        let all = self.layout.dim();
+        let refitted = |known: &[f64]| -> Option<Vec<f64>> {
+            let spread =
+                DMatrix::from_fn(places.len(), places.len(), |i, j| known[places[i] * all + places[j]]);
+            let both = &follow * &spread;
+            // The scatter of the rows moves the refit, which takes off twice as much of it as it adds.
+            let last = &both * follow.transpose() - &inverse;
+            let mut covariance = vec![0.0; n * n];
+            let mut put = |a: usize, b: usize, value: f64| {
+                covariance[a * n + b] = value;
+                covariance[b * n + a] = value;
+            };
+            for (i, &a) in before.iter().enumerate() {
+                before.iter().enumerate().for_each(|(j, &b)| put(a, b, spread[(i, j)]));
+                anew.iter().enumerate().for_each(|(j, &b)| put(a, b, both[(j, i)]));
+            }
+            for (i, &a) in anew.iter().enumerate() {
+                anew.iter().enumerate().for_each(|(j, &b)| put(a, b, last[(i, j)]));
+            }
+            covariance.iter().all(|value| value.is_finite()).then_some(covariance)
+        };
+        let covariance = refitted(&self.covariance)?;
+        let covariance_outside = self.covariance_outside.as_deref().and_then(refitted);
+        Some(Uncertainty { estimate, layout, covariance, covariance_outside, ..self.clone() })
+    }
+
+    /// The parameters that stay as calibrated, targets by their numbers among the rows', and the places of their unknowns.
+    fn kept(&self, targets: &[Option<usize>]) -> (Vec<Parameter>, Vec<usize>) {
+        let (mut kept, mut places) = (Vec::new(), Vec::new());
+        for (parameter, own) in self.layout.parameters() {
+            let number = |known: usize| targets.iter().position(|&target| target == Some(known));
+            let renumbered = match *parameter {
+                Parameter::TargetPlace(mut place) => number(place.target).map(|target| {
+                    place.target = target;
+                    Parameter::TargetPlace(place)
+                }),
+                Parameter::TargetFrame(mut frame) => number(frame.target).map(|target| {
+                    frame.target = target;
+                    Parameter::TargetFrame(frame)
+                }),
+                other => Some(other),
+            };
+            if let Some(parameter) = renumbered {
+                kept.push(parameter);
+                places.extend(own.iter().map(|it| it.0));
+            }
+        }
+        (kept, places)
+    }
+}
