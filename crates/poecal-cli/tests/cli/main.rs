@@ -16,5 +16,6 @@ mod places;
 mod report;
 mod reproduce;
 mod session;
+mod stations;
 mod targets_and_validation;
 mod trust;

@@ -13,7 +13,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
-use crate::parameters::{Formulation, Parameter};
+use crate::parameters::{DeviceFrame, Formulation, Parameter};
 use crate::problem::{Layout, Problem};
 use crate::robot::Robot;
 use crate::simulate::random;
@@ -74,19 +74,22 @@ pub(super) struct Fitted {
     pub(super) report: SolverReport,
 }
 
-/// All screws and targets: what a fit with a settled device frame frees.
+/// All screws and targets, and the device's frame but at the first place where it stood: what a fit frees where that one frame is settled.
 pub(super) fn free_parameters(
     estimate: &Estimate,
     data: &Dataset,
     rows: &[u32],
     formulation: Formulation,
 ) -> Vec<Parameter> {
-    let mut free = formulation.joint_parameters(&estimate.kinds);
-    free.extend(target_parameters(data, rows));
-    free
+    let further = (1..=estimate.further_devices.len()).map(|station| {
+        let about = data.mean_position(&data.seen_from(station, rows));
+        Parameter::DeviceFrame(DeviceFrame { station, about })
+    });
+    let joints = formulation.joint_parameters(&estimate.kinds);
+    further.chain(joints).chain(target_parameters(data, rows)).collect()
 }
 
-/// One fit of all screws and targets from a start, the device's frame staying where it is: by the formulation and the solver that
+/// One fit of all screws and targets from a start, the (first) device frame staying where it is: by the formulation and the solver that
 /// the options state, begun on a sample if the rows are many. As [`minimize`] says, `JᵀJ` may be that of a state close by.
 pub fn fit_screws(
     data: &Dataset,

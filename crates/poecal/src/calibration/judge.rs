@@ -25,6 +25,7 @@ use crate::start::{Registration, register};
 ///     calibrated: &calibration.robot,
 ///     nominal: &calibration.nominal,
 ///     base_from_device: calibration.base_from_device,
+///     further_base_from_device: &[],
 ///     frame: DeviceFrameKnowledge::Unknown,
 ///     noise: calibration.noise,
 ///     refit_frame: false,
@@ -44,6 +45,8 @@ pub struct Subject<'a> {
     pub nominal: &'a Robot,
     /// Where the calibration found the measuring device.
     pub base_from_device: Pose,
+    /// The same for each further place that it stood at when the judging measurements were taken.
+    pub further_base_from_device: &'a [Pose],
     /// What was known of the device's frame.
     pub frame: DeviceFrameKnowledge,
     /// Noise by which positions and rotations are weighted where something is found anew.
@@ -119,6 +122,11 @@ fn errors(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> (Packed, Vec<
     let rows: Vec<u32> = data.all_rows();
     let mut estimate = delivered(robot, data);
     estimate.device_from_base = subject.base_from_device.inverse();
+    for (device, base_from_device) in
+        estimate.further_devices.iter_mut().zip(subject.further_base_from_device)
+    {
+        *device = base_from_device.inverse();
+    }
     if subject.refit_frame || subject.refit_tool {
         let registration = Registration {
             data,
@@ -137,7 +145,7 @@ fn errors(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> (Packed, Vec<
 
 /// Refuses measurements that cannot determine what is found anew, and none at all.
 fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
-    let frame = if subject.refit_frame { 6 } else { 0 };
+    let frame = if subject.refit_frame { 6 * data.station_count() } else { 0 };
     let targets = data.frames(&data.all_rows()).into_iter().map(|is_frame| if is_frame { 6 } else { 3 });
     let tool: usize = if subject.refit_tool { targets.sum() } else { 0 };
     if tool > MOST_UNKNOWNS {

@@ -2,8 +2,9 @@
 
 use super::doubts::{doubts, moved, noise_doubts};
 use super::fit::{self, Fitted, Task};
-use super::result::place_tip;
+use super::result::{place_tip, stations};
 use super::robust::{self, RobustFit};
+use super::stations::check_stations;
 use super::trust::{Finished, trust};
 use super::verdict::{Grounds, verdict};
 use super::{
@@ -38,6 +39,7 @@ impl<'a> Prepared<'a> {
     /// Splits the rows and packs the readings; refuses what cannot be fitted.
     pub(super) fn new(robot: &'a Robot, data: &'a Dataset, options: &'a CalibrationOptions) -> Result<Self> {
         let (fit_rows, held_out_rows) = split_rows(data, options)?;
+        check_stations(data, [&fit_rows, &held_out_rows], options)?;
         check_count(robot, data, &fit_rows)?;
         let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
         let (delivered, length_m) = (delivered(robot, data), radian_m(robot, &packed));
@@ -135,6 +137,7 @@ impl<'a> Prepared<'a> {
             pose_residual: self.options.pose_residual,
             method: self.options.solver.method,
             base_from_device: models.calibrated.device_from_base.inverse(),
+            stations: stations(self.data, &models.calibrated),
             models,
             accuracy,
             solver: fitted.report,
@@ -273,14 +276,16 @@ fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
         }
     }
     let targets: usize = data.frames(fit_rows).iter().map(|&is_frame| if is_frame { 6 } else { 3 }).sum();
-    let needed = screws + targets;
+    let devices = 6 * (data.station_count() - 1);
+    let needed = screws + targets + devices;
     if needed > MOST_UNKNOWNS {
         return Err(Error::new(
             ErrorKind::Problem,
             format!(
-                "found {needed} unknowns ({screws} of the screws, {targets} of {} targets), expected at most {MOST_UNKNOWNS}, \
+                "found {needed} unknowns ({screws} of the screws, {targets} of {} targets{}), expected at most {MOST_UNKNOWNS}, \
                  which one fit can bear: calibrate with fewer targets, or a shorter chain",
-                data.targets.len()
+                data.targets.len(),
+                of_devices(devices)
             ),
         ));
     }
@@ -291,10 +296,16 @@ fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
             ErrorKind::Problem,
             format!(
                 "found {} to fit with {given} measured numbers, expected at least {needed} numbers \
-                 ({screws} of the screws, {targets} of the targets): measure more configurations, or hold out fewer",
-                measurements_words(fit_rows.len())
+                 ({screws} of the screws, {targets} of the targets{}): measure more configurations, or hold out fewer",
+                measurements_words(fit_rows.len()),
+                of_devices(devices)
             ),
         ));
     }
     Ok(())
+}
+
+/// Unknowns of further device frames, if there are any, as part of a list.
+fn of_devices(unknowns: usize) -> String {
+    if unknowns > 0 { format!(", {unknowns} of further device frames") } else { String::new() }
 }

@@ -186,7 +186,15 @@ impl UncertaintyEntry {
         let trust = &calibration.trust;
         let found = trust.uncertainty.as_ref()?;
         let n = found.layout.dim();
-        let upper = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
+        // Predictions are said in the base frame: frames of further places of the device are none of their unknowns.
+        let mut kept: Vec<usize> = found
+            .layout
+            .parameters()
+            .filter(|(parameter, _)| !matches!(parameter, Parameter::DeviceFrame(_)))
+            .flat_map(|(_, places)| places.iter().map(|&(place, _)| place))
+            .collect();
+        kept.sort_unstable();
+        let upper = kept.iter().enumerate().flat_map(|(at, &i)| kept[at..].iter().map(move |&j| (i, j)));
         let names = calibration.targets.iter();
         Some(UncertaintyEntry {
             inflation: found.inflation,
