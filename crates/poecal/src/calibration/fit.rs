@@ -138,6 +138,11 @@ pub(super) fn minimal(
     (problem.layout().clone(), problem.normal(estimate))
 }
 
+/// Whether a position error is more than what the gears and links of a robot of this size leave.
+pub(super) fn is_suspicious(rms_m: f64, length_m: f64) -> bool {
+    rms_m >= SUSPICIOUS * 3.0 * length_m
+}
+
 /// What is fitted to what.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
@@ -252,7 +257,7 @@ impl Task<'_> {
 
     /// Whether a position error is more than what a robot's gears and links leave.
     pub(super) fn is_suspicious(&self, rms_m: f64) -> bool {
-        rms_m >= SUSPICIOUS * 3.0 * self.length_m
+        is_suspicious(rms_m, self.length_m)
     }
 
     /// Further starts, when what the fit leaves is more than a robot's own errors: random screws around the registered ones, on a

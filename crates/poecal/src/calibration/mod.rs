@@ -5,6 +5,7 @@ mod doubts;
 mod expectation;
 mod fit;
 mod judge;
+mod moves;
 mod noise;
 mod options;
 mod repeatability;

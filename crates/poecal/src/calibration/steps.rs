@@ -1,7 +1,8 @@
 //! The steps of a calibration, each from what the ones before it found.
 
-use super::doubts::{doubts, moved, noise_doubts};
+use super::doubts::{doubts, noise_doubts};
 use super::fit::{self, Fitted, Task};
+use super::moves::{FilesApart, Looked, Moved, files_apart, moved};
 use super::result::{place_tip, stations};
 use super::robust::{self, RobustFit};
 use super::stations::check_stations;
@@ -102,13 +103,18 @@ impl<'a> Prepared<'a> {
         let accuracy = self.accuracy(&models);
         let identifiability = self.identifiability(&fitted);
         let mut trust = self.trust(&fitted, &models, &kept, loss.is_some());
-        let diagnosis = self.diagnosis(&models.calibrated, loss.is_some().then_some(&kept[..]));
+        let apart = self.files_apart(&fitted, &accuracy);
+        let diagnosis = match &apart {
+            Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
+            None => self.diagnosis(self.data, &models.calibrated, loss.is_some().then_some(&kept[..])),
+        };
         let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(self.data, &self.packed, rows, &models)
         });
-        let (mut warnings, moved) = self.doubts(&accuracy, &models.calibrated, &kept);
+        let moved = apart.as_ref().map(FilesApart::moved).or_else(|| self.moved(&models.calibrated));
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
-        let mistakes: Vec<String> = grave.map(|it| it.statement.clone()).chain(moved.clone()).collect();
+        let grave_move = moved.iter().filter(|it| it.is_grave).map(|it| it.statement.clone());
+        let mistakes: Vec<String> = grave.map(|it| it.statement.clone()).chain(grave_move).collect();
         let verdict = verdict(&Grounds {
             accuracy: &accuracy,
             solver: &fitted.report,
@@ -125,7 +131,7 @@ impl<'a> Prepared<'a> {
             // A joint is not to blame for what is wrong with the input.
             trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
         }
-        warnings.extend(robustness.warning(&self.fit_rows, &self.held_out_rows));
+        let warnings = self.warnings(&accuracy, &models.calibrated, &kept, &robustness, moved.as_ref());
         let frames = self.data.frames(&self.fit_rows);
         let (robot, targets) = place_tip(self.robot, self.data, &frames, &models.calibrated);
         Calibration {
@@ -225,14 +231,14 @@ impl<'a> Prepared<'a> {
 
     /// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing. After a robust fit first in the rows
     /// that it believes, since single wrong ones hide what is wrong with all.
-    fn diagnosis(&self, calibrated: &Estimate, believed: Option<&[u32]>) -> Vec<Diagnosis> {
+    fn diagnosis(&self, data: &Dataset, calibrated: &Estimate, believed: Option<&[u32]>) -> Vec<Diagnosis> {
         if !self.options.diagnose {
             return Vec::new();
         }
         let options = forensics::Options { device_free: self.device_free(), calibrated: Some(calibrated) };
-        let in_all = || forensics::diagnose(self.robot, self.data, &self.data.all_rows(), &options);
+        let in_all = || forensics::diagnose(self.robot, data, &data.all_rows(), &options);
         let Some(believed) = believed else { return in_all() };
-        let mut found = forensics::diagnose(self.robot, self.data, believed, &options);
+        let mut found = forensics::diagnose(self.robot, data, believed, &options);
         if !found.iter().any(Diagnosis::is_of_input) {
             // A shift of rows, or exchanged names, may be what made the fit disbelieve rows.
             let known: Vec<DiagnosisKind> = found.iter().map(|it| it.kind).collect();
@@ -241,20 +247,47 @@ impl<'a> Prepared<'a> {
         found
     }
 
-    /// What makes the result doubtful, the last of it whether the device was moved.
-    fn doubts(
+    /// What makes the result doubtful.
+    fn warnings(
         &self,
         accuracy: &Accuracy,
         calibrated: &Estimate,
         kept: &[u32],
-    ) -> (Vec<String>, Option<String>) {
+        robustness: &Robustness,
+        moved: Option<&Moved>,
+    ) -> Vec<String> {
         let errors = row_errors(self.data, &self.packed, kept, calibrated);
-        let moved = moved(self.data, kept, &errors);
-        let registered = &accuracy.training.registered;
-        let mut warnings = doubts(self.data, &self.fit_rows, registered, self.options.frame);
+        let mut warnings = Vec::new();
+        // Frames that differ make any model misfit.
+        if !moved.is_some_and(Moved::is_between_files) {
+            let registered = &accuracy.training.registered;
+            warnings.extend(doubts(self.data, &self.fit_rows, registered, self.options.frame));
+        }
         warnings.extend(noise_doubts(self.data, kept, &errors, self.options));
-        warnings.extend(moved.clone());
-        (warnings, moved)
+        warnings.extend(moved.map(|it| it.statement.clone()));
+        if !moved.is_some_and(|it| it.explains(robustness)) {
+            warnings.extend(robustness.warning(&self.fit_rows, &self.held_out_rows));
+        }
+        warnings
+    }
+
+    /// Files whose device frames differ, where a fit with one frame leaves more than a robot's own errors.
+    fn files_apart(&self, fitted: &Fitted, accuracy: &Accuracy) -> Option<FilesApart> {
+        let left_m = 1e-3 * accuracy.training.calibrated.position_mm.rms;
+        if !self.device_free() || !fit::is_suspicious(left_m, self.length_m) {
+            return None;
+        }
+        let scale = (fitted.noise, self.length_m);
+        files_apart(self.robot, (self.data, &self.packed), &self.fit_rows, scale, left_m, self.options)
+    }
+
+    /// What moved within the session. Rows that were drawn to be held out belong to it as well; those that are stated to be may be of
+    /// another.
+    fn moved(&self, calibrated: &Estimate) -> Option<Moved> {
+        let is_stated = self.data.observations.iter().any(|row| row.set.is_some());
+        let rows = if is_stated { self.fit_rows.clone() } else { self.data.all_rows() };
+        let (data, packed, device_free) = (self.data, &self.packed, self.device_free());
+        moved(&Looked { data, packed, estimate: calibrated, rows: &rows, device_free })
     }
 }
 
