@@ -19,7 +19,7 @@ pub(crate) use simulate::{Simulate, SimulatedKind};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use poecal::io::measurements::{ColumnMap, ReadOptions};
+use poecal::io::measurements::{ColumnMap, Frames, ReadOptions};
 use poecal::io::model::ModelFormat;
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::predictions::PredictionFrame;
@@ -117,6 +117,32 @@ pub(crate) struct Strictness {
     pub(crate) strict: bool,
 }
 
+/// Which rows share a device frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FramesWord {
+    /// All, or those of one name in the column `instrument`
+    Common,
+    /// Those of a file
+    PerFile,
+}
+
+impl From<FramesWord> for Frames {
+    fn from(word: FramesWord) -> Self {
+        match word {
+            FramesWord::Common => Frames::Common,
+            FramesWord::PerFile => Frames::PerFile,
+        }
+    }
+}
+
+/// Where the measuring device stood.
+#[derive(Args, Debug)]
+pub(crate) struct DeviceFrames {
+    /// Which rows share a frame of the measuring device: per-file if it was moved between the files
+    #[arg(long, value_enum, default_value = "common")]
+    pub(crate) frames: FramesWord,
+}
+
 /// How to read measurement files.
 #[derive(Args, Debug)]
 pub(crate) struct Reading {
@@ -124,6 +150,8 @@ pub(crate) struct Reading {
     pub(crate) columns: Columns,
     #[command(flatten)]
     pub(crate) strictness: Strictness,
+    #[command(flatten)]
+    pub(crate) frames: DeviceFrames,
     /// Fit only rows whose COLUMN has one of these values, and hold out all others
     #[arg(long, value_name = "COLUMN=VALUE[,VALUE]")]
     pub(crate) fit_where: Option<String>,
@@ -132,7 +160,8 @@ pub(crate) struct Reading {
 impl Reading {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
-        Ok(ReadOptions { fit_where, strict: self.strictness.strict, ..self.columns.options()? })
+        let (strict, frames) = (self.strictness.strict, self.frames.frames.into());
+        Ok(ReadOptions { fit_where, strict, frames, ..self.columns.options()? })
     }
 }
 
@@ -168,6 +197,8 @@ pub(crate) struct Validate {
     pub(crate) columns: Columns,
     #[command(flatten)]
     pub(crate) strictness: Strictness,
+    #[command(flatten)]
+    pub(crate) frames: DeviceFrames,
     /// Find the measuring device's frame anew from these measurements
     #[arg(long)]
     pub(crate) refit_frame: bool,

@@ -26,6 +26,7 @@ pub(crate) struct Columns<'a, 'py> {
     pub(crate) quaternions_xyzw: Option<&'a Bound<'py, PyAny>>,
     pub(crate) poses: Option<&'a Bound<'py, PyAny>>,
     pub(crate) targets: Option<Vec<String>>,
+    pub(crate) instruments: Option<Vec<String>>,
     pub(crate) sets: Option<Vec<Option<String>>>,
     pub(crate) ids: Option<Vec<String>>,
     pub(crate) sigma_position_mm: Option<&'a Bound<'py, PyAny>>,
@@ -44,6 +45,7 @@ pub(crate) fn dataset(robot: &Robot, columns: &Columns<'_, '_>) -> PyResult<Data
     let seen = measured(columns, m, length)?;
     for (name, found) in [
         ("targets", columns.targets.as_ref().map(Vec::len)),
+        ("instruments", columns.instruments.as_ref().map(Vec::len)),
         ("sets", columns.sets.as_ref().map(Vec::len)),
         ("ids", columns.ids.as_ref().map(Vec::len)),
     ] {
@@ -62,10 +64,15 @@ pub(crate) fn dataset(robot: &Robot, columns: &Columns<'_, '_>) -> PyResult<Data
     let mut data = Dataset::new(names);
     // Looked up once a target: there may be very many.
     let mut known: BTreeMap<Option<&str>, usize> = BTreeMap::new();
+    let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for (row, (readings, measurement)) in readings.chunks_exact(width.max(1)).zip(seen).enumerate() {
         let target = columns.targets.as_ref().and_then(|targets| targets.get(row)).map(String::as_str);
         let observation = Observation {
             target: *known.entry(target).or_insert_with(|| data.target_index(target)),
+            station: match columns.instruments.as_ref().and_then(|names| names.get(row)) {
+                Some(name) => *places.entry(name).or_insert_with(|| data.station_index(Some(name))),
+                None => 0,
+            },
             measurement,
             sigma_position_m: at(&sigma_position_m, row),
             sigma_rotation_rad: at(&sigma_rotation_rad, row),

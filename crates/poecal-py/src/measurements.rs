@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use numpy::{PyArray1, PyArray2, PyArray3};
 use poecal::io::calibration_file::Inputs;
-use poecal::io::measurements::{self, ColumnMap, MeasurementFile, ReadOptions};
+use poecal::io::measurements::{self, ColumnMap, Frames, MeasurementFile, ReadOptions};
 use poecal::io::named_files::refuse_repeats;
 use poecal::measurement::{Dataset, Set};
 use pyo3::prelude::*;
@@ -20,6 +20,7 @@ use crate::from_dataframe;
 use crate::html::Html;
 use crate::pickle;
 use crate::robot::Robot;
+use crate::words::chosen;
 
 /// Measurements of a robot: in each row a configuration and what a device saw of a target there. They never change.
 ///
@@ -63,8 +64,10 @@ fn options(
     fit_where: Option<&str>,
     ignore_sets: bool,
     strict: bool,
+    frames: Frames,
 ) -> poecal::Result<ReadOptions> {
     Ok(ReadOptions {
+        frames,
         mapping: columns.map(ColumnMap::read).transpose()?,
         fit_where: fit_where.map(str::parse).transpose()?,
         ignore_sets,
@@ -135,8 +138,11 @@ impl Measurements {
     ///     Fit only rows whose column has one of these values, and hold out all others.
     /// ignore_sets : whether the files' column `set` means nothing, as for rows that judge a calibration
     /// strict : whether lost beams, empty or zero positions, are an error instead of being left out with a warning
+    /// frames : "common" or "per-file"
+    ///     Which rows share a frame of the measuring device: all (or those of one name in the column `instrument`), or those of a file.
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false))]
+    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common"))]
+    #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
         paths: Paths,
@@ -145,14 +151,17 @@ impl Measurements {
         fit_where: Option<&str>,
         ignore_sets: bool,
         strict: bool,
+        frames: &str,
     ) -> PyResult<Self> {
+        let words = [("common", Frames::Common), ("per-file", Frames::PerFile)];
+        let frames = chosen("frames", frames, &words)?;
         let paths = match paths {
             Paths::One(path) => vec![path],
             Paths::Several(paths) => paths,
         };
         let read = || {
             refuse_repeats(&paths)?;
-            let options = options(columns.as_ref(), fit_where, ignore_sets, strict)?;
+            let options = options(columns.as_ref(), fit_where, ignore_sets, strict, frames)?;
             let file = measurements::read(&paths, &robot.model.robot, &options)?;
             let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
             sha256.extend(file.sha256.clone());
@@ -178,13 +187,14 @@ impl Measurements {
     /// poses : array of shape (m, 4, 4), instead of `positions`
     ///     Poses device_from_target, translations in `length_unit`.
     /// targets : list of m names, default the tip itself
+    /// instruments : list of m names of what measured, each with a frame of its own
     /// sets : list of m "fit" or "held_out" (or None for rows that do not say)
     /// ids : list of m names of the rows
     /// sigma_position_mm, sigma_rotation_deg : a number, or an array of shape (m,)
     ///     Standard deviations of each measured component, where rows state them; NaN where a row does not.
     /// angle_unit, length_unit : "rad", "deg", …; "m", "mm", …
     #[staticmethod]
-    #[pyo3(signature = (robot, *, joints, positions=None, quaternions_xyzw=None, poses=None, targets=None, sets=None, ids=None,
+    #[pyo3(signature = (robot, *, joints, positions=None, quaternions_xyzw=None, poses=None, targets=None, instruments=None, sets=None, ids=None,
                         sigma_position_mm=None, sigma_rotation_deg=None, angle_unit="rad", length_unit="m"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_arrays(
@@ -194,6 +204,7 @@ impl Measurements {
         quaternions_xyzw: Option<&Bound<'_, PyAny>>,
         poses: Option<&Bound<'_, PyAny>>,
         targets: Option<Vec<String>>,
+        instruments: Option<Vec<String>>,
         sets: Option<Vec<Option<String>>>,
         ids: Option<Vec<String>>,
         sigma_position_mm: Option<&Bound<'_, PyAny>>,
@@ -207,6 +218,7 @@ impl Measurements {
             quaternions_xyzw,
             poses,
             targets,
+            instruments,
             sets,
             ids,
             sigma_position_mm,
@@ -234,7 +246,7 @@ impl Measurements {
     ) -> PyResult<Self> {
         let text = from_dataframe::text(frame)?;
         let read = || {
-            let options = options(columns.as_ref(), fit_where, ignore_sets, strict)?;
+            let options = options(columns.as_ref(), fit_where, ignore_sets, strict, Frames::Common)?;
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)
         };
         let mut file = py.detach(read).map_err(from_dataframe::raise)?;
@@ -291,6 +303,13 @@ impl Measurements {
     fn targets(&self) -> Vec<Option<String>> {
         let data = self.data();
         data.observations.iter().map(|row| data.targets.get(row.target).cloned().flatten()).collect()
+    }
+
+    /// The instrument, or the place of it, that measured each row; None where there is one without a name.
+    #[getter]
+    fn instruments(&self) -> Vec<Option<String>> {
+        let data = self.data();
+        data.observations.iter().map(|row| data.stations.get(row.station).cloned().flatten()).collect()
     }
 
     /// "fit", "held_out", or None, for each row.

@@ -43,6 +43,8 @@ fn robots() -> Vec<(String, Robot)> {
 struct Case {
     rows: usize,
     targets: usize,
+    /// Further places that the device stood at, each with an unknown frame.
+    further: usize,
     device: bool,
     weights: bool,
     /// Rows state noise of one ratio, or of any.
@@ -71,6 +73,8 @@ fn cases() -> Vec<Case> {
         Case { rows: 1, ..plain },
         Case { rows: 64, device: true, ..plain },
         Case { rows: 71, targets: 3, device: true, ..plain },
+        Case { rows: 55, further: 1, ..plain },
+        Case { rows: 83, targets: 2, further: 2, device: true, weights: true, ..plain },
         Case { rows: 50, weights: true, stated: true, ..plain },
         Case { rows: 50, weights: true, stated: true, any_ratio: true, targets: 2, ..plain },
         Case { rows: 40, some_axes: true, device: true, ..plain },
@@ -99,6 +103,7 @@ impl Session {
         for (row, observation) in data.observations.iter_mut().enumerate() {
             let is_early = row < case.late;
             observation.target = row % (case.targets - usize::from(is_early));
+            observation.station = row / 3 % (1 + case.further);
             if case.stated && !is_early {
                 let position_m = 1e-5 * (1 + row % 4) as f64;
                 let ratio = if case.any_ratio { 1.0 + (row % 3) as f64 } else { 2.0 };
@@ -113,7 +118,12 @@ impl Session {
             }
         }
         let home = |target: usize| robot.home * Pose::from_translation(Vector3::x() * (0.1 * target as f64));
-        let estimate = Estimate::new(robot, (0..case.targets).map(home).collect(), made.device_from_base);
+        let mut estimate = Estimate::new(robot, (0..case.targets).map(home).collect(), made.device_from_base);
+        data.stations = (0..=case.further).map(|station| Some(format!("s{station}"))).collect();
+        let moved = |station: usize| {
+            made.device_from_base * Pose::from_xyz_rpy([0.0, 0.1, 0.2], [0.1, station as f64, 0.0])
+        };
+        estimate.further_devices = (1..=case.further).map(moved).collect();
         let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
         let weights = (0..case.rows).map(|row| [1.0, 0.3, 0.0, 2.5][row % 4]).collect();
         let free = parameters(robot, &data, case);
@@ -137,7 +147,11 @@ fn parameters(robot: &Robot, data: &Dataset, case: &Case) -> Vec<Parameter> {
         return free;
     }
     if case.device {
-        free.push(Parameter::DeviceFrame(DeviceFrame { about: Vector3::new(0.3, -0.2, 0.5) }));
+        free.push(Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::new(0.3, -0.2, 0.5) }));
+    }
+    for station in 1..=case.further {
+        let about = Vector3::new(0.1 * station as f64, 0.2, -0.1);
+        free.push(Parameter::DeviceFrame(DeviceFrame { station, about }));
     }
     for (joint, it) in robot.joints.iter().enumerate() {
         if !case.some_axes || joint % 2 == 1 {

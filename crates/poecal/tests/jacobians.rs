@@ -7,7 +7,7 @@ mod largest;
 
 use largest::larger;
 use nalgebra::{Matrix6, Vector3};
-use poecal::estimate::{Chain, Estimate, Linkage, Packed};
+use poecal::estimate::{Chain, Estimate, Linkage, Packed, Sight};
 use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{
     Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, SpatialPoseMeasurement,
@@ -41,7 +41,10 @@ const MEASUREMENTS: [(&str, Measure); 3] = [
 /// In the order of the chain, as a problem takes them.
 fn parameters(robot: &Robot) -> Vec<(&'static str, Parameter)> {
     let about = Vector3::new(0.1, -0.2, 0.3);
-    let mut all = vec![("device frame", Parameter::DeviceFrame(DeviceFrame { about }))];
+    let mut all = vec![
+        ("device frame", Parameter::DeviceFrame(DeviceFrame { station: 0, about })),
+        ("other frame", Parameter::DeviceFrame(DeviceFrame { station: 1, about })),
+    ];
     for (joint, it) in robot.joints.iter().enumerate() {
         all.push((it.kind.word(), Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
         all.push(("offset", Parameter::JointOffset(JointOffset { joint, kind: it.kind })));
@@ -74,6 +77,13 @@ fn device() -> Pose {
     Pose::from_xyz_rpy([0.3, -0.2, 0.1], [-0.5, 0.9, 2.0])
 }
 
+/// The device stands at two places.
+fn estimate(robot: &Robot) -> Estimate {
+    let mut estimate = Estimate::new(robot, vec![robot.home], device());
+    estimate.further_devices.push(Pose::from_xyz_rpy([0.2, -0.1, 0.15], [-0.5, 0.9, 1.4]));
+    estimate
+}
+
 /// What one measurement needs to be predicted.
 struct Row {
     data: Dataset,
@@ -81,11 +91,17 @@ struct Row {
 }
 
 impl Row {
-    /// A measurement that is off the estimate's prediction by a shift and a turn.
-    fn new(robot: &Robot, estimate: &Estimate, readings: &[f64], make: Measure, turn: f64) -> Self {
+    /// A measurement from one of the device's places that is off the estimate's prediction by a shift and a turn.
+    fn new(
+        robot: &Robot,
+        estimate: &Estimate,
+        readings: &[f64],
+        (make, station): (Measure, usize),
+        turn: f64,
+    ) -> Self {
         let packed = Packed::new(robot, readings, readings.len());
         let mut chain = Chain::default();
-        chain.evaluate(&Linkage::new(estimate), &packed, 0, 0);
+        chain.evaluate(&Linkage::new(estimate), &packed, 0, Sight { station, target: 0 });
         let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turn));
         let seen = Pose::new(
             turn * chain.target.rotation,
@@ -93,6 +109,8 @@ impl Row {
         );
         let mut data = Dataset::new(robot.reading_names());
         data.push(readings, None, make(seen)).unwrap();
+        data.stations = vec![Some("first".into()), Some("second".into())];
+        data.observations[0].station = station;
         Row { data, packed }
     }
 
@@ -104,7 +122,7 @@ impl Row {
     fn residual(&self, estimate: &Estimate) -> Vec<f64> {
         let measurement = self.data.observations[0].measurement.residual_model();
         let mut chain = Chain::default();
-        chain.evaluate(&Linkage::new(estimate), &self.packed, 0, 0);
+        chain.evaluate(&Linkage::new(estimate), &self.packed, 0, &self.data.observations[0]);
         let mut out = vec![0.0; measurement.dim()];
         measurement.residual(&chain.target, &NOISE, &mut out);
         out
@@ -113,7 +131,7 @@ impl Row {
     /// The whitened sensitivity of the prediction, one column an unknown.
     fn columns(&self, estimate: &Estimate, layout: &Layout) -> Vec<Vec<f64>> {
         let mut chain = Chain::default();
-        chain.evaluate(&Linkage::new(estimate), &self.packed, 0, 0);
+        chain.evaluate(&Linkage::new(estimate), &self.packed, 0, &self.data.observations[0]);
         let measurement = self.data.observations[0].measurement.residual_model();
         let mut columns = vec![Vec::new(); layout.dim()];
         for (parameter, places) in layout.parameters() {
@@ -167,14 +185,14 @@ fn norm(a: &[f64]) -> f64 {
 #[test]
 fn jacobians_agree_with_differences() {
     let robot = robot();
-    let estimate = Estimate::new(&robot, vec![robot.home], device());
+    let estimate = estimate(&robot);
     let mut largest: f64 = 0.0;
     for (measurement, make) in MEASUREMENTS {
         for (name, parameter) in parameters(&robot) {
             let mut worst: f64 = 0.0;
-            for value in JOINT_VALUES {
+            for (value, station) in JOINT_VALUES.into_iter().flat_map(|value| [(value, 0), (value, 1)]) {
                 for angle in RESIDUAL_ANGLES {
-                    let row = Row::new(&robot, &estimate, &[value; 4], make, angle);
+                    let row = Row::new(&robot, &estimate, &[value; 4], (make, station), angle);
                     let layout = Layout::new(vec![parameter], LENGTH_M);
                     // All five steps together must not carry the residual over half a turn, where its logarithm jumps
                     // (near it, columns that are themselves only 1e-8 drown in the rounding of such small steps).
@@ -202,9 +220,9 @@ fn jacobians_agree_with_differences() {
 #[test]
 fn normal_information_is_made_of_the_same_columns() {
     let robot = robot();
-    let estimate = Estimate::new(&robot, vec![robot.home], device());
+    let estimate = estimate(&robot);
     for (name, make) in MEASUREMENTS {
-        let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], make, 0.3);
+        let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], (make, 1), 0.3);
         let problem = row.problem(parameters(&robot).into_iter().map(|(_, parameter)| parameter).collect());
         let columns = row.columns(&estimate, problem.layout());
         let residual = row.residual(&estimate);
@@ -243,9 +261,13 @@ fn second_difference(problem: &Problem<'_>, estimate: &Estimate, (a, b): (usize,
 
 /// Largest difference of `JᵀJ + curvature` from second differences, over the largest element.
 fn hessian_error(make: Measure, turn: f64) -> f64 {
+    [0, 1].map(|station| hessian_error_from(make, station, turn)).into_iter().fold(0.0, larger)
+}
+
+fn hessian_error_from(make: Measure, station: usize, turn: f64) -> f64 {
     let robot = robot();
-    let estimate = Estimate::new(&robot, vec![robot.home], device());
-    let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], make, turn);
+    let estimate = estimate(&robot);
+    let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], (make, station), turn);
     // A place and a frame of the same target are not both free in any problem: their shifts are one and the same.
     let free = parameters(&robot).into_iter().map(|(_, parameter)| parameter);
     let free =
@@ -285,9 +307,9 @@ fn full_hessian_of_poses_is_exact_to_first_order_in_the_residual() {
 #[test]
 fn second_order_along_a_step_agrees_with_differences() {
     let robot = robot();
-    let estimate = Estimate::new(&robot, vec![robot.home], device());
+    let estimate = estimate(&robot);
     for (name, make) in MEASUREMENTS {
-        let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], make, 0.3);
+        let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], (make, 1), 0.3);
         let free = parameters(&robot).into_iter().map(|(_, parameter)| parameter);
         let problem = row.problem(free.filter(|it| it.model().has_curvature()).collect());
         let step: Vec<f64> = (0..problem.dim()).map(|k| 0.02 * (k as f64 * 1.7).sin()).collect();

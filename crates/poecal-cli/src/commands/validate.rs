@@ -22,8 +22,8 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     };
     let calibrated = file.robot().map_err(in_file)?;
     // Every row counts, whatever set the files say.
-    let strict = arguments.strictness.strict;
-    let options = ReadOptions { ignore_sets: true, strict, ..arguments.columns.options()? };
+    let (strict, frames) = (arguments.strictness.strict, arguments.frames.frames.into());
+    let options = ReadOptions { ignore_sets: true, strict, frames, ..arguments.columns.options()? };
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
     let judgement = file.judge(&read.data, arguments.refit_frame, arguments.refit_tool).map_err(in_file)?;
     for warning in &read.warnings {

@@ -17,6 +17,7 @@ mod places;
 mod report;
 mod reproduce;
 mod session;
+mod stations;
 mod table;
 mod targets_and_validation;
 mod trust;

@@ -128,6 +128,7 @@ class Measurements:
         fit_where: str | None = None,
         ignore_sets: bool = False,
         strict: bool = False,
+        frames: Literal["common", "per-file"] = "common",
     ) -> Measurements: ...
     @staticmethod
     def from_arrays(
@@ -138,6 +139,7 @@ class Measurements:
         quaternions_xyzw: ArrayLike | None = None,
         poses: ArrayLike | None = None,
         targets: Sequence[str] | None = None,
+        instruments: Sequence[str] | None = None,
         sets: Sequence[Literal["fit", "held_out"] | None] | None = None,
         ids: Sequence[str] | None = None,
         sigma_position_mm: ArrayLike | None = None,
@@ -167,6 +169,8 @@ class Measurements:
     def has_orientation(self) -> NDArray[np.bool_]: ...
     @property
     def targets(self) -> list[str | None]: ...
+    @property
+    def instruments(self) -> list[str | None]: ...
     @property
     def sets(self) -> list[Literal["fit", "held_out"] | None]: ...
     @property

@@ -105,7 +105,7 @@ impl Excitation {
         let mut away_m = vec![0.0_f64; n];
         for &row in &rows {
             let row = row as usize;
-            chain.evaluate(&linkage, setup.packed, row, setup.data.observations[row].target);
+            chain.evaluate(&linkage, setup.packed, row, &setup.data.observations[row]);
             self.mean_turn += chain.last.rotation / rows.len() as f64;
             for (a, joint) in chain.joints.iter().enumerate() {
                 let arm = chain.target.translation - joint.origin;

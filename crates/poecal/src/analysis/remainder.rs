@@ -135,6 +135,9 @@ impl Rules<'_> {
                 Parameter::JointOffset(offset) => format!("the zero of {}", name(offset.joint)),
                 Parameter::TargetPlace(it) => format!("the place of {}", target_name(self.setup, it.target)),
                 Parameter::TargetFrame(it) => format!("the frame of {}", target_name(self.setup, it.target)),
+                Parameter::DeviceFrame(it) if self.setup.data.station_count() > 1 => {
+                    format!("the frame of {}", self.setup.data.station_words(it.station))
+                }
                 Parameter::DeviceFrame(_) => "the device's frame".to_owned(),
             });
         }

@@ -1,8 +1,6 @@
 //! Signs that the input is not what it seems: a fit can absorb mistakes, a registration cannot.
 
-use nalgebra::Vector3;
-
-use super::{DeviceFrameKnowledge, ModelAccuracy, RowError};
+use super::{DeviceFrameKnowledge, ModelAccuracy};
 use crate::measurement::Dataset;
 
 /// Registered error, as a share of the measurements' spread, beyond which the nominal model does not describe this data. Real robots
@@ -40,47 +38,4 @@ pub(super) fn doubts(
         ));
     }
     doubts
-}
-
-/// A place in the order of the rows from which on all lie beside those before: a device or a target that was moved. It is the change of
-/// mean that explains most of the squared errors, if it is more than three times what is left of each component, and no chance.
-pub(super) fn moved(data: &Dataset, rows: &[u32], errors: &[RowError]) -> Option<String> {
-    // Single regions of the workspace, measured one after the other, may err by twice what is usual.
-    const LEAST_SHARE: f64 = 0.1;
-    const LEAST_ROWS: usize = 4;
-    const SIGMAS: f64 = 3.0;
-    const CHANCE: f64 = 40.0;
-    let m = errors.len();
-    let total: Vector3<f64> = errors.iter().map(|error| error.position_m).sum();
-    let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
-    let mut before = Vector3::zeros();
-    let mut best = (0.0, 0, Vector3::zeros());
-    for (k, error) in errors.iter().enumerate() {
-        before += error.position_m;
-        let (count, rest) = (k + 1, m - k - 1);
-        if count.min(rest) < LEAST_ROWS || (count.min(rest) as f64) < LEAST_SHARE * m as f64 {
-            continue;
-        }
-        let shift = (total - before) / rest as f64 - before / count as f64;
-        let explained = shift.norm_squared() * count as f64 * rest as f64 / m as f64;
-        if explained > best.0 {
-            best = (explained, count, shift);
-        }
-    }
-    let (explained, at, shift) = best;
-    let variance = (squares - explained - total.norm_squared() / m.max(1) as f64).max(0.0)
-        / (3 * m.max(2) - 6).max(1) as f64;
-    if at == 0
-        || shift.norm() < 1e-6
-        || shift.norm() < SIGMAS * variance.sqrt()
-        || explained < CHANCE * variance
-    {
-        return None;
-    }
-    Some(format!(
-        "from {} on the measurements lie {:.2} mm beside those before: the measuring device or the target seems to have been moved; \
-         calibrate each part by itself, or only one of them",
-        data.place(rows[at]),
-        1e3 * shift.norm()
-    ))
 }

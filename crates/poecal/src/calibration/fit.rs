@@ -15,7 +15,7 @@ use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge;
 use crate::linalg;
 use crate::measurement::{Dataset, Noise};
-use crate::parameters::{Formulation, Parameter};
+use crate::parameters::{DeviceFrame, Formulation, Parameter};
 use crate::problem::{Layout, Prior, Problem};
 use crate::robot::Robot;
 use crate::simulate::random;
@@ -76,19 +76,22 @@ pub(super) struct Fitted {
     pub(super) report: SolverReport,
 }
 
-/// All screws and targets: what a fit with a settled device frame frees.
+/// All screws and targets, and the device's frame but at the first place where it stood: what a fit frees where that one frame is settled.
 pub(super) fn free_parameters(
     estimate: &Estimate,
     data: &Dataset,
     rows: &[u32],
     formulation: Formulation,
 ) -> Vec<Parameter> {
-    let mut free = formulation.joint_parameters(&estimate.kinds);
-    free.extend(target_parameters(data, rows));
-    free
+    let further = (1..=estimate.further_devices.len()).map(|station| {
+        let about = data.mean_position(&data.seen_from(station, rows));
+        Parameter::DeviceFrame(DeviceFrame { station, about })
+    });
+    let joints = formulation.joint_parameters(&estimate.kinds);
+    further.chain(joints).chain(target_parameters(data, rows)).collect()
 }
 
-/// One fit of all screws and targets from a start, the device's frame staying where it is: by the formulation and the solver that
+/// One fit of all screws and targets from a start, the (first) device frame staying where it is: by the formulation and the solver that
 /// the options state, begun on a sample if the rows are many. A prior counts by its weight ([`Problem::with_prior`]). As [`minimize`]
 /// says, `JᵀJ` may be that of a state close by.
 #[allow(clippy::too_many_arguments)]
@@ -157,6 +160,11 @@ fn promised(normal: &Normal) -> f64 {
 /// Whether stated noise explains a variance of the whitened residuals.
 pub(super) fn explains(variance: f64, freedom: f64) -> bool {
     is_within_band(variance, freedom) == std::cmp::Ordering::Equal
+}
+
+/// Whether a position error is more than what the gears and links of a robot of this size leave.
+pub(super) fn is_suspicious(rms_m: f64, length_m: f64) -> bool {
+    rms_m >= SUSPICIOUS * 3.0 * length_m
 }
 
 /// What is fitted to what.
@@ -328,7 +336,7 @@ impl Task<'_> {
 
     /// Whether a position error is more than what a robot's gears and links leave.
     pub(super) fn is_suspicious(&self, rms_m: f64) -> bool {
-        rms_m >= SUSPICIOUS * 3.0 * self.length_m
+        is_suspicious(rms_m, self.length_m)
     }
 
     /// Further starts, when what the fit leaves is more than a robot's own errors: random screws around the registered ones, on a

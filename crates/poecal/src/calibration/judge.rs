@@ -27,6 +27,7 @@ use crate::start::{Registration, free_parameters, register};
 ///     calibrated: &calibration.robot,
 ///     nominal: &calibration.nominal,
 ///     base_from_device: calibration.base_from_device,
+///     further_base_from_device: &[],
 ///     frame: DeviceFrameKnowledge::Unknown,
 ///     noise: calibration.noise,
 ///     refit_frame: false,
@@ -46,6 +47,8 @@ pub struct Subject<'a> {
     pub nominal: &'a Robot,
     /// Where the calibration found the measuring device.
     pub base_from_device: Pose,
+    /// The same for each further place that it stood at when the judging measurements were taken.
+    pub further_base_from_device: &'a [Pose],
     /// What was known of the device's frame.
     pub frame: DeviceFrameKnowledge,
     /// Noise by which positions and rotations are weighted where something is found anew.
@@ -134,6 +137,11 @@ fn seen(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> Seen {
     let mut estimate = delivered(robot, data);
     estimate.device_from_base = subject.base_from_device.inverse();
     let mut free = Vec::new();
+    for (device, base_from_device) in
+        estimate.further_devices.iter_mut().zip(subject.further_base_from_device)
+    {
+        *device = base_from_device.inverse();
+    }
     if subject.refit_frame || subject.refit_tool {
         let registration = Registration {
             data,
@@ -153,7 +161,7 @@ fn seen(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> Seen {
 
 /// Refuses measurements that cannot determine what is found anew, and none at all.
 fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
-    let frame = if subject.refit_frame { 6 } else { 0 };
+    let frame = if subject.refit_frame { 6 * data.station_count() } else { 0 };
     let targets = data.frames(&data.all_rows()).into_iter().map(|is_frame| if is_frame { 6 } else { 3 });
     let tool: usize = if subject.refit_tool { targets.sum() } else { 0 };
     if tool > MOST_UNKNOWNS {

@@ -94,7 +94,7 @@ impl CalibrationOptions {
 
     /// The tolerance that counts in the fit: none with formulations, residuals and methods that are there for comparison.
     #[must_use]
-    pub(super) fn believed(&self) -> Option<Tolerance> {
+    pub(in crate::calibration) fn believed(&self) -> Option<Tolerance> {
         let usual = Self::default();
         let is_usual = self.formulation == usual.formulation
             && self.pose_residual == usual.pose_residual

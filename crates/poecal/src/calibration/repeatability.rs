@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{Calibration, RowError, row_errors};
-use crate::estimate::{Estimate, Packed};
+use crate::estimate::{Estimate, Packed, turn_to_first};
 use crate::measurement::Dataset;
 use crate::threads;
 
@@ -54,7 +54,11 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
     let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
     let models = &calibration.models;
     let poses = groups.into_iter().map(|rows| {
-        let errors = |estimate: &Estimate| row_errors(data, &packed, &rows, estimate);
+        let errors = |estimate: &Estimate| {
+            let mut errors = row_errors(data, &packed, &rows, estimate);
+            turn_to_first(data, &rows, estimate, &mut errors);
+            errors
+        };
         let accuracy = |estimate| mean(&errors(estimate)).norm();
         let accuracy_m = [&models.nominal, &models.registered, &models.calibrated].map(accuracy);
         let repeatability_m = scatter(&errors(&models.calibrated));

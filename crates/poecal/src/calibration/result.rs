@@ -26,6 +26,15 @@ pub struct CalibratedTarget {
     pub tip_from_target: Pose,
 }
 
+/// A place that the measuring device stood at, as calibrated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedStation {
+    /// Its name, if the measurements name it.
+    pub name: Option<String>,
+    /// `base_from_device` there.
+    pub base_from_device: Pose,
+}
+
 /// How the minimisation went.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverReport {
@@ -81,8 +90,10 @@ pub struct Calibration {
     pub pose_residual: PoseResidual,
     /// By which steps the fit went.
     pub method: solve::Method,
-    /// `base_from_device`.
+    /// `base_from_device`; of the first place, if the device stood at several.
     pub base_from_device: Pose,
+    /// All places that the device stood at, in the order of [`Dataset::stations`]; at least one.
+    pub stations: Vec<CalibratedStation>,
     /// The three models.
     pub models: Models,
     /// Errors of the three models on training and held-out rows.
@@ -139,6 +150,15 @@ impl Calibration {
         let prior = prior.as_ref().map(|prior| (prior, 1.0));
         fit_screws(data, &packed, &self.fit_rows, start, self.noise, length_m, prior, options).2
     }
+}
+
+/// The places that the device stood at.
+pub(super) fn stations(data: &Dataset, estimate: &Estimate) -> Vec<CalibratedStation> {
+    let of = |station| CalibratedStation {
+        name: data.stations.get(station).cloned().flatten(),
+        base_from_device: estimate.device(station).inverse(),
+    };
+    (0..data.station_count()).map(of).collect()
 }
 
 /// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (with points alone its

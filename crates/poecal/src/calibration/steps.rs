@@ -1,10 +1,12 @@
 //! The steps of a calibration, each from what the ones before it found.
 
-use super::doubts::{doubts, moved};
+use super::doubts::doubts;
 use super::fit::{self, Fitted, Task};
+use super::moves::{FilesApart, Looked, Moved, files_apart, moved};
 use super::noise_doubts::noise_doubts;
-use super::result::place_tip;
+use super::result::{place_tip, stations};
 use super::robust::{self, RobustFit};
+use super::stations::check_stations;
 use super::trust::{Finished, trust};
 use super::verdict::{Grounds, verdict};
 use super::{
@@ -13,7 +15,7 @@ use super::{
 };
 use crate::analysis::{Identifiability, Setup, identifiability};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Estimate, Packed, row_errors};
+use crate::estimate::{Estimate, Packed};
 use crate::forensics::{self, Diagnosis, DiagnosisKind};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
@@ -46,6 +48,7 @@ impl<'a> Prepared<'a> {
     /// Splits the rows and packs the readings; refuses what cannot be fitted.
     pub(super) fn new(robot: &'a Robot, data: &'a Dataset, options: &'a CalibrationOptions) -> Result<Self> {
         let (fit_rows, held_out_rows) = split_rows(data, options)?;
+        check_stations(data, [&fit_rows, &held_out_rows], options)?;
         check_count(robot, data, &fit_rows)?;
         let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
         let (delivered, length_m) = (delivered(robot, data), radian_m(robot, &packed));
@@ -111,20 +114,29 @@ impl<'a> Prepared<'a> {
         let accuracy = self.accuracy(&models);
         let (mut trust, remainder) = self.trust(&fitted, &models, &kept, loss.is_some());
         let identifiability = self.identifiability(&fitted, remainder.variance);
-        let diagnosis = self.diagnosis(&models.calibrated, loss.is_some().then_some(&kept[..]));
+        let apart = self.files_apart(&fitted, &accuracy);
+        let diagnosis = match &apart {
+            Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
+            None => self.diagnosis(self.data, &models.calibrated, loss.is_some().then_some(&kept[..])),
+        };
         let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(self.data, &self.packed, rows, &models)
         });
-        let (input, moved) = self.doubts(&accuracy, &models.calibrated, &kept);
+        let moved = apart.as_ref().map(FilesApart::moved).or_else(|| self.moved(&models.calibrated));
+        let input = self.input_doubts(&accuracy, moved.as_ref());
         let noise_doubts = noise_doubts(&remainder, &trust);
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
+        let grave_move = moved.iter().filter(|it| it.is_grave).map(|it| it.statement.clone());
         let mistakes: Vec<String> =
-            grave.map(|it| it.statement.clone()).chain(input.iter().cloned()).chain(moved.clone()).collect();
+            grave.map(|it| it.statement.clone()).chain(input.iter().cloned()).chain(grave_move).collect();
         let mut warnings: Vec<String> = input
             .into_iter()
             .chain(noise_doubts.iter().map(|doubt| doubt.statement.clone()))
-            .chain(moved.clone())
+            .chain(moved.iter().map(|it| it.statement.clone()))
             .collect();
+        if !moved.as_ref().is_some_and(|it| it.explains(&robustness)) {
+            warnings.extend(robustness.warning(&self.fit_rows, &self.held_out_rows));
+        }
         let verdict = verdict(&Grounds {
             accuracy: &accuracy,
             solver: &fitted.report,
@@ -143,7 +155,6 @@ impl<'a> Prepared<'a> {
             // A joint is not to blame for what is wrong with the input.
             trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
         }
-        warnings.extend(robustness.warning(&self.fit_rows, &self.held_out_rows));
         let frames = self.data.frames(&self.fit_rows);
         let (robot, targets) = place_tip(self.robot, self.data, &frames, &models.calibrated);
         Calibration {
@@ -155,6 +166,7 @@ impl<'a> Prepared<'a> {
             pose_residual: self.options.pose_residual,
             method: self.options.solver.method,
             base_from_device: models.calibrated.device_from_base.inverse(),
+            stations: stations(self.data, &models.calibrated),
             models,
             accuracy,
             solver: fitted.report,
@@ -258,14 +270,14 @@ impl<'a> Prepared<'a> {
 
     /// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing. After a robust fit first in the rows
     /// that it believes, since single wrong ones hide what is wrong with all.
-    fn diagnosis(&self, calibrated: &Estimate, believed: Option<&[u32]>) -> Vec<Diagnosis> {
+    fn diagnosis(&self, data: &Dataset, calibrated: &Estimate, believed: Option<&[u32]>) -> Vec<Diagnosis> {
         if !self.options.diagnose {
             return Vec::new();
         }
         let options = forensics::Options { device_free: self.device_free(), calibrated: Some(calibrated) };
-        let in_all = || forensics::diagnose(self.robot, self.data, &self.data.all_rows(), &options);
+        let in_all = || forensics::diagnose(self.robot, data, &data.all_rows(), &options);
         let Some(believed) = believed else { return in_all() };
-        let mut found = forensics::diagnose(self.robot, self.data, believed, &options);
+        let mut found = forensics::diagnose(self.robot, data, believed, &options);
         if !found.iter().any(Diagnosis::is_of_input) {
             // A shift of rows, or exchanged names, may be what made the fit disbelieve rows.
             let known: Vec<DiagnosisKind> = found.iter().map(|it| it.kind).collect();
@@ -274,17 +286,32 @@ impl<'a> Prepared<'a> {
         found
     }
 
-    /// What makes the input doubtful, and whether the device was moved.
-    fn doubts(
-        &self,
-        accuracy: &Accuracy,
-        calibrated: &Estimate,
-        kept: &[u32],
-    ) -> (Vec<String>, Option<String>) {
-        let errors = row_errors(self.data, &self.packed, kept, calibrated);
-        let moved = moved(self.data, kept, &errors);
-        let registered = &accuracy.training.registered;
-        (doubts(self.data, &self.fit_rows, registered, self.options.frame), moved)
+    /// What makes the input doubtful.
+    fn input_doubts(&self, accuracy: &Accuracy, moved: Option<&Moved>) -> Vec<String> {
+        // Frames that differ make any model misfit.
+        if moved.is_some_and(Moved::is_between_files) {
+            return Vec::new();
+        }
+        doubts(self.data, &self.fit_rows, &accuracy.training.registered, self.options.frame)
+    }
+
+    /// Files whose device frames differ, where a fit with one frame leaves more than a robot's own errors.
+    fn files_apart(&self, fitted: &Fitted, accuracy: &Accuracy) -> Option<FilesApart> {
+        let left_m = 1e-3 * accuracy.training.calibrated.position_mm.rms;
+        if !self.device_free() || !fit::is_suspicious(left_m, self.length_m) {
+            return None;
+        }
+        let scale = (fitted.noise, self.length_m);
+        files_apart(self.robot, (self.data, &self.packed), &self.fit_rows, scale, left_m, self.options)
+    }
+
+    /// What moved within the session. Rows that were drawn to be held out belong to it as well; those that are stated to be may be of
+    /// another.
+    fn moved(&self, calibrated: &Estimate) -> Option<Moved> {
+        let is_stated = self.data.observations.iter().any(|row| row.set.is_some());
+        let rows = if is_stated { self.fit_rows.clone() } else { self.data.all_rows() };
+        let (data, packed, device_free) = (self.data, &self.packed, self.device_free());
+        moved(&Looked { data, packed, estimate: calibrated, rows: &rows, device_free })
     }
 }
 
@@ -306,14 +333,16 @@ fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
         }
     }
     let targets: usize = data.frames(fit_rows).iter().map(|&is_frame| if is_frame { 6 } else { 3 }).sum();
-    let needed = screws + targets;
+    let devices = 6 * (data.station_count() - 1);
+    let needed = screws + targets + devices;
     if needed > MOST_UNKNOWNS {
         return Err(Error::new(
             ErrorKind::Problem,
             format!(
-                "found {needed} unknowns ({screws} of the screws, {targets} of {} targets), expected at most {MOST_UNKNOWNS}, \
+                "found {needed} unknowns ({screws} of the screws, {targets} of {} targets{}), expected at most {MOST_UNKNOWNS}, \
                  which one fit can bear: calibrate with fewer targets, or a shorter chain",
-                data.targets.len()
+                data.targets.len(),
+                of_devices(devices)
             ),
         ));
     }
@@ -324,10 +353,16 @@ fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
             ErrorKind::Problem,
             format!(
                 "found {} to fit with {given} measured numbers, expected at least {needed} numbers \
-                 ({screws} of the screws, {targets} of the targets): measure more configurations, or hold out fewer",
-                measurements_words(fit_rows.len())
+                 ({screws} of the screws, {targets} of the targets{}): measure more configurations, or hold out fewer",
+                measurements_words(fit_rows.len()),
+                of_devices(devices)
             ),
         ));
     }
     Ok(())
+}
+
+/// Unknowns of further device frames, if there are any, as part of a list.
+fn of_devices(unknowns: usize) -> String {
+    if unknowns > 0 { format!(", {unknowns} of further device frames") } else { String::new() }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Estimate, Packed};
+use super::{Estimate, Packed, Sight};
 use crate::lanes::Step;
 use crate::lie::Pose;
 use crate::robot::JointKind;
@@ -27,6 +27,10 @@ pub struct Linkage {
     kinds: Vec<JointKind>,
     /// `device_from_axis_1`, then `axis_(i-1)_from_axis_i`.
     steps: Vec<Pose>,
+    /// `device_from_axis_1` of each further place that the device stood at.
+    further_first: Vec<Pose>,
+    /// The first place's device frame in that of each further one.
+    further_from_first: Vec<Pose>,
     /// `axis_n_from_target`.
     ends: Vec<Pose>,
     /// Joint offsets, if there are any: `(δ, cos δ, sin δ)`.
@@ -43,18 +47,34 @@ impl Linkage {
             steps.push(axis_from_base * base_from_axis);
             axis_from_base = base_from_axis.inverse();
         }
+        let devices = || estimate.further_devices.iter();
+        let first_axis = estimate.base_from_axis.first().copied().unwrap_or_else(Pose::identity);
+        let further_first = devices().map(|&device| device * first_axis).collect();
+        let base_from_first = estimate.device_from_base.inverse();
+        let further_from_first = devices().map(|&device| device * base_from_first).collect();
         let ends = estimate.base_from_target.iter().map(|&target| axis_from_base * target).collect();
         let offsets = if estimate.has_offsets() {
             estimate.joint_offset.iter().map(|&offset| (offset, offset.cos(), offset.sin())).collect()
         } else {
             Vec::new()
         };
-        Linkage { kinds: estimate.kinds.clone(), steps, ends, offsets }
+        let kinds = estimate.kinds.clone();
+        Linkage { kinds, steps, further_first, further_from_first, ends, offsets }
     }
 
     /// `device_from_axis_1`, then `axis_(i-1)_from_axis_i`, at zero joint values.
     pub(crate) fn steps(&self) -> &[Pose] {
         &self.steps
+    }
+
+    /// `device_from_axis_1` of a further place that the device stood at; none for the first.
+    pub(crate) fn first_step_from(&self, station: usize) -> Option<&Pose> {
+        self.further_first.get(station.checked_sub(1)?)
+    }
+
+    /// The first place's device frame in that of a further one; none for the first.
+    pub(super) fn station_from_first(&self, station: usize) -> Option<&Pose> {
+        self.further_from_first.get(station.checked_sub(1)?)
     }
 
     /// `axis_n_from_target`.
@@ -114,25 +134,31 @@ pub struct Chain {
     pub last: Pose,
     /// Predicted `device_from_target`.
     pub target: Pose,
+    /// Which of the places that the device stood at all this is seen from.
+    pub station: usize,
 }
 
 impl Default for Chain {
     fn default() -> Self {
-        Chain { joints: Vec::new(), last: Pose::identity(), target: Pose::identity() }
+        Chain { joints: Vec::new(), last: Pose::identity(), target: Pose::identity(), station: 0 }
     }
 }
 
 impl Chain {
-    /// Evaluates the chain for a row and a target.
-    pub fn evaluate(&mut self, linkage: &Linkage, packed: &Packed, row: usize, target: usize) {
+    /// Evaluates the chain for a row and what is seen there: an observation, or a target alone, which is seen from the first place that
+    /// the device stood at.
+    pub fn evaluate(&mut self, linkage: &Linkage, packed: &Packed, row: usize, seen: impl Into<Sight>) {
+        let Sight { station, target } = seen.into();
         self.joints.clear();
+        self.station = station;
+        let first = linkage.first_step_from(station);
         let mut moved = Pose::identity();
         let values = packed.joint_values(row);
         for (joint, ((step, &kind), &packed)) in
             linkage.steps.iter().zip(&linkage.kinds).zip(packed.row(row)).enumerate()
         {
             let (value, cosine_or_value, sine) = linkage.joint_value(joint, values[joint], packed);
-            let frame = moved * *step;
+            let frame = moved * *first.filter(|_| joint == 0).unwrap_or(step);
             let x = frame.rotation.column(0).into_owned();
             let y = frame.rotation.column(1).into_owned();
             let z = frame.rotation.column(2).into_owned();

@@ -7,11 +7,13 @@ mod chain;
 mod packing;
 mod predictions;
 mod row_error;
+mod sight;
 
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
-pub(crate) use row_error::map_squares;
 pub use row_error::{RowError, row_errors};
+pub(crate) use row_error::{map_squares, turn_to_first};
+pub use sight::Sight;
 
 use std::collections::BTreeMap;
 
@@ -44,8 +46,10 @@ pub struct Estimate {
     pub joint_offset: Vec<f64>,
     /// `base_from_target` of each target with all joint values zero (lou2009: M, or the point P_c0).
     pub base_from_target: Vec<Pose>,
-    /// The base in the measuring device's frame.
+    /// The base in the measuring device's frame; in that of the first, if it stood at several places.
     pub device_from_base: Pose,
+    /// The base in the device's frame at each further place ([`Dataset::stations`]).
+    pub further_devices: Vec<Pose>,
 }
 
 impl Estimate {
@@ -62,7 +66,29 @@ impl Estimate {
             joint_offset: vec![0.0; robot.joints.len()],
             base_from_target,
             device_from_base,
+            further_devices: Vec::new(),
         }
+    }
+
+    /// `device_from_base` at one of the places that the device stood at. A single frame is that of all.
+    #[must_use]
+    pub fn device(&self, station: usize) -> &Pose {
+        station.checked_sub(1).and_then(|at| self.further_devices.get(at)).unwrap_or(&self.device_from_base)
+    }
+
+    /// [`Estimate::device`], to be changed.
+    pub(crate) fn device_mut(&mut self, station: usize) -> &mut Pose {
+        match station.checked_sub(1).and_then(|at| self.further_devices.get_mut(at)) {
+            Some(device) => device,
+            None => &mut self.device_from_base,
+        }
+    }
+
+    /// The same estimate with the device's frame at one place only.
+    #[must_use]
+    pub(crate) fn seen_from(&self, station: usize) -> Self {
+        let device_from_base = *self.device(station);
+        Estimate { device_from_base, further_devices: Vec::new(), ..self.clone() }
     }
 
     /// The joint screws in the base frame.
@@ -101,6 +127,7 @@ impl Estimate {
             joint_offset: self.joint_offset.clone(),
             base_from_target: self.base_from_target.iter().map(|&pose| *motion * pose).collect(),
             device_from_base: self.device_from_base * motion.inverse(),
+            further_devices: self.further_devices.iter().map(|&device| device * motion.inverse()).collect(),
         }
     }
 
@@ -142,7 +169,7 @@ impl Estimate {
         let mut chain = Chain::default();
         let mut along = vec![0.0; self.kinds.len()];
         for &row in &sample {
-            chain.evaluate(&linkage, packed, row as usize, data.observations[row as usize].target);
+            chain.evaluate(&linkage, packed, row as usize, &data.observations[row as usize]);
             for (sum, joint) in along.iter_mut().zip(&chain.joints) {
                 *sum += joint.z.dot(&(chain.target.translation - joint.origin)) / count;
             }
@@ -180,7 +207,9 @@ pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
         found.map_or_else(Pose::identity, |tip_from_target| **tip_from_target)
     };
     let base_from_target = data.targets.iter().map(|name| robot.home * tip_from_target(name)).collect();
-    Estimate::new(robot, base_from_target, Pose::identity())
+    let mut delivered = Estimate::new(robot, base_from_target, Pose::identity());
+    delivered.further_devices.resize(data.station_count() - 1, Pose::identity());
+    delivered
 }
 
 /// A frame with z along the screw and its origin at the axis point nearest to `near`.

@@ -29,7 +29,10 @@ pub(super) fn map_errors<T: Send>(
             side_by_side.compare(data, rows);
             for (lane, &row) in rows.iter().enumerate() {
                 let observation = &data.observations[row as usize];
-                let predicted = || side_by_side.last_link(lane) * *linkage.end(observation.target);
+                let predicted = || {
+                    let from_first = side_by_side.last_link(lane) * *linkage.end(observation.target);
+                    linkage.station_from_first(observation.station).map_or(from_first, |&it| it * from_first)
+                };
                 found.push(each(observation, side_by_side.error(lane, observation), &predicted));
             }
         }
@@ -84,8 +87,12 @@ impl<'a> SideBySide<'a> {
     fn compare(&mut self, data: &Dataset, rows: &[u32]) {
         let mut framed = false;
         for (lane, &row) in rows.iter().enumerate() {
-            let Observation { target, measurement, .. } = &data.observations[row as usize];
-            put(&mut self.measured, lane, &measurement.pose());
+            let Observation { target, measurement, station, .. } = &data.observations[row as usize];
+            let seen = measurement.pose();
+            // What was seen from another place is compared as the first would see it.
+            let from_first =
+                self.linkage.station_from_first(*station).map(|station| station.inverse() * seen);
+            put(&mut self.measured, lane, &from_first.unwrap_or(seen));
             framed |= measurement.sees_orientation();
             if self.targets[lane] != Some(*target) {
                 self.targets[lane] = Some(*target);
@@ -101,8 +108,12 @@ impl<'a> SideBySide<'a> {
 
     fn error(&self, lane: usize, seen: &Observation) -> RowError {
         let vector = |[x, y, z]: &[Wide; 3]| Vector3::new(x.0[lane], y.0[lane], z.0[lane]);
-        let rotation_rad = seen.measurement.sees_orientation().then(|| vector(&self.errors[1]));
-        RowError { position_m: vector(&self.errors[0]), rotation_rad }
+        let own = |error: Vector3<f64>| match self.linkage.station_from_first(seen.station) {
+            Some(station) => station.rotation * error,
+            None => error,
+        };
+        let rotation_rad = seen.measurement.sees_orientation().then(|| own(vector(&self.errors[1])));
+        RowError { position_m: own(vector(&self.errors[0])), rotation_rad }
     }
 }
 

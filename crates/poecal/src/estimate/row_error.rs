@@ -27,6 +27,19 @@ pub fn row_errors(data: &Dataset, packed: &Packed, rows: &[u32], estimate: &Esti
     map_errors(data, packed, rows, estimate, |_, error, _| error)
 }
 
+/// Turns errors of some rows from the axes of the place that each was seen from to those of the first, in which they can be compared.
+pub(crate) fn turn_to_first(data: &Dataset, rows: &[u32], estimate: &Estimate, errors: &mut [RowError]) {
+    if data.station_count() == 1 {
+        return;
+    }
+    for (&row, error) in rows.iter().zip(errors) {
+        let own = estimate.device(data.observations[row as usize].station).rotation;
+        let turn = estimate.device_from_base.rotation * own.transpose();
+        error.position_m = turn * error.position_m;
+        error.rotation_rad = error.rotation_rad.map(|rotation| turn * rotation);
+    }
+}
+
 /// What `each` makes of a row and of its residual's two parts, position and rotation (m², rad²): the sum of squares, and of how many numbers.
 pub(crate) fn map_squares<T: Send>(
     data: &Dataset,

@@ -42,7 +42,7 @@ pub(super) fn conventions(session: &Session<'_>, data: &Dataset) -> Vec<Hypothes
     let mut seen = Vec::new();
     for (row, observation) in data.observations.iter().enumerate() {
         if let Some(turned) = observation.measurement.residual_model().orientation() {
-            chain.evaluate(&linkage, &packed, row, observation.target);
+            chain.evaluate(&linkage, &packed, row, observation);
             let link_from_device = chain.target.rotation.transpose();
             seen.push(Seen { row, target: observation.target, link_from_device, turned });
         }

@@ -144,7 +144,7 @@ pub(super) fn for_links(
     let linkage = Linkage::new(estimate);
     let mut chain = Chain::default();
     for (row, seen) in all.observations.iter().enumerate() {
-        chain.evaluate(&linkage, &packed, row, seen.target);
+        chain.evaluate(&linkage, &packed, row, seen);
         let home = estimate.base_from_target[seen.target];
         each(row, &(home * chain.target.inverse()));
     }

@@ -136,6 +136,9 @@ pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'
     if rows.len() < FEWEST_ROWS || robot.reading_names() != data.reading_names() {
         return Vec::new();
     }
+    if data.station_count() > 1 {
+        return station_by_station(robot, data, &rows, options);
+    }
     let session = Session::new(robot, data, options.device_free);
     let Repeats { repeated, contradicting, unnamed } = repeats::diagnose(&session, data, &rows);
     let mut found: Vec<Diagnosis> = repeated.into_iter().collect();
@@ -159,6 +162,26 @@ pub fn diagnose(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'
         }
         _ => found.extend(whole),
     }
+    found
+}
+
+/// Each place of the device by itself: nothing is supposed of how their frames stand to each other.
+fn station_by_station(robot: &Robot, data: &Dataset, rows: &[u32], options: &Options<'_>) -> Vec<Diagnosis> {
+    let alone = data.without_stations();
+    let mut found: Vec<Diagnosis> = Vec::new();
+    for station in 0..data.station_count() {
+        let calibrated = options.calibrated.map(|it| it.seen_from(station));
+        let own = Options { calibrated: calibrated.as_ref(), ..*options };
+        for one in diagnose(robot, &alone, &data.seen_from(station, rows), &own) {
+            // Of a mistake that all make, the first says it.
+            match found.iter_mut().find(|it| it.kind == one.kind) {
+                Some(known) if !known.rows.is_empty() => known.rows.extend(one.rows),
+                Some(_) => {}
+                None => found.push(one),
+            }
+        }
+    }
+    found.iter_mut().for_each(|it| it.rows.sort_unstable());
     found
 }
 

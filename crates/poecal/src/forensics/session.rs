@@ -130,7 +130,7 @@ impl<'a> Session<'a> {
         );
         if self.device_free {
             let about = data.mean_position(&data.all_rows());
-            free.push(Parameter::DeviceFrame(DeviceFrame { about }));
+            free.push(Parameter::DeviceFrame(DeviceFrame { station: 0, about }));
         }
         let (estimate, misfit) = self.fit(data, registered, free, 30);
         (estimate.joint_offset.get(joint).copied().unwrap_or(0.0), misfit)

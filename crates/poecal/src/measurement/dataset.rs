@@ -31,6 +31,9 @@ pub struct Source {
 pub struct Observation {
     /// Index into [`Dataset::targets`].
     pub target: usize,
+    /// Index into [`Dataset::stations`]; 0 where there is one device frame only.
+    #[serde(default)]
+    pub station: usize,
     /// What was seen.
     pub measurement: Measurement,
     /// Standard deviation of each position component, metres, if the row states it.
@@ -71,6 +74,9 @@ pub struct Dataset {
     readings: Vec<f64>,
     /// Names of the targets; `None` is the single unnamed target, which is the tip itself.
     pub targets: Vec<Option<String>>,
+    /// Names of the places that the device stood at, each with a frame of its own; none is one without a name.
+    #[serde(default)]
+    pub stations: Vec<Option<String>>,
     /// The rows.
     pub observations: Vec<Observation>,
     /// The rows' `id`, empty if there is no such column.
@@ -102,6 +108,7 @@ impl Dataset {
             readings,
             Observation {
                 target,
+                station: 0,
                 measurement,
                 sigma_position_m: None,
                 sigma_rotation_rad: None,
@@ -149,6 +156,7 @@ impl Dataset {
         let fits = self.readings.len() == self.reading_names.len() * self.len()
             && (self.ids.is_empty() || self.ids.len() == self.len())
             && self.observations.iter().all(|row| row.target < self.targets.len())
+            && self.observations.iter().all(|row| row.station < self.station_count())
             && self.observations.iter().all(|row| (row.source.file as usize) < files);
         if fits {
             return Ok(());
@@ -165,6 +173,48 @@ impl Dataset {
         }
         self.targets.push(name.map(str::to_owned));
         self.targets.len() - 1
+    }
+
+    /// How many places the device stood at.
+    #[must_use]
+    pub fn station_count(&self) -> usize {
+        self.stations.len().max(1)
+    }
+
+    /// Index of a place that the device stood at, added if it is new.
+    pub fn station_index(&mut self, name: Option<&str>) -> usize {
+        if self.stations.is_empty() && !self.is_empty() {
+            self.stations.push(None);
+        }
+        if let Some(index) = self.stations.iter().position(|station| station.as_deref() == name) {
+            return index;
+        }
+        self.stations.push(name.map(str::to_owned));
+        self.stations.len() - 1
+    }
+
+    /// What to call a place that the device stood at.
+    #[must_use]
+    pub fn station_words(&self, station: usize) -> String {
+        match self.stations.get(station).and_then(Option::as_deref) {
+            Some(name) => format!("instrument `{name}`"),
+            None => "the instrument without a name".to_owned(),
+        }
+    }
+
+    /// Those of some rows that were measured from one place, in their order.
+    #[must_use]
+    pub fn seen_from(&self, station: usize, rows: &[u32]) -> Vec<u32> {
+        rows.iter().copied().filter(|&row| self.observations[row as usize].station == station).collect()
+    }
+
+    /// The same rows as if all had been measured from one place.
+    #[must_use]
+    pub(crate) fn without_stations(&self) -> Self {
+        let mut data = self.clone();
+        data.stations.clear();
+        data.observations.iter_mut().for_each(|row| row.station = 0);
+        data
     }
 
     /// The same data with the errors of measured frames written in this way.
@@ -304,6 +354,11 @@ impl Dataset {
         let mut readings = Vec::with_capacity(order.len());
         // Looked up once a target: there may be very many.
         let mut targets: Vec<Option<usize>> = vec![None; other.targets.len()];
+        let stations: Vec<usize> = match (self.stations.as_slice(), other.stations.as_slice()) {
+            ([], []) => Vec::new(),
+            (_, []) => vec![self.station_index(None)],
+            (_, named) => named.iter().map(|name| self.station_index(name.as_deref())).collect(),
+        };
         for row in 0..other.len() {
             readings.clear();
             readings.extend(order.iter().map(|&index| other.readings(row)[index]));
@@ -312,6 +367,7 @@ impl Dataset {
             let known = targets[target];
             observation.target = known.unwrap_or_else(|| self.target_index(other.targets[target].as_deref()));
             targets[target] = Some(observation.target);
+            observation.station = stations.get(observation.station).copied().unwrap_or_default();
             observation.source.file += first_file;
             self.push_observation(&readings, observation)?;
         }

@@ -7,14 +7,17 @@ use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
 
 /// The device's frame, stepped about the point `about` of the device's frame (the middle of the data, so that a turn and a shift
-/// hardly compete): columns `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)).
+/// hardly compete): columns `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)). They are zero in rows that were seen from
+/// another place.
 ///
 /// ```
 /// use poecal::parameters::{Columns, DeviceFrame};
-/// assert_eq!(DeviceFrame { about: nalgebra::Vector3::zeros() }.columns().len(), 6);
+/// assert_eq!(DeviceFrame { station: 0, about: nalgebra::Vector3::zeros() }.columns().len(), 6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceFrame {
+    /// Which of the places that the device stood at.
+    pub station: usize,
     /// Point about which the step turns, metres, device frame.
     pub about: Vector3<f64>,
 }
@@ -28,6 +31,10 @@ impl Columns for DeviceFrame {
     }
 
     fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+        if chain.station != self.station {
+            out.fill((Vector3::zeros(), Vector3::zeros()));
+            return;
+        }
         let arm = chain.target.translation - self.about;
         for k in 0..3 {
             let mut axis = Vector3::zeros();
@@ -38,6 +45,9 @@ impl Columns for DeviceFrame {
     }
 
     fn curvature(&self, chain: &Chain, wrench: &Wrench, out: &mut [f64]) {
+        if chain.station != self.station {
+            return;
+        }
         let arm = chain.target.translation - self.about;
         for a in 0..3 {
             for b in 0..3 {
@@ -52,7 +62,7 @@ impl Columns for DeviceFrame {
     fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
         let turn = rotation::exp(&Vector3::new(step[3], step[4], step[5]));
         let shift = Vector3::new(step[0], step[1], step[2]);
-        let pose = &mut estimate.device_from_base;
+        let pose = estimate.device_mut(self.station);
         pose.translation = turn * (pose.translation - self.about) + self.about + shift;
         pose.rotation = turn * pose.rotation;
         *pose = pose.orthonormalized();

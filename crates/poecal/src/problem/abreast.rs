@@ -57,7 +57,7 @@ impl Problem<'_> {
             return None;
         }
         let alike = Alike::of(self, rows, |place, _| place)?.into_iter();
-        alike.map(|it| Some((Arrangement::new(self, it.target, it.framed)?, it.rows))).collect()
+        alike.map(|it| Some((Arrangement::new(self, it.sight, it.framed)?, it.rows))).collect()
     }
 
     fn by_kernel(
@@ -69,8 +69,11 @@ impl Problem<'_> {
         each: &mut impl FnMut(&[u32], &mut Abreast),
     ) {
         let linkage = Linkage::new(state);
-        let steps: Vec<Step> = linkage.steps().iter().map(Step::from).collect();
-        let end = Step::from(linkage.end(arranged.target));
+        let mut steps: Vec<Step> = linkage.steps().iter().map(Step::from).collect();
+        if let Some((first, own)) = steps.first_mut().zip(linkage.first_step_from(arranged.sight.station)) {
+            *first = Step::from(own);
+        }
+        let end = Step::from(linkage.end(arranged.sight.target));
         let plan = &arranged.plan;
         let arm = Arm { plan, steps: &steps, end: &end, nearly: false };
         let columns: Vec<usize> = arranged.places().collect();

@@ -1,6 +1,7 @@
-//! Rows that are computed alike: those of one target, with or without orientation.
+//! Rows that are computed alike: those of one target, seen from one place, with or without orientation.
 
 use super::Problem;
+use crate::estimate::Sight;
 use crate::measurement::{Measurement, Noise, Observation};
 use crate::threads;
 
@@ -11,7 +12,7 @@ const SAME_RATIO: f64 = 1e-14;
 
 /// Rows that are computed alike, in the order given.
 pub(super) struct Alike {
-    pub(super) target: usize,
+    pub(super) sight: Sight,
     /// Whether orientation was measured.
     pub(super) framed: bool,
     /// Position over rotation noise in m/rad, if it is the same in all rows.
@@ -30,7 +31,7 @@ impl Alike {
             threads::map_chunks(&problem.rows, CHUNK, |_, rows| Alike::of(problem, rows, |_, row| row));
         let mut sorted: Vec<Alike> = Vec::new();
         for other in parts.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten() {
-            match sorted.iter_mut().find(|alike| alike.holds(other.target, other.framed)) {
+            match sorted.iter_mut().find(|alike| alike.holds(other.sight, other.framed)) {
                 Some(alike) => {
                     alike.ratio = same(alike.ratio, other.ratio);
                     alike.rows.extend(other.rows);
@@ -57,10 +58,10 @@ impl Alike {
                 Measurement::Pose(_) => true,
                 Measurement::SpatialPose(_) => return None,
             };
-            let target = observation.target;
+            let sight = Sight::from(observation);
             // Most rows are like the one before.
-            if !sorted.get(at).is_some_and(|alike| alike.holds(target, framed)) {
-                at = sorted.iter().position(|alike| alike.holds(target, framed)).unwrap_or(sorted.len());
+            if !sorted.get(at).is_some_and(|alike| alike.holds(sight, framed)) {
+                at = sorted.iter().position(|alike| alike.holds(sight, framed)).unwrap_or(sorted.len());
             }
             let ratio = framed.then(|| usual.of(observation, problem.noise).ratio);
             match sorted.get_mut(at) {
@@ -68,14 +69,14 @@ impl Alike {
                     alike.ratio = same(alike.ratio, ratio);
                     alike.rows.push(name(place, row));
                 }
-                None => sorted.push(Alike { target, framed, ratio, rows: vec![name(place, row)] }),
+                None => sorted.push(Alike { sight, framed, ratio, rows: vec![name(place, row)] }),
             }
         }
         Some(sorted)
     }
 
-    fn holds(&self, target: usize, framed: bool) -> bool {
-        self.target == target && self.framed == framed
+    fn holds(&self, sight: Sight, framed: bool) -> bool {
+        self.sight == sight && self.framed == framed
     }
 }
 

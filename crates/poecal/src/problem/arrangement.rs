@@ -1,13 +1,14 @@
-//! How the unknowns of a problem are arranged for the kernels, for rows of one target and kind.
+//! How the unknowns of a problem are arranged for the kernels, for rows of one target, place of the device, and kind.
 
 use super::{Layout, Problem};
+use crate::estimate::Sight;
 use crate::lanes::{JointPlan, NUMBERS, Plan};
 use crate::parameters::Parameter;
 
-/// Rows of one target, with or without orientation: what the kernels are told of the unknowns, and where these stand in a step.
+/// Rows of one target seen from one place, with or without orientation: what the kernels are told of the unknowns, and where these stand in a step.
 #[derive(Clone, Debug)]
 pub(super) struct Arrangement {
-    pub(super) target: usize,
+    pub(super) sight: Sight,
     pub(super) plan: Plan,
     /// Places of the plan's shifts and turns in a step.
     shift_places: Vec<usize>,
@@ -16,9 +17,9 @@ pub(super) struct Arrangement {
 
 impl Arrangement {
     /// `None` if the kernels do not serve such unknowns.
-    pub(super) fn new(problem: &Problem<'_>, target: usize, framed: bool) -> Option<Self> {
+    pub(super) fn new(problem: &Problem<'_>, sight: Sight, framed: bool) -> Option<Self> {
         let mut made = Arrangement {
-            target,
+            sight,
             plan: plan_without_unknowns(problem, framed),
             shift_places: Vec::new(),
             turn_places: Vec::new(),
@@ -54,7 +55,10 @@ impl Arrangement {
 
     fn add_device(&mut self, layout: &Layout) -> Option<()> {
         for (parameter, places) in layout.parameters() {
-            if let Parameter::DeviceFrame(device) = parameter {
+            // The frames of other places do not move these rows.
+            if let Parameter::DeviceFrame(device) = parameter
+                && device.station == self.sight.station
+            {
                 if self.plan.device.is_some() {
                     return None;
                 }
@@ -92,7 +96,7 @@ impl Arrangement {
                 Parameter::TargetPlace(place) => place.target,
                 _ => continue,
             };
-            if target != self.target {
+            if target != self.sight.target {
                 continue;
             }
             if self.plan.place.is_some() {

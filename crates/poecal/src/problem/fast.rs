@@ -1,6 +1,6 @@
-//! The hot path: rows grouped by target and kind, packed side by side, and summed by [`crate::lanes`].
+//! The hot path: rows grouped by place of the device, target and kind, packed side by side, and summed by [`crate::lanes`].
 //!
-//! It serves points and poses with minimal screws, targets and a device frame; everything else takes the general path in `mod.rs`,
+//! It serves points and poses with minimal screws, targets and device frames; everything else takes the general path in `mod.rs`,
 //! which is also what this one is tested against.
 
 use super::Problem;
@@ -58,7 +58,7 @@ impl Fast {
     pub(super) fn new(problem: &Problem<'_>, level: Level) -> Option<Self> {
         let mut groups = Vec::new();
         for alike in Alike::sorted(problem)? {
-            let mut arranged = Arrangement::new(problem, alike.target, alike.framed)?;
+            let mut arranged = Arrangement::new(problem, alike.sight, alike.framed)?;
             arranged.plan.ratio = alike.ratio;
             let scatter = Scatter::new(&arranged, problem.layout.dim());
             groups.push((Group { arranged, rows: alike.rows, packed: Vec::new() }, scatter));
@@ -85,15 +85,20 @@ impl Fast {
     /// Normal information of all rows; a `JᵀJ` that is not asked for is left empty.
     pub(super) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Sums) -> Normal {
         let linkage = Linkage::new(state);
-        let steps: Vec<Step> = linkage.steps().iter().map(Step::from).collect();
+        let mut steps: Vec<Step> = linkage.steps().iter().map(Step::from).collect();
+        let first = steps.first().copied();
         let mut normal = match sums {
             Sums::Gradient => Normal::new(0),
             Sums::All | Sums::Nearly => Normal::new(problem.layout.dim()),
         };
         normal.gradient.resize(problem.layout.dim(), 0.0);
         for (group, scatter) in &self.groups {
-            let Arrangement { target, plan, .. } = &group.arranged;
-            let end = Step::from(linkage.end(*target));
+            let Arrangement { sight, plan, .. } = &group.arranged;
+            let end = Step::from(linkage.end(sight.target));
+            let own = linkage.first_step_from(sight.station).map(Step::from).or(first);
+            if let Some((step, own)) = steps.first_mut().zip(own) {
+                *step = own;
+            }
             let arm = Arm { plan, steps: &steps, end: &end, nearly: sums == Sums::Nearly };
             let totals = group.sum(problem, self.level, &arm, sums);
             group.put(&totals, &mut normal);

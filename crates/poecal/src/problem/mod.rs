@@ -207,7 +207,7 @@ impl<'a> Problem<'a> {
             let observation = &self.data.observations[row as usize];
             let measurement = self.measurement(row as usize).residual_model();
             let (noise, dim) = (self.noise(row as usize), measurement.dim());
-            chain.evaluate(&linkage, self.packed, row as usize, observation.target);
+            chain.evaluate(&linkage, self.packed, row as usize, observation);
             self.layout.target_twists(&chain, observation.target, &mut columns);
             measurement.project(&chain.target, &columns, &noise, n, &mut jacobian);
             measurement.residual(&chain.target, &noise, &mut residual);
@@ -247,7 +247,7 @@ impl<'a> Problem<'a> {
             let row = row as usize;
             let observation = &self.data.observations[row];
             let measurement = self.measurement(row).residual_model();
-            chain.evaluate(linkage, self.packed, row, observation.target);
+            chain.evaluate(linkage, self.packed, row, observation);
             self.layout.target_twists(&chain, observation.target, &mut columns);
             let (dim, split) = (measurement.dim(), measurement.rotation_row());
             measurement.project(&chain.target, &columns, &self.noise(row), n, &mut jacobian);
@@ -365,9 +365,9 @@ impl LeastSquares for Problem<'_> {
                     let observation = &self.data.observations[row];
                     let measurement = self.measurement(row).residual_model();
                     let noise = self.noise(row);
-                    chain.evaluate(&ahead, self.packed, row, observation.target);
+                    chain.evaluate(&ahead, self.packed, row, observation);
                     measurement.residual(&chain.target, &noise, &mut e_ahead);
-                    chain.evaluate(&behind, self.packed, row, observation.target);
+                    chain.evaluate(&behind, self.packed, row, observation);
                     measurement.residual(&chain.target, &noise, &mut e_behind);
                     measurement.residual(&here.target, &noise, out);
                     for (e, (a, b)) in out.iter_mut().zip(e_ahead.iter().zip(&e_behind)) {
@@ -392,7 +392,7 @@ impl LeastSquares for Problem<'_> {
             for &row in rows {
                 let row = row as usize;
                 let observation = &self.data.observations[row];
-                chain.evaluate(&linkage, self.packed, row, observation.target);
+                chain.evaluate(&linkage, self.packed, row, observation);
                 let measurement = self.measurement(row).residual_model();
                 let Some((force, torque)) = measurement.wrench(&chain.target, &self.noise(row)) else {
                     return normal;

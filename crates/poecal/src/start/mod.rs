@@ -3,6 +3,7 @@
 mod averaging;
 mod hand_eye;
 mod registration;
+mod stations;
 
 pub(crate) use averaging::mean_rotation;
 pub use registration::{Registration, register, register_again, register_robustly};

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::averaging::{mean_rotation, rigid_motion};
-use super::hand_eye;
+use super::{hand_eye, stations};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, sample_rows};
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Noise};
@@ -45,6 +45,9 @@ pub struct Registration<'a> {
 /// of whitened residuals) is returned with it.
 #[must_use]
 pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64) {
+    if problem.device_free && !start.further_devices.is_empty() {
+        return polish(problem, stations::one_by_one(problem, start), problem.rows.to_vec(), 50);
+    }
     let sample = sample_rows(problem.rows, SAMPLE);
     let seen = Seen::new(problem, start, &sample);
     let mut best = seen.best_of(problem, start, &sample, seen.closed_forms(problem, start), ROUNDS);
@@ -152,7 +155,12 @@ fn polish(problem: &Registration<'_>, start: Estimate, rows: Vec<u32>, iteration
 pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<Parameter> {
     let mut free = Vec::new();
     if problem.device_free {
-        free.push(Parameter::DeviceFrame(DeviceFrame { about: problem.data.mean_position(rows) }));
+        let data = problem.data;
+        let stations = (0..data.station_count()).map(|station| {
+            let about = data.mean_position(&data.seen_from(station, rows));
+            Parameter::DeviceFrame(DeviceFrame { station, about })
+        });
+        free.extend(stations);
     }
     if problem.targets_free {
         free.extend(target_parameters(problem.data, problem.rows));
@@ -196,7 +204,7 @@ impl Seen {
         };
         for &row in sample {
             let observation = &problem.data.observations[row as usize];
-            chain.evaluate(&linkage, problem.packed, row as usize, observation.target);
+            chain.evaluate(&linkage, problem.packed, row as usize, observation);
             let home = start.base_from_target[observation.target];
             seen.base_motion.push(chain.target * home.inverse());
             let model = observation.measurement.residual_model();

@@ -23,6 +23,8 @@ const FOLDS: usize = 5;
 /// Names by which rows are grouped, at most, and rows of a name on average, at least: others are names of rows, not of groups.
 const MOST_GROUPS: usize = 30;
 const LEAST_ROWS: usize = 4;
+/// Rows of each place of the device that a block must leave.
+const FEWEST_OF_STATION: usize = 6;
 
 /// Rows to leave out together.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -121,7 +123,15 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
             view.data.ids.get(row as usize).map(|id| format!("the rows of id {id}"))
         }));
     }
+    folds.retain(|fold| leaves_all_stations(view, sample, fold));
     folds
+}
+
+/// Whether the rows that a fold leaves still tell where the device stood, at each of several places: nothing else does.
+fn leaves_all_stations(view: &View<'_>, sample: &[u32], fold: &Fold) -> bool {
+    let stations = view.data.station_count();
+    let count = |rows: &[u32], station| view.data.seen_from(station, rows).len();
+    stations == 1 || (0..stations).all(|it| count(sample, it) >= count(&fold.rows, it) + FEWEST_OF_STATION)
 }
 
 /// Rows of one name together, if the names are those of groups.
@@ -234,7 +244,7 @@ impl<'a> Left<'a> {
     fn position_variance(&self, layout: &Layout, rows: &[u32], covariance: &DMatrix<f64>) -> f64 {
         let linkage = Linkage::new(&self.estimate);
         let of = |some: &[u32]| {
-            let motions = motions(layout, &linkage, self.view.packed, &self.view.with_targets(some), 1);
+            let motions = motions(layout, &linkage, self.view.packed, &self.view.with_sights(some), 1);
             (&motions * covariance).dot(&motions)
         };
         rows.chunks(TOGETHER).map(of).sum()

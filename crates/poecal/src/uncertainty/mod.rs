@@ -29,7 +29,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, Matrix3};
 
 use crate::analysis::ranges;
-use crate::estimate::{Estimate, Linkage, Packed};
+use crate::estimate::{Estimate, Linkage, Packed, Sight};
 use crate::linalg::{self, Factor};
 use crate::problem::Layout;
 use crate::robot::JointKind;
@@ -102,7 +102,7 @@ impl Uncertainty {
         packed: &Packed,
     ) -> Vec<PredictedError> {
         let quantiles = self.quantiles();
-        let errors = self.spread::<2>(rows, packed).into_iter();
+        let errors = self.spread::<2>(rows.map(in_first), packed).into_iter();
         errors.map(|[position, rotation]| PredictedError { position, rotation, quantiles }).collect()
     }
 
@@ -114,7 +114,7 @@ impl Uncertainty {
 
     /// [`Uncertainty::predictions`], covariances of the place alone, square metres.
     pub(crate) fn positions(&self, packed: &Packed, target: usize) -> Vec<Matrix3<f64>> {
-        self.spread::<1>((0..packed.rows()).map(|row| (row, target)), packed).into_flattened()
+        self.spread::<1>((0..packed.rows()).map(|row| in_first((row, target))), packed).into_flattened()
     }
 
     /// How far outside the sampled range a configuration is: 0 inside, 1 from a fifth of the range on, which is how far the blocks of
@@ -139,7 +139,7 @@ impl Uncertainty {
     /// Covariances of the place, and of the turn if they are two.
     fn spread<const PARTS: usize>(
         &self,
-        rows: impl Iterator<Item = (usize, usize)>,
+        rows: impl Iterator<Item = (usize, Sight)>,
         packed: &Packed,
     ) -> Vec<[Matrix3<f64>; PARTS]> {
         let linkage = Linkage::new(&self.estimate);
@@ -151,7 +151,7 @@ impl Uncertainty {
             self.discrepancy.standard_deviation.rotation_rad,
         ]
         .map(|sigma| Matrix3::identity() * (sigma * sigma));
-        let rows: Vec<(usize, usize)> = rows.collect();
+        let rows: Vec<(usize, Sight)> = rows.collect();
         let mut found = Vec::with_capacity(rows.len());
         for some in rows.chunks(TOGETHER) {
             let motions = motions(&self.layout, &linkage, packed, some, PARTS);
@@ -172,6 +172,11 @@ impl Uncertainty {
         }
         found
     }
+}
+
+/// What is predicted is said in the frame of the first place that the device stood at.
+fn in_first((row, target): (usize, usize)) -> (usize, Sight) {
+    (row, Sight::from(target))
 }
 
 /// Factor of `JᵀJ + variance · belief`.
@@ -221,7 +226,7 @@ fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
     let linkage = Linkage::new(view.estimate);
     let mut sum = DMatrix::zeros(layout.dim(), layout.dim());
     for some in rows.chunks(TOGETHER) {
-        let motions = motions(layout, &linkage, view.packed, &view.with_targets(some), 1);
+        let motions = motions(layout, &linkage, view.packed, &view.with_sights(some), 1);
         sum += motions.transpose() * motions;
     }
     (sum / rows.len().max(1) as f64).as_slice().to_vec()

@@ -2,25 +2,25 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use crate::estimate::{Chain, Linkage, Packed};
+use crate::estimate::{Chain, Linkage, Packed, Sight};
 use crate::problem::Layout;
 
-/// Motions of targets in some `(row of joint values, target)` with each scaled unknown, which has a column: three rows a target, or six
+/// Motions of targets in some rows of joint values, as they are seen there, with each scaled unknown, which has a column: three rows a target, or six
 /// with `parts` 2, of its place and of its turn.
 pub(super) fn motions(
     layout: &Layout,
     linkage: &Linkage,
     packed: &Packed,
-    rows: &[(usize, usize)],
+    rows: &[(usize, Sight)],
     parts: usize,
 ) -> DMatrix<f64> {
     let mut chain = Chain::default();
     let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); layout.dim()];
     let height = 3 * parts * rows.len();
     let mut motions = DMatrix::zeros(height, layout.dim());
-    for (place, &(row, target)) in (0..height).step_by(3 * parts).zip(rows) {
-        chain.evaluate(linkage, packed, row, target);
-        layout.target_twists(&chain, target, &mut twists);
+    for (place, &(row, sight)) in (0..height).step_by(3 * parts).zip(rows) {
+        chain.evaluate(linkage, packed, row, sight);
+        layout.target_twists(&chain, sight.target, &mut twists);
         for (column, (v, w)) in motions.as_mut_slice().chunks_exact_mut(height).zip(&twists) {
             column[place..place + 3].copy_from_slice(v.as_slice());
             if parts > 1 {

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::clusters::SIGNIFICANT;
 use super::view::View;
-use crate::estimate::sample_rows;
+use crate::estimate::{sample_rows, turn_to_first};
 
 /// Rows whose nearest neighbour is looked for, and rows among which it is.
 const PROBES: usize = 400;
@@ -13,7 +13,8 @@ const NEIGHBOURS: usize = 4000;
 /// Whether the residuals of one target in neighbouring configurations are alike beyond chance: of positions, and of rotations.
 pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     let pool = sample_rows(view.rows, NEIGHBOURS);
-    let errors = view.errors(&pool, view.estimate);
+    let mut errors = view.errors(&pool, view.estimate);
+    turn_to_first(view.data, &pool, view.estimate, &mut errors);
     let spans = view.spans(view.rows);
     let targets: Vec<usize> = pool.iter().map(|&row| view.data.observations[row as usize].target).collect();
     let step = pool.len().div_ceil(PROBES).max(1);

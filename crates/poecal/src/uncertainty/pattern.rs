@@ -62,7 +62,7 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
     for (&row, error) in rows.iter().zip(errors) {
         let observation = &view.data.observations[row as usize];
         let sigma = observation.noise_or(view.noise).position_m;
-        chain.evaluate(&linkage, view.packed, row as usize, observation.target);
+        chain.evaluate(&linkage, view.packed, row as usize, observation);
         let error = error.position_m / sigma;
         squares += error.norm_squared();
         for ((sums, joint), &range) in sums.iter_mut().zip(&chain.joints).zip(&ranges) {

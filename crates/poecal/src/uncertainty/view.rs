@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::analysis::{PLAUSIBLE, ranges};
-use crate::estimate::{Estimate, Packed, RowError, row_errors};
+use crate::estimate::{Estimate, Packed, RowError, Sight, row_errors};
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::Parameter;
 use crate::problem::{Layout, Prior, Problem};
@@ -81,9 +81,9 @@ impl<'a> View<'a> {
         row_errors(self.data, self.packed, rows, estimate)
     }
 
-    /// Rows with the targets that were seen in them.
-    pub(super) fn with_targets(&self, rows: &[u32]) -> Vec<(usize, usize)> {
-        rows.iter().map(|&row| (row as usize, self.data.observations[row as usize].target)).collect()
+    /// Rows with what was seen in them.
+    pub(super) fn with_sights(&self, rows: &[u32]) -> Vec<(usize, Sight)> {
+        rows.iter().map(|&row| (row as usize, Sight::from(&self.data.observations[row as usize]))).collect()
     }
 
     /// Joint values of a row.

@@ -3,6 +3,7 @@
 use super::{CalibrationFile, FrameWord};
 use crate::calibration::{DeviceFrameKnowledge, NoiseSource};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
+use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
 
 /// Rotation noise that counts where the calibration saw positions alone, degrees.
@@ -46,6 +47,51 @@ impl CalibrationFile {
     pub fn own_position_rms_mm(&self) -> f64 {
         let accuracy = &self.accuracy;
         accuracy.held_out.as_ref().unwrap_or(&accuracy.training).calibrated.position_mm.rms
+    }
+
+    /// `base_from_device` of each place that the device stood at when some measurements were taken, by the instruments' names.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Problem`] if the calibration does not know one of them, [`ErrorKind::Model`] if the file has been changed into no
+    /// calibration.
+    pub fn devices_of(&self, data: &Dataset) -> Result<Vec<Pose>> {
+        const REFIT: &str = "or find the frames anew with --refit-frame";
+        let stations = data.station_count();
+        if self.stations.is_empty() {
+            if stations == 1 {
+                return Ok(vec![self.base_from_device()?]);
+            }
+            let message = format!(
+                "found measurements of {stations} instruments, expected those of one, since the calibration knows one device frame: judge \
+                 each by itself, {REFIT}"
+            );
+            return Err(Error::new(ErrorKind::Problem, message));
+        }
+        let names = || self.stations.iter().filter_map(|it| it.instrument.as_deref());
+        let known = first_few(&names().collect::<Vec<_>>());
+        (0..stations)
+            .map(|station| {
+                let name = data.stations.get(station).and_then(Option::as_deref);
+                let found = match (self.stations.as_slice(), name) {
+                    ([only], None) => Some(only),
+                    (several, name) => several.iter().find(|it| it.instrument.as_deref() == name),
+                };
+                if let Some(found) = found {
+                    return found.base_from_device.pose();
+                }
+                let message = match name {
+                    None => format!(
+                        "found measurements without an instrument's name, expected one of {known} as in the calibration: add a column \
+                         `instrument`, {REFIT}"
+                    ),
+                    Some(name) => format!(
+                        "found measurements of instrument `{name}`, whose frame the calibration does not know, expected one of {known}: \
+                         rename it, {REFIT}"
+                    ),
+                };
+                Err(Error::new(ErrorKind::Problem, message))
+            })
+            .collect()
     }
 
     /// Refuses measurements of targets that the calibration does not know, or of orientations of those it knows as points only.

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::source_text;
-use crate::calibration::{Calibration, DeviceFrameKnowledge};
+use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
@@ -91,6 +91,7 @@ impl CalibrationFile {
                 },
                 base_from_device: (&calibration.base_from_device).into(),
             },
+            stations: StationEntry::of(calibration),
             tool: (&robot.last_joint_from_tip()).into(),
             targets: targets.collect(),
         }
@@ -194,6 +195,19 @@ impl RobotEntry {
             base_from_tip_at_zero: (&robot.home).into(),
             nominal_base_from_tip_at_zero: (&nominal.home).into(),
         }
+    }
+}
+
+impl StationEntry {
+    /// Those of a calibration; none if there is one without a name.
+    fn of(calibration: &Calibration) -> Vec<Self> {
+        let stations = calibration.stations.iter();
+        let is_plain = calibration.stations.len() == 1 && stations.clone().all(|it| it.name.is_none());
+        let entry = |it: &CalibratedStation| StationEntry {
+            instrument: it.name.clone(),
+            base_from_device: (&it.base_from_device).into(),
+        };
+        if is_plain { Vec::new() } else { stations.map(entry).collect() }
     }
 }
 

@@ -77,6 +77,10 @@ pub struct CalibrationFile {
     pub joints: Vec<JointEntry>,
     /// Where the measuring device stands.
     pub measurement_frame: FrameEntry,
+    /// Where the measuring device stood, if the measurements name it or it stood at several places; the first is that of
+    /// `measurement_frame`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stations: Vec<StationEntry>,
     /// Pose of the tip in the last joint's frame.
     pub tool: PoseEntry,
     /// Named targets in the tip frame.
@@ -295,6 +299,22 @@ pub struct ReadingEntry {
 pub struct FrameEntry {
     /// Whether the frame was unknown or the base.
     pub known: FrameWord,
+    /// Pose of the device in the base.
+    pub base_from_device: PoseEntry,
+}
+
+/// A place that the measuring device stood at.
+///
+/// ```
+/// use poecal::io::calibration_file::{PoseEntry, StationEntry};
+/// let base_from_device = PoseEntry { position_m: [1.0, 0.0, 0.5], quaternion_xyzw: [0.0, 0.0, 0.0, 1.0] };
+/// let station = StationEntry { instrument: Some("left".into()), base_from_device };
+/// assert!(station.base_from_device.pose().is_ok());
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StationEntry {
+    /// The instrument's name: what the column `instrument` says, or the file with `--frames per-file`.
+    pub instrument: Option<String>,
     /// Pose of the device in the base.
     pub base_from_device: PoseEntry,
 }

@@ -213,8 +213,19 @@ impl UncertaintyEntry {
         let trust = &calibration.trust;
         let found = trust.uncertainty.as_ref()?;
         let n = found.layout.dim();
+        // Predictions are said in the base frame: frames of further places of the device are none of their unknowns.
+        let mut kept: Vec<usize> = found
+            .layout
+            .parameters()
+            .filter(|(parameter, _)| !matches!(parameter, Parameter::DeviceFrame(_)))
+            .flat_map(|(_, places)| places.iter().map(|&(place, _)| place))
+            .collect();
+        kept.sort_unstable();
         let upper = |matrix: &[f64]| -> Vec<f64> {
-            (0..n).flat_map(|i| (i..n).map(move |j| i * n + j)).map(|place| matrix[place]).collect()
+            let rows = kept.iter().enumerate();
+            rows.flat_map(|(at, &i)| kept[at..].iter().map(move |&j| i * n + j))
+                .map(|place| matrix[place])
+                .collect()
         };
         let Discrepancy { scatter, extrapolation, standard_deviation, noise, attribution, freedom, lag_one } =
             found.discrepancy;

@@ -16,13 +16,17 @@ impl CalibrationFile {
     /// Judges the calibration by measurements, of which every row counts, with the device's frame and the targets found anew as asked.
     ///
     /// # Errors
-    /// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the measurements are of other targets, or too few for what is found anew;
+    /// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the measurements are of other targets or instruments, or too few for what is found anew;
     /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file has been changed into no calibration.
     pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
         let (calibrated, nominal) = (self.robot()?, self.nominal_robot()?);
         if !refit_tool {
             self.check_targets(data)?;
         }
+        let devices = if refit_frame { Vec::new() } else { self.devices_of(data)? };
+        let usual = self.base_from_device()?;
+        let (first, further) =
+            devices.split_first().map_or((usual, &[][..]), |(first, further)| (*first, further));
         let noise = self.noise()?;
         // A calibration without uncertainty promises nothing; of targets that are found anew, none is the calibration's.
         let known = data.targets.iter().map(Option::as_deref).filter(|_| !refit_tool);
@@ -36,7 +40,8 @@ impl CalibrationFile {
         let subject = Subject {
             calibrated: &calibrated,
             nominal: &nominal,
-            base_from_device: self.base_from_device()?,
+            base_from_device: first,
+            further_base_from_device: further,
             frame: self.frame(),
             noise,
             refit_frame,

@@ -16,7 +16,7 @@ const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
 
 /// Names that have a meaning in every file, beside the joints'.
-const OUR_NAMES: [&str; 18] = [
+const OUR_NAMES: [&str; 19] = [
     "x",
     "y",
     "z",
@@ -31,6 +31,7 @@ const OUR_NAMES: [&str; 18] = [
     "pitch",
     "yaw",
     "target",
+    "instrument",
     "sigma_position",
     "sigma_rotation",
     "id",

@@ -67,6 +67,8 @@ pub(super) struct Layout {
     pub(super) targets: Vec<TargetLayout>,
     /// Column with the target's name.
     pub(super) target_column: Option<usize>,
+    /// Column with the name of the device, or of the place that it stood at.
+    pub(super) instrument: Option<usize>,
     pub(super) id: Option<usize>,
     pub(super) set: SetRule,
     pub(super) pose: PoseDirection,
@@ -96,6 +98,10 @@ impl Layout {
             }
             None => None,
         };
+        let instrument = match &map.instrument {
+            Some(column) => Some(builder.text_column(column, "for the instrument's name")?),
+            None => builder.optional_text_column("instrument")?,
+        };
         let id = builder.id_column()?;
         let rule = options.fit_where.clone().or_else(|| {
             map.set.as_ref().map(|set| FitWhere { column: set.column.clone(), values: set.fit.clone() })
@@ -115,7 +121,8 @@ impl Layout {
             (None, None) => SetRule::Unstated,
         };
         let ignored = builder.ignored();
-        Ok(Layout { inputs: builder.inputs, targets, target_column, id, set, pose: map.pose, ignored })
+        let Builder { inputs, .. } = builder;
+        Ok(Layout { inputs, targets, target_column, instrument, id, set, pose: map.pose, ignored })
     }
 
     /// The layout of a file of which only the joints are wanted.
@@ -127,6 +134,7 @@ impl Layout {
             inputs: builder.inputs,
             targets: Vec::new(),
             target_column: None,
+            instrument: None,
             id,
             set: SetRule::Unstated,
             pose: map.pose,

@@ -38,6 +38,7 @@ pub struct ColumnMap {
     pub(super) id: Option<String>,
     pub(super) target: Option<String>,
     pub(super) target_name: Option<String>,
+    pub(super) instrument: Option<String>,
     pub(super) set: Option<SetSpec>,
     pub(super) units: UnitDefaults,
     pub(super) joints: BTreeMap<String, ColumnSpec>,

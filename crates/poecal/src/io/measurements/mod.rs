@@ -13,6 +13,7 @@ mod joints;
 mod layout;
 mod lost;
 mod mapping;
+mod naming;
 mod number;
 mod orientation;
 mod read;
@@ -63,6 +64,23 @@ pub struct ReadOptions {
     pub ignore_sets: bool,
     /// Whether a lost beam, an empty or zero position, is an error; otherwise it is left out and counted in a warning.
     pub strict: bool,
+    /// Which rows share a device frame.
+    pub frames: Frames,
+}
+
+/// Which rows share one frame of the measuring device.
+///
+/// ```
+/// use poecal::io::measurements::{Frames, ReadOptions};
+/// assert_eq!(ReadOptions::default().frames, Frames::Common);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Frames {
+    /// All, or those of one name in the column `instrument`.
+    #[default]
+    Common,
+    /// Those of a file.
+    PerFile,
 }
 
 /// What measurement files hold, and how they were understood.

@@ -1,12 +1,14 @@
 //! Files to measurements.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::inputs::InputReader;
 use super::layout::{Layout, SetRule, TargetLayout};
 use super::lost::LostBeams;
 use super::mapping::ColumnMap;
+use super::naming::Naming;
 use super::number::Numbers;
 use super::row::{measurement, sigma};
 use super::scale::{self, JointWatch};
@@ -15,7 +17,7 @@ use super::table::{Row, Table, refuse_more_rows};
 use super::text::Blocks;
 use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
-use super::{MeasurementFile, ReadOptions};
+use super::{Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
 use crate::measurement::{Dataset, Observation, Set, Source};
 use crate::robot::{Robot, check_name};
@@ -74,18 +76,13 @@ struct Reader<'a> {
     map: &'a ColumnMap,
     data: Dataset,
     target_indices: BTreeMap<String, usize>,
-    naming: Option<Naming>,
+    target_naming: Naming,
+    station_indices: BTreeMap<String, usize>,
+    station_naming: Naming,
     fit_values_seen: Vec<bool>,
     understood: Vec<FileUnderstanding>,
     sha256: BTreeMap<String, String>,
     warnings: Vec<String>,
-}
-
-/// Whether the first row named its target; all others must do the same.
-struct Naming {
-    named: bool,
-    path: PathBuf,
-    line: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -96,7 +93,9 @@ impl<'a> Reader<'a> {
             map: options.mapping.as_ref().unwrap_or(no_map),
             data: Dataset::new(robot.reading_names()),
             target_indices: BTreeMap::new(),
-            naming: None,
+            target_naming: Naming::default(),
+            station_indices: BTreeMap::new(),
+            station_naming: Naming::default(),
             fit_values_seen: Vec::new(),
             understood: Vec::new(),
             sha256: BTreeMap::new(),
@@ -107,6 +106,11 @@ impl<'a> Reader<'a> {
     fn file<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
         let mut table = Table::open(path, blocks, self.map)?;
         let layout = Layout::new(&table.header, self.robot, self.options, self.map)?;
+        if let Some(column) = layout.instrument.filter(|_| self.options.frames == Frames::PerFile) {
+            let message = "found a column that names the instrument beside --frames per-file, expected one of the two: leave the option \
+                           out, or the column";
+            return Err(table.header.error(ErrorKind::Measurement, column, message));
+        }
         let mut inputs =
             InputReader::new(&layout.inputs, self.data.reading_names().len(), Numbers::new(self.map.decimal));
         let mut watch = JointWatch::new(self.robot);
@@ -206,6 +210,7 @@ impl<'a> Reader<'a> {
             };
             let observation = Observation {
                 target: self.target(row, layout, target)?,
+                station: self.station(row, layout)?,
                 measurement,
                 sigma_position_m: sigma(row, target.sigma_position, inputs)?,
                 sigma_rotation_rad: sigma(row, target.sigma_rotation, inputs)?,
@@ -252,24 +257,12 @@ impl<'a> Reader<'a> {
     fn target(&mut self, row: &Row<'_>, layout: &Layout, target: &TargetLayout) -> Result<usize> {
         let cell = layout.target_column.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
         let name = cell.as_deref().or(target.name.as_deref()).filter(|name| !name.is_empty());
-        let naming = self.naming.get_or_insert_with(|| Naming {
-            named: name.is_some(),
-            path: row.path.to_path_buf(),
-            line: row.line,
-        });
-        if naming.named != name.is_some() {
-            let (found, expected) = match name {
-                Some(name) => (format!("the target `{name}`"), "no name"),
-                None => ("no target name".to_owned(), "one"),
-            };
-            let message = format!(
-                "found {found}, expected {expected} as in {}:{}; all rows name their target or none does \
-                 (an unnamed target is the tip itself)",
-                naming.path.display(),
-                naming.line
-            );
-            return Err(row.error(layout.target_column.unwrap_or(0), message));
-        }
+        self.target_naming.check(
+            row,
+            layout.target_column,
+            ("target", " (an unnamed target is the tip itself)"),
+            name,
+        )?;
         let key = name.unwrap_or_default();
         if let Some(&index) = self.target_indices.get(key) {
             return Ok(index);
@@ -279,6 +272,30 @@ impl<'a> Reader<'a> {
         let index = self.target_indices.len();
         self.target_indices.insert(key.to_owned(), index);
         self.data.targets.push(name.map(str::to_owned));
+        Ok(index)
+    }
+
+    /// Index of the place that the device stood at in this row. Either all rows name their instrument or none does.
+    fn station(&mut self, row: &Row<'_>, layout: &Layout) -> Result<usize> {
+        let file = || row.path.display().to_string();
+        let cell = layout.instrument.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
+        let name = match cell {
+            _ if self.options.frames == Frames::PerFile => Some(Cow::Owned(file())),
+            other => other,
+        };
+        let name = name.as_deref().filter(|name| !name.is_empty());
+        self.station_naming.check(row, layout.instrument, ("instrument", ""), name)?;
+        let Some(name) = name else { return Ok(0) };
+        if let Some(&index) = self.station_indices.get(name) {
+            return Ok(index);
+        }
+        if self.options.frames == Frames::Common {
+            check_name(name, "instrument")
+                .map_err(|error| row.error(layout.instrument.unwrap_or(0), error.message()))?;
+        }
+        let index = self.station_indices.len();
+        self.station_indices.insert(name.to_owned(), index);
+        self.data.stations.push(Some(name.to_owned()));
         Ok(index)
     }
 

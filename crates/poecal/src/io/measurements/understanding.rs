@@ -118,7 +118,12 @@ pub(super) fn columns(header: &Header<'_>, layout: &Layout, ranges: &[Range]) ->
         SetRule::Unstated => None,
         SetRule::Words(index) | SetRule::Where(index, _) => Some(index),
     };
-    let texts = [text("target", layout.target_column), text("id", layout.id), text("set", set)];
+    let texts = [
+        text("target", layout.target_column),
+        text("instrument", layout.instrument),
+        text("id", layout.id),
+        text("set", set),
+    ];
     layout.inputs.iter().zip(ranges).map(number).chain(texts.into_iter().flatten()).collect()
 }
 

@@ -19,6 +19,9 @@ const COLUMNS: &str = "file,line,id,set,target,position_nominal[mm],position_reg
      rotation_nominal[deg],rotation_registered[deg],rotation_calibrated[deg],rx[deg],ry[deg],rz[deg],\
      weight,leverage,studentized,suspected";
 
+/// The last column, if there are several instruments.
+const INSTRUMENT: &str = "instrument";
+
 /// Errors of one row by the nominal, registered and calibrated model, and the calibrated model's residual (measured less predicted) by
 /// component in the device's axes.
 ///
@@ -57,7 +60,7 @@ pub struct Judged {
 /// ```
 /// use poecal::io::residuals::{ModelErrors, ResidualRow};
 /// let position_mm = ModelErrors { models: [11.2, 10.4, 0.1], residual: [0.1, 0.0, 0.0] };
-/// let row = ResidualRow { file: 0, line: 3, id: String::new(), held_out: true, target: 0, position_mm, rotation_deg: None, judged: None };
+/// let row = ResidualRow { file: 0, line: 3, id: String::new(), held_out: true, target: 0, station: 0, position_mm, rotation_deg: None, judged: None };
 /// assert!(row.held_out);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -72,6 +75,8 @@ pub struct ResidualRow {
     pub held_out: bool,
     /// Index of the target that was seen.
     pub target: usize,
+    /// Index of the instrument that saw it; 0 where there is one only.
+    pub station: usize,
     /// Errors of position, millimetres.
     pub position_mm: ModelErrors,
     /// Errors of rotation, degrees, where orientation was measured.
@@ -99,6 +104,8 @@ pub struct Residuals {
     pub files: Vec<String>,
     /// The targets' names; the tip's is empty.
     pub targets: Vec<String>,
+    /// The instruments' names, if there are several.
+    pub stations: Vec<String>,
     /// Names of the joint readings, and whether each is a length (millimetres) or an angle (degrees).
     pub readings: Vec<(String, JointKind)>,
     /// The rows.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{COLUMNS, Judged, ModelErrors, ResidualRow, Residuals, unit};
+use super::{COLUMNS, INSTRUMENT, Judged, ModelErrors, ResidualRow, Residuals, unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::csv_text::plain;
 use crate::io::source::LARGEST_TABLE;
@@ -31,6 +31,7 @@ impl Residuals {
         let mut reader =
             csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
         let mut found = Residuals::default();
+        let mut named = false;
         for (index, record) in reader.records().enumerate() {
             let record = record.map_err(|error| {
                 let line = error.position().map_or(1, |position| position.line() as usize);
@@ -40,7 +41,7 @@ impl Residuals {
                 Error::new(ErrorKind::Syntax, message).at(path, line, 1)
             })?;
             let cells: Vec<&str> = record.iter().collect();
-            let done = if index == 0 { found.head(&cells) } else { found.row(&cells) };
+            let done = if index == 0 { found.head(&cells, &mut named) } else { found.row(&cells, named) };
             done.map_err(|Wrong { cell, message }| {
                 let start = record.position().map_or(0, |position| position.byte() as usize);
                 let (line, column) = source_text::position(text, cell_start(text, start, cell));
@@ -50,7 +51,8 @@ impl Residuals {
         Ok(found)
     }
 
-    fn head(&mut self, cells: &[&str]) -> std::result::Result<(), Wrong> {
+    /// Reads the header, and tells whether the last column names the instrument.
+    fn head(&mut self, cells: &[&str], named: &mut bool) -> std::result::Result<(), Wrong> {
         for (column, expected) in COLUMNS.split(',').enumerate() {
             let cell = cells.get(column).copied().unwrap_or_default();
             if cell != expected {
@@ -61,6 +63,13 @@ impl Residuals {
             }
         }
         let first = COLUMNS.split(',').count();
+        let cells = match cells.split_last() {
+            Some((&INSTRUMENT, rest)) => {
+                *named = true;
+                rest
+            }
+            _ => cells,
+        };
         for (column, cell) in cells.iter().enumerate().skip(first) {
             let kinds = [JointKind::Revolute, JointKind::Prismatic];
             let reading = kinds.into_iter().find_map(|kind| {
@@ -77,7 +86,7 @@ impl Residuals {
         Ok(())
     }
 
-    fn row(&mut self, cells: &[&str]) -> std::result::Result<(), Wrong> {
+    fn row(&mut self, cells: &[&str], named: bool) -> std::result::Result<(), Wrong> {
         let mut cells = Cells { cells, next: 0 };
         let file = index_of(&mut self.files, plain(cells.text()?));
         let line = cells.parsed("a line number")?;
@@ -94,11 +103,22 @@ impl Residuals {
         for _ in 0..self.readings.len() {
             self.values.push(cells.number()?);
         }
+        let station = if named { index_of(&mut self.stations, plain(cells.text()?)) } else { 0 };
         if let Some(extra) = cells.cells.get(cells.next) {
             cells.next += 1;
             return Err(cells.wrong(extra, "no further cell"));
         }
-        self.rows.push(ResidualRow { file, line, id, held_out, target, position_mm, rotation_deg, judged });
+        self.rows.push(ResidualRow {
+            file,
+            line,
+            id,
+            held_out,
+            target,
+            station,
+            position_mm,
+            rotation_deg,
+            judged,
+        });
         Ok(())
     }
 }

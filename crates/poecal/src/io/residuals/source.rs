@@ -28,6 +28,7 @@ impl<'a> RowSource<'a> {
         let names = Residuals {
             files: data.files.iter().map(|path| path.display().to_string()).collect(),
             targets: data.targets.iter().map(|name| name.clone().unwrap_or_default()).collect(),
+            stations: stations(data),
             readings: readings.map(|name| (name.clone(), kind(&calibration.nominal, name))).collect(),
             ..Residuals::default()
         };
@@ -52,6 +53,7 @@ impl<'a> RowSource<'a> {
                 id: self.data.ids.get(row).cloned().unwrap_or_default(),
                 held_out: self.held_out[row],
                 target: observation.target,
+                station: observation.station,
                 position_mm: position_errors(errors),
                 rotation_deg: rotation_errors(errors),
                 judged: robustness.rows.get(row).map(|found| Judged {
@@ -70,6 +72,12 @@ impl<'a> RowSource<'a> {
             ..self.names.clone()
         }
     }
+}
+
+/// The instruments' names, if there are several.
+fn stations(data: &Dataset) -> Vec<String> {
+    let names = data.stations.iter().map(|name| name.clone().unwrap_or_default());
+    if data.station_count() > 1 { names.collect() } else { Vec::new() }
 }
 
 /// What a reading measures, by the joint that it moves.

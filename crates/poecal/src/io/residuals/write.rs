@@ -5,7 +5,7 @@ use std::io::Write;
 use std::ops::Range;
 
 use super::source::RowSource;
-use super::{COLUMNS, Judged, ModelErrors, Residuals, unit};
+use super::{COLUMNS, INSTRUMENT, Judged, ModelErrors, Residuals, unit};
 use crate::calibration::Calibration;
 use crate::io::csv_text::cell;
 use crate::io::numbers::push_number;
@@ -95,6 +95,10 @@ fn head(residuals: &Residuals) -> String {
         text.push(',');
         text.push_str(&cell(&format!("{name}[{}]", unit(*kind))));
     }
+    if !residuals.stations.is_empty() {
+        text.push(',');
+        text.push_str(INSTRUMENT);
+    }
     text.push('\n');
     text
 }
@@ -103,6 +107,7 @@ fn head(residuals: &Residuals) -> String {
 fn text(residuals: &Residuals, range: Range<usize>) -> String {
     let files: Vec<_> = residuals.files.iter().map(|name| cell(name)).collect();
     let targets: Vec<_> = residuals.targets.iter().map(|name| cell(name)).collect();
+    let stations: Vec<_> = residuals.stations.iter().map(|name| cell(name)).collect();
     let mut text = String::with_capacity(range.len() * ROW);
     for (index, row) in range.clone().zip(residuals.rows.get(range).unwrap_or_default()) {
         text.push_str(files.get(row.file).map_or("", |name| name));
@@ -122,6 +127,10 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
             None => text.push_str(",,,,"),
         }
         residuals.values(index).iter().for_each(|&value| push_cell(&mut text, value));
+        if !stations.is_empty() {
+            text.push(',');
+            text.push_str(stations.get(row.station).map_or("", |name| name));
+        }
         text.push('\n');
     }
     text

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
+use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
 use super::rows::place;
@@ -94,6 +95,7 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
         }
     });
     let place_of = |name: &String| file.targets.get(name).map_or([0.0; 3], |target| target.position_m);
+    let turns = to_first(file, residuals);
     let reading = |(_, name, unit)| ReadingData { name: visible(name), unit };
     let data = Data {
         joints: joints.collect(),
@@ -103,7 +105,7 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
         targets: residuals.targets.iter().map(|name| (visible(name), place_of(name))).collect(),
         readings: readings_of(residuals).map(reading).collect(),
         sigma_position_mm: file.noise.sigma_position_mm,
-        rows: RowData::of(residuals),
+        rows: RowData::of(residuals, &turns),
         count: residuals.rows.len(),
     };
     let text = serde_json::to_string(&data).map_err(|error| {
@@ -111,6 +113,17 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
     })?;
     // Within a script element, `</script` and `<!--` would be markup wherever they stand.
     Ok(text.replace('<', "\\u003c"))
+}
+
+/// What turns the axes of each instrument to those of the first, if there are several: the page draws all residuals in those.
+fn to_first(file: &CalibrationFile, residuals: &Residuals) -> Vec<Matrix3<f64>> {
+    let device = |pose: &PoseEntry| pose.pose().map_or_else(|_| Matrix3::identity(), |pose| pose.rotation);
+    let first = device(&file.measurement_frame.base_from_device).transpose();
+    let of = |name: &String| {
+        let found = file.stations.iter().find(|it| it.instrument.as_deref().unwrap_or_default() == name);
+        found.map_or_else(Matrix3::identity, |it| first * device(&it.base_from_device))
+    };
+    residuals.stations.iter().map(of).collect()
 }
 
 /// Keeps so many items that come first, in any order.
@@ -145,19 +158,28 @@ pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
 }
 
 impl RowData {
-    fn of(residuals: &Residuals) -> Self {
+    fn of(residuals: &Residuals, turns: &[Matrix3<f64>]) -> Self {
         let turned = residuals.rows.iter().any(|row| row.rotation_deg.is_some());
         let mut rows = RowData { residual_deg: turned.then(Default::default), ..RowData::default() };
         rows.values = vec![Vec::new(); residuals.readings.len()];
         for (index, even) in drawn(residuals) {
             if let Some(row) = residuals.rows.get(index) {
-                rows.push(residuals, index, row, even);
+                rows.push(residuals, (index, row, even), turns.get(row.station));
             }
         }
         rows
     }
 
-    fn push(&mut self, residuals: &Residuals, index: usize, row: &ResidualRow, even: bool) {
+    fn push(
+        &mut self,
+        residuals: &Residuals,
+        (index, row, even): (usize, &ResidualRow, bool),
+        turn: Option<&Matrix3<f64>>,
+    ) {
+        let turned = |residual: [f64; 3]| match turn {
+            Some(turn) => (turn * Vector3::from(residual)).into(),
+            None => residual,
+        };
         self.number.push(index + 1);
         self.place.push(visible(&place(residuals, index)).into_owned());
         self.held_out.push(u8::from(row.held_out));
@@ -165,11 +187,11 @@ impl RowData {
         self.suspected.push(u8::from(row.judged.is_some_and(|judged| judged.suspected)));
         self.target.push(row.target);
         self.error_mm.push(rounded(row.position_mm.models[2]));
-        for (column, value) in self.residual_mm.iter_mut().zip(row.position_mm.residual) {
+        for (column, value) in self.residual_mm.iter_mut().zip(turned(row.position_mm.residual)) {
             column.push(rounded(value));
         }
         if let Some(columns) = &mut self.residual_deg {
-            let turn = |errors: ModelErrors, k: usize| rounded(errors.residual[k]);
+            let turn = |errors: ModelErrors, k: usize| rounded(turned(errors.residual)[k]);
             for (k, column) in columns.iter_mut().enumerate() {
                 column.push(row.rotation_deg.map(|errors| turn(errors, k)));
             }

@@ -36,8 +36,14 @@ fn solver(page: &mut Html, file: &CalibrationFile) {
         restarts => format!(", {} further starts tried", count(restarts, "solver.restarts")),
     };
     let device = match file.measurement_frame.known {
-        FrameWord::Unknown => "found with the robot",
-        FrameWord::Base => "measured in the robot's base frame",
+        FrameWord::Unknown if file.stations.len() > 1 => {
+            format!(
+                "{} instruments, the frame of each found with the robot",
+                count(file.stations.len(), "stations")
+            )
+        }
+        FrameWord::Unknown => "found with the robot".to_owned(),
+        FrameWord::Base => "measured in the robot's base frame".to_owned(),
     };
     let residual = match solver.pose_residual {
         PoseResidual::Tool => "at the target",
@@ -61,7 +67,7 @@ fn solver(page: &mut Html, file: &CalibrationFile) {
             ),
         ),
         ("Loss", escape(loss)),
-        ("Device frame", device.to_owned()),
+        ("Device frame", device),
         (
             "Version",
             format!(

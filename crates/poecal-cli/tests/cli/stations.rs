@@ -1,0 +1,155 @@
+//! Several places of the measuring device: `--frames per-file`, the column `instrument`, and what is refused.
+
+use poecal::io::residuals::Residuals;
+use poecal::simulate::Kind;
+
+use crate::folder::Folder;
+use crate::session::{calibration, session};
+
+/// The simulated session of points, its later rows seen from another place: a column `instrument` in `both.csv`, and files of their
+/// own, `monday.csv` and `tuesday.csv`.
+fn moved() -> Folder {
+    let folder = session(Kind::Point);
+    let text = folder.read("measurements.csv");
+    let (header, rows) = text.split_once('\n').unwrap();
+    let names: Vec<&str> = header.split(',').collect();
+    let x = names.iter().position(|name| *name == "x").unwrap();
+    let mut both = format!("{header},instrument\n");
+    let (mut monday, mut tuesday) = (format!("{header}\n"), format!("{header}\n"));
+    for (row, line) in rows.lines().enumerate() {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if row >= 35 {
+            let [px, py, pz]: [f64; 3] = [0, 1, 2].map(|k| cells[x + k].parse().unwrap());
+            for (k, value) in [1.2 - py, px, pz + 0.1].into_iter().enumerate() {
+                cells[x + k] = format!("{value:?}");
+            }
+        }
+        let line = cells.join(",");
+        both += &format!("{line},{}\n", if row < 35 { "left" } else { "right" });
+        let file = if row < 35 { &mut monday } else { &mut tuesday };
+        *file += &format!("{line}\n");
+    }
+    folder.write("both.csv", both);
+    folder.write("monday.csv", monday);
+    folder.write("tuesday.csv", tuesday);
+    folder
+}
+
+#[test]
+fn each_file_or_instrument_has_a_frame_of_its_own() {
+    let folder = moved();
+    folder.done("calibrate robot.urdf measurements.csv --out one");
+    folder.done("calibrate robot.urdf both.csv --out named");
+    folder.done("calibrate robot.urdf monday.csv tuesday.csv --frames per-file --out files");
+    let rms = |name: &str| calibration(&folder, name).accuracy.held_out.unwrap().calibrated.position_mm.rms;
+    assert!(rms("named") < 1.5 * rms("one"), "{} {}", rms("named"), rms("one"));
+    assert!((rms("named") - rms("files")).abs() < 1e-6, "{} {}", rms("named"), rms("files"));
+    assert!(calibration(&folder, "one").stations.is_empty());
+    for (out, names) in [("named", ["left", "right"]), ("files", ["monday.csv", "tuesday.csv"])] {
+        let file = calibration(&folder, out);
+        let found: Vec<_> = file.stations.iter().map(|it| it.instrument.as_deref().unwrap()).collect();
+        assert_eq!(found, names);
+        assert_eq!(file.stations[0].base_from_device, file.measurement_frame.base_from_device);
+        // 90 degrees about the vertical, as it was moved.
+        let [a, b] = [0, 1].map(|k| file.stations[k].base_from_device.pose().unwrap());
+        let apart = b.inverse() * a;
+        let expected = [1.2, 0.0, 0.1];
+        (0..3).for_each(|k| assert!((apart.translation[k] - expected[k]).abs() < 1e-3, "{apart:?}"));
+        let text = folder.read(&format!("{out}/residuals.csv"));
+        assert!(text.lines().next().unwrap().ends_with(",instrument"), "{text}");
+        assert!(text.lines().nth(1).unwrap().ends_with(&format!(",{}", names[0])));
+        assert_eq!(Residuals::parse(&text, "residuals.csv").unwrap().text(), text);
+        assert!(folder.read(&format!("{out}/report.html")).contains("2 instruments"));
+    }
+    folder.write(
+        "poecal.toml",
+        "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['monday.csv', 'tuesday.csv']\nframes = 'per-file'\nout = 'settings'\n",
+    );
+    folder.done("calibrate");
+    assert_eq!(calibration(&folder, "settings").stations.len(), 2);
+    folder.write("map.toml", "instrument = 'stage'\n");
+    folder.done("calibrate robot.urdf measurements.csv --columns map.toml --out mapped");
+    assert_eq!(calibration(&folder, "mapped").stations.len(), 2);
+}
+
+#[test]
+fn files_that_were_measured_from_two_places_are_named_without_the_option() {
+    let folder = moved();
+    let run = folder.run("calibrate robot.urdf monday.csv tuesday.csv --out out");
+    assert!(
+        run.err.contains("the files monday.csv and tuesday.csv do not share one device frame"),
+        "{}",
+        run.err
+    );
+    assert!(run.err.contains("--frames per-file") || run.out.contains("--frames per-file"), "{}", run.out);
+    assert!(run.out.contains("do not use"), "{}", run.out);
+}
+
+#[test]
+fn validation_takes_the_frame_of_each_instrument() {
+    let folder = moved();
+    folder.done("calibrate robot.urdf both.csv --out out");
+    let rms = |arguments: &str| -> f64 {
+        let text = folder.done(&format!("validate out/calibration.json {arguments} --json"));
+        let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+        value["position_mm"]["rms"].as_f64().unwrap()
+    };
+    assert!(rms("both.csv") < 0.12);
+    assert!(rms("both.csv --refit-frame") < 0.12);
+    assert!(rms("monday.csv tuesday.csv --frames per-file --refit-frame") < 0.12);
+    let refused = |arguments: &str, sentence: &str| {
+        let run = folder.run(&format!("validate out/calibration.json {arguments}"));
+        assert_eq!((run.code, run.err), (2, format!("error: {sentence}\n")));
+    };
+    refused(
+        "monday.csv",
+        "found measurements without an instrument's name, expected one of left, right as in the calibration: add a column \
+         `instrument`, or find the frames anew with --refit-frame",
+    );
+    refused(
+        "monday.csv --frames per-file",
+        "found measurements of instrument `monday.csv`, whose frame the calibration does not know, expected one of left, right: rename \
+         it, or find the frames anew with --refit-frame",
+    );
+    folder.done("calibrate robot.urdf monday.csv --out one");
+    let run = folder.run("validate one/calibration.json both.csv");
+    let sentence = "found measurements of 2 instruments, expected those of one, since the calibration knows one device frame: judge each \
+                    by itself, or find the frames anew with --refit-frame";
+    assert_eq!((run.code, run.err), (2, format!("error: {sentence}\n")));
+}
+
+#[test]
+fn what_does_not_go_together_is_refused() {
+    let folder = moved();
+    let refused = |arguments: &str, sentence: &str| {
+        let run = folder.run(&format!("calibrate robot.urdf {arguments} --out out"));
+        assert_eq!((run.code, run.err), (2, format!("error: {sentence}\n")), "{arguments}");
+    };
+    refused(
+        "monday.csv tuesday.csv --frames per-file --frame base",
+        "found measurements of 2 instruments that are to be in the base frame (--frame base), expected one of the two: leave the \
+         instruments' names out if all measure in the base frame, or --frame base if each has a frame of its own",
+    );
+    refused(
+        "monday.csv --validate tuesday.csv --frames per-file",
+        "found 25 measurements of instrument `tuesday.csv` held out and none to fit, expected at least 3 to find its frame from: fit some \
+         of them, or judge by `poecal validate --refit-frame` afterwards",
+    );
+    let columns = folder.read("both.csv").lines().next().unwrap().rfind("instrument").unwrap() + 1;
+    refused(
+        "both.csv --frames per-file",
+        &format!(
+            "both.csv:1:{columns}: found a column that names the instrument beside --frames per-file, expected one of the two: leave the \
+             option out, or the column"
+        ),
+    );
+    let run = folder.run("calibrate robot.urdf both.csv tuesday.csv --out out");
+    assert_eq!(run.code, 2);
+    assert!(
+        run.err.contains(
+            "found no instrument name, expected one as in both.csv:2; all rows name their instrument or none does"
+        ),
+        "{}",
+        run.err
+    );
+}

@@ -1,0 +1,193 @@
+//! Errors in the order in which they were measured, and the change that explains most of them.
+
+use nalgebra::Vector3;
+
+use crate::linalg;
+
+/// Share of the rows, and number of them, that each side of a step has at least. Single regions of the workspace, measured one after the
+/// other, may err by twice what is usual.
+const LEAST_SHARE: f64 = 0.1;
+const LEAST_ROWS: usize = 4;
+/// A step is larger than so many times what is left of each component, and explains so much more than chance.
+const STEP_SIGMAS: f64 = 3.0;
+const STEP_CHANCE: f64 = 40.0;
+/// The same of a drift, for which no place is chosen.
+const DRIFT_SIGMAS: f64 = 1.5;
+const DRIFT_CHANCE: f64 = 25.0;
+/// Changes below this are rounding, metres.
+const ROUNDING_M: f64 = 1e-6;
+/// Errors count up to so many times their median while the place of a step is looked for.
+const FAR: f64 = 20.0;
+/// What is beyond so many times the median beside a step is left out, up to a share of the rows.
+const WRONG: f64 = 8.0;
+const MOST_WRONG: f64 = 0.15;
+/// Rows for each shape of the configuration that a drift is told from.
+const ROWS_PER_SHAPE: usize = 2;
+
+/// Vectors in the order of time.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Series {
+    pub(super) rows: Vec<u32>,
+    /// Errors, metres, in axes in which what moved moved them all alike.
+    pub(super) values: Vec<Vector3<f64>>,
+    /// What of each row's configuration may itself go with time; empty where no drift is looked for.
+    pub(super) configurations: Vec<Vec<f64>>,
+}
+
+/// A step or a drift.
+#[derive(Clone, Debug)]
+pub(super) struct Change {
+    /// First row after the step, as an index into the series; none of a drift.
+    pub(super) at: Option<usize>,
+    /// How far, metres: of a drift, from the first row to the last.
+    pub(super) distance_m: f64,
+    /// Sum of squares that it explains, square metres.
+    pub(super) explained: f64,
+    /// Root mean square error that it leaves, metres.
+    pub(super) left_m: f64,
+}
+
+/// A model of the series, and what it explains.
+struct Explained {
+    at: usize,
+    change: Vector3<f64>,
+    explained: f64,
+}
+
+impl Series {
+    /// The step, or the drift if it `may_drift`, that explains most, if that is no chance.
+    pub(super) fn change(&self, may_drift: bool) -> Option<Change> {
+        let kept = self.without_wrong()?;
+        let values: Vec<Vector3<f64>> = kept.iter().map(|&index| self.values[index]).collect();
+        let count = values.len() as f64;
+        let mean: Vector3<f64> = values.iter().sum::<Vector3<f64>>() / count;
+        let total: f64 = values.iter().map(|value| (value - mean).norm_squared()).sum();
+        let variance = |explained: f64| (total - explained).max(0.0) / (3.0 * count - 6.0).max(1.0);
+        let step = strongest_step(&values)?;
+        let steady = steady(&values);
+        if may_drift && steady.explained > step.explained {
+            let left = variance(steady.explained);
+            let beyond = self.beyond_configurations(&kept, &values, mean)?;
+            let is_drift = beyond.explained > DRIFT_CHANCE * left
+                && steady.change.norm() > DRIFT_SIGMAS * left.sqrt()
+                && steady.change.norm() > ROUNDING_M;
+            return is_drift.then(|| Change {
+                at: None,
+                distance_m: steady.change.norm(),
+                explained: steady.explained,
+                left_m: (3.0 * left).sqrt(),
+            });
+        }
+        let left = variance(step.explained);
+        let is_step = step.explained > STEP_CHANCE * left
+            && step.change.norm() > STEP_SIGMAS * left.sqrt()
+            && step.change.norm() > ROUNDING_M;
+        is_step.then(|| Change {
+            at: Some(kept[step.at]),
+            distance_m: step.change.norm(),
+            explained: step.explained,
+            left_m: (3.0 * left).sqrt(),
+        })
+    }
+
+    /// Indices of what is not plainly wrong beside a step; none if too few are left.
+    fn without_wrong(&self) -> Option<Vec<usize>> {
+        let count = self.values.len();
+        let far = FAR * median(self.values.iter().map(Vector3::norm));
+        let near: Vec<Vector3<f64>> = self
+            .values
+            .iter()
+            .map(|value| value * (far / value.norm().max(far).max(f64::MIN_POSITIVE)))
+            .collect();
+        let step = strongest_step(&near)?;
+        let (before, after) = self.values.split_at(step.at);
+        let middles = [middle(before), middle(after)];
+        let aside = |index: usize| (self.values[index] - middles[usize::from(index >= step.at)]).norm();
+        let wrong = WRONG * median((0..count).map(aside));
+        let kept: Vec<usize> = (0..count).filter(|&index| aside(index) <= wrong).collect();
+        if (count - kept.len()) as f64 > MOST_WRONG * count as f64 {
+            return Some((0..count).collect());
+        }
+        Some(kept)
+    }
+
+    /// What a steady change explains that the configurations, which may go with time themselves, do not.
+    fn beyond_configurations(
+        &self,
+        kept: &[usize],
+        values: &[Vector3<f64>],
+        mean: Vector3<f64>,
+    ) -> Option<Explained> {
+        let shapes: Vec<&[f64]> =
+            kept.iter().filter_map(|&index| self.configurations.get(index)).map(Vec::as_slice).collect();
+        let n = shapes.first()?.len();
+        if shapes.len() != values.len() || values.len() < ROWS_PER_SHAPE * n {
+            return None;
+        }
+        let times: Vec<f64> = (0..values.len()).map(|index| time(index, values.len())).collect();
+        let mut gram = vec![0.0; n * n];
+        let mut pull = vec![0.0; n];
+        for (shape, time) in shapes.iter().zip(&times) {
+            for i in 0..n {
+                pull[i] += shape[i] * time;
+                (i..n).for_each(|j| gram[i * n + j] += shape[i] * shape[j]);
+            }
+        }
+        let factor = linalg::cholesky(&gram, n, 1e-9 * values.len() as f64)?;
+        let told = linalg::cholesky_solve(&factor, &pull);
+        let own =
+            |(shape, time): (&&[f64], &f64)| time - shape.iter().zip(&told).map(|(a, b)| a * b).sum::<f64>();
+        let own: Vec<f64> = shapes.iter().zip(&times).map(own).collect();
+        let squares: f64 = own.iter().map(|time| time * time).sum();
+        let sum: Vector3<f64> = own.iter().zip(values).map(|(&time, value)| (value - mean) * time).sum();
+        let change = sum / squares.max(f64::MIN_POSITIVE);
+        Some(Explained { at: 0, change, explained: change.norm_squared() * squares })
+    }
+}
+
+/// Time of a row, from -½ to ½.
+fn time(index: usize, count: usize) -> f64 {
+    index as f64 / (count.max(2) - 1) as f64 - 0.5
+}
+
+/// The change that is the same from each row to the next.
+fn steady(values: &[Vector3<f64>]) -> Explained {
+    let times = || (0..values.len()).map(|index| time(index, values.len()));
+    let squares: f64 = times().map(|time| time * time).sum();
+    let change = times().zip(values).map(|(time, value)| value * time).sum::<Vector3<f64>>()
+        / squares.max(f64::MIN_POSITIVE);
+    Explained { at: 0, change, explained: change.norm_squared() * squares }
+}
+
+/// The change of mean that explains most, of all places that leave enough on both sides.
+fn strongest_step(values: &[Vector3<f64>]) -> Option<Explained> {
+    let count = values.len();
+    let total: Vector3<f64> = values.iter().sum();
+    let mut before = Vector3::zeros();
+    let mut best: Option<Explained> = None;
+    for (index, value) in values.iter().enumerate() {
+        before += value;
+        let (first, rest) = (index + 1, count - index - 1);
+        let fewest = first.min(rest);
+        if fewest < LEAST_ROWS || (fewest as f64) < LEAST_SHARE * count as f64 {
+            continue;
+        }
+        let change = (total - before) / rest as f64 - before / first as f64;
+        let explained = change.norm_squared() * first as f64 * rest as f64 / count as f64;
+        if best.as_ref().is_none_or(|best| explained > best.explained) {
+            best = Some(Explained { at: first, change, explained });
+        }
+    }
+    best
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The median of each component.
+fn middle(values: &[Vector3<f64>]) -> Vector3<f64> {
+    Vector3::from_fn(|k, _| median(values.iter().map(|value| value[k])))
+}

@@ -1,0 +1,39 @@
+//! Registration of a device that stood at several places, each with a frame of its own, while the targets stayed on the arm.
+
+use std::cmp::Reverse;
+
+use super::registration::{Registration, register};
+use crate::estimate::Estimate;
+
+/// Rows that tell a frame if the targets are known: three points.
+const FEWEST: usize = 3;
+
+/// Each frame from its own rows, those of most rows first; the targets that these saw are known to the others (theory.md §6, *Start*).
+pub(super) fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
+    // As if all had been measured from one place: only the rows of one are looked at, at a time.
+    let alone = problem.data.without_stations();
+    let mut stations: Vec<(usize, Vec<u32>)> = (0..problem.data.station_count())
+        .map(|station| (station, problem.data.seen_from(station, problem.rows)))
+        .filter(|(_, rows)| !rows.is_empty())
+        .collect();
+    stations.sort_by_key(|(_, rows)| Reverse(rows.len()));
+    let mut found = start.clone();
+    let mut known = vec![!problem.targets_free; start.base_from_target.len()];
+    for (station, rows) in stations {
+        let target = |row: &u32| alone.observations[*row as usize].target;
+        let of_known: Vec<u32> = rows.iter().copied().filter(|row| known[target(row)]).collect();
+        let by_known = of_known.len() >= FEWEST.min(rows.len());
+        let rows = if by_known { of_known } else { rows };
+        let one = Registration { data: &alone, rows: &rows, targets_free: !by_known, ..*problem };
+        let (seen, _) = register(&one, &found.seen_from(station));
+        *found.device_mut(station) = seen.device_from_base;
+        if !by_known {
+            for row in &rows {
+                let target = target(row);
+                found.base_from_target[target] = seen.base_from_target[target];
+                known[target] = true;
+            }
+        }
+    }
+    found
+}
