@@ -198,6 +198,9 @@ pub struct Identifiability {
     pub parameters: usize,
     /// Directions among them that the data determine against the noise.
     pub rank: usize,
+    /// How many unknowns the measurements tell beside what is believed of the drawing, `Σ_k λ_k / (λ_k + 1)` with λ_k the information
+    /// of measurements over that of the belief: a share of each, without a cliff.
+    pub told: f64,
     /// Largest singular value of the scaled Jacobian over the smallest that counts to the rank.
     pub condition: f64,
     /// What these configurations leave open.
@@ -282,6 +285,7 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
     Identifiability {
         parameters: n,
         rank: n - spectrum.open,
+        told: (n - spectrum.open) as f64,
         condition,
         unidentifiable,
         weak: hardly,

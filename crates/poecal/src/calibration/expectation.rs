@@ -95,14 +95,29 @@ impl Promise<'_> {
     /// Compares the errors of all rows of some measurements.
     #[must_use]
     pub fn kept(&self, robot: &Robot, data: &Dataset, packed: &Packed, errors: &[RowError]) -> Kept {
-        let rows = data.observations.iter().enumerate().map(|(row, observation)| {
-            (row, self.targets.get(observation.target).copied().unwrap_or_default())
-        });
-        let promised = self.uncertainty.predictions_of(rows, packed);
+        self.kept_in(robot, data, packed, &data.all_rows(), errors)
+    }
+
+    /// Compares the errors of some rows.
+    #[must_use]
+    pub fn kept_in(
+        &self,
+        robot: &Robot,
+        data: &Dataset,
+        packed: &Packed,
+        rows: &[u32],
+        errors: &[RowError],
+    ) -> Kept {
+        let target = |row: &u32| data.observations[*row as usize].target;
+        let places = rows
+            .iter()
+            .map(|row| (*row as usize, self.targets.get(target(row)).copied().unwrap_or_default()));
+        let promised = self.uncertainty.predictions_of(places, packed);
         // What is the robot's holds the noise already, unless that was told from it.
         let Noise { position_m, rotation_rad } = self.uncertainty.discrepancy.noise;
         let (mut position, mut rotation) = (Sums::default(), Sums::default());
-        for ((promised, error), observation) in promised.into_iter().zip(errors).zip(&data.observations) {
+        let observations = rows.iter().map(|&row| &data.observations[row as usize]);
+        for ((promised, error), observation) in promised.into_iter().zip(errors).zip(observations) {
             let own = |sigma: Option<f64>, usual: f64| Matrix3::identity() * sigma.unwrap_or(usual).powi(2);
             position.add(
                 &(promised.position + own(observation.sigma_position_m, position_m)),
@@ -117,11 +132,12 @@ impl Promise<'_> {
                 );
             }
         }
-        let sampled = (0..data.len()).filter(|&row| inside(robot, self.coverage, data.readings(row))).count();
+        let is_inside = |row: &&u32| inside(robot, self.coverage, data.readings(**row as usize));
+        let sampled = rows.iter().filter(is_inside).count();
         Kept {
             position_mm: position.part(1e3).unwrap_or(KeptPart { expected_rms: 0.0, inside_bound95: 1.0 }),
             rotation_deg: rotation.part(1f64.to_degrees()),
-            inside_sampled_range: sampled as f64 / data.len().max(1) as f64,
+            inside_sampled_range: sampled as f64 / rows.len().max(1) as f64,
         }
     }
 }

@@ -10,12 +10,13 @@ use super::stations::check_stations;
 use super::trust::{Finished, trust};
 use super::verdict::{Grounds, verdict};
 use super::{
-    Accuracy, Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, Models, NoiseSource, Robustness,
-    Trust, delivered, estimate_noise, measurements_words, noise, radian_m, set_accuracy, split_rows,
+    Accuracy, Calibration, CalibrationOptions, DeviceFrameKnowledge, Kept, Level, Models, NoiseSource,
+    Promise, Robustness, Trust, delivered, estimate_noise, measurements_words, noise, radian_m, set_accuracy,
+    split_rows,
 };
 use crate::analysis::{Identifiability, Setup, identifiability};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Estimate, Packed};
+use crate::estimate::{Estimate, Packed, row_errors};
 use crate::forensics::{self, Diagnosis, DiagnosisKind};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
@@ -113,7 +114,8 @@ impl<'a> Prepared<'a> {
         let models = self.models(registered, &fitted, &kept, loss.is_some());
         let accuracy = self.accuracy(&models);
         let (mut trust, remainder) = self.trust(&fitted, &models, &kept, loss.is_some());
-        let identifiability = self.identifiability(&fitted, remainder.variance);
+        trust.held_out = self.promise_kept(&trust, &models.calibrated);
+        let identifiability = self.identifiability(&fitted, &remainder);
         let apart = self.files_apart(&fitted, &accuracy);
         let diagnosis = match &apart {
             Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
@@ -217,7 +219,7 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    fn identifiability(&self, fitted: &Fitted, variance: f64) -> Identifiability {
+    fn identifiability(&self, fitted: &Fitted, remainder: &Remainder) -> Identifiability {
         let setup = Setup {
             robot: self.robot,
             data: self.data,
@@ -229,7 +231,8 @@ impl<'a> Prepared<'a> {
             length_m: self.length_m,
             device_free: self.device_free(),
         };
-        identifiability(&setup, &fitted.normal.gram, variance)
+        let found = identifiability(&setup, &fitted.normal.gram, remainder.variance);
+        Identifiability { told: remainder.told, ..found }
     }
 
     /// Whatever the unknowns and the loss of the fit were: what is delivered is judged in the minimal basis, by the rows that it believes.
@@ -284,6 +287,15 @@ impl<'a> Prepared<'a> {
             found.extend(in_all().into_iter().filter(|it| !known.contains(&it.kind)));
         }
         found
+    }
+
+    /// Whether the rows that were held out are missed by what is promised.
+    fn promise_kept(&self, trust: &Trust, calibrated: &Estimate) -> Option<Kept> {
+        let uncertainty = trust.uncertainty.as_ref().filter(|_| !self.held_out_rows.is_empty())?;
+        let targets: Vec<usize> = (0..self.data.targets.len()).collect();
+        let promise = Promise { uncertainty, targets: &targets, coverage: &trust.coverage };
+        let errors = row_errors(self.data, &self.packed, &self.held_out_rows, calibrated);
+        Some(promise.kept_in(self.robot, self.data, &self.packed, &self.held_out_rows, &errors))
     }
 
     /// What makes the input doubtful.

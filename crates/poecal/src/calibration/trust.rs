@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::suspicion::suspicions;
-use super::{Models, row_errors};
+use super::{Kept, Models, row_errors};
 use crate::analysis::{JointCoverage, PLAUSIBLE, coverage};
 use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge::{Deviation, screw_deviations};
@@ -98,6 +98,8 @@ pub struct Trust {
     pub range: Option<Expected>,
     /// The same by parts of each joint's range.
     pub parts: Vec<RangePart>,
+    /// Whether the errors of the rows that were held out are what is promised; none if none were.
+    pub held_out: Option<Kept>,
     /// Each joint's correction.
     pub joints: Vec<JointCorrection>,
 }
@@ -145,12 +147,13 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
         measured,
         range,
         parts,
+        held_out: None,
     }
 }
 
 fn uncertainty(finished: &Finished<'_>, found: &Discrepancy) -> Option<Uncertainty> {
     let normal = finished.normal;
-    if normal.residuals <= normal.dim() {
+    if finished.remainder.numbers <= normal.dim() {
         return None;
     }
     Uncertainty::new(&finished.view, finished.layout.clone(), &normal.gram, found)

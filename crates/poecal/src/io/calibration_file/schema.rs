@@ -170,6 +170,9 @@ pub struct IdentifiabilityEntry {
     pub parameters: usize,
     /// Directions that the data determine against the noise.
     pub rank: usize,
+    /// How many unknowns the measurements tell beside what is believed of the drawing: the sum of a share of each.
+    #[serde(default)]
+    pub told: Option<f64>,
     /// Condition number over those directions; null if there is none.
     pub condition: Option<f64>,
     /// What the configurations leave open.
@@ -190,6 +193,7 @@ impl IdentifiabilityEntry {
         IdentifiabilityEntry {
             parameters: found.parameters,
             rank: found.rank,
+            told: Some(found.told),
             condition: Some(found.condition).filter(|condition| condition.is_finite()),
             unidentifiable: found.unidentifiable.clone(),
             weak: found.weak.clone(),

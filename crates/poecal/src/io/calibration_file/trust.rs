@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{CalibrationFile, PoseEntry};
 use crate::analysis::JointCoverage;
-use crate::calibration::{Calibration, Expected, JointCorrection, Trust};
+use crate::calibration::{Calibration, Expected, JointCorrection, Kept, KeptPart, Trust};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Estimate;
 use crate::lie::Pose;
@@ -56,6 +56,34 @@ pub struct BootstrapEntry {
     pub sigma_position_mm: f64,
     /// The same if residuals are white noise, by the covariance, millimetres.
     pub formal_sigma_position_mm: f64,
+}
+
+/// Errors of one kind on held-out rows beside what is promised of them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct KeptEntry {
+    /// Root mean square error to expect between measured and predicted, millimetres or degrees.
+    pub expected_rms: f64,
+    /// Share of the errors within their own 95 % bound, 0 to 1.
+    pub inside_bound95: f64,
+}
+
+/// How the errors of held-out rows compare with what is promised.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HeldOutEntry {
+    /// Of positions, millimetres.
+    pub position_mm: KeptEntry,
+    /// Of rotations, degrees, if orientation was measured.
+    pub rotation_deg: Option<KeptEntry>,
+}
+
+impl HeldOutEntry {
+    fn of(kept: &Kept) -> Self {
+        let entry = |part: KeptPart| KeptEntry {
+            expected_rms: part.expected_rms,
+            inside_bound95: part.inside_bound95,
+        };
+        HeldOutEntry { position_mm: entry(kept.position_mm), rotation_deg: kept.rotation_deg.map(entry) }
+    }
 }
 
 /// A part of a joint's range with the error to expect there.
@@ -128,6 +156,9 @@ pub struct UncertaintyEntry {
     pub measured: ExpectedEntry,
     /// In configurations anywhere within the limits.
     pub range: ExpectedEntry,
+    /// How the errors of held-out rows compare with what is promised; null if none were held out.
+    #[serde(default)]
+    pub held_out: Option<HeldOutEntry>,
     /// The spread of predictions where it was measured, by drawing rows anew; null if they are too few.
     #[serde(default)]
     pub bootstrap: Option<BootstrapEntry>,
@@ -245,6 +276,7 @@ impl UncertaintyEntry {
             lag_one_correlation: lag_one,
             measured: ExpectedEntry::of(trust.measured.as_ref()?),
             range: ExpectedEntry::of(trust.range.as_ref()?),
+            held_out: trust.held_out.as_ref().map(HeldOutEntry::of),
             bootstrap: trust.bootstrap.as_ref().map(BootstrapEntry::of),
             parts: trust
                 .parts
