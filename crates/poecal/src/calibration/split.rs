@@ -112,7 +112,7 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     // Named by its first row, so that the choice does not depend on the values of the readings.
     let mut configurations = data.all_rows();
     let mut configuration = configurations.clone();
-    for group in data.configurations(&configurations) {
+    for group in data.grouped(&configurations) {
         group.iter().for_each(|&row| configuration[row as usize] = group[0]);
     }
     configurations.retain(|&row| configuration[row as usize] == row);

@@ -10,13 +10,18 @@ const MIXER: u64 = 0x9e37_79b9_7f4a_7c15;
 /// encoders jitter by.
 const SAME: f64 = 1e-3;
 /// Rows above which only readings that are the same to the last bit are of one configuration.
-const MANY: usize = 100_000;
+pub(crate) const MANY: usize = 100_000;
 
 impl Dataset {
-    /// These rows by configuration, each group and its rows in the order of their numbers: readings that differ by no more than 0.001
-    /// rad or 1 mm are of one.
+    /// Configurations of two rows or more among these, each group and its rows in the order of their numbers: readings that differ by
+    /// no more than 0.001 rad or 1 mm are of one.
+    pub(crate) fn grouped(&self, rows: &[u32]) -> Vec<Vec<u32>> {
+        if rows.len() > MANY { self.repeated(rows) } else { self.alike(rows, SAME) }
+    }
+
+    /// These rows by configuration, as [`Dataset::grouped`], those of one row too. For some hundred thousand rows at most.
     pub(crate) fn configurations(&self, rows: &[u32]) -> Vec<Vec<u32>> {
-        let mut groups = if rows.len() > MANY { self.repeated(rows) } else { self.alike(rows, SAME) };
+        let mut groups = self.grouped(rows);
         let mut grouped: Vec<u32> = groups.iter().flatten().copied().collect();
         grouped.sort_unstable();
         groups.extend(rows.iter().filter(|row| grouped.binary_search(row).is_err()).map(|&row| vec![row]));

@@ -7,6 +7,7 @@ mod pose;
 mod residual;
 mod spatial_pose;
 
+pub(crate) use configurations::MANY as MANY_ROWS;
 pub use dataset::{Dataset, Observation, Set, Source};
 pub use point::PointMeasurement;
 pub use pose::PoseMeasurement;

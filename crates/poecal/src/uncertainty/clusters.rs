@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use super::factor;
 use super::view::View;
 use crate::linalg;
+use crate::measurement::MANY_ROWS;
 use crate::solve::{LeastSquares, Normal};
 
 /// Standard deviations by which a figure must be beyond what white noise gives, to count.
@@ -52,8 +53,14 @@ fn share_of(inverse: &DMatrix<f64>, part: &[f64]) -> (f64, f64) {
 /// About `count` clusters: rows are halved at the median of the joint that moves most in them, rows of one configuration together.
 pub(super) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
     let spans = view.spans(view.rows);
-    let configurations = view.data.configurations(view.rows);
-    let mut clusters: Vec<Vec<&[u32]>> = vec![configurations.iter().map(Vec::as_slice).collect()];
+    let is_many = view.rows.len() > MANY_ROWS;
+    let configurations = if is_many { Vec::new() } else { view.data.configurations(view.rows) };
+    let whole = if is_many {
+        view.rows.chunks(1).collect()
+    } else {
+        configurations.iter().map(Vec::as_slice).collect()
+    };
+    let mut clusters: Vec<Vec<&[u32]>> = vec![whole];
     while clusters.len() < count {
         // The largest, of equal ones the first, so that the order is settled.
         let Some(largest) = (0..clusters.len()).max_by_key(|&k| (clusters[k].len(), usize::MAX - k)) else {

@@ -6,7 +6,9 @@ use super::discrepancy::Attribution;
 use super::factor;
 use super::view::View;
 use crate::distributions::{f_quantile, is_within_band};
+use crate::estimate::sample_rows;
 use crate::linalg;
+use crate::measurement::MANY_ROWS;
 use crate::problem::Layout;
 use crate::solve::{LeastSquares, Normal};
 
@@ -189,9 +191,12 @@ impl Sums {
 #[must_use]
 pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder {
     let (mut position, mut rotation) = (Sums::default(), Sums::default());
-    let errors = view.errors(view.rows, view.estimate);
-    let configurations = view.data.configurations(view.rows);
-    let place = |row: u32| view.rows.binary_search(&row).ok().and_then(|at| errors.get(at));
+    // So many rows tell it as well as all.
+    let sample = sample_rows(view.rows, MANY_ROWS);
+    let share = sample.len() as f64 / view.rows.len().max(1) as f64;
+    let errors = view.errors(&sample, view.estimate);
+    let configurations = view.data.configurations(&sample);
+    let place = |row: u32| sample.binary_search(&row).ok().and_then(|at| errors.get(at));
     for rows in &configurations {
         let mut rows: Vec<u32> = rows.clone();
         rows.sort_by_key(|&row| (view.data.observations[row as usize].target, row));
@@ -212,16 +217,17 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
         }
     }
     let total = (position.groups + rotation.groups) as f64;
-    let told = told(view, normal, total);
-    let by_rotations = told_by_rotations(view, normal, layout, told, &rotation, total);
+    let told = told(view, normal);
+    let by_rotations = share * told_by_rotations(view, normal, layout, told, &rotation, total);
+    let in_sample = share * told;
     let variance = {
         let between = position.between(1.0) + rotation.between(1.0);
         let whole = position.whitened + rotation.whitened;
         let is_repeated = position.components > position.groups;
-        (if is_repeated { between } else { whole }) / (total - told).max(1.0)
+        (if is_repeated { between } else { whole }) / (total - in_sample).max(1.0)
     };
     let parts = [
-        position.part(told - by_rotations, view.noise_is_stated[0]),
+        position.part(in_sample - by_rotations, view.noise_is_stated[0]),
         rotation.part(by_rotations, view.noise_is_stated[1]),
     ];
     let explained = parts
@@ -234,12 +240,12 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
 }
 
 /// How many unknowns the measurements tell beside what is believed: theory.md §6 (34).
-fn told(view: &View<'_>, normal: &Normal, total: f64) -> f64 {
+fn told(view: &View<'_>, normal: &Normal) -> f64 {
     let n = normal.dim();
     if !view.belief.is_fitted {
         return n as f64;
     }
-    let variance = 2.0 * normal.cost / (total - n as f64).max(1.0);
+    let variance = 2.0 * normal.cost / (normal.residuals as f64 - n as f64).max(1.0);
     let Some(factor) = factor(&normal.gram, n, view.belief, variance) else { return n as f64 };
     n as f64 - variance * trace(&factor, &view.belief.normal.gram, n)
 }

@@ -24,17 +24,19 @@ impl Configurations {
     /// Of the data, and of the rows that are fitted.
     pub(in crate::calibration) fn new(data: &Dataset, fitted: &[u32]) -> Self {
         let target = |row: u32| data.observations[row as usize].target;
-        let distinct: usize = data
-            .configurations(fitted)
+        // Of rows of one target in one configuration the first counts.
+        let over_again: usize = data
+            .grouped(fitted)
             .into_iter()
             .map(|mut rows| {
+                let count = rows.len();
                 rows.sort_by_key(|&row| target(row));
                 rows.dedup_by_key(|row| target(*row));
-                rows.len()
+                count - rows.len()
             })
             .sum();
-        let mut groups = data.configurations(&data.all_rows());
-        groups.retain(|rows| rows.len() > 1);
+        let distinct = fitted.len() - over_again;
+        let groups = data.grouped(&data.all_rows());
         Configurations { groups, repeats: fitted.len() as f64 / distinct.max(1) as f64 }
     }
 
