@@ -18,6 +18,9 @@ const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 1e-4 };
 const CONFIGURATIONS: usize = 60;
 /// Two fits that end at one optimum differ in cost by rounding, and by how exactly each has settled its noise ratio.
 const SAME_OPTIMUM: f64 = 1.001;
+/// The belief that axes are near the drawing holds what the data hardly tell where that is: with one that is off by many times what is
+/// believed, some units of some 200 in the sum of squares.
+const SAME_WITH_A_BELIEF: f64 = 1.1;
 
 /// The noise by which that optimum is judged to be the right one: its mean squared whitened residual, one but for chance.
 const RIGHT_OPTIMUM: f64 = 1.5;
@@ -48,12 +51,16 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let start = simulation.perturbed(&elbow(), &mut generator);
     let made = simulation.measure(&elbow(), elbow(), kind, &mut generator).unwrap();
-    let options = CalibrationOptions { frame, held_out: 0.0, diagnose: false, ..Default::default() };
+    // Every other start with the belief that it is nearly right, which none of these is.
+    let usual = CalibrationOptions::default();
+    let (tolerance, same) =
+        if seed % 2 == 0 { (None, SAME_OPTIMUM) } else { (usual.tolerance, SAME_WITH_A_BELIEF) };
+    let options = CalibrationOptions { frame, held_out: 0.0, diagnose: false, tolerance, ..usual };
     let fit =
         |robot: &Robot| mean_square(&calibrate(robot, &made.data, &options).unwrap(), &made.data, robot);
     let optimum = fit(&elbow());
     assert!(optimum < RIGHT_OPTIMUM);
-    fit(&start) < optimum * SAME_OPTIMUM
+    fit(&start) < optimum * same
 }
 
 fn basins(kind: Kind, frame: DeviceFrameKnowledge) {
