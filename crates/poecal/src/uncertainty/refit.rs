@@ -62,9 +62,26 @@ impl Uncertainty {
         let mixed = DMatrix::from_fn(count, before.len(), |i, j| information(anew[i], before[j]));
         let follow = -(&inverse * mixed);
 
-        let grown = Grown { n, places: &places, before, anew, follow: &follow, inverse: &inverse };
-        let covariance = grown.covariance(&self.covariance, self.layout.dim())?;
-        Some(Uncertainty { estimate, layout, covariance, ..self.clone() })
+        let all = self.layout.dim();
+        let spread =
+            DMatrix::from_fn(places.len(), places.len(), |i, j| self.covariance[places[i] * all + places[j]]);
+        let both = &follow * &spread;
+        // The scatter of the rows moves the refit, which takes off twice as much of it as it adds.
+        let last = &both * follow.transpose() - inverse;
+        let mut covariance = vec![0.0; n * n];
+        let mut put = |a: usize, b: usize, value: f64| {
+            covariance[a * n + b] = value;
+            covariance[b * n + a] = value;
+        };
+        for (i, &a) in before.iter().enumerate() {
+            before.iter().enumerate().for_each(|(j, &b)| put(a, b, spread[(i, j)]));
+            anew.iter().enumerate().for_each(|(j, &b)| put(a, b, both[(j, i)]));
+        }
+        for (i, &a) in anew.iter().enumerate() {
+            anew.iter().enumerate().for_each(|(j, &b)| put(a, b, last[(i, j)]));
+        }
+        let is_finite = covariance.iter().all(|value| value.is_finite());
+        is_finite.then(|| Uncertainty { estimate, layout, covariance, ..self.clone() })
     }
 
     /// The parameters that stay as calibrated, targets by their numbers among the rows', and the places of their unknowns.
@@ -89,44 +106,5 @@ impl Uncertainty {
             }
         }
         (kept, places)
-    }
-}
-
-/// How the refitted unknowns are set beside those that stay.
-struct Grown<'a> {
-    /// Number of them all.
-    n: usize,
-    /// Of each unknown that stays, its place in the calibration's covariance, and in the new one.
-    places: &'a [usize],
-    before: &'a [usize],
-    /// Places of the refitted unknowns.
-    anew: &'a [usize],
-    /// What the refitted unknowns do when the others are off.
-    follow: &'a DMatrix<f64>,
-    /// The covariance of the refitted unknowns by the scatter of the rows.
-    inverse: &'a DMatrix<f64>,
-}
-
-impl Grown<'_> {
-    /// The covariance of all from that of the calibration's unknowns; `None` if a number is not finite.
-    fn covariance(&self, known: &[f64], dim: usize) -> Option<Vec<f64>> {
-        let count = self.places.len();
-        let spread = DMatrix::from_fn(count, count, |i, j| known[self.places[i] * dim + self.places[j]]);
-        let both = self.follow * &spread;
-        // The scatter of the rows moves the refit, which takes off twice as much of it as it adds.
-        let last = &both * self.follow.transpose() - self.inverse;
-        let mut covariance = vec![0.0; self.n * self.n];
-        let mut put = |a: usize, b: usize, value: f64| {
-            covariance[a * self.n + b] = value;
-            covariance[b * self.n + a] = value;
-        };
-        for (i, &a) in self.before.iter().enumerate() {
-            self.before.iter().enumerate().for_each(|(j, &b)| put(a, b, spread[(i, j)]));
-            self.anew.iter().enumerate().for_each(|(j, &b)| put(a, b, both[(j, i)]));
-        }
-        for (i, &a) in self.anew.iter().enumerate() {
-            self.anew.iter().enumerate().for_each(|(j, &b)| put(a, b, last[(i, j)]));
-        }
-        covariance.iter().all(|value| value.is_finite()).then_some(covariance)
     }
 }
