@@ -226,7 +226,7 @@ fn write(
         console.warning(note);
     }
     let others = written.files.iter().filter(|name| *name != output::REPORT).cloned().collect::<Vec<_>>();
-    let mut words = labelled("written", &format!("{}: {}", shown(&written.folder), others.join(", ")));
+    let mut words = labelled("written", &format!("{}\n{}", shown(&written.folder), others.join(", ")));
     if arguments.verbose {
         let text = format!(
             "read back within {:.1e} m and {:.1e} rad in 1,000 configurations",

@@ -19,7 +19,7 @@ pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> String {
         Line { name: (*name).to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
     });
     let plot = LinePlot {
-        title: "How many rows are off by how much".to_owned(),
+        title: "Distribution of the position error".to_owned(),
         description: "For each of the three models the share of the rows whose position error is below a value; the table beside has the figures.".to_owned(),
         x: Axis::new("position error, mm (logarithmic)", Scale::Log),
         y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),

@@ -140,4 +140,5 @@ fn coverage(out: &mut String, file: &CalibrationFile) {
     for (joint, entry) in file.coverage.iter().zip(&file.joints) {
         let _ = writeln!(out, "{}", coverage_row(joint, entry.kind.into()));
     }
+    out.push('\n');
 }
