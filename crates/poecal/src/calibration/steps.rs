@@ -2,7 +2,7 @@
 
 use super::doubts::{doubts, noise_doubts};
 use super::fit::{self, Fitted, Task};
-use super::moves::{FilesApart, Looked, Moved, files_apart, moved};
+use super::moves::{Doubtful, FramesApart, Looked, Moved, frames_apart, moved};
 use super::result::{place_tip, stations};
 use super::robust::{self, RobustFit};
 use super::stations::check_stations;
@@ -103,7 +103,7 @@ impl<'a> Prepared<'a> {
         let accuracy = self.accuracy(&models);
         let identifiability = self.identifiability(&fitted);
         let mut trust = self.trust(&fitted, &models, &kept, loss.is_some());
-        let apart = self.files_apart(&fitted, &accuracy);
+        let apart = self.frames_apart(&fitted, &accuracy);
         let diagnosis = match &apart {
             Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
             None => self.diagnosis(self.data, &models.calibrated, loss.is_some().then_some(&kept[..])),
@@ -111,7 +111,7 @@ impl<'a> Prepared<'a> {
         let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(self.data, &self.packed, rows, &models)
         });
-        let moved = apart.as_ref().map(FilesApart::moved).or_else(|| self.moved(&models.calibrated));
+        let moved = apart.as_ref().map(FramesApart::moved).or_else(|| self.moved(&models.calibrated));
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
         let grave_move = moved.iter().filter(|it| it.is_grave).map(|it| it.statement.clone());
         let mistakes: Vec<String> = grave.map(|it| it.statement.clone()).chain(grave_move).collect();
@@ -259,7 +259,7 @@ impl<'a> Prepared<'a> {
         let errors = row_errors(self.data, &self.packed, kept, calibrated);
         let mut warnings = Vec::new();
         // Frames that differ make any model misfit.
-        if !moved.is_some_and(Moved::is_between_files) {
+        if !moved.is_some_and(Moved::is_of_frames) {
             let registered = &accuracy.training.registered;
             warnings.extend(doubts(self.data, &self.fit_rows, registered, self.options.frame));
         }
@@ -271,14 +271,22 @@ impl<'a> Prepared<'a> {
         warnings
     }
 
-    /// Files whose device frames differ, where a fit with one frame leaves more than a robot's own errors.
-    fn files_apart(&self, fitted: &Fitted, accuracy: &Accuracy) -> Option<FilesApart> {
+    /// Device frames that differ, where a fit with one leaves more than a robot's own errors.
+    fn frames_apart(&self, fitted: &Fitted, accuracy: &Accuracy) -> Option<FramesApart> {
         let left_m = 1e-3 * accuracy.training.calibrated.position_mm.rms;
         if !self.device_free() || !fit::is_suspicious(left_m, self.length_m) {
             return None;
         }
-        let scale = (fitted.noise, self.length_m);
-        files_apart(self.robot, (self.data, &self.packed), &self.fit_rows, scale, left_m, self.options)
+        frames_apart(&Doubtful {
+            robot: self.robot,
+            data: self.data,
+            packed: &self.packed,
+            rows: &self.fit_rows,
+            noise: fitted.noise,
+            length_m: self.length_m,
+            options: self.options,
+            left_m,
+        })
     }
 
     /// What moved within the session. Rows that were drawn to be held out belong to it as well; those that are stated to be may be of
