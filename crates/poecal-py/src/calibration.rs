@@ -111,6 +111,12 @@ impl Calibration {
         pose_array(py, &self.file().base_from_device().map_err(raise)?)
     }
 
+    /// Where each instrument stands: `stations` of calibration.json; empty if no row names one.
+    #[getter]
+    fn stations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        part(py, &self.file().stations)
+    }
+
     /// Each joint's correction, its uncertainty and its worth: `corrections` of calibration.json.
     #[getter]
     fn corrections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -181,3 +181,24 @@ def test_html_is_escaped():
     columns = table(session("point")) | {"target": ["<script>"] * 50}
     text = poecal.Measurements.from_dataframe(pandas.DataFrame(columns), elbow())._repr_html_()
     assert "<script>" not in text and "&lt;script&gt;" in text
+
+
+def test_each_instrument_has_a_frame_of_its_own(tmp_path):
+    made = session("point", count=80)
+    seen = made.measurements
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    positions = np.vstack([seen.positions[:40], seen.positions[40:] @ turn.T + [1, 0, 0.5]])
+    names = ["left"] * 40 + ["right"] * 40
+    measured = poecal.Measurements.from_arrays(elbow(), joints=seen.joints, positions=positions, instruments=names)
+    assert measured.instruments == names and pickle.loads(pickle.dumps(measured)) == measured
+    calibration = poecal.calibrate(elbow(), measured)
+    assert [it["instrument"] for it in calibration.stations] == ["left", "right"]
+    assert calibration.accuracy.held_out.calibrated.position_mm.rms < 0.2
+
+    files = [tmp_path / "monday.csv", tmp_path / "tuesday.csv"]
+    header = ",".join(f"joint{i}" for i in range(1, 7)) + ",x,y,z\n"
+    for path, rows in zip(files, np.split(np.hstack([seen.joints, positions]), 2), strict=True):
+        path.write_text(header + "".join(",".join(repr(float(it)) for it in row) + "\n" for row in rows))
+    of_files = poecal.Measurements.from_csv(files, elbow(), frames="per-file")
+    assert of_files.instruments == [str(files[0])] * 40 + [str(files[1])] * 40
+    assert poecal.calibrate(elbow(), of_files).accuracy == calibration.accuracy

@@ -120,6 +120,26 @@ fn files_with_two_device_frames_are_named() {
     }
 }
 
+#[test]
+fn a_device_moved_far_within_a_file_is_named() {
+    let far = Pose::from_xyz_rpy([0.5, -0.4, 0.2], [0.1, -0.2, 0.6]);
+    for kind in KINDS {
+        for (count, from) in [(80, 40), (150, 60), (150, 100), (300, 160)] {
+            let made = session(&elbow(), kind, count, 8);
+            let data = changed(&made, |row| if row < from { Pose::identity() } else { far });
+            let found = fit(&made.nominal, &data);
+            let statement = found.warnings.iter().find(|it| it.contains("are in another device frame"));
+            let statement = statement.unwrap_or_else(|| panic!("{kind:?} {count} {from}: {}", said(&found)));
+            let row: usize =
+                statement.split("from row ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+            // The first fitted row after it.
+            assert!((from + 1..from + 8).contains(&row), "{from}: {statement}");
+            assert!(!says(&found, "wrong unit"), "{}", said(&found));
+            assert_eq!(found.verdict.level, Level::DoNotUse);
+        }
+    }
+}
+
 /// Points of several targets on the arm, in turn.
 fn with_targets(made: &Simulated, names: &[&str], knocked: impl Fn(usize, usize) -> Vector3<f64>) -> Dataset {
     let mut data = made.data.clone();
@@ -186,7 +206,9 @@ fn a_slow_drift_is_called_a_drift() {
 
 /// Whether a change is named.
 fn is_doubted(found: &Calibration) -> bool {
-    ["moved", "drift", "knocked", "do not share"].iter().any(|words| says(found, words))
+    ["moved", "drift", "knocked", "do not share", "another device frame"]
+        .iter()
+        .any(|words| says(found, words))
 }
 
 #[test]

@@ -37,6 +37,10 @@ const RESTART_SAMPLE: usize = 200;
 /// gears and links giving, are left with a tenth of it, false optima with several times it.
 const SUSPICIOUS: f64 = 3e-3;
 
+/// Most times that noise and the weight of the prior are found anew. Two or three will do, but for data without noise: there each lowers
+/// what the prior leaves.
+const RENEWALS: usize = 12;
+
 /// A fit under way.
 pub(super) struct Found {
     pub(super) estimate: Estimate,
@@ -234,7 +238,7 @@ impl Task<'_> {
             }
         }
         let (mut task, mut noise, mut source) = (*self, noise, source);
-        for _ in 0..6 {
+        for _ in 0..RENEWALS {
             let told = task.told(&found);
             let before = noise;
             let mut weight = 1.0;

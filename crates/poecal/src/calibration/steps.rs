@@ -2,7 +2,7 @@
 
 use super::doubts::doubts;
 use super::fit::{self, Fitted, Task};
-use super::moves::{FilesApart, Looked, Moved, files_apart, moved};
+use super::moves::{Doubtful, FramesApart, Looked, Moved, frames_apart, moved};
 use super::noise_doubts::noise_doubts;
 use super::result::{place_tip, stations};
 use super::robust::{self, RobustFit};
@@ -116,7 +116,7 @@ impl<'a> Prepared<'a> {
         let (mut trust, remainder) = self.trust(&fitted, &models, &kept, loss.is_some());
         trust.held_out = self.promise_kept(&trust, &models.calibrated);
         let identifiability = self.identifiability(&fitted, &remainder);
-        let apart = self.files_apart(&fitted, &accuracy);
+        let apart = self.frames_apart(&fitted, &accuracy);
         let diagnosis = match &apart {
             Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
             None => self.diagnosis(self.data, &models.calibrated, loss.is_some().then_some(&kept[..])),
@@ -124,7 +124,7 @@ impl<'a> Prepared<'a> {
         let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(self.data, &self.packed, rows, &models)
         });
-        let moved = apart.as_ref().map(FilesApart::moved).or_else(|| self.moved(&models.calibrated));
+        let moved = apart.as_ref().map(FramesApart::moved).or_else(|| self.moved(&models.calibrated));
         let input = self.input_doubts(&accuracy, moved.as_ref());
         let noise_doubts = noise_doubts(&remainder, &trust);
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
@@ -301,20 +301,28 @@ impl<'a> Prepared<'a> {
     /// What makes the input doubtful.
     fn input_doubts(&self, accuracy: &Accuracy, moved: Option<&Moved>) -> Vec<String> {
         // Frames that differ make any model misfit.
-        if moved.is_some_and(Moved::is_between_files) {
+        if moved.is_some_and(Moved::is_of_frames) {
             return Vec::new();
         }
         doubts(self.data, &self.fit_rows, &accuracy.training.registered, self.options.frame)
     }
 
-    /// Files whose device frames differ, where a fit with one frame leaves more than a robot's own errors.
-    fn files_apart(&self, fitted: &Fitted, accuracy: &Accuracy) -> Option<FilesApart> {
+    /// Device frames that differ, where a fit with one leaves more than a robot's own errors.
+    fn frames_apart(&self, fitted: &Fitted, accuracy: &Accuracy) -> Option<FramesApart> {
         let left_m = 1e-3 * accuracy.training.calibrated.position_mm.rms;
         if !self.device_free() || !fit::is_suspicious(left_m, self.length_m) {
             return None;
         }
-        let scale = (fitted.noise, self.length_m);
-        files_apart(self.robot, (self.data, &self.packed), &self.fit_rows, scale, left_m, self.options)
+        frames_apart(&Doubtful {
+            robot: self.robot,
+            data: self.data,
+            packed: &self.packed,
+            rows: &self.fit_rows,
+            noise: fitted.noise,
+            length_m: self.length_m,
+            options: self.options,
+            left_m,
+        })
     }
 
     /// What moved within the session. Rows that were drawn to be held out belong to it as well; those that are stated to be may be of

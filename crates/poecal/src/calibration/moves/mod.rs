@@ -1,10 +1,10 @@
 //! What moved within a session that should have stood still: the measuring device, one target on the arm, or all of it slowly
 //! (theory.md §9, *Moved*).
 
-mod files;
+mod frames;
 mod series;
 
-pub(super) use files::{FilesApart, files_apart};
+pub(super) use frames::{Doubtful, FramesApart, frames_apart};
 
 use nalgebra::Vector3;
 
@@ -29,8 +29,8 @@ pub(super) struct Moved {
 
 /// What a change parts.
 enum Parts {
-    /// Files that no one model describes.
-    Files,
+    /// Device frames that no one model describes.
+    Frames,
     /// The rows before and after a step.
     Sides([Vec<u32>; 2]),
     /// Nothing: it is steady.
@@ -38,15 +38,15 @@ enum Parts {
 }
 
 impl Moved {
-    /// Whether it is files that do not share a device frame, so that no model describes them all.
-    pub(super) fn is_between_files(&self) -> bool {
-        matches!(self.parts, Parts::Files)
+    /// Whether it is device frames that differ by so much that no one model describes the rows.
+    pub(super) fn is_of_frames(&self) -> bool {
+        matches!(self.parts, Parts::Frames)
     }
 
     /// Whether rows that are suspected to be grossly wrong are those on one side of the change.
     pub(super) fn explains(&self, robustness: &Robustness) -> bool {
         match &self.parts {
-            Parts::Files => true,
+            Parts::Frames => true,
             Parts::None => false,
             Parts::Sides(sides) => {
                 let within = |side: &Vec<u32>| {

@@ -2,7 +2,7 @@
 
 use super::figures;
 use super::html::{Html, Table, count, figure, path, quoted};
-use crate::io::calibration_file::{CalibrationFile, FrameWord};
+use crate::io::calibration_file::{CalibrationFile, FrameWord, StationEntry};
 use crate::measurement::PoseResidual;
 use crate::report::plot::escape;
 use crate::solve::Termination;
@@ -37,10 +37,12 @@ fn solver(page: &mut Html, file: &CalibrationFile) {
     };
     let device = match file.measurement_frame.known {
         FrameWord::Unknown if file.stations.len() > 1 => {
-            format!(
-                "{} instruments, the frame of each found with the robot",
-                count(file.stations.len(), "stations")
-            )
+            let name = |(index, station): (usize, &StationEntry)| {
+                let name = station.instrument.as_deref()?;
+                Some(quoted(name, &format!("stations.{index}.instrument")))
+            };
+            let names: Vec<String> = file.stations.iter().enumerate().filter_map(name).collect();
+            format!("found with the robot, one for each of the instruments {}", names.join(", "))
         }
         FrameWord::Unknown => "found with the robot".to_owned(),
         FrameWord::Base => "measured in the robot's base frame".to_owned(),
