@@ -34,7 +34,12 @@ fn simulated(robot: &Robot, kind: Kind) -> Simulated {
 }
 
 fn calibrated(made: &Simulated) -> Calibration {
-    calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap()
+    calibrate(
+        &made.nominal,
+        &made.data,
+        &CalibrationOptions { tolerance: None, ..CalibrationOptions::default() },
+    )
+    .unwrap()
 }
 
 fn packed(robot: &Robot, data: &Dataset) -> Packed {
