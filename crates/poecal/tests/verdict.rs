@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used)]
 
 use nalgebra::Vector3;
-use poecal::calibration::{Calibration, CalibrationOptions, Level, calibrate};
+use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, calibrate};
 use poecal::forensics::DiagnosisKind;
-use poecal::measurement::{Dataset, Measurement, PoseMeasurement};
+use poecal::lie::{Pose, rotation};
+use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Set};
 use poecal::robot::Robot;
 use poecal::simulate::{Gross, Kind, Simulated, Simulation, elbow, scara, seven_axis};
 use rayon::prelude::*;
@@ -144,4 +145,85 @@ fn stragglers_do_not_count_as_coverage() {
     println!("{} rows, {coverage:?}", made.data.len());
     assert!(made.data.len() >= 50 && coverage.stragglers > 0.4);
     assert!(found.verdict.reasons.iter().any(|reason| reason.contains("joint2 was moved through")));
+}
+
+/// Mistakes that a fit absorbs, or that it cannot: none of them is to be used.
+#[test]
+fn what_is_not_this_robot_is_not_to_be_used() {
+    let made = Simulation { count: 80, seed: 12, device_anywhere: true, ..Simulation::default() }
+        .run(&elbow(), Kind::Pose)
+        .unwrap();
+    let level = |name: &str, robot: &Robot, data: &Dataset, frame| {
+        let options = CalibrationOptions { frame, ..CalibrationOptions::default() };
+        let found = calibrate(robot, data, &options).unwrap();
+        println!("{name}: {:?} {:?}", found.verdict.level, found.verdict.reasons);
+        assert_eq!(found.verdict.level, Level::DoNotUse, "{name}");
+    };
+    let anywhere = DeviceFrameKnowledge::Unknown;
+    // Another robot of as many joints: axes elsewhere, and turned.
+    let mut other = elbow();
+    for (k, joint) in other.joints.iter_mut().enumerate() {
+        let away = 0.15 * Vector3::new((k as f64).sin(), (2.0 * k as f64).cos(), 0.3);
+        let turn =
+            rotation::exp(&(Vector3::new(1.0, 2.0, 0.5).normalize() * if k % 2 == 0 { 1.5 } else { 0.0 }));
+        let motion = Pose::new(turn, joint.frame.translation + away - turn * joint.frame.translation);
+        joint.screw = joint.screw.transformed(&motion);
+        joint.frame = motion * joint.frame;
+    }
+    level("another robot", &other, &made.data, anywhere);
+    level("a device that is not at the base", &elbow(), &made.data, DeviceFrameKnowledge::Base);
+    let turned = |of: &dyn Fn(usize, &Pose) -> nalgebra::Matrix3<f64>| {
+        let mut data = Dataset::new(made.data.reading_names().to_vec());
+        for row in 0..made.data.len() {
+            let pose = made.data.observations[row].measurement.pose();
+            let pose = Pose::new(of(row, &pose), pose.translation);
+            data.push(made.data.readings(row), None, Measurement::Pose(PoseMeasurement { pose })).unwrap();
+        }
+        data
+    };
+    level("one orientation for all", &elbow(), &turned(&|_, _| nalgebra::Matrix3::identity()), anywhere);
+    // Angles in degrees that were read as radians.
+    let scrambled = turned(&|_, pose| rotation::exp(&(rotation::log(&pose.rotation) * 57.3)));
+    level("angles of another unit", &elbow(), &scrambled, anywhere);
+}
+
+/// Rows to judge by that are fitted rows over again are refused, in other digits too.
+#[test]
+fn copies_are_nothing_to_judge_by() {
+    let made = session(40, 7);
+    let mut data = made.data.clone();
+    for row in 0..40 {
+        let mut pose = made.data.observations[row].measurement.pose();
+        pose.translation *= 1.0 + 1e-15;
+        data.push(made.data.readings(row), None, Measurement::Pose(PoseMeasurement { pose })).unwrap();
+    }
+    for (row, observation) in data.observations.iter_mut().enumerate() {
+        observation.set = Some(if row < 40 { Set::Fit } else { Set::HeldOut });
+    }
+    let error = calibrate(&made.nominal, &data, &CalibrationOptions::default()).unwrap_err();
+    println!("{error}");
+    assert!(error.to_string().contains("40 of 40 held-out rows to be fitted rows over again"));
+}
+
+/// The registered figures are the best that tool and frame do for positions, whatever the orientations are like.
+#[test]
+fn registered_positions_are_the_best_there_are() {
+    for seed in 0..10 {
+        let made = Simulation { count: 60, seed, error_rotation_rad: 0.02, ..Simulation::default() }
+            .run(&elbow(), Kind::Pose)
+            .unwrap();
+        let mut points = Dataset::new(made.data.reading_names().to_vec());
+        for row in 0..made.data.len() {
+            let position = made.data.observations[row].measurement.pose().translation;
+            let seen = Measurement::Point(PointMeasurement { position });
+            points.push(made.data.readings(row), None, seen).unwrap();
+        }
+        let rms = |data: &Dataset| {
+            let options = CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() };
+            calibrate(&made.nominal, data, &options).unwrap().accuracy.training.registered.position_mm.rms
+        };
+        let (poses, best) = (rms(&made.data), rms(&points));
+        println!("{seed}: registered {poses:.4} mm, the best {best:.4} mm");
+        assert!(poses < 1.01 * best);
+    }
 }
