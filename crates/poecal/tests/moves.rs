@@ -1,6 +1,6 @@
 //! What moves within a session is named rightly, with its place and size, and nothing is named where nothing moved.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use std::path::PathBuf;
 
