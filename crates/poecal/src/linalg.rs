@@ -1,9 +1,10 @@
 //! Dense linear algebra of the normal equations: accumulation, Cholesky, symmetric eigenvalues. The only file that names nalgebra's
-//! decompositions: `symmetric_eigen` and singular values alone, since its SVD with vectors errs on repeated columns.
+//! decompositions: `symmetric_eigen`, singular values and the Cholesky factor of six rows alone, since its SVD with vectors errs on
+//! repeated columns.
 
 pub(crate) use crate::lanes::Factor;
 use crate::lanes::{self, Level};
-use nalgebra::{DMatrix, Matrix4, Vector3, Vector4};
+use nalgebra::{Cholesky, DMatrix, Matrix4, Matrix6, U6, Vector3, Vector4};
 
 /// Adds `Σ rows rᵀ r` to the upper triangle of a row-major `n × n` Gram matrix. `rows` holds rows of `n` numbers, of which those
 /// before `start` are zero and are skipped.
@@ -52,6 +53,14 @@ pub(crate) fn add_gradient(gradient: &mut [f64], rows: &[f64], residuals: &[f64]
 /// definite.
 pub(crate) fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
     lanes::cholesky(Level::best(), upper, n, damping)
+}
+
+/// Factor of the information of a motion.
+pub(crate) type Factor6 = Cholesky<f64, U6>;
+
+/// Cholesky factor of six rows; `None` if the matrix is not positive definite.
+pub(crate) fn cholesky_6(matrix: Matrix6<f64>) -> Option<Factor6> {
+    Cholesky::new(matrix)
 }
 
 /// Solves `L Lᵀ x = b`.

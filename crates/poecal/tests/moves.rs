@@ -1,11 +1,11 @@
 //! What moves within a session is named rightly, with its place and size, and nothing is named where nothing moved.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 use std::path::PathBuf;
 
 use nalgebra::Vector3;
-use poecal::calibration::{Calibration, CalibrationOptions, Level, calibrate};
+use poecal::calibration::{Calibration, CalibrationOptions, Level, Robust, calibrate};
 use poecal::lie::Pose;
 use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
 use poecal::robot::Robot;
@@ -48,6 +48,17 @@ fn said(found: &Calibration) -> String {
     format!("{:?}\n{:?}\n{:?}", found.verdict, found.warnings, found.diagnosis)
 }
 
+/// Also where every row counts in full, the move is as far as it was.
+fn assert_size_by_least_squares(robot: &Robot, data: &Dataset) {
+    let options = CalibrationOptions { robust: Robust::Off, ..Default::default() };
+    let found = calibrate(robot, data, &options).unwrap();
+    let far = |it: &String| -> Option<f64> {
+        it.split("the measurements lie ").nth(1)?.split(' ').next()?.parse().ok()
+    };
+    let far = found.warnings.iter().find_map(far).unwrap_or_else(|| panic!("{}", said(&found)));
+    assert!((far - 5.0).abs() < 0.2, "{far} mm");
+}
+
 #[test]
 fn a_device_moved_late_is_named_and_not_called_gross_rows() {
     for kind in KINDS {
@@ -57,6 +68,7 @@ fn a_device_moved_late_is_named_and_not_called_gross_rows() {
             let moved = Vector3::new(3e-3, -4e-3, 0.0);
             let data = changed(&made, |row| if row < from { Pose::identity() } else { shift(moved) });
             let found = fit(&made.nominal, &data);
+            assert_size_by_least_squares(&made.nominal, &data);
             let words = format!("from row {} on the measurements lie ", from + 1);
             assert!(says(&found, &words), "{kind:?} {count}: {}", said(&found));
             assert!(says(&found, "instrument"), "{}", said(&found));

@@ -63,7 +63,7 @@ fn several_places_calibrate_as_one_does() {
     for (robot, kind) in
         [(elbow(), Kind::Point), (elbow(), Kind::Pose), (scara(), Kind::Pose), (seven_axis(), Kind::Mixed)]
     {
-        let (mut one, mut two) = (0.0, 0.0);
+        let (mut one, mut two) = (0.0_f64, 0.0);
         for seed in 1..=4 {
             let (simulation, made) = session(&robot, kind, 120, seed);
             let alone = fit(&robot, &made.data);
@@ -82,11 +82,11 @@ fn several_places_calibrate_as_one_does() {
             assert!(found.warnings.is_empty(), "{:?}", found.warnings);
             assert_eq!(found.verdict.level, alone.verdict.level, "{:?}", found.verdict);
         }
-        let ratio = (two / one as f64).sqrt();
+        let ratio = (two / one).sqrt();
         println!(
             "{} {kind:?}: {:.4} mm, with two places {ratio:.2} times",
             robot.name,
-            (one / 4.0_f64).sqrt() * 1e3
+            (one / 4.0).sqrt() * 1e3
         );
         // Six more unknowns take some of the numbers, no more.
         assert!(ratio < 1.3, "{ratio}");

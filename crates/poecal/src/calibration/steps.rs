@@ -124,7 +124,10 @@ impl<'a> Prepared<'a> {
         let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(self.data, &self.packed, rows, &models)
         });
-        let moved = apart.as_ref().map(FramesApart::moved).or_else(|| self.moved(&models.calibrated));
+        let moved = apart
+            .as_ref()
+            .map(FramesApart::moved)
+            .or_else(|| self.moved(&models.calibrated, &fitted, robustness.loss.is_some()));
         let input = self.input_doubts(&accuracy, moved.as_ref());
         let noise_doubts = noise_doubts(&remainder, &trust);
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
@@ -313,7 +316,11 @@ impl<'a> Prepared<'a> {
         if !self.device_free() || !fit::is_suspicious(left_m, self.length_m) {
             return None;
         }
-        frames_apart(&Doubtful {
+        frames_apart(&self.doubtful(fitted, left_m))
+    }
+
+    fn doubtful(&self, fitted: &Fitted, left_m: f64) -> Doubtful<'_> {
+        Doubtful {
             robot: self.robot,
             data: self.data,
             packed: &self.packed,
@@ -322,16 +329,18 @@ impl<'a> Prepared<'a> {
             length_m: self.length_m,
             options: self.options,
             left_m,
-        })
+        }
     }
 
     /// What moved within the session. Rows that were drawn to be held out belong to it as well; those that are stated to be may be of
     /// another.
-    fn moved(&self, calibrated: &Estimate) -> Option<Moved> {
+    fn moved(&self, calibrated: &Estimate, fitted: &Fitted, is_robust: bool) -> Option<Moved> {
         let is_stated = self.data.observations.iter().any(|row| row.set.is_some());
         let rows = if is_stated { self.fit_rows.clone() } else { self.data.all_rows() };
         let (data, packed, device_free) = (self.data, &self.packed, self.device_free());
-        moved(&Looked { data, packed, estimate: calibrated, rows: &rows, device_free })
+        // Least squares take a part of a move into the screws; a robust loss leaves it whole.
+        let again = (device_free && !is_robust).then(|| self.doubtful(fitted, f64::INFINITY));
+        moved(&Looked { data, packed, estimate: calibrated, rows: &rows, device_free, again: again.as_ref() })
     }
 }
 

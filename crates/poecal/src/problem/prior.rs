@@ -1,10 +1,11 @@
 //! What a drawing is worth: the axes are near nominal (theory.md §6, *What a drawing is worth*).
 
-use nalgebra::{Cholesky, Matrix6, U6, Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::Layout;
 use crate::estimate::Estimate;
 use crate::lie::{Pose, Twist};
+use crate::linalg::{self, Factor6};
 use crate::parameters::Parameter;
 use crate::robot::{Robot, Tolerance};
 use crate::solve::Normal;
@@ -115,7 +116,7 @@ impl Prior {
     }
 
     /// Deviations in the base that fits best, and the factor of that base's information.
-    fn at_best_base(&self, estimate: &Estimate) -> (Vec<Deviation>, Option<Cholesky<f64, U6>>) {
+    fn at_best_base(&self, estimate: &Estimate) -> (Vec<Deviation>, Option<Factor6>) {
         let deviations = |motion: &Pose| -> Vec<Deviation> {
             let frames = estimate.base_from_axis.iter().map(|frame| *motion * *frame);
             self.axes.iter().zip(frames).map(|(nominal, frame)| nominal.deviation(&frame)).collect()
@@ -178,9 +179,9 @@ impl Prior {
 }
 
 /// Factor of the information of a motion of the base.
-fn base_factor(deviations: &[Deviation]) -> Option<Cholesky<f64, U6>> {
+fn base_factor(deviations: &[Deviation]) -> Option<Factor6> {
     let mut gram = Matrix6::zeros();
     deviations.iter().for_each(|deviation| gram += deviation.base.tr_mul(&deviation.base));
     let least = ROUNDING * gram.trace();
-    Cholesky::new(gram + Matrix6::identity() * least)
+    linalg::cholesky_6(gram + Matrix6::identity() * least)
 }

@@ -107,16 +107,31 @@ impl Doubtful<'_> {
             (estimate, own_m) = self.fitted(&data);
         }
         let left = self.better(own_m)?;
-        let [before, after] = [0, 1].map(|station| *estimate.device(station));
-        let middle = before.inverse().act(&self.data.mean_position(&self.rows[..at]));
         let statement = format!(
             "from {} on the measurements are in another device frame: with a frame for the rows before and one for these, {left}; the \
              measuring device seems to have been moved, by {:.0} mm as seen at the robot; give the rows from there on another name in a \
              column `instrument`, or calibrate each part by itself",
             self.data.place(self.rows[at]),
-            1e3 * (after.act(&middle) - before.act(&middle)).norm()
+            1e3 * self.far_m(at, &estimate)
         );
         Some(FramesApart { statement, data, estimate })
+    }
+
+    /// How far the device was moved before a row, by a fit with a frame for the rows before and one for the others, metres.
+    pub(in crate::calibration) fn moved_m(&self, first: u32) -> Option<f64> {
+        let at = self.rows.partition_point(|&row| row < first);
+        if self.data.station_count() > 1 || at < FEWEST_ROWS || self.rows.len() - at < FEWEST_ROWS {
+            return None;
+        }
+        let (estimate, own_m) = self.fitted(&self.in_parts(at));
+        own_m.is_finite().then(|| self.far_m(at, &estimate))
+    }
+
+    /// How far the frame after the fitted row of this index is from that before, where the robot is, metres.
+    fn far_m(&self, at: usize, estimate: &Estimate) -> f64 {
+        let [before, after] = [0, 1].map(|station| *estimate.device(station));
+        let middle = before.inverse().act(&self.data.mean_position(&self.rows[..at]));
+        (after.act(&middle) - before.act(&middle)).norm()
     }
 
     /// The data with a place of the device for the rows before the fitted one of this index, and another from there on.

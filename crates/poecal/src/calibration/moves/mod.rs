@@ -68,6 +68,8 @@ pub(super) struct Looked<'a> {
     pub(super) rows: &'a [u32],
     /// Whether the device may stand anywhere.
     pub(super) device_free: bool,
+    /// How to fit once more, with a device frame for each side of a step, if that tells better how far it is.
+    pub(super) again: Option<&'a Doubtful<'a>>,
 }
 
 /// What a series of errors is of.
@@ -158,7 +160,10 @@ impl Looked<'_> {
         };
         let place = data.place(rows[at]);
         let statement = match subject {
-            Subject::Device(_) => self.device_words(rows, at, far_mm, &place),
+            Subject::Device(_) => {
+                let again = self.again.and_then(|again| again.moved_m(rows[at]));
+                self.device_words(rows, at, again.map_or(far_mm, |far_m| 1e3 * far_m), &place)
+            }
             Subject::Target(target) => match data.targets.get(target).and_then(Option::as_deref) {
                 Some(name) if data.targets.len() > 1 => format!(
                     "from {place} on target `{name}` lies {far_mm:.2} mm beside where it was on the arm before, and no other target does: \
