@@ -176,7 +176,7 @@ fn an_axis_that_only_jitters_stays_at_the_drawing() {
             let seen = observed(&robot, &truth, kind, &real, seed);
             let mut data = Dataset::new(robot.reading_names());
             for (row, observation) in readings.iter().zip(&seen.observations) {
-                data.push(row, None, observation.measurement.clone()).unwrap();
+                data.push(row, None, observation.measurement).unwrap();
             }
             let found = fitted(&robot, &data);
             let joint = &found.trust.joints[3];

@@ -263,7 +263,7 @@ fn copied_rows_are_no_rows() {
     let made = session(12, 4, Kind::Point);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for row in (0..12).flat_map(|row| [row; 10]) {
-        data.push(made.data.readings(row), None, made.data.observations[row].measurement.clone()).unwrap();
+        data.push(made.data.readings(row), None, made.data.observations[row].measurement).unwrap();
     }
     let found = calibrate(&made.nominal, &data, &CalibrationOptions::default());
     match found {
