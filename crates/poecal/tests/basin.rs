@@ -54,7 +54,7 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
     // Every other start with the belief that it is nearly right, which none of these is.
     let usual = CalibrationOptions::default();
     let (tolerance, same) =
-        if seed % 2 == 0 { (None, SAME_OPTIMUM) } else { (usual.tolerance, SAME_WITH_A_BELIEF) };
+        if seed.is_multiple_of(2) { (None, SAME_OPTIMUM) } else { (usual.tolerance, SAME_WITH_A_BELIEF) };
     let options = CalibrationOptions { frame, held_out: 0.0, diagnose: false, tolerance, ..usual };
     let fit =
         |robot: &Robot| mean_square(&calibrate(robot, &made.data, &options).unwrap(), &made.data, robot);

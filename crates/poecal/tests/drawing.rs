@@ -267,7 +267,7 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
     let most = (0..16_u64)
         .into_par_iter()
         .map(|seed| {
-            let circle = seed % 2 == 0;
+            let circle = seed.is_multiple_of(2);
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
             let readings: Vec<Vec<f64>> = (0..60)
                 .map(|k| {

@@ -191,7 +191,7 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
     let robot = physical(&mut rows, &mut generator);
     let mut fitted = rows[..one(&mut generator, &[40, 60, 100, 200])].to_vec();
     let wrong = fault(&mut fitted, &mut generator);
-    let is_stated = seed % 2 == 0;
+    let is_stated = seed.is_multiple_of(2);
     let usual = CalibrationOptions { diagnose: true, ..CalibrationOptions::default() };
     let options = match below(&mut generator, 4) {
         0 => CalibrationOptions { held_out: 0.0, ..usual },
@@ -215,6 +215,7 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
         calibrated: &found.robot,
         nominal: &found.nominal,
         base_from_device: found.base_from_device,
+        further_base_from_device: &[],
         frame: found.frame,
         noise: found.noise,
         refit_frame: false,
