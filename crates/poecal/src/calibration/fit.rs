@@ -258,6 +258,8 @@ impl Task<'_> {
                 weight =
                     if source != NoiseSource::Exact && explains(variance, freedom) { 1.0 } else { variance };
             }
+            // What the measurements tell of the axes tells how good the drawing is.
+            weight /= task.prior.map_or(1.0, |(prior, _)| prior.looseness(&found.estimate));
             let change =
                 (noise.position_m * before.rotation_rad / (noise.rotation_rad * before.position_m)).ln();
             let weighed = task.prior.is_none_or(|(_, counted)| (weight / counted).ln().abs() < 0.5);

@@ -147,7 +147,8 @@ impl Calibration {
         };
         let base_free = self.frame == DeviceFrameKnowledge::Unknown;
         let prior = options.believed().map(|tolerance| Prior::new(&self.nominal, tolerance, base_free));
-        let prior = prior.as_ref().map(|prior| (prior, 1.0));
+        let looseness = |prior: &Prior| prior.looseness(&self.models.calibrated);
+        let prior = prior.as_ref().map(|prior| (prior, 1.0 / looseness(prior)));
         fit_screws(data, &packed, &self.fit_rows, start, self.noise, length_m, prior, options).2
     }
 }

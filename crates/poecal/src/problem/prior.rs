@@ -115,6 +115,15 @@ impl Prior {
         deviations.iter().map(|deviation| 0.5 * deviation.value.norm_squared()).sum()
     }
 
+    /// How many times the square of the tolerance axes really stand off, at least 1: mean square of the deviations for each unknown of the
+    /// screws. A robot that is evidently farther from its drawing than believed is believed so much less about the rest.
+    #[must_use]
+    pub fn looseness(&self, estimate: &Estimate) -> f64 {
+        let screws: usize = self.axes.iter().map(|axis| if axis.turns { 4 } else { 2 }).sum();
+        let free = screws.saturating_sub(if self.base_free { 6 } else { 0 }).max(1);
+        (2.0 * self.cost(estimate) / free as f64).max(1.0)
+    }
+
     /// Deviations in the base that fits best, and the factor of that base's information.
     fn at_best_base(&self, estimate: &Estimate) -> (Vec<Deviation>, Option<Factor6>) {
         let deviations = |motion: &Pose| -> Vec<Deviation> {

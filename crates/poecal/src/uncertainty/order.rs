@@ -5,12 +5,18 @@ use super::view::View;
 
 /// Fewest pairs by which it is judged.
 const PAIRS: usize = 20;
+/// Correlation of a joint's values in rows that follow each other from which on the robot goes its way in order: then its errors do too, and
+/// say nothing of time.
+const ORDERED: f64 = 0.5;
 
-/// Correlation of the residuals of one target in rows that follow each other in the data, if it is no chance: in white noise that of so
-/// many components has a standard deviation of one over the root of their number.
+/// Correlation of the residuals of one target in rows that follow each other in the data, if it is no chance (in white noise that of so
+/// many components has a standard deviation of one over the root of their number) and no joint goes with the order of the rows.
 pub(super) fn correlation(view: &View<'_>) -> Option<f64> {
     let mut rows = view.rows.to_vec();
     rows.sort_unstable();
+    if is_ordered(view, &rows) {
+        return None;
+    }
     let errors = view.errors(&rows, view.estimate);
     let mut last: Vec<Option<(usize, u32)>> = vec![None; view.data.targets.len()];
     let (mut products, mut squares, mut components) = (0.0, 0.0, 0usize);
@@ -33,4 +39,18 @@ pub(super) fn correlation(view: &View<'_>) -> Option<f64> {
     let correlation = products / squares;
     let is_chance = correlation * (components as f64).sqrt() < SIGNIFICANT;
     (components >= 3 * PAIRS && !is_chance && correlation.is_finite()).then_some(correlation)
+}
+
+/// Whether some joint moves little from row to row.
+fn is_ordered(view: &View<'_>, rows: &[u32]) -> bool {
+    let count = rows.len().max(1) as f64;
+    let joints = view.robot.joints.len();
+    (0..joints).any(|joint| {
+        let value = |row: &u32| view.values(*row)[joint];
+        let mean = rows.iter().map(value).sum::<f64>() / count;
+        let squares: f64 = rows.iter().map(|row| (value(row) - mean).powi(2)).sum();
+        let products: f64 =
+            rows.windows(2).map(|pair| (value(&pair[0]) - mean) * (value(&pair[1]) - mean)).sum();
+        squares > 0.0 && products > ORDERED * squares
+    })
 }

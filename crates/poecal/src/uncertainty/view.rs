@@ -27,7 +27,7 @@ impl Belief {
         let n = layout.dim();
         let mut normal = Normal::new(n);
         match prior {
-            Some(prior) => prior.add(estimate, layout, 1.0, &mut normal),
+            Some(prior) => prior.add(estimate, layout, 1.0 / prior.looseness(estimate), &mut normal),
             None => {
                 let information = 1.0 / (PLAUSIBLE * length_m).powi(2);
                 normal.gram.iter_mut().step_by(n + 1).for_each(|value| *value = information);

@@ -244,7 +244,8 @@ impl<'c> Reweighted<'c> {
 
     /// The task with the prior counting as much as the residuals really are.
     fn believing<'t>(&self, task: &Task<'t>, source: NoiseSource) -> Task<'t> {
-        task.believing(if source == NoiseSource::Estimated { 1.0 } else { self.scale.0[0].powi(2) })
+        let variance = if source == NoiseSource::Estimated { 1.0 } else { self.scale.0[0].powi(2) };
+        task.believing(variance / task.prior.map_or(1.0, |(prior, _)| prior.looseness(&self.estimate)))
     }
 
     /// Reweights until the weights have settled.
