@@ -64,7 +64,7 @@ fn training_figures_are_never_shown_without_the_word() {
         "other.csv",
         Kind::Mixed,
         "",
-        &Simulation { count: 25, ..Simulation::default() },
+        &Simulation { count: 25, noise_position_m: 6e-5, ..Simulation::default() },
     );
     for arguments in ["--validate other.csv", "--held-out 0", "--fit-where stage=1", ""] {
         let out =
@@ -105,7 +105,13 @@ fn what_is_held_out_can_be_said() {
     assert!(out.contains("from 40 of 60 rows") && out.contains("held out (20)"), "{out}");
 
     let simulation = Simulation { count: 60, seed: 1, ..Simulation::default() };
-    write_measurements(&folder, "other.csv", Kind::Pose, "", &Simulation { count: 25, ..simulation });
+    write_measurements(
+        &folder,
+        "other.csv",
+        Kind::Pose,
+        "",
+        &Simulation { count: 25, noise_position_m: 6e-5, ..simulation },
+    );
     let out = folder.done("calibrate robot.urdf measurements.csv --validate other.csv --out other");
     assert!(out.contains("from 60 of 85 rows") && out.contains("held out (25)"), "{out}");
 

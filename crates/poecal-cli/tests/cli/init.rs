@@ -207,7 +207,7 @@ fn settings_are_seen_from_their_folder_and_give_way_to_what_is_typed() {
 #[test]
 fn an_option_that_is_typed_replaces_settings_that_it_excludes() {
     let folder = project();
-    folder.done("simulate robot.urdf --kind point --count 20 --out other");
+    folder.done("simulate robot.urdf --kind point --count 20 --noise 0.06mm --out other");
     let settings = "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\nfit_where = 'stage=1'\n";
     folder.write("cell/poecal.toml", settings);
     assert_eq!(folder.run("calibrate --settings cell/poecal.toml").code, 2);
