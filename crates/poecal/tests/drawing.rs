@@ -5,6 +5,7 @@
 use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, calibrate};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
+use poecal::io::robot_toml;
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
 use poecal::parameters::{Parameter, ScrewAxis};
@@ -337,4 +338,36 @@ fn what_the_data_tell_is_not_touched() {
     let rms = found.accuracy.held_out.unwrap().calibrated.position_mm.rms;
     println!("errors of 17 deg and 60 mm: {rms:.4} mm");
     assert!(rms < 0.15);
+}
+
+/// A joint of a TOML model may state its own tolerance, in the units of the file.
+#[test]
+fn a_joint_may_state_its_own_tolerance() {
+    let model = |tolerance: &str| {
+        format!(
+            "poecal_robot = 1\nname = \"r\"\nlength_unit = \"mm\"\nangle_unit = \"deg\"\njoint = [\n  {{ name = \"a\", point = [0, 0, 0], direction = [0, 0, 1]{tolerance} }},\n]\n[home]\nposition = [300, 0, 0]\n"
+        )
+    };
+    let robot = robot_toml::parse(&model(", tolerance = { angle = 2, length = 20 }"), "r.toml").unwrap();
+    let found = robot.joints[0].tolerance.unwrap();
+    assert!((found.angle_rad - 2f64.to_radians()).abs() < 1e-15 && (found.length_m - 0.02).abs() < 1e-15);
+    assert_eq!(
+        robot_toml::parse(&robot_toml::write(&robot), "r.toml").unwrap().joints[0].tolerance,
+        Some(found)
+    );
+    assert_eq!(robot_toml::parse(&model(""), "r.toml").unwrap().joints[0].tolerance, None);
+    let error = robot_toml::parse(&model(", tolerance = { angle = 0, length = 20 }"), "r.toml").unwrap_err();
+    println!("{error}");
+    assert!(error.to_string().starts_with("r.toml:6:") && error.to_string().contains("not above 0"));
+    // A joint that is known worse than the others is held less.
+    let mut robot = elbow();
+    let cost = |robot: &Robot| {
+        let mut estimate = Estimate::new(robot, vec![robot.home], Pose::identity());
+        estimate.base_from_axis[2].translation.x += 0.01;
+        Prior::new(robot, Tolerance::default(), false).cost(&estimate)
+    };
+    let usual = cost(&robot);
+    robot.joints[2].tolerance = Some(Tolerance { angle_rad: 0.1, length_m: 0.05 });
+    println!("{usual} {}", cost(&robot));
+    assert!((cost(&robot) / usual - 0.01).abs() < 1e-6);
 }

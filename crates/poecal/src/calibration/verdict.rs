@@ -214,13 +214,13 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     }
     let open = open_directions(grounds);
     if open > 0 {
-        reasons.push(format!("{open} of {unknowns} unknowns are not determined by these configurations"));
+        reasons.push(format!("these configurations do not tell {open} of {unknowns} unknowns"));
     }
     if let Some((found, worst)) = trust.cross_validation.as_ref().and_then(|it| Some((it, it.worst()?)))
         && worst.position_rms_m > BLOCKS * found.random.position_rms_m
     {
         reasons.push(format!(
-            "{}, left out, is missed by {:.3} mm, {:.1} times what random rows are",
+            "cross-validation: {} is missed by {:.3} mm, {:.1} times as much as random rows",
             worst.name,
             1e3 * worst.position_rms_m,
             worst.position_rms_m / found.random.position_rms_m
@@ -230,7 +230,7 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
         && range.sigma_m > RANGE * measured.sigma_m
     {
         reasons.push(format!(
-            "anywhere within the limits {:.3} mm are to be expected, {:.1} times those where it was measured",
+            "the expected error anywhere within the limits is {:.3} mm, {:.1} times that where it was measured",
             1e3 * range.sigma_m,
             range.sigma_m / measured.sigma_m
         ));
@@ -240,7 +240,9 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
 
 fn in_favour(grounds: &Grounds<'_>) -> String {
     let expected = grounds.trust.range.map_or(String::new(), |range| {
-        format!(", and {:.3} mm (RMS) are to be expected anywhere within the limits", 1e3 * range.sigma_m)
+        format!(", and the expected error anywhere within the limits is {:.3} mm (RMS)", 1e3 * range.sigma_m)
     });
-    format!("all unknowns are determined, every joint was moved through half of its range or more{expected}")
+    format!(
+        "the measurements tell all unknowns, every joint was moved through half of its range or more{expected}"
+    )
 }
