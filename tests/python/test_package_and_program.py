@@ -20,6 +20,8 @@ GUIDE = ROOT / "docs/python.md"
 RUNS = {
     "as it is": ([], {}),
     "noise": (["--sigma-position", "0.05mm", "--sigma-rotation", "0.01deg"], {"sigma_position_mm": 0.05, "sigma_rotation_deg": 0.01}),
+    "tolerance": (["--tolerance", "1deg,10mm"], {"tolerance_deg_mm": (1.0, 10.0)}),
+    "nothing believed": (["--tolerance", "none"], {"tolerance_deg_mm": None}),
     "held out": (["--held-out", "0.2", "--seed", "7"], {"held_out": 0.2, "seed": 7}),
     "every row": (["--held-out", "0"], {"held_out": 0}),
     "robust": (["--robust", "cauchy"], {"robust": "cauchy"}),

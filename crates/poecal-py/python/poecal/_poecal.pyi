@@ -366,7 +366,7 @@ def calibrate(
     frame: _Frame = "unknown",
     sigma_position_mm: float | None = None,
     sigma_rotation_deg: float | None = None,
-    tolerance_deg_mm: tuple[float, float] | None = (0.5, 5.0),
+    tolerance_deg_mm: tuple[float, float] | None = ...,
     held_out: float | None = None,
     seed: int | None = None,
     robust: Literal["auto", "off", "huber", "cauchy", "tukey"] = "auto",
