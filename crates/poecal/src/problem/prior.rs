@@ -1,6 +1,6 @@
 //! What a drawing is worth: the axes are near nominal (theory.md §6, *What a drawing is worth*).
 
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use super::Layout;
 use crate::estimate::Estimate;
@@ -12,8 +12,8 @@ use crate::solve::Normal;
 
 /// Iterations that find the base, at most: it converges quadratically.
 const ITERATIONS: usize = 20;
-/// A base that moves by less than this (metres, radians) has been found.
-const FOUND: f64 = 1e-12;
+/// A base that moves by less than this (metres, radians) has been found: what is left of its gradient moves no unknown by a picometre.
+const FOUND: f64 = 1e-8;
 /// Share of the trace of the base's information below which it is rounding: axes that are all parallel leave some of it open.
 const ROUNDING: f64 = 1e-12;
 
@@ -140,7 +140,7 @@ impl Prior {
             let pull: Vector6<f64> = found.iter().map(|it| it.base.tr_mul(&it.value)).sum();
             let step = factor.solve(&-pull);
             if step.amax() < FOUND || !step.amax().is_finite() {
-                break;
+                return (found, Some(factor));
             }
             motion = (Pose::exp(&Twist::from_vector(&step)) * motion).orthonormalized();
             found = deviations(&motion);
@@ -187,10 +187,21 @@ impl Prior {
     }
 }
 
-/// Factor of the information of a motion of the base.
+/// Factor of the information of a motion of the base, `BᵀB` with `B = (0 T; A S)`: a shift tilts no axis.
 fn base_factor(deviations: &[Deviation]) -> Option<Factor6> {
-    let mut gram = Matrix6::zeros();
-    deviations.iter().for_each(|deviation| gram += deviation.base.tr_mul(&deviation.base));
-    let least = ROUNDING * gram.trace();
-    linalg::cholesky_6(gram + Matrix6::identity() * least)
+    let (mut shifts, mut mixed, mut turns) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());
+    for Deviation { base, .. } in deviations {
+        let [tilted, across, moved] =
+            [(0, 3), (3, 0), (3, 3)].map(|at| base.fixed_view::<3, 3>(at.0, at.1).into_owned());
+        shifts += across.tr_mul(&across);
+        mixed += across.tr_mul(&moved);
+        turns += tilted.tr_mul(&tilted) + moved.tr_mul(&moved);
+    }
+    let least = ROUNDING * (shifts.trace() + turns.trace());
+    let mut gram = Matrix6::identity() * least;
+    for (at, block) in [((0, 0), shifts), ((0, 3), mixed), ((3, 0), mixed.transpose()), ((3, 3), turns)] {
+        let mut place = gram.fixed_view_mut::<3, 3>(at.0, at.1);
+        place += block;
+    }
+    linalg::cholesky_6(gram)
 }
