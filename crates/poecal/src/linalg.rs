@@ -70,6 +70,16 @@ pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     x
 }
 
+/// `tr(H⁻¹ P)` from the factor of H and the upper triangle of P, row-major `n × n`.
+pub(crate) fn trace_of_quotient(factor: &Factor, part: &[f64], n: usize) -> f64 {
+    (0..n)
+        .map(|j| {
+            let column: Vec<f64> = (0..n).map(|i| part[i.min(j) * n + i.max(j)]).collect();
+            cholesky_solve(factor, &column)[j]
+        })
+        .sum()
+}
+
 /// The inverse (row-major) of the matrix that was factorised.
 pub(crate) fn inverse(factor: &Factor) -> Vec<f64> {
     lanes::inverse(Level::best(), factor)

@@ -257,12 +257,7 @@ pub fn unknowns_told(normal: &Normal, part: &Normal) -> f64 {
     else {
         return 0.0;
     };
-    (0..n)
-        .map(|j| {
-            let column: Vec<f64> = (0..n).map(|i| part.gram[i.min(j) * n + i.max(j)]).collect();
-            linalg::cholesky_solve(&factor, &column)[j]
-        })
-        .sum()
+    linalg::trace_of_quotient(&factor, &part.gram, n)
 }
 
 /// Judges the information (upper triangle of `N`, row-major) of a setup, with residuals of this variance: theory.md §7 (36).

@@ -110,13 +110,8 @@ pub fn fit_screws(
     options: &CalibrationOptions,
 ) -> (Estimate, Normal, Summary) {
     let free = free_parameters(&start, data, rows, options.formulation);
-    let problem = |rows: Vec<u32>| {
-        let problem = Problem::new(data, packed, rows, free.clone(), noise, length_m);
-        match prior {
-            Some((prior, weight)) => problem.with_prior(prior, weight),
-            None => problem,
-        }
-    };
+    let problem =
+        |rows: Vec<u32>| Problem::new(data, packed, rows, free.clone(), noise, length_m).with_prior(prior);
     let mut start = start;
     let (mut solver, mut before) = (options.solver, None);
     let unknowns: usize = free.iter().map(|parameter| parameter.model().columns().len()).sum();
@@ -330,12 +325,9 @@ impl Task<'_> {
     pub(super) fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
         let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
         let problem = Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m);
-        let problem = match self.weights {
+        let problem = problem.with_prior(self.prior);
+        match self.weights {
             Some(weights) => problem.with_weights(weights),
-            None => problem,
-        };
-        match self.prior {
-            Some((prior, weight)) => problem.with_prior(prior, weight),
             None => problem,
         }
     }
@@ -356,11 +348,8 @@ impl Task<'_> {
         let sample = sample_rows(self.rows, RESTART_SAMPLE);
         let problem = |estimate: &Estimate| {
             let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
-            let problem = Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m);
-            match self.prior {
-                Some((prior, weight)) => problem.with_prior(prior, weight),
-                None => problem,
-            }
+            Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m)
+                .with_prior(self.prior)
         };
         if self.options.restarts == 0 || !self.is_suspicious(self.position_rms(fitted)) {
             return None;

@@ -17,7 +17,7 @@ pub(super) struct NoiseDoubt {
 /// are careful.
 const MORE: f64 = 30.0;
 const LESS: f64 = 4.0;
-/// Errors of a joint's reading along its rows are found in time, beyond this correlation of rows that follow each other.
+/// Correlation of what is left in rows that follow each other from which on it is said.
 const IN_TIME: f64 = 0.5;
 
 /// What of the stated noise the residuals contradict, and whether they hang together in time (theory.md §9 (41)).

@@ -8,7 +8,6 @@ use super::expectation::{Kept, KeptPart, Promise};
 use super::judge::{Judgement, Seen, Subject};
 use super::trust::inside;
 use super::verdict::Level;
-use crate::estimate::Packed;
 use crate::measurement::{Dataset, Noise};
 use crate::uncertainty::{Discrepancy, Refit, Uncertainty};
 
@@ -55,15 +54,13 @@ pub(super) fn promised(
     };
     let robot = subject.calibrated;
     let all = promise.kept(robot, data, &seen.packed, &seen.errors);
-    let rows: Vec<usize> =
-        (0..data.len()).filter(|&row| inside(robot, promise.coverage, data.readings(row))).collect();
+    let mut rows = data.all_rows();
+    rows.retain(|&row| inside(robot, promise.coverage, data.readings(row as usize)));
     if rows.is_empty() {
         return Some((all, None));
     }
-    let some = data.only(&rows);
-    let packed = Packed::new(robot, some.all_readings(), some.reading_names().len());
-    let errors: Vec<_> = rows.iter().map(|&row| seen.errors[row]).collect();
-    let promised = promise.kept(robot, &some, &packed, &errors);
+    let errors: Vec<_> = rows.iter().map(|&row| seen.errors[row as usize]).collect();
+    let promised = promise.kept_in(robot, data, &seen.packed, &rows, &errors);
     let calibrated = model_accuracy(&errors);
     Some((all, Some(InSampledRange { count: rows.len(), calibrated, promised })))
 }

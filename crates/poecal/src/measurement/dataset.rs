@@ -310,15 +310,6 @@ impl Dataset {
         rows.iter().map(|&row| self.observations[row as usize].measurement.residual_model().position())
     }
 
-    /// The same data set with these rows only.
-    #[must_use]
-    pub(crate) fn only(&self, rows: &[usize]) -> Self {
-        let readings = rows.iter().flat_map(|&row| self.readings(row).iter().copied()).collect();
-        let observations = rows.iter().map(|&row| self.observations[row]).collect();
-        let ids = rows.iter().filter_map(|&row| self.ids.get(row).cloned()).collect();
-        Dataset { readings, observations, ids, ..self.clone() }
-    }
-
     /// Marks every row as one to fit, and adds the rows of another data set as held out.
     ///
     /// # Errors

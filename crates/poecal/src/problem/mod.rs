@@ -135,11 +135,11 @@ impl<'a> Problem<'a> {
         self
     }
 
-    /// The same problem with a belief about the axes beside the measurements. It counts `weight` times: as much as the variance of
-    /// the whitened residuals really is (theory.md §6 (27a)).
+    /// The same problem with a belief about the axes, if there is one, beside the measurements. It counts as many times as its weight
+    /// says: as much as the variance of the whitened residuals really is (theory.md §6 (27a)).
     #[must_use]
-    pub fn with_prior(mut self, prior: &'a Prior, weight: f64) -> Self {
-        self.prior = Some((prior, weight));
+    pub fn with_prior(mut self, prior: Option<(&'a Prior, f64)>) -> Self {
+        self.prior = prior;
         self
     }
 

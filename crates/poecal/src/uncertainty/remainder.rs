@@ -247,7 +247,7 @@ fn told(view: &View<'_>, normal: &Normal) -> f64 {
     }
     let variance = 2.0 * normal.cost / (normal.residuals as f64 - n as f64).max(1.0);
     let Some(factor) = factor(&normal.gram, n, view.belief, variance) else { return n as f64 };
-    n as f64 - variance * trace(&factor, &view.belief.normal.gram, n)
+    n as f64 - variance * linalg::trace_of_quotient(&factor, &view.belief.normal.gram, n)
 }
 
 /// How many of them rotations tell.
@@ -274,17 +274,7 @@ fn told_by_rotations(
     let stated = view.rows.iter().any(|&row| view.data.observations[row as usize].sigma_position_m.is_some());
     let part = unmeasured.problem(view.rows.to_vec()).normal(view.estimate);
     match factor(&normal.gram, n, view.belief, if view.belief.is_fitted { 1.0 } else { 0.0 }) {
-        Some(factor) if !stated => trace(&factor, &part.gram, n).min(told),
+        Some(factor) if !stated => linalg::trace_of_quotient(&factor, &part.gram, n).min(told),
         _ => in_proportion,
     }
-}
-
-/// `tr(H⁻¹ P)` from the factor of H and the upper triangle of P.
-fn trace(factor: &linalg::Factor, part: &[f64], n: usize) -> f64 {
-    (0..n)
-        .map(|j| {
-            let column: Vec<f64> = (0..n).map(|i| part[i.min(j) * n + i.max(j)]).collect();
-            linalg::cholesky_solve(factor, &column)[j]
-        })
-        .sum()
 }

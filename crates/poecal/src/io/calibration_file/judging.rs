@@ -1,7 +1,7 @@
 //! What judging a calibration by other measurements needs of its file.
 
 use super::{CalibrationFile, FrameWord};
-use crate::calibration::{DeviceFrameKnowledge, NoiseSource};
+use crate::calibration::DeviceFrameKnowledge;
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
@@ -34,12 +34,6 @@ impl CalibrationFile {
             }
         }
         Ok(Noise { position_m: self.noise.sigma_position_mm / 1e3, rotation_rad: rotation_deg.to_radians() })
-    }
-
-    /// Whether that noise was stated by the user or by the rows, and not estimated.
-    #[must_use]
-    pub fn noise_is_stated(&self) -> bool {
-        matches!(self.noise.source, NoiseSource::Given | NoiseSource::Rows)
     }
 
     /// Root mean square position error on the rows held out, or if there were none on those fitted, millimetres.
