@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 use poecal::calibration::{CalibrationOptions, Stage, calibrate_with_progress, settle_sets};
 use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
-use poecal::measurement::{Dataset, Measurement, PoseResidual};
+use poecal::measurement::{Dataset, Measurement};
 use poecal::robot::Tolerance;
-use poecal::solve;
+use poecal_lou2009::{Residual, formulated};
 use pyo3::prelude::*;
 
 use crate::calibration::Calibration;
@@ -17,8 +17,8 @@ use crate::errors::raise;
 use crate::measurements::Measurements;
 use crate::robot::Robot;
 use crate::words::{
-    formulation, frame as frame_word, from_deg, from_mm, method as method_word, residual as residual_word,
-    robust as robust_word, sigma,
+    formulation as formulation_word, frame as frame_word, from_deg, from_mm, method as method_word,
+    residual as residual_word, robust as robust_word, sigma,
 };
 
 /// Calibrates a robot from measurements.
@@ -64,7 +64,10 @@ pub(crate) fn calibrate(
     validate: Option<&Measurements>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Calibration> {
-    let usual = CalibrationOptions::default().with_formulation(self::formulation(formulation)?);
+    let usual = CalibrationOptions::default();
+    let formulation = formulation_word(formulation)?;
+    let residual = residual_word(residual)?;
+    let method = method.map_or(Ok(formulation.usual_method()), method_word)?;
     let options = CalibrationOptions {
         frame: frame_word(frame)?,
         sigma_position_m: sigma("sigma_position_mm", sigma_position_mm, from_mm)?,
@@ -73,15 +76,11 @@ pub(crate) fn calibrate(
         held_out: held_out.unwrap_or(usual.held_out),
         seed: seed.unwrap_or(usual.seed),
         robust: robust_word(robust)?,
-        pose_residual: residual_word(residual)?,
-        solver: solve::Options {
-            method: method.map_or(Ok(usual.solver.method), method_word)?,
-            ..usual.solver
-        },
+        formulation: formulated(formulation, residual, method),
         ..usual
     };
     let data = rows(py, robot, measurements, validate, held_out, seed)?;
-    warn_of_residual(py, &data, options.pose_residual)?;
+    warn_of_residual(py, &data, residual)?;
     let inputs = inputs(robot, measurements, validate);
     let (found, took) = fit(py, &robot.model.robot, &data, &options, progress)?;
     let data = match data {
@@ -152,9 +151,9 @@ fn rows<'a>(
     Ok(data)
 }
 
-fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: PoseResidual) -> PyResult<()> {
+fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: Residual) -> PyResult<()> {
     let poses = data.observations.iter().any(|row| matches!(row.measurement, Measurement::Pose(_)));
-    if residual == PoseResidual::default() || poses {
+    if residual == Residual::default() || poses {
         return Ok(());
     }
     let words = residual.word();

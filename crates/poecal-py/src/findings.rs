@@ -6,7 +6,8 @@ use poecal::analysis::{self, Session};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::output::{self, Contents, Existing};
 use poecal::measurement::Noise;
-use poecal::{forensics, offsets as explanations, report, reproduce as experiments};
+use poecal::{forensics, offsets as explanations, report};
+use poecal_lou2009::{self as experiments, report as reproduced};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use serde::{Deserialize, Serialize};
@@ -222,11 +223,15 @@ pub(crate) fn reproduce(
         let (files, words, json) = match experiment {
             Experiment::Lou2009 => {
                 let found = experiments::lou2009(&options)?;
-                (report::reproduction_files(&found)?, report::claims(&found), report::json(&found)?)
+                (reproduced::reproduction_files(&found)?, reproduced::claims(&found), report::json(&found)?)
             }
             Experiment::Breakdown => {
                 let found = experiments::breakdown(&options)?;
-                (report::breakdown_files(&found)?, report::breakdown_table(&found), report::json(&found)?)
+                (
+                    reproduced::breakdown_files(&found)?,
+                    reproduced::breakdown_table(&found),
+                    report::json(&found)?,
+                )
             }
         };
         let written = place.map(|place| output::write_reproduction(place, &files)).transpose()?;

@@ -2,12 +2,10 @@
 
 use poecal::calibration::{DeviceFrameKnowledge, Loss, Robust};
 use poecal::io::measurements::{Quantity, Unit};
-use poecal::measurement::PoseResidual;
 use poecal::nearest;
 use poecal::offsets::End;
-use poecal::parameters::Formulation;
 use poecal::simulate::Kind;
-use poecal::solve::Method;
+use poecal_lou2009::{Formulation, Method, Residual};
 use pyo3::prelude::*;
 
 use crate::errors::{argument, raise};
@@ -46,12 +44,12 @@ pub(crate) fn formulation(word: &str) -> PyResult<Formulation> {
     chosen("formulation", word, &Formulation::ALL.map(|it| (it.word(), it)))
 }
 
-pub(crate) fn residual(word: &str) -> PyResult<PoseResidual> {
-    chosen("residual", word, &[PoseResidual::Tool, PoseResidual::Spatial].map(|it| (it.word(), it)))
+pub(crate) fn residual(word: &str) -> PyResult<Residual> {
+    chosen("residual", word, &Residual::ALL.map(|it| (it.word(), it)))
 }
 
 pub(crate) fn method(word: &str) -> PyResult<Method> {
-    chosen("method", word, &[Method::LevenbergMarquardt, Method::GaussNewton].map(|it| (it.word(), it)))
+    chosen("method", word, &Method::ALL.map(|it| (it.word(), it)))
 }
 
 pub(crate) fn end(name: &str, word: &str) -> PyResult<End> {

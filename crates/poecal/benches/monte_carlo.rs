@@ -15,7 +15,7 @@ use poecal::estimate::{Estimate, Packed, row_errors};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::measurement::{Dataset, Measurement};
-use poecal::parameters::{Formulation, Parameter, TargetFrame};
+use poecal::parameters::{Parameter, TargetFrame, screw_axes};
 use poecal::problem::{Problem, Refit};
 use poecal::robot::Robot;
 use poecal::solve::{Options, minimize};
@@ -68,7 +68,7 @@ fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(E
     begun.observations.iter_mut().zip(first).for_each(|(row, seen)| row.measurement = *seen);
     let start = delivered(robot, &begun);
     let packed = Packed::new(robot, begun.all_readings(), begun.reading_names().len());
-    let mut free = Formulation::Adjoint.joint_parameters(&start.kinds);
+    let mut free = screw_axes(&start.kinds);
     free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
     let problem = Problem::new(&begun, &packed, begun.all_rows(), free, NOISE, robot.reach_m() / 3.0);
     let (optimum, _, _) = minimize(&problem, start, &Options::default());

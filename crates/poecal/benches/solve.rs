@@ -13,7 +13,7 @@ use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, d
 use poecal::estimate::Packed;
 use poecal::forensics::{self, diagnose};
 use poecal::measurement::Measurement;
-use poecal::parameters::{Formulation, Parameter, TargetFrame};
+use poecal::parameters::{Parameter, TargetFrame, screw_axes};
 use poecal::problem::{Problem, Refit};
 use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain};
 use poecal::solve::{Options, minimize};
@@ -89,7 +89,7 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
     let made = session(50, Kind::Pose);
     let start = delivered(&made.nominal, &made.data);
     let rows: Vec<u32> = (0..50).collect();
-    let mut free = Formulation::Adjoint.joint_parameters(&start.kinds);
+    let mut free = screw_axes(&start.kinds);
     free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let trials: Vec<Vec<Measurement>> = (0..1_000).map(|_| disturbed(&made.data, &mut generator)).collect();

@@ -55,7 +55,6 @@
 //! | [`start`] | device frame and tool without a guess |
 //! | [`forensics`] | mistakes in the input, named with evidence |
 //! | [`calibration`] | all steps in order |
-//! | [`reproduce`] | the experiment of lou2009 with every formulation |
 //! | [`report`] | the result as text |
 //! | [`text`] | text from outside as people may see it |
 //! | [`io`] | files: the only module that opens them |
@@ -79,7 +78,6 @@ pub mod offsets;
 pub mod parameters;
 pub mod problem;
 pub mod report;
-pub mod reproduce;
 pub mod robot;
 pub mod simulate;
 pub mod solve;

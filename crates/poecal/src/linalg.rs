@@ -104,16 +104,6 @@ pub(crate) fn symmetric_eigen(upper: &[f64], n: usize) -> (Vec<f64>, DMatrix<f64
     (values, vectors)
 }
 
-/// Singular values of a matrix of finite numbers, the largest first.
-pub(crate) fn singular_values(matrix: &DMatrix<f64>) -> Vec<f64> {
-    if matrix.is_empty() {
-        return Vec::new();
-    }
-    let mut values: Vec<f64> = matrix.singular_values().iter().copied().collect();
-    values.sort_by(|a, b| b.total_cmp(a));
-    values
-}
-
 /// The unit eigenvector of the largest eigenvalue of a symmetric 4×4 matrix.
 pub(crate) fn dominant_eigenvector(matrix: &Matrix4<f64>) -> Vector4<f64> {
     let eigen = matrix.symmetric_eigen();

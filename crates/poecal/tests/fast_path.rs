@@ -11,7 +11,7 @@ use poecal::calibration::{CalibrationOptions, fit_screws};
 use poecal::estimate::{Estimate, Packed, delivered, row_errors};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise};
-use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace};
+use poecal::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis, TargetFrame, TargetPlace};
 use poecal::problem::{Level, Problem, Refit, levels};
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulation, elbow, gantry, random, random_chain, scara, seven_axis};
@@ -262,6 +262,38 @@ fn few_passes_have_the_same_optimum() {
     }
 }
 
+/// Which unknowns the kernels serve, kind by kind: a new kind has to be decided here, and in the kernels.
+#[test]
+fn kernels_serve_the_kinds_that_they_know() {
+    let robot = elbow();
+    let kind = robot.joints[0].kind;
+    for seen in [Kind::Pose, Kind::Point] {
+        let mut session = Session::new(&robot, seen, &Case { rows: 5, targets: 1, ..Case::default() });
+        for parameter in [
+            Parameter::ScrewAxis(ScrewAxis { joint: 0, kind }),
+            Parameter::JointOffset(JointOffset { joint: 0, kind }),
+            Parameter::TargetPlace(TargetPlace { target: 0 }),
+            Parameter::TargetFrame(TargetFrame { target: 0 }),
+            Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::zeros() }),
+        ] {
+            let served = match parameter {
+                Parameter::ScrewAxis(_)
+                | Parameter::TargetPlace(_)
+                | Parameter::TargetFrame(_)
+                | Parameter::DeviceFrame(_) => true,
+                // Written outside, or looked at only in search of a mistake.
+                Parameter::OtherScrew(_) | Parameter::JointOffset(_) => false,
+            };
+            session.free = vec![parameter];
+            let problem = session.problem(&Case::default(), Level::Baseline);
+            println!("{seen:?} by {parameter:?}: {served}");
+            assert_eq!(problem.is_served(&session.estimate), served);
+            // What is served is not handed on to the general path: that would be a failed assertion within the library.
+            problem.normal(&session.estimate);
+        }
+    }
+}
+
 /// Other measurements in the same configurations: shared packing and factor, and the same optimum as a fit of its own.
 #[test]
 fn refits_have_the_same_optimum() {
@@ -287,7 +319,6 @@ fn refits_have_the_same_optimum() {
                 match &mut observation.measurement {
                     Measurement::Point(seen) => seen.position += shift,
                     Measurement::Pose(seen) => seen.pose.translation += shift,
-                    Measurement::SpatialPose(_) => {}
                 }
             }
             let measured: Vec<Measurement> = data.observations.iter().map(|seen| seen.measurement).collect();

@@ -12,7 +12,7 @@ use poecal::calibration::{
 use poecal::estimate::{Estimate, Packed};
 use poecal::io::calibration_file::{CalibrationFile, Inputs, OutlierSet};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, Set};
-use poecal::parameters::Formulation;
+use poecal::parameters::screw_axes;
 use poecal::problem::Problem;
 use poecal::robot::Robot;
 use poecal::simulate::{
@@ -211,7 +211,7 @@ fn weights_scale_the_noise_and_zero_leaves_a_row_out() {
     let packed = Packed::new(&elbow(), data.all_readings(), 6);
     let noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
     let start = delivered(&elbow(), &data);
-    let free = || Formulation::Adjoint.joint_parameters(&start.kinds);
+    let free = || screw_axes(&start.kinds);
     let weights: Vec<f64> = (0..data.len()).map(|row| f64::from(row as u32 % 4) / 4.0).collect();
     let weighted = Problem::new(&data, &packed, all_rows(&data), free(), noise, 0.5)
         .with_weights(&weights)

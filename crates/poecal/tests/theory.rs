@@ -2,14 +2,8 @@
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
-mod largest;
-
-use largest::larger;
-use nalgebra::{Matrix3, Matrix6, Vector3};
-use poecal::estimate::Estimate;
+use nalgebra::{Matrix6, Vector3};
 use poecal::lie::{Pose, Screw, Twist};
-use poecal::reproduce::literal::Literal;
-use poecal::simulate::random_chain;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -35,37 +29,6 @@ fn inverse_left_jacobian_has_the_stated_coefficients() {
         // At 0.3 rad the coefficients lose four digits to cancellation.
         assert!(error < 1e-12);
     }
-}
-
-/// (22a): in the axis' own frame the paper's `θ J_l(ξ θ)` is made of the sine and cosine of θ alone.
-#[test]
-fn free_screws_are_elementary_in_the_axis_frame() {
-    let mut worst: f64 = 0.0;
-    for seed in 0..10 {
-        let robot = random_chain(6, seed);
-        let estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
-        let values = [0.0, 1e-8, 0.4, -2.1, 6.0, 0.9];
-        let literal = Literal::new(&robot, &values);
-        for (i, joint) in robot.joints.iter().enumerate() {
-            let before = robot.motion(&values[..i]) * estimate.base_from_axis[i];
-            let free =
-                before.inverse().adjoint() * literal.screw_blocks[i] * estimate.base_from_axis[i].adjoint();
-            let (sine, cosine) = values[i].sin_cos();
-            let versine = 1.0 - cosine;
-            let turning = Matrix3::new(sine, -versine, 0.0, versine, sine, 0.0, 0.0, 0.0, values[i]);
-            if joint.screw.is_prismatic() {
-                let shift = free.fixed_view::<3, 3>(0, 0) - Matrix3::identity() * values[i];
-                worst = larger(worst, shift.norm());
-            } else {
-                let mut expected = Matrix6::zeros();
-                expected.fixed_view_mut::<3, 3>(0, 0).copy_from(&turning);
-                expected.fixed_view_mut::<3, 3>(3, 3).copy_from(&turning);
-                worst = larger(worst, (free - expected).norm());
-            }
-        }
-    }
-    println!("largest difference {worst:.1e}");
-    assert!(worst < 1e-13);
 }
 
 /// (22c): normalising a twist and changing its frame commute.
@@ -152,12 +115,12 @@ fn cited_equations_exist_in_the_section_that_is_named() {
     assert!(cited > 30);
 }
 
-/// The last column of the table "the paper's equations" names tests of this crate.
+/// The last column of the table "the paper's equations" names tests of the project.
 #[test]
 fn named_tests_exist() {
     let theory = fs::read_to_string(project_folder().join("docs/theory.md")).unwrap();
     let (_, table) = theory.split_once("### The paper's equations").unwrap();
-    let code: String = sources(&project_folder().join("crates/poecal"))
+    let code: String = sources(&project_folder().join("crates"))
         .iter()
         .map(|path| fs::read_to_string(path).unwrap())
         .collect();

@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use poecal::calibration::{Level, Loss, Robust};
 use poecal::io::output::Existing;
-use poecal::measurement::PoseResidual;
-use poecal::parameters::Formulation;
-use poecal::solve::Method;
+use poecal_lou2009::{Formulation, Method, Residual};
 
 use super::{Chain, Reading, ReportPlace};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
@@ -54,11 +52,11 @@ pub(crate) enum ResidualWord {
     Spatial,
 }
 
-impl From<ResidualWord> for PoseResidual {
+impl From<ResidualWord> for Residual {
     fn from(word: ResidualWord) -> Self {
         match word {
-            ResidualWord::Tool => PoseResidual::Tool,
-            ResidualWord::Spatial => PoseResidual::Spatial,
+            ResidualWord::Tool => Residual::Tool,
+            ResidualWord::Spatial => Residual::Spatial,
         }
     }
 }

@@ -12,9 +12,10 @@ use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
 use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
 use poecal::io::residuals::{Residuals, Rows};
-use poecal::measurement::{Dataset, Measurement, PoseResidual};
+use poecal::measurement::{Dataset, Measurement};
 use poecal::report::Detail;
-use poecal::{Error, ErrorKind, Result, report, solve};
+use poecal::{Error, ErrorKind, Result, report};
+use poecal_lou2009::{Formulation, Residual, formulated};
 
 use super::typed::command;
 use crate::args::{Calibrate, Frame, ReportPlace};
@@ -32,10 +33,11 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments);
     let poses = data.observations.iter().any(|row| matches!(row.measurement, Measurement::Pose(_)));
-    if options.pose_residual != PoseResidual::default() && !poses {
+    let residual = Residual::from(arguments.residual);
+    if residual != Residual::default() && !poses {
         console.warning(format!(
             "--residual {} has no effect: it is about measured frames, and there are points only",
-            options.pose_residual.word()
+            residual.word()
         ));
     }
     timings.end("read");
@@ -161,7 +163,9 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
 }
 
 fn options(arguments: &Calibrate) -> CalibrationOptions {
-    let usual = CalibrationOptions::default().with_formulation(arguments.formulation.into());
+    let usual = CalibrationOptions::default();
+    let formulation: Formulation = arguments.formulation.into();
+    let method = arguments.method.map_or(formulation.usual_method(), Into::into);
     CalibrationOptions {
         frame: match arguments.frame {
             Frame::Unknown => DeviceFrameKnowledge::Unknown,
@@ -173,11 +177,7 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
         robust: arguments.robust.into(),
-        pose_residual: arguments.residual.into(),
-        solver: solve::Options {
-            method: arguments.method.map_or(usual.solver.method, Into::into),
-            ..usual.solver
-        },
+        formulation: formulated(formulation, arguments.residual.into(), method),
         ..usual
     }
 }

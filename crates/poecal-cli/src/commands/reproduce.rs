@@ -1,8 +1,8 @@
 //! `poecal reproduce`: the experiment of a paper and what became of its claims, or what gross errors do.
 
+use poecal::Result;
 use poecal::io::output::{self, Contents, Existing, FolderPlace};
-use poecal::reproduce::{Options, breakdown, lou2009};
-use poecal::{Result, report};
+use poecal_lou2009::{Options, breakdown, lou2009, report};
 
 use crate::args::{Experiment, Reproduce};
 use crate::console::Console;

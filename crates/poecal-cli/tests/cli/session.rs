@@ -46,7 +46,7 @@ pub(crate) fn write_measurements(
         let [x, y, z]: [f64; 3] = pose.translation.into();
         write!(text, ",{x:?},{y:?},{z:?}").unwrap();
         match observation.measurement {
-            Measurement::Pose(_) | Measurement::SpatialPose(_) => {
+            Measurement::Pose(_) => {
                 for part in pose.quaternion_xyzw() {
                     write!(text, ",{part:?}").unwrap();
                 }

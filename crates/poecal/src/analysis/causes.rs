@@ -351,7 +351,7 @@ impl Rules<'_> {
 pub(super) fn joint_of(parameter: &Parameter) -> Option<usize> {
     match parameter {
         Parameter::ScrewAxis(axis) => Some(axis.joint),
-        Parameter::FreeScrew(screw) => Some(screw.joint),
+        Parameter::OtherScrew(screw) => Some(screw.joint),
         Parameter::JointOffset(offset) => Some(offset.joint),
         Parameter::TargetPlace(_) | Parameter::TargetFrame(_) | Parameter::DeviceFrame(_) => None,
     }
@@ -362,7 +362,7 @@ fn target_of(parameter: &Parameter) -> Option<usize> {
         Parameter::TargetPlace(place) => Some(place.target),
         Parameter::TargetFrame(frame) => Some(frame.target),
         Parameter::ScrewAxis(_)
-        | Parameter::FreeScrew(_)
+        | Parameter::OtherScrew(_)
         | Parameter::JointOffset(_)
         | Parameter::DeviceFrame(_) => None,
     }

@@ -160,7 +160,7 @@ impl Excitation {
                 Parameter::TargetPlace(it) => (it.target, "its place fits that one measurement"),
                 Parameter::TargetFrame(it) => (it.target, "its frame fits that one measurement"),
                 Parameter::ScrewAxis(_)
-                | Parameter::FreeScrew(_)
+                | Parameter::OtherScrew(_)
                 | Parameter::JointOffset(_)
                 | Parameter::DeviceFrame(_) => continue,
             };

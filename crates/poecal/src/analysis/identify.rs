@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Chain, Linkage, Packed, delivered, radian_m};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
-use crate::parameters::{Formulation, Parameter, TargetFrame, TargetPlace};
+use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::{MOST_UNKNOWNS, Problem};
 use crate::robot::Robot;
 use crate::simulate::{Kind, random_configuration};
@@ -102,7 +102,7 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Fo
     let length_m = radian_m(robot, &packed);
     let mut estimate = delivered(robot, &data);
     estimate.recentre(&data, &packed, &rows);
-    let mut free = Formulation::Adjoint.joint_parameters(&estimate.kinds);
+    let mut free = screw_axes(&estimate.kinds);
     free.push(match session.kind {
         Kind::Point => Parameter::TargetPlace(TargetPlace { target: 0 }),
         Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame { target: 0 }),

@@ -131,7 +131,7 @@ impl Rules<'_> {
                         }
                     }
                 }
-                Parameter::FreeScrew(screw) => format!("the screw of {}", name(screw.joint)),
+                Parameter::OtherScrew(screw) => format!("the screw of {}", name(screw.joint)),
                 Parameter::JointOffset(offset) => format!("the zero of {}", name(offset.joint)),
                 Parameter::TargetPlace(it) => format!("the place of {}", target_name(self.setup, it.target)),
                 Parameter::TargetFrame(it) => format!("the frame of {}", target_name(self.setup, it.target)),

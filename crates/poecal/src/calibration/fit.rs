@@ -5,21 +5,20 @@ use rand_core::SeedableRng;
 
 use super::noise::stated;
 use super::{
-    CalibrationOptions, DeviceFrameKnowledge, NoiseSource, SolverReport, delivered, estimate_noise,
-    row_errors,
+    CalibrationOptions, DeviceFrameKnowledge, Formulation, Minimum, NoiseSource, SolverReport, delivered,
+    estimate_noise, row_errors,
 };
 use crate::analysis::unknowns_told;
 use crate::distributions::is_within_band;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Packed, sample_rows};
 use crate::gauge;
-use crate::linalg;
 use crate::measurement::{Dataset, Noise};
-use crate::parameters::{DeviceFrame, Formulation, Parameter};
+use crate::parameters::{DeviceFrame, Parameter, screw_axes};
 use crate::problem::{Layout, Prior, Problem};
 use crate::robot::Robot;
 use crate::simulate::random;
-use crate::solve::{LeastSquares, Normal, Options, Summary, minimize};
+use crate::solve::{LeastSquares, Normal, Options, Summary};
 use crate::start::target_parameters;
 
 /// Rows of the sample on which a fit of many rows begins: at least, for each unknown, and for the root of the number of rows, so
@@ -85,13 +84,12 @@ pub(super) fn free_parameters(
     estimate: &Estimate,
     data: &Dataset,
     rows: &[u32],
-    formulation: Formulation,
+    joints: Vec<Parameter>,
 ) -> Vec<Parameter> {
     let further = (1..=estimate.further_devices.len()).map(|station| {
         let about = data.mean_position(&data.seen_from(station, rows));
         Parameter::DeviceFrame(DeviceFrame { station, about })
     });
-    let joints = formulation.joint_parameters(&estimate.kinds);
     further.chain(joints).chain(target_parameters(data, rows)).collect()
 }
 
@@ -109,7 +107,8 @@ pub fn fit_screws(
     prior: Option<(&Prior, f64)>,
     options: &CalibrationOptions,
 ) -> (Estimate, Normal, Summary) {
-    let free = free_parameters(&start, data, rows, options.formulation);
+    let Formulation { joint_parameters, minimize, .. } = options.formulation;
+    let free = free_parameters(&start, data, rows, joint_parameters(&start.kinds));
     let problem =
         |rows: Vec<u32>| Problem::new(data, packed, rows, free.clone(), noise, length_m).with_prior(prior);
     let mut start = start;
@@ -143,17 +142,14 @@ pub(super) fn minimal(
     noise: Noise,
     length_m: f64,
 ) -> (Layout, Normal) {
-    let free = free_parameters(estimate, data, rows, Formulation::Adjoint);
+    let free = free_parameters(estimate, data, rows, screw_axes(&estimate.kinds));
     let problem = Problem::new(data, packed, rows.to_vec(), free, noise, length_m);
     (problem.layout().clone(), problem.normal(estimate))
 }
 
-/// What an undamped step promises.
+/// What a full step promises.
 fn promised(normal: &Normal) -> f64 {
-    let n = normal.dim();
-    let largest = (0..n).map(|k| normal.gram[k * n + k]).fold(0.0, f64::max);
-    linalg::cholesky(&normal.gram, n, 1e-13 * largest)
-        .map_or(0.0, |factor| normal.promise(&linalg::cholesky_solve(&factor, &normal.gradient)))
+    normal.full_step().map_or(0.0, |step| normal.promise(&step))
 }
 
 /// Whether stated noise explains a variance of the whitened residuals.
@@ -293,7 +289,7 @@ impl Task<'_> {
         // The optimum moved with the last noise.
         if promised(&normal) > self.options.solver.decrement * normal.mean_square() {
             let start = found.estimate.clone();
-            found.follow(minimize(&self.problem(&start, noise), start, &self.options.solver));
+            found.follow(self.minimize(&self.problem(&start, noise), start, &self.options.solver));
             normal = self.problem(&found.estimate, noise).normal(&found.estimate);
         }
         let Found { mut estimate, mut report, .. } = found;
@@ -305,25 +301,37 @@ impl Task<'_> {
         }
         if self.prior.is_some() {
             normal = Task { prior: None, ..*self }.problem(&estimate, noise).normal(&estimate);
-        } else if self.options.formulation == Formulation::Adjoint {
+        } else if self.problem(&estimate, noise).layout().is_minimal() {
             (estimate, normal) = self.settle_null_directions(estimate, normal, noise, &mut report);
         }
-        report.joint_offsets = self.options.formulation.has_offsets().then(|| estimate.joint_offset.clone());
         let layout = self.problem(&estimate, noise).layout().clone();
+        let offsets = |(parameter, _): (&Parameter, _)| matches!(parameter, Parameter::JointOffset(_));
+        report.joint_offsets = layout.parameters().any(offsets).then(|| estimate.joint_offset.clone());
         Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
     }
 
     /// One fit; with weights it goes straight to all rows, since it begins near their optimum.
     pub(super) fn fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
         if self.weights.is_some() {
-            return minimize(&self.problem(&start, noise), start, &self.options.solver);
+            return self.minimize(&self.problem(&start, noise), start, &self.options.solver);
         }
         fit_screws(self.data, self.packed, self.rows, start, noise, self.length_m, self.prior, self.options)
     }
 
+    /// Minimises by the formulation of the options.
+    fn minimize(&self, problem: &Problem<'_>, start: Estimate, options: &Options) -> Minimum {
+        (self.options.formulation.minimize)(problem, start, options)
+    }
+
+    /// What is free.
+    fn free(&self, estimate: &Estimate) -> Vec<Parameter> {
+        let joints = (self.options.formulation.joint_parameters)(&estimate.kinds);
+        free_parameters(estimate, self.data, self.rows, joints)
+    }
+
     /// The problem of these rows with these weights.
     pub(super) fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
-        let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
+        let free = self.free(estimate);
         let problem = Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m);
         let problem = problem.with_prior(self.prior);
         match self.weights {
@@ -347,8 +355,7 @@ impl Task<'_> {
     ) -> Option<(Option<Estimate>, usize)> {
         let sample = sample_rows(self.rows, RESTART_SAMPLE);
         let problem = |estimate: &Estimate| {
-            let free = free_parameters(estimate, self.data, self.rows, self.options.formulation);
-            Problem::new(self.data, self.packed, sample.clone(), free, noise, self.length_m)
+            Problem::new(self.data, self.packed, sample.clone(), self.free(estimate), noise, self.length_m)
                 .with_prior(self.prior)
         };
         if self.options.restarts == 0 || !self.is_suspicious(self.position_rms(fitted)) {
@@ -363,7 +370,7 @@ impl Task<'_> {
             tried += 1;
             let scale = [0.05, 0.1, 0.2, 0.4][tried % 4];
             let start = self.scattered(registered, scale, &mut generator);
-            let (found, normal, _) = minimize(&problem(&start), start, &options);
+            let (found, normal, _) = self.minimize(&problem(&start), start, &options);
             if normal.cost < best.0 {
                 best.0 = 0.999 * normal.cost;
                 if !self.is_suspicious(self.position_rms(&found)) {
@@ -417,7 +424,7 @@ impl Task<'_> {
             };
             let length = step.iter().map(|s| s * s).sum::<f64>().sqrt();
             let (moved, _, summary) =
-                minimize(&problem, problem.retract(&estimate, &step), &self.options.solver);
+                self.minimize(&problem, problem.retract(&estimate, &step), &self.options.solver);
             let moved_normal = problem.normal(&moved);
             if length < 1e-10 || moved_normal.cost > normal.cost * (1.0 + 1e-6) + 1e-12 {
                 break;

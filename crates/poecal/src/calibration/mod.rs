@@ -4,6 +4,7 @@ mod accuracy;
 mod doubts;
 mod expectation;
 mod fit;
+mod formulation;
 mod judge;
 mod moves;
 mod noise;
@@ -23,6 +24,7 @@ mod verdict;
 pub use accuracy::{Accuracy, ModelAccuracy, SetAccuracy, Statistic, set_accuracy};
 pub use expectation::{Kept, KeptPart, Promise};
 pub use fit::fit_screws;
+pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
 pub use options::{CalibrationOptions, DeviceFrameKnowledge};
@@ -37,6 +39,8 @@ pub use trust::{Expected, JointCorrection, RangePart, Trust};
 pub use verdict::{Level, Verdict};
 
 pub use crate::estimate::{RowError, delivered, radian_m, row_errors};
+
+use std::borrow::Cow;
 
 use crate::error::Result;
 use crate::measurement::{Dataset, PoseResidual};
@@ -90,9 +94,7 @@ pub fn calibrate_with_progress(
     options: &CalibrationOptions,
     progress: &mut dyn FnMut(Stage),
 ) -> Result<Calibration> {
-    let converted =
-        (options.pose_residual != PoseResidual::Tool).then(|| data.with_residual(options.pose_residual));
-    let (data, rows) = (converted.as_ref().unwrap_or(data), data.len());
+    let (data, rows) = (&written(data, options.formulation.pose_residual), data.len());
     let prepared = threads::among_them(rows, || Prepared::new(robot, data, options))?;
     progress(Stage::Registration);
     let (registered, noise, source) = threads::among_them(rows, || prepared.register());
@@ -100,6 +102,16 @@ pub fn calibrate_with_progress(
     let fit = threads::among_them(rows, || prepared.fit(&registered, noise, source))?;
     progress(Stage::Analysis);
     Ok(threads::among_them(rows, || prepared.assess(registered, fit)))
+}
+
+/// The data with the errors of measured frames written in this way.
+fn written<'a>(data: &'a Dataset, pose_residual: Option<&'static dyn PoseResidual>) -> Cow<'a, Dataset> {
+    if data.pose_residual == pose_residual {
+        return Cow::Borrowed(data);
+    }
+    let mut written = data.clone();
+    written.pose_residual = pose_residual;
+    Cow::Owned(written)
 }
 
 /// A number of measurements in words.

@@ -1,11 +1,9 @@
 //! How to calibrate.
 
-use crate::measurement::PoseResidual;
-use crate::parameters::Formulation;
 use crate::robot::Tolerance;
 use crate::solve;
 
-use super::Robust;
+use super::{Formulation, Robust};
 
 /// What is known of the measuring device's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -36,12 +34,10 @@ pub struct CalibrationOptions {
     pub held_out: f64,
     /// Seed of that choice and of restarts.
     pub seed: u64,
-    /// How the errors of the joints are written as unknowns. All but the default are for comparison (lou2009).
+    /// How the fit is written and minimised. All but the default are for comparison.
     pub formulation: Formulation,
-    /// How the errors of measured frames are written. The paper's is for comparison.
-    pub pose_residual: PoseResidual,
     /// How far the axes may stand off the drawing: a belief that counts beside the measurements where these say little, and for a joint
-    /// whose model states its own tolerance that one. `None` believes nothing. It has no part in the formulations for comparison.
+    /// whose model states its own tolerance that one. `None` believes nothing. It has no part in other formulations than the default.
     pub tolerance: Option<Tolerance>,
     /// What to do about grossly wrong rows.
     pub robust: Robust,
@@ -62,7 +58,6 @@ impl Default for CalibrationOptions {
             held_out: 0.3,
             seed: 1,
             formulation: Formulation::default(),
-            pose_residual: PoseResidual::default(),
             tolerance: Some(Tolerance::default()),
             robust: Robust::default(),
             solver: solve::Options::default(),
@@ -73,32 +68,9 @@ impl Default for CalibrationOptions {
 }
 
 impl CalibrationOptions {
-    /// The same options for a formulation, with the method that belongs to it: plain Gauss-Newton where screws are free numbers, since
-    /// steps that are judged by the cost after normalisation are cut short again and again (docs/theory.md §3).
-    ///
-    /// ```
-    /// use poecal::{calibration::CalibrationOptions, parameters::Formulation, solve::Method};
-    /// let options = CalibrationOptions::default().with_formulation(Formulation::Screw);
-    /// assert_eq!(options.solver.method, Method::GaussNewton);
-    /// ```
-    #[must_use]
-    pub fn with_formulation(mut self, formulation: Formulation) -> Self {
-        self.formulation = formulation;
-        self.solver.method = if formulation.has_free_screws() {
-            solve::Method::GaussNewton
-        } else {
-            solve::Method::LevenbergMarquardt
-        };
-        self
-    }
-
-    /// The tolerance that counts in the fit: none with formulations, residuals and methods that are there for comparison.
+    /// The tolerance that counts in the fit: none with formulations that are there for comparison.
     #[must_use]
     pub(in crate::calibration) fn believed(&self) -> Option<Tolerance> {
-        let usual = Self::default();
-        let is_usual = self.formulation == usual.formulation
-            && self.pose_residual == usual.pose_residual
-            && self.solver.method == usual.solver.method;
-        self.tolerance.filter(|_| is_usual)
+        self.tolerance.filter(|_| self.formulation == Formulation::default())
     }
 }

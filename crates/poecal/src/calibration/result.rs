@@ -1,15 +1,14 @@
 //! What a calibration comes to.
 
 use super::{
-    Accuracy, CalibrationOptions, DeviceFrameKnowledge, NoiseSource, Robustness, Trust, Verdict, fit_screws,
-    radian_m,
+    Accuracy, CalibrationOptions, DeviceFrameKnowledge, Formulation, NoiseSource, Robustness, Trust, Verdict,
+    fit_screws, radian_m,
 };
 use crate::analysis::Identifiability;
 use crate::estimate::{Estimate, Packed};
 use crate::forensics::Diagnosis;
 use crate::lie::Pose;
-use crate::measurement::{Dataset, Noise, PoseResidual};
-use crate::parameters::Formulation;
+use crate::measurement::{Dataset, Noise};
 use crate::problem::Prior;
 use crate::robot::Robot;
 use crate::solve;
@@ -46,7 +45,7 @@ pub struct SolverReport {
     pub restarts: usize,
     /// Mean square whitened residual by iteration.
     pub trace: Vec<f64>,
-    /// What each joint's value is more than its reading says (radians or metres), where the formulation has offsets. They are not
+    /// Joint offsets (radians or metres): joint value minus reading, where the formulation has offsets. They are not
     /// identifiable beside the screws (lou2009 Proposition 1); the calibrated robot has them in its screws.
     pub joint_offsets: Option<Vec<f64>>,
 }
@@ -84,12 +83,8 @@ pub struct Calibration {
     pub targets: Vec<CalibratedTarget>,
     /// What was known of the device's frame.
     pub frame: DeviceFrameKnowledge,
-    /// How the errors of the joints were written.
+    /// How the fit was written and minimised.
     pub formulation: Formulation,
-    /// How the errors of measured frames were written.
-    pub pose_residual: PoseResidual,
-    /// By which steps the fit went.
-    pub method: solve::Method,
     /// `base_from_device`; of the first place, if the device stood at several.
     pub base_from_device: Pose,
     /// All places that the device stood at, in the order of [`Dataset::stations`]; at least one.

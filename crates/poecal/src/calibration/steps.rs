@@ -20,7 +20,7 @@ use crate::estimate::{Estimate, Packed, row_errors};
 use crate::forensics::{self, Diagnosis, DiagnosisKind};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
-use crate::parameters::{Formulation, Parameter};
+use crate::parameters::Parameter;
 use crate::problem::{MOST_UNKNOWNS, Prior};
 use crate::robot::{JointKind, Robot};
 use crate::start::{Registration, register, register_again};
@@ -168,8 +168,6 @@ impl<'a> Prepared<'a> {
             targets,
             frame: self.options.frame,
             formulation: self.options.formulation,
-            pose_residual: self.options.pose_residual,
-            method: self.options.solver.method,
             base_from_device: models.calibrated.device_from_base.inverse(),
             stations: stations(self.data, &models.calibrated),
             models,
@@ -240,7 +238,7 @@ impl<'a> Prepared<'a> {
 
     /// Whatever the unknowns and the loss of the fit were: what is delivered is judged in the minimal basis, by the rows that it believes.
     fn trust(&self, fitted: &Fitted, models: &Models, kept: &[u32], is_robust: bool) -> (Trust, Remainder) {
-        let (layout, normal) = if self.options.formulation == Formulation::Adjoint && !is_robust {
+        let (layout, normal) = if fitted.layout.is_minimal() && !is_robust {
             (fitted.layout.clone(), fitted.normal.clone())
         } else {
             fit::minimal(self.data, &self.packed, kept, &models.calibrated, fitted.noise, self.length_m)

@@ -41,25 +41,31 @@ impl Linkage {
     /// The relative frames of an estimate.
     #[must_use]
     pub fn new(estimate: &Estimate) -> Self {
-        let mut axis_from_base = estimate.device_from_base;
-        let mut steps = Vec::with_capacity(estimate.base_from_axis.len());
-        for &base_from_axis in &estimate.base_from_axis {
+        let Estimate {
+            kinds,
+            base_from_axis,
+            joint_offset,
+            base_from_target,
+            device_from_base,
+            further_devices,
+        } = estimate;
+        let mut axis_from_base = *device_from_base;
+        let mut steps = Vec::with_capacity(base_from_axis.len());
+        for &base_from_axis in base_from_axis {
             steps.push(axis_from_base * base_from_axis);
             axis_from_base = base_from_axis.inverse();
         }
-        let devices = || estimate.further_devices.iter();
-        let first_axis = estimate.base_from_axis.first().copied().unwrap_or_else(Pose::identity);
-        let further_first = devices().map(|&device| device * first_axis).collect();
-        let base_from_first = estimate.device_from_base.inverse();
-        let further_from_first = devices().map(|&device| device * base_from_first).collect();
-        let ends = estimate.base_from_target.iter().map(|&target| axis_from_base * target).collect();
+        let first_axis = base_from_axis.first().copied().unwrap_or_else(Pose::identity);
+        let further_first = further_devices.iter().map(|&device| device * first_axis).collect();
+        let base_from_first = device_from_base.inverse();
+        let further_from_first = further_devices.iter().map(|&device| device * base_from_first).collect();
+        let ends = base_from_target.iter().map(|&target| axis_from_base * target).collect();
         let offsets = if estimate.has_offsets() {
-            estimate.joint_offset.iter().map(|&offset| (offset, offset.cos(), offset.sin())).collect()
+            joint_offset.iter().map(|&offset| (offset, offset.cos(), offset.sin())).collect()
         } else {
             Vec::new()
         };
-        let kinds = estimate.kinds.clone();
-        Linkage { kinds, steps, further_first, further_from_first, ends, offsets }
+        Linkage { kinds: kinds.clone(), steps, further_first, further_from_first, ends, offsets }
     }
 
     /// `device_from_axis_1`, then `axis_(i-1)_from_axis_i`, at zero joint values.

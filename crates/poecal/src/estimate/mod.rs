@@ -41,8 +41,7 @@ pub struct Estimate {
     pub kinds: Vec<JointKind>,
     /// `base_from_axis` of each joint at zero configuration: z along the screw, origin on the axis.
     pub base_from_axis: Vec<Pose>,
-    /// What each joint's value is more than its reading says, radians or metres: zero but in formulations with joint offsets
-    /// (lou2009: Δθ).
+    /// Joint offsets: joint value minus reading, radians or metres; zero but where they are unknowns (lou2009: Δθ).
     pub joint_offset: Vec<f64>,
     /// `base_from_target` of each target with all joint values zero (lou2009: M, or the point P_c0).
     pub base_from_target: Vec<Pose>,
@@ -135,6 +134,20 @@ impl Estimate {
     #[must_use]
     pub fn has_offsets(&self) -> bool {
         self.joint_offset.iter().any(|&offset| offset != 0.0)
+    }
+
+    /// Whether the kernels of a fit take this state: all of it but joint offsets, which they do not know.
+    pub(crate) fn is_for_kernels(&self) -> bool {
+        // What an estimate holds besides has to be looked at here first.
+        let Estimate {
+            kinds: _,
+            base_from_axis: _,
+            joint_offset: _,
+            base_from_target: _,
+            device_from_base: _,
+            further_devices: _,
+        } = self;
+        !self.has_offsets()
     }
 
     /// The same robot without joint offsets: what follows a joint is moved by its offset, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for all j > i, and

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::predictions::map_errors;
 use super::{Estimate, Packed};
-use crate::measurement::{Dataset, Measurement, Noise, Observation};
+use crate::measurement::{Dataset, Noise, Observation, Residual as _, Written};
 
 /// Error of one row: measured less predicted, device axes.
 ///
@@ -50,17 +50,15 @@ pub(crate) fn map_squares<T: Send>(
 ) -> Vec<T> {
     const UNIT: Noise = Noise { position_m: 1.0, rotation_rad: 1.0 };
     map_errors(data, packed, rows, estimate, |observation, error, predicted| {
-        let squares = match &observation.measurement {
-            Measurement::Point(_) | Measurement::Pose(_) => {
+        let squares = match Written::new(&observation.measurement, data.pose_residual) {
+            Written::Usual(_) => {
                 let rotation = error.rotation_rad.map_or((0.0, 0), |turn| (turn.norm_squared(), 3));
                 [(error.position_m.norm_squared(), 3), rotation]
             }
-            // These write their residuals otherwise.
-            other => {
-                let model = other.residual_model();
+            Written::Other(pose) => {
                 let mut e = [0.0; 6];
-                model.residual(&predicted(), &UNIT, &mut e);
-                let (position, rotation) = e[..model.dim()].split_at(model.rotation_row());
+                pose.residual(&predicted(), &UNIT, &mut e);
+                let (position, rotation) = e.split_at(pose.rotation_row());
                 [position, rotation].map(|part| (part.iter().map(|e| e * e).sum(), part.len()))
             }
         };

@@ -4,7 +4,7 @@ use super::change::{like, push};
 use crate::estimate::{Estimate, Packed, RowError, delivered, row_errors, sample_rows};
 use crate::gauge;
 use crate::lie::{Pose, Screw};
-use crate::measurement::{Dataset, Noise, Observation, PoseResidual};
+use crate::measurement::{Dataset, Noise, Observation};
 use crate::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis};
 use crate::problem::Problem;
 use crate::robot::{Joint, JointKind, Robot};
@@ -222,9 +222,7 @@ pub(super) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
     let mut taken = like(data);
     for &row in rows {
         let observation = data.observations[row as usize];
-        let measurement = observation.measurement.with_residual(PoseResidual::Tool);
-        let plain =
-            Observation { measurement, sigma_position_m: None, sigma_rotation_rad: None, ..observation };
+        let plain = Observation { sigma_position_m: None, sigma_rotation_rad: None, ..observation };
         push(&mut taken, data.readings(row as usize), plain);
     }
     taken

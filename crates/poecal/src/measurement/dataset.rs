@@ -83,6 +83,9 @@ pub struct Dataset {
     pub ids: Vec<String>,
     /// Files that the rows came from.
     pub files: Vec<PathBuf>,
+    /// How the errors of measured frames are written, if not as their type does. No file has it.
+    #[serde(skip)]
+    pub pose_residual: Option<&'static dyn PoseResidual>,
 }
 
 impl Dataset {
@@ -214,16 +217,6 @@ impl Dataset {
         let mut data = self.clone();
         data.stations.clear();
         data.observations.iter_mut().for_each(|row| row.station = 0);
-        data
-    }
-
-    /// The same data with the errors of measured frames written in this way.
-    #[must_use]
-    pub fn with_residual(&self, residual: PoseResidual) -> Self {
-        let mut data = self.clone();
-        for row in &mut data.observations {
-            row.measurement = row.measurement.with_residual(residual);
-        }
         data
     }
 

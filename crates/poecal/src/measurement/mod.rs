@@ -2,43 +2,20 @@
 
 mod configurations;
 mod dataset;
+mod other_pose;
 mod point;
 mod pose;
 mod residual;
-mod spatial_pose;
 
 pub(crate) use configurations::MANY as MANY_ROWS;
 pub use dataset::{Dataset, Observation, Set, Source};
+pub use other_pose::PoseResidual;
+pub(crate) use other_pose::Written;
 pub use point::PointMeasurement;
 pub use pose::PoseMeasurement;
 pub use residual::{Noise, Residual};
-pub use spatial_pose::SpatialPoseMeasurement;
 
 use crate::lie::Pose;
-
-/// How the error of a measured frame is written.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum PoseResidual {
-    /// Position and rotation at the target, as a device's data sheet states its noise.
-    #[default]
-    Tool,
-    /// The twist about the device's origin, as in lou2009.
-    Spatial,
-}
-
-impl PoseResidual {
-    /// The stable word used in files and on the command line.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            PoseResidual::Tool => "tool",
-            PoseResidual::Spatial => "spatial",
-        }
-    }
-}
 
 /// One measurement of a target in the measuring device's frame.
 ///
@@ -56,8 +33,6 @@ pub enum Measurement {
     Point(PointMeasurement),
     /// Position and orientation of a frame.
     Pose(PoseMeasurement),
-    /// The same with the residual of lou2009.
-    SpatialPose(SpatialPoseMeasurement),
 }
 
 impl Measurement {
@@ -67,19 +42,6 @@ impl Measurement {
         match self {
             Measurement::Point(point) => point,
             Measurement::Pose(pose) => pose,
-            Measurement::SpatialPose(pose) => pose,
-        }
-    }
-
-    /// The same measurement with the error of a frame written in this way.
-    #[must_use]
-    pub fn with_residual(&self, residual: PoseResidual) -> Self {
-        match (self, residual) {
-            (Measurement::Point(_), _) => *self,
-            (_, PoseResidual::Tool) => Measurement::Pose(PoseMeasurement { pose: self.pose() }),
-            (_, PoseResidual::Spatial) => {
-                Measurement::SpatialPose(SpatialPoseMeasurement { pose: self.pose() })
-            }
         }
     }
 
@@ -88,7 +50,7 @@ impl Measurement {
     pub fn sees_orientation(&self) -> bool {
         match self {
             Measurement::Point(_) => false,
-            Measurement::Pose(_) | Measurement::SpatialPose(_) => true,
+            Measurement::Pose(_) => true,
         }
     }
 
@@ -97,8 +59,7 @@ impl Measurement {
     pub fn pose(&self) -> Pose {
         match self {
             Measurement::Point(point) => Pose::from_translation(point.position),
-            Measurement::Pose(PoseMeasurement { pose })
-            | Measurement::SpatialPose(SpatialPoseMeasurement { pose }) => *pose,
+            Measurement::Pose(PoseMeasurement { pose }) => *pose,
         }
     }
 }

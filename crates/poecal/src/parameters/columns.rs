@@ -66,7 +66,7 @@ pub trait Columns {
 
     /// Sets to zero what the retraction drops of a step, to first order: where unknowns are constrained, and the constraint is put
     /// right after the step.
-    fn keep(&self, _step: &mut [f64]) {}
+    fn project_constraints(&self, _step: &mut [f64]) {}
 
     /// Applies a step (metres, radians) to an estimate.
     fn retract(&self, estimate: &mut Estimate, step: &[f64]);

@@ -2,21 +2,21 @@
 
 mod columns;
 mod device_frame;
-mod formulation;
-mod free_screw;
 mod joint_offset;
+mod other_screw;
 mod screw_axis;
 mod target_frame;
 mod target_place;
 
 pub use columns::{Column, Columns, Unit, Wrench};
 pub use device_frame::DeviceFrame;
-pub use formulation::Formulation;
-pub use free_screw::FreeScrew;
 pub use joint_offset::JointOffset;
+pub use other_screw::{OtherScrew, ScrewModel};
 pub use screw_axis::ScrewAxis;
 pub use target_frame::TargetFrame;
 pub use target_place::TargetPlace;
+
+use crate::robot::JointKind;
 
 /// A group of unknowns. In a list of parameters the order is that of the chain: device frame, joints from base to tip, targets. A new one is one file with [`Columns`] and one variant here; the compiler lists the arms, all in this file.
 ///
@@ -28,9 +28,9 @@ pub use target_place::TargetPlace;
 pub enum Parameter {
     /// A joint's screw: where its axis lies (4 unknowns), or where it slides to (2).
     ScrewAxis(ScrewAxis),
-    /// A joint's screw as six free numbers, or three if it slides.
-    FreeScrew(FreeScrew),
-    /// What a joint's value is more than its reading says (1).
+    /// A joint's screw, written in a way that is given from outside.
+    OtherScrew(OtherScrew),
+    /// Joint offset: joint value minus reading (1).
     JointOffset(JointOffset),
     /// Place of a target point on the last link (3).
     TargetPlace(TargetPlace),
@@ -40,13 +40,30 @@ pub enum Parameter {
     DeviceFrame(DeviceFrame),
 }
 
+/// The screws of joints of some kinds as unknowns, in the minimal basis: `ξ ← Ad_exp(η) ξ` without constraints or offsets (lou2009 16 to
+/// 18; docs/theory.md §5 (18)).
+///
+/// ```
+/// use poecal::{parameters::screw_axes, robot::JointKind};
+/// let unknowns: Vec<usize> = screw_axes(&[JointKind::Revolute, JointKind::Prismatic])
+///     .iter()
+///     .map(|parameter| parameter.model().columns().len())
+///     .collect();
+/// assert_eq!(unknowns, [4, 2]);
+/// ```
+#[must_use]
+pub fn screw_axes(kinds: &[JointKind]) -> Vec<Parameter> {
+    let axis = |(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind });
+    kinds.iter().enumerate().map(axis).collect()
+}
+
 impl Parameter {
     /// The columns of this parameter.
     #[must_use]
     pub fn model(&self) -> &dyn Columns {
         match self {
             Parameter::ScrewAxis(axis) => axis,
-            Parameter::FreeScrew(screw) => screw,
+            Parameter::OtherScrew(screw) => screw,
             Parameter::JointOffset(offset) => offset,
             Parameter::TargetPlace(place) => place,
             Parameter::TargetFrame(frame) => frame,

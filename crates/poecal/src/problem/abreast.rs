@@ -53,10 +53,10 @@ impl Problem<'_> {
 
     /// Places of rows that are computed alike, if the kernels serve them.
     fn arranged(&self, state: &Estimate, rows: &[u32]) -> Option<Vec<(Arrangement, Vec<u32>)>> {
-        if state.has_offsets() {
+        if !self.is_served(state) {
             return None;
         }
-        let alike = Alike::of(self, rows, |place, _| place)?.into_iter();
+        let alike = Alike::of(self, rows, |place, _| place).into_iter();
         alike.map(|it| Some((Arrangement::new(self, it.sight, it.framed)?, it.rows))).collect()
     }
 

@@ -2,7 +2,7 @@
 
 use super::Problem;
 use crate::estimate::Sight;
-use crate::measurement::{Measurement, Noise, Observation};
+use crate::measurement::{Noise, Observation};
 use crate::threads;
 
 /// Rows that one thread sorts at a time.
@@ -22,15 +22,15 @@ pub(super) struct Alike {
 }
 
 impl Alike {
-    /// Sorts the rows of a problem; `None` if one is of a kind that the hot path does not serve.
-    pub(super) fn sorted(problem: &Problem<'_>) -> Option<Vec<Alike>> {
+    /// Sorts the rows of a problem.
+    pub(super) fn sorted(problem: &Problem<'_>) -> Vec<Alike> {
         if problem.rows.len() <= CHUNK {
             return Alike::of(problem, &problem.rows, |_, row| row);
         }
         let parts =
             threads::map_chunks(&problem.rows, CHUNK, |_, rows| Alike::of(problem, rows, |_, row| row));
         let mut sorted: Vec<Alike> = Vec::new();
-        for other in parts.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten() {
+        for other in parts.into_iter().flatten() {
             match sorted.iter_mut().find(|alike| alike.holds(other.sight, other.framed)) {
                 Some(alike) => {
                     alike.ratio = same(alike.ratio, other.ratio);
@@ -39,25 +39,17 @@ impl Alike {
                 None => sorted.push(other),
             }
         }
-        Some(sorted)
+        sorted
     }
 
     /// Sorts some rows of the data; each is held by the name that `name` gives it, told its place among these rows and its number.
-    pub(super) fn of(
-        problem: &Problem<'_>,
-        rows: &[u32],
-        name: impl Fn(u32, u32) -> u32,
-    ) -> Option<Vec<Alike>> {
+    pub(super) fn of(problem: &Problem<'_>, rows: &[u32], name: impl Fn(u32, u32) -> u32) -> Vec<Alike> {
         let mut sorted: Vec<Alike> = Vec::new();
         let usual = Whitening::new(problem.noise);
         let mut at = 0;
         for (place, &row) in (0..).zip(rows) {
             let observation = &problem.data.observations[row as usize];
-            let framed = match problem.measurement(row as usize) {
-                Measurement::Point(_) => false,
-                Measurement::Pose(_) => true,
-                Measurement::SpatialPose(_) => return None,
-            };
+            let framed = problem.measurement(row as usize).sees_orientation();
             let sight = Sight::from(observation);
             // Most rows are like the one before.
             if !sorted.get(at).is_some_and(|alike| alike.holds(sight, framed)) {
@@ -72,7 +64,7 @@ impl Alike {
                 None => sorted.push(Alike { sight, framed, ratio, rows: vec![name(place, row)] }),
             }
         }
-        Some(sorted)
+        sorted
     }
 
     fn holds(&self, sight: Sight, framed: bool) -> bool {

@@ -16,7 +16,7 @@ pub(super) struct Arrangement {
 }
 
 impl Arrangement {
-    /// `None` if the kernels do not serve such unknowns.
+    /// For a problem of the kinds that kernels serve ([`Problem::is_served`]); `None` if its unknowns contradict each other.
     pub(super) fn new(problem: &Problem<'_>, sight: Sight, framed: bool) -> Option<Self> {
         let mut made = Arrangement {
             sight,
@@ -60,7 +60,7 @@ impl Arrangement {
                 && device.station == self.sight.station
             {
                 if self.plan.device.is_some() {
-                    return None;
+                    return contradiction("one frame of the device is unknown twice");
                 }
                 self.plan.device = Some(device.about.into());
                 self.shift(&places[..3]);
@@ -74,14 +74,17 @@ impl Arrangement {
         for (parameter, places) in layout.parameters() {
             let axis = match parameter {
                 Parameter::ScrewAxis(axis) => axis,
-                Parameter::FreeScrew(_) | Parameter::JointOffset(_) => return None,
+                Parameter::OtherScrew(_) | Parameter::JointOffset(_) => {
+                    return contradiction("kernels do not know these unknowns");
+                }
                 Parameter::DeviceFrame(_) | Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => continue,
             };
             let first = self.shift_places.len();
-            let joint = self.plan.joints.get_mut(axis.joint)?;
-            if joint.columns.is_some() || joint.turns != (places.len() == 4) {
-                return None;
-            }
+            let turns = places.len() == 4;
+            let joint = self.plan.joints.get_mut(axis.joint);
+            let Some(joint) = joint.filter(|joint| joint.columns.is_none() && joint.turns == turns) else {
+                return contradiction("a joint is unknown twice, or of another kind than its screw");
+            };
             joint.columns = Some((first, self.turn_places.len()));
             self.shift(&places[..2]);
             self.turn(&places[2..], first);
@@ -94,13 +97,16 @@ impl Arrangement {
             let target = match parameter {
                 Parameter::TargetFrame(frame) => frame.target,
                 Parameter::TargetPlace(place) => place.target,
-                _ => continue,
+                Parameter::ScrewAxis(_)
+                | Parameter::OtherScrew(_)
+                | Parameter::JointOffset(_)
+                | Parameter::DeviceFrame(_) => continue,
             };
             if target != self.sight.target {
                 continue;
             }
             if self.plan.place.is_some() {
-                return None;
+                return contradiction("a target is unknown twice");
             }
             let first = self.shift_places.len();
             self.plan.place = Some(first);
@@ -112,6 +118,12 @@ impl Arrangement {
         }
         Some(())
     }
+}
+
+/// Unknowns that make no sense: a mistake of the caller, which tests are to find; a release serves them row by row.
+fn contradiction(what: &str) -> Option<()> {
+    debug_assert!(false, "{what}");
+    None
 }
 
 fn plan_without_unknowns(problem: &Problem<'_>, framed: bool) -> Plan {

@@ -1,7 +1,7 @@
 //! The hot path: rows grouped by place of the device, target and kind, packed side by side, and summed by [`crate::lanes`].
 //!
-//! It serves points and poses with minimal screws, targets and device frames; everything else takes the general path in `mod.rs`,
-//! which is also what this one is tested against.
+//! What it serves, [`Problem::is_served`] says; everything else takes the general path in `mod.rs`, which is also what this one is tested
+//! against.
 
 use super::Problem;
 use super::alike::{Alike, Whitening};
@@ -9,7 +9,7 @@ use super::arrangement::Arrangement;
 use super::scatter::Scatter;
 use crate::estimate::{Estimate, Linkage};
 use crate::lanes::{self, Arm, Level, Plan, RowData, Rows, Step, Totals, WIDTH};
-use crate::measurement::{Measurement, PoseMeasurement, SpatialPoseMeasurement};
+use crate::measurement::{Measurement, PoseMeasurement};
 use crate::solve::Normal;
 use crate::threads;
 use std::cell::RefCell;
@@ -54,10 +54,10 @@ struct Group {
 }
 
 impl Fast {
-    /// Arranges the rows of a problem; `None` if the general path must serve it.
+    /// Arranges the rows of a problem; `None` as [`Arrangement::new`] has it.
     pub(super) fn new(problem: &Problem<'_>, level: Level) -> Option<Self> {
         let mut groups = Vec::new();
-        for alike in Alike::sorted(problem)? {
+        for alike in Alike::sorted(problem) {
             let mut arranged = Arrangement::new(problem, alike.sight, alike.framed)?;
             arranged.plan.ratio = alike.ratio;
             let scatter = Scatter::new(&arranged, problem.layout.dim());
@@ -176,8 +176,7 @@ fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, framed: 
     };
     let (position, orientation) = match problem.measurement(row) {
         Measurement::Point(point) => (&point.position, None),
-        Measurement::Pose(PoseMeasurement { pose })
-        | Measurement::SpatialPose(SpatialPoseMeasurement { pose }) => {
+        Measurement::Pose(PoseMeasurement { pose }) => {
             (&pose.translation, framed.then_some((&pose.rotation.data.0, ratio)))
         }
     };

@@ -71,6 +71,18 @@ impl Layout {
         })
     }
 
+    /// Whether joints are written in the minimal basis, so that none of the unknowns is redundant by its kind.
+    #[must_use]
+    pub(crate) fn is_minimal(&self) -> bool {
+        self.parameters.iter().all(|parameter| match parameter {
+            Parameter::OtherScrew(_) | Parameter::JointOffset(_) => false,
+            Parameter::ScrewAxis(_)
+            | Parameter::TargetPlace(_)
+            | Parameter::TargetFrame(_)
+            | Parameter::DeviceFrame(_) => true,
+        })
+    }
+
     /// Whether every parameter writes its curvature.
     #[must_use]
     pub(crate) fn has_curvature(&self) -> bool {
@@ -78,13 +90,13 @@ impl Layout {
     }
 
     /// Sets to zero what the retraction drops of a scaled step, to first order.
-    pub(crate) fn keep(&self, step: &mut [f64]) {
+    pub(crate) fn project_constraints(&self, step: &mut [f64]) {
         let mut own = [0.0; 6];
         for (parameter, places) in self.parameters() {
             for (value, &(place, _)) in own.iter_mut().zip(places) {
                 *value = step[place];
             }
-            parameter.model().keep(&mut own[..places.len()]);
+            parameter.model().project_constraints(&mut own[..places.len()]);
             for (value, &(place, _)) in own.iter().zip(places) {
                 step[place] = *value;
             }
@@ -92,7 +104,7 @@ impl Layout {
     }
 
     /// The target's motion per unit of each scaled unknown, in the order of a step.
-    pub(crate) fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
+    pub fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
         let mut own = [(Vector3::zeros(), Vector3::zeros()); 6];
         for (parameter, places) in self.parameters() {
             parameter.model().target_twists(chain, target, &mut own[..places.len()]);

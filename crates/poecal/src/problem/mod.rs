@@ -17,7 +17,7 @@ pub use refit::Refit;
 
 use crate::estimate::{Chain, Estimate, Linkage, Packed};
 use crate::lie::TargetTwist;
-use crate::measurement::{Dataset, Measurement, Noise};
+use crate::measurement::{Dataset, Measurement, Noise, Written};
 use crate::parameters::{Parameter, Wrench};
 use crate::solve::{LeastSquares, Normal};
 use crate::threads;
@@ -178,6 +178,11 @@ impl<'a> Problem<'a> {
         instead.unwrap_or(&self.data.observations[row].measurement)
     }
 
+    /// What was measured in a row, and how its error is written.
+    fn written(&self, row: usize) -> Written<'_> {
+        Written::new(self.measurement(row), self.data.pose_residual)
+    }
+
     /// Takes these measurements, one a row of the data, for measured in the same configurations.
     fn set_measurements(&mut self, measured: &[Measurement]) {
         let is_alike = self.rows.iter().all(|&row| {
@@ -205,7 +210,8 @@ impl<'a> Problem<'a> {
         let mut residual = [0.0; 6];
         for &row in rows {
             let observation = &self.data.observations[row as usize];
-            let measurement = self.measurement(row as usize).residual_model();
+            let written = self.written(row as usize);
+            let measurement = written.model();
             let (noise, dim) = (self.noise(row as usize), measurement.dim());
             chain.evaluate(&linkage, self.packed, row as usize, observation);
             self.layout.target_twists(&chain, observation.target, &mut columns);
@@ -246,7 +252,8 @@ impl<'a> Problem<'a> {
         for (count, &row) in rows.iter().enumerate() {
             let row = row as usize;
             let observation = &self.data.observations[row];
-            let measurement = self.measurement(row).residual_model();
+            let written = self.written(row);
+            let measurement = written.model();
             chain.evaluate(linkage, self.packed, row, observation);
             self.layout.target_twists(&chain, observation.target, &mut columns);
             let (dim, split) = (measurement.dim(), measurement.rotation_row());
@@ -285,8 +292,19 @@ impl Block {
 }
 
 impl Problem<'_> {
+    /// Whether the kernels serve this problem in this state: points and poses with the residuals of their types; screws in the minimal
+    /// basis, targets and device frames; no joint offsets. Whatever else there is takes the general path, row by row.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn is_served(&self, state: &Estimate) -> bool {
+        self.data.pose_residual.is_none() && self.layout.is_minimal() && state.is_for_kernels()
+    }
+
     /// The hot path, if it serves this problem in this state.
     fn fast(&self, state: &Estimate) -> Option<&Fast> {
+        if !self.is_served(state) {
+            return None;
+        }
         let fast = match self.fast.get() {
             Some(fast) => fast,
             None => {
@@ -295,7 +313,7 @@ impl Problem<'_> {
                 self.fast.get_or_init(|| made)
             }
         };
-        fast.as_ref().filter(|_| !state.has_offsets())
+        fast.as_ref()
     }
 
     /// [`LeastSquares::normal`] by the general path, which serves every problem: row after row, as measurements and parameters write it.
@@ -308,8 +326,7 @@ impl Problem<'_> {
                 &linkage,
                 rows,
                 |chain, row, out| {
-                    let measurement = self.measurement(row).residual_model();
-                    measurement.residual(&chain.target, &self.noise(row), out);
+                    self.written(row).model().residual(&chain.target, &self.noise(row), out);
                 },
                 &mut normal,
             );
@@ -363,7 +380,8 @@ impl LeastSquares for Problem<'_> {
                 rows,
                 |here, row, out| {
                     let observation = &self.data.observations[row];
-                    let measurement = self.measurement(row).residual_model();
+                    let written = self.written(row);
+                    let measurement = written.model();
                     let noise = self.noise(row);
                     chain.evaluate(&ahead, self.packed, row, observation);
                     measurement.residual(&chain.target, &noise, &mut e_ahead);
@@ -393,8 +411,8 @@ impl LeastSquares for Problem<'_> {
                 let row = row as usize;
                 let observation = &self.data.observations[row];
                 chain.evaluate(&linkage, self.packed, row, observation);
-                let measurement = self.measurement(row).residual_model();
-                let Some((force, torque)) = measurement.wrench(&chain.target, &self.noise(row)) else {
+                let written = self.written(row);
+                let Some((force, torque)) = written.model().wrench(&chain.target, &self.noise(row)) else {
                     return normal;
                 };
                 normal.residuals += 1;
@@ -406,8 +424,8 @@ impl LeastSquares for Problem<'_> {
         (total.residuals == self.rows.len()).then_some(total.gram)
     }
 
-    fn keep(&self, step: &mut [f64]) {
-        self.layout.keep(step);
+    fn project_constraints(&self, step: &mut [f64]) {
+        self.layout.project_constraints(step);
     }
 
     fn rounding(&self) -> f64 {

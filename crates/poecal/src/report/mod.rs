@@ -1,27 +1,23 @@
 //! Results as text for people. No number here that is not in the result.
 
-mod breakdown;
 mod check;
-mod claims;
 mod fixed;
 mod identify;
 mod judgement;
 mod offsets;
 mod outliers;
 mod page;
-mod plot;
-mod reproduction;
+#[doc(hidden)]
+pub mod plot;
 mod summary;
-mod table;
+#[doc(hidden)]
+pub mod table;
 
-pub use breakdown::{breakdown_files, breakdown_table};
 pub use check::{Check, SetCounts};
-pub use claims::claims;
 pub use identify::Identify;
 pub use judgement::judgement;
 pub use offsets::{Offsets, offset_ends};
 pub use page::calibration_page;
-pub use reproduction::reproduction_files;
 pub use summary::{Detail, summary, unsaid};
 
 use serde::Serialize;

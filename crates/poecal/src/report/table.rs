@@ -107,7 +107,7 @@ fn set_rows(
 }
 
 /// Four digits that matter, without an exponent where people read lengths.
-pub(super) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -140,7 +140,7 @@ pub(super) fn kinds_words(poses: usize, points: usize) -> String {
 }
 
 /// A labelled line, broken at 80 columns with the text aligned.
-pub(super) fn line(out: &mut String, label: &str, text: &str) {
+pub fn line(out: &mut String, label: &str, text: &str) {
     const INDENT: usize = 14;
     let mut width = INDENT;
     let _ = write!(out, "{label:<INDENT$}");

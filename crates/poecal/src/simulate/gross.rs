@@ -64,7 +64,7 @@ impl Gross {
         let position = translation + shift;
         match measurement {
             Measurement::Point(_) => Measurement::Point(PointMeasurement { position }),
-            Measurement::Pose(_) | Measurement::SpatialPose(_) => {
+            Measurement::Pose(_) => {
                 let rotation = if turned { rotation::exp(&turn) * seen } else { seen };
                 Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position) })
             }

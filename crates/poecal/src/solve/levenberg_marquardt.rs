@@ -1,9 +1,8 @@
 //! Levenberg-Marquardt on a manifold with geodesic acceleration and, near the optimum of a curved problem, the full Hessian
 //! (theory.md §6 (29) to (31); more1978, transtrum2012, dennis1981).
 
-use super::gauss_newton::{gauss_newton, kept};
 use super::normal::quadratic;
-use super::{LeastSquares, Method, Normal, Options, Summary, Termination};
+use super::{LeastSquares, Normal, Options, Summary, Termination};
 pub(super) use crate::linalg::dot;
 use crate::linalg::{self, Factor};
 
@@ -51,9 +50,6 @@ pub fn minimize<P: LeastSquares>(
     start: P::State,
     options: &Options,
 ) -> (P::State, Normal, Summary) {
-    if options.method == Method::GaussNewton {
-        return gauss_newton(problem, start, options);
-    }
     let mut search = Search::new(problem, start, *options);
     let termination = search.run();
     let summary = Summary { iterations: search.iterations, termination, trace: search.trace };
@@ -209,13 +205,20 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
         let factor = linalg::cholesky(&self.hessian, n, floor)?;
         let step = linalg::cholesky_solve(&factor, &self.normal.gradient);
-        let kept = kept(self.problem, &step);
+        let kept = self.kept(&step);
         let (decrement, step) = if kept == step {
             (0.5 * dot(&step, &self.normal.gradient), step)
         } else {
             (quadratic(&self.hessian, &self.normal.gradient, &kept).abs(), kept)
         };
         self.is_last(&step, decrement)
+    }
+
+    /// What the retraction keeps of a step, to first order.
+    fn kept(&self, step: &[f64]) -> Vec<f64> {
+        let mut kept = step.to_vec();
+        self.problem.project_constraints(&mut kept);
+        kept
     }
 
     /// One trial step; `false` when steps have become too small to matter without having helped.
@@ -292,7 +295,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
         let (_, factor) = self.factor.as_ref()?;
         let velocity = linalg::cholesky_solve(factor, &self.normal.gradient);
-        let kept = kept(self.problem, &velocity);
+        let kept = self.kept(&velocity);
         let is_cut = kept != velocity;
         let damped = damping * dot(&velocity, &velocity);
         let predicted = if is_cut {

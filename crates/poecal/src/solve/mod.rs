@@ -1,6 +1,5 @@
 //! Nonlinear least squares on a manifold. It knows no robots: a problem gives normal information and applies steps.
 
-mod gauss_newton;
 mod levenberg_marquardt;
 mod near;
 mod normal;
@@ -10,7 +9,7 @@ mod termination;
 pub use levenberg_marquardt::minimize;
 pub use near::{Near, minimize_near};
 pub use normal::Normal;
-pub use options::{Method, Options, Summary};
+pub use options::{Options, Summary};
 pub use termination::Termination;
 
 /// A problem `min ½ Σ e(x)²` whose unknowns are scaled so that one unit of each is comparable (metres, and radians times a length).
@@ -41,7 +40,7 @@ pub trait LeastSquares {
     fn curvature(&self, state: &Self::State) -> Option<Vec<f64>>;
 
     /// Sets to zero what the retraction drops of a step, to first order: nothing, unless unknowns are constrained.
-    fn keep(&self, _step: &mut [f64]) {}
+    fn project_constraints(&self, _step: &mut [f64]) {}
 
     /// Mean squared whitened residual that is nothing but rounding: below it there is nothing left to fit.
     fn rounding(&self) -> f64;

@@ -1,5 +1,6 @@
 //! Normal information: what the solver needs of all residuals, in O(n²) memory.
 
+use super::levenberg_marquardt::ROUNDING;
 use crate::linalg;
 
 /// `JᵀJ` (upper triangle, row-major), `Jᵀe` and `½ Σ e²` of whitened residuals, with their number: theory.md §6 (27)
@@ -66,6 +67,20 @@ impl Normal {
     #[must_use]
     pub fn promise(&self, step: &[f64]) -> f64 {
         quadratic(&self.gram, &self.gradient, step)
+    }
+
+    /// The step of the normal equations, damped by rounding alone; where they are singular, the one of least length, but for rounding.
+    /// `None` if a number is not finite.
+    #[must_use]
+    pub fn full_step(&self) -> Option<Vec<f64>> {
+        let n = self.dim();
+        let scale = (0..n).map(|i| self.gram[i * n + i]).fold(0.0, f64::max);
+        if n == 0 || scale == 0.0 {
+            return Some(vec![0.0; n]);
+        }
+        let factor = linalg::cholesky(&self.gram, n, ROUNDING * scale)?;
+        let step = linalg::cholesky_solve(&factor, &self.gradient);
+        (self.cost.is_finite() && linalg::dot(&step, &step).is_finite()).then_some(step)
     }
 
     /// `2 cost / residuals`: the mean squared whitened residual.

@@ -2,30 +2,6 @@
 
 use super::Termination;
 
-/// By which steps to minimise.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
-)]
-#[serde(rename_all = "kebab-case")]
-pub enum Method {
-    /// Damped steps, taken only if they lower the cost.
-    #[default]
-    LevenbergMarquardt,
-    /// Full steps, taken as they are: the iterated least squares of lou2009. It may diverge.
-    GaussNewton,
-}
-
-impl Method {
-    /// The stable word used in files and on the command line.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Method::LevenbergMarquardt => "levenberg-marquardt",
-            Method::GaussNewton => "gauss-newton",
-        }
-    }
-}
-
 /// How to minimise.
 ///
 /// ```
@@ -34,8 +10,6 @@ impl Method {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// By which steps.
-    pub method: Method,
     /// Most iterations (evaluations of the Jacobian after the first).
     pub iterations: usize,
     /// Ends when the undamped step promises a decrease below this times the mean squared residual.
@@ -51,14 +25,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Options {
-            method: Method::default(),
-            iterations: 200,
-            decrement: 1e-7,
-            step: 1e-14,
-            trust: 0.3,
-            acceleration: true,
-        }
+        Options { iterations: 200, decrement: 1e-7, step: 1e-14, trust: 0.3, acceleration: true }
     }
 }
 

@@ -6,10 +6,10 @@ mod cases;
 
 use cases::{CASES, Case};
 use poecal::analysis::{Cause, Identifiability, Session, identify};
-use poecal::calibration::{CalibrationOptions, calibrate};
+use poecal::calibration::{CalibrationOptions, Formulation, FormulationWords, calibrate};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
-use poecal::parameters::Formulation;
+use poecal::parameters::{JointOffset, Parameter, screw_axes};
 use poecal::robot::{JointKind, Robot};
 use poecal::simulate::{Kind, Simulation, elbow, random, random_chain, random_configuration};
 use rand_chacha::ChaCha8Rng;
@@ -156,7 +156,15 @@ fn an_unknown_that_is_open_is_not_determined() {
 #[test]
 fn offsets_beside_screws_are_structure_and_not_a_defect_of_the_data() {
     let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
-    let options = CalibrationOptions::default().with_formulation(Formulation::AdjointOffsets);
+    let with_offsets = Formulation {
+        joint_parameters: |kinds| {
+            let offset = |(joint, &kind)| Parameter::JointOffset(JointOffset { joint, kind });
+            screw_axes(kinds).into_iter().chain(kinds.iter().enumerate().map(offset)).collect()
+        },
+        words: FormulationWords { formulation: "offsets too", ..FormulationWords::default() },
+        ..Formulation::default()
+    };
+    let options = CalibrationOptions { formulation: with_offsets, ..CalibrationOptions::default() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap().identifiability;
     println!("{}", words(&found));
     assert_eq!(words(&found), "30 of 36");

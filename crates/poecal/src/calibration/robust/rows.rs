@@ -5,11 +5,11 @@ use std::borrow::Cow;
 use super::{Configurations, Loss, Parts, Scale, parts};
 use crate::analysis::{Influence, influence};
 use crate::calibration::fit::{self, Fitted, Task};
-use crate::calibration::{Calibration, SetAccuracy, measurements_words, radian_m};
+use crate::calibration::{Calibration, SetAccuracy, measurements_words, radian_m, written};
 use crate::distributions;
 use crate::estimate::Packed;
-use crate::measurement::{Dataset, PoseResidual};
-use crate::parameters::{Formulation, Parameter};
+use crate::measurement::Dataset;
+use crate::parameters::{Parameter, screw_axes};
 use crate::problem::Problem;
 use crate::solve::{LeastSquares, Normal};
 
@@ -263,14 +263,12 @@ pub(crate) struct RowInfluence<'a> {
 impl<'a> RowInfluence<'a> {
     /// Prepares a finished calibration.
     pub(crate) fn new(calibration: &'a Calibration, data: &'a Dataset) -> Self {
-        let data = match calibration.pose_residual {
-            PoseResidual::Tool => Cow::Borrowed(data),
-            other => Cow::Owned(data.with_residual(other)),
-        };
+        let data = written(data, calibration.formulation.pose_residual);
         let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
         let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
         let Calibration { nominal, fit_rows, models, .. } = calibration;
-        let free = fit::free_parameters(&models.calibrated, &data, fit_rows, Formulation::Adjoint);
+        let free =
+            fit::free_parameters(&models.calibrated, &data, fit_rows, screw_axes(&models.calibrated.kinds));
         let length_m = radian_m(nominal, &packed);
         let mut made = RowInfluence { calibration, data, packed, weights, free, length_m, normal: None };
         if !made.data.is_empty() {

@@ -47,9 +47,10 @@ impl CalibrationFile {
             inputs,
             accuracy: calibration.accuracy,
             solver: SolverEntry {
-                formulation: calibration.formulation,
-                pose_residual: calibration.pose_residual,
-                method: calibration.method,
+                formulation: calibration.formulation.words.formulation.to_owned(),
+                pose_residual: calibration.formulation.words.pose_residual.to_owned(),
+                method: calibration.formulation.words.method.to_owned(),
+                note: calibration.formulation.words.note.map(str::to_owned),
                 iterations: calibration.solver.iterations,
                 converged: calibration.solver.termination.is_success(),
                 termination: calibration.solver.termination,

@@ -9,13 +9,11 @@ use serde::{Deserialize, Serialize};
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
-use crate::calibration::{Accuracy, NoiseSource, Verdict};
+use crate::calibration::{Accuracy, FormulationWords, NoiseSource, Verdict};
 use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
-use crate::measurement::PoseResidual;
-use crate::parameters::Formulation;
-use crate::solve::{Method, Termination};
+use crate::solve::Termination;
 
 /// A finished calibration.
 ///
@@ -124,15 +122,18 @@ impl Inputs {
 /// How the minimisation went.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolverEntry {
-    /// How the errors of the joints were written as unknowns.
-    #[serde(default)]
-    pub formulation: Formulation,
-    /// How the errors of measured frames were written.
-    #[serde(default)]
-    pub pose_residual: PoseResidual,
-    /// By which steps the fit went.
-    #[serde(default)]
-    pub method: Method,
+    /// How the errors of the joints were written as unknowns: `adjoint`, or a formulation for comparison.
+    #[serde(default = "usual_formulation")]
+    pub formulation: String,
+    /// How the errors of measured frames were written: `tool`, at the target, or a way for comparison.
+    #[serde(default = "usual_pose_residual")]
+    pub pose_residual: String,
+    /// By which steps the fit went: `levenberg-marquardt`, or others for comparison.
+    #[serde(default = "usual_method")]
+    pub method: String,
+    /// What the formulation does to the result, if it is not the usual one.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub note: Option<String>,
     /// Iterations of the full fit.
     pub iterations: usize,
     /// Whether an optimum was reached.
@@ -144,10 +145,22 @@ pub struct SolverEntry {
     /// Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit begins anew.
     #[serde(default)]
     pub trace: Vec<f64>,
-    /// What each joint's value was found to be more than its reading says, where the formulation has offsets. Data cannot tell them
+    /// Joint offsets found: joint value minus reading, where the formulation has them. Data cannot tell them
     /// from screws; in `joints` they stand moved into the screws, and the readings need no correction.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub joint_offsets: Option<Vec<OffsetEntry>>,
+}
+
+fn usual_formulation() -> String {
+    FormulationWords::default().formulation.to_owned()
+}
+
+fn usual_pose_residual() -> String {
+    FormulationWords::default().pose_residual.to_owned()
+}
+
+fn usual_method() -> String {
+    FormulationWords::default().method.to_owned()
 }
 
 /// An offset of a joint, by its unit.

@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Estimate;
 use crate::lie::Pose;
 use crate::measurement::Noise;
-use crate::parameters::{Formulation, Parameter, TargetFrame, TargetPlace};
+use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::Layout;
 use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
 
@@ -321,7 +321,7 @@ impl CalibrationFile {
         }
         let mut estimate = Estimate::new(&robot, Vec::new(), self.base_from_device()?.inverse());
         estimate.base_from_axis = axes;
-        let mut free = Formulation::Adjoint.joint_parameters(&estimate.kinds);
+        let mut free = screw_axes(&estimate.kinds);
         let place = |name: &str| robot.targets.iter().find(|(known, _)| known == name).map(|(_, pose)| *pose);
         for (index, (name, is_frame)) in entry.targets.iter().enumerate() {
             let tip_from_target = if name.is_empty() { Some(Pose::identity()) } else { place(name) };

@@ -3,7 +3,6 @@
 use super::figures;
 use super::html::{Html, Table, count, figure, path, quoted};
 use crate::io::calibration_file::{CalibrationFile, FrameWord, StationEntry};
-use crate::measurement::PoseResidual;
 use crate::report::plot::escape;
 use crate::solve::Termination;
 
@@ -47,24 +46,21 @@ fn solver(page: &mut Html, file: &CalibrationFile) {
         FrameWord::Unknown => "found with the robot".to_owned(),
         FrameWord::Base => "measured in the robot's base frame".to_owned(),
     };
-    let residual = match solver.pose_residual {
-        PoseResidual::Tool => "at the target",
-        PoseResidual::Spatial => "as a twist about the device's origin",
-    };
     let loss = file.robust.loss.map_or("least squares", |loss| loss.word());
     page.facts(&[
         (
             "Unknowns",
             format!(
-                "written by the {} formulation, residuals of poses {residual}",
-                quoted(solver.formulation.word(), "solver.formulation")
+                "{} formulation, {} residuals of poses",
+                quoted(&solver.formulation, "solver.formulation"),
+                quoted(&solver.pose_residual, "solver.pose_residual")
             ),
         ),
         (
             "Steps",
             format!(
                 "{}, {} iterations, {end}{restarts}",
-                escape(solver.method.word()),
+                escape(&solver.method),
                 count(solver.iterations, "solver.iterations")
             ),
         ),

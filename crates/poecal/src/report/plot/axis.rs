@@ -2,7 +2,7 @@
 
 /// How values are spread along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::report) enum Scale {
+pub enum Scale {
     Linear,
     /// Powers of ten.
     Log,
@@ -11,20 +11,20 @@ pub(in crate::report) enum Scale {
 }
 
 /// An axis before it sees its data.
-pub(in crate::report) struct Axis {
+pub struct Axis {
     /// Quantity and unit.
-    pub(in crate::report) title: String,
-    pub(in crate::report) scale: Scale,
+    pub title: String,
+    pub scale: Scale,
     /// Values that are shown whatever the data are.
-    pub(in crate::report) includes: Vec<f64>,
+    pub includes: Vec<f64>,
 }
 
 impl Axis {
-    pub(in crate::report) fn new(title: &str, scale: Scale) -> Self {
+    pub fn new(title: &str, scale: Scale) -> Self {
         Axis { title: title.to_owned(), scale, includes: Vec::new() }
     }
 
-    pub(in crate::report) fn including(mut self, values: &[f64]) -> Self {
+    pub fn including(mut self, values: &[f64]) -> Self {
         self.includes.extend_from_slice(values);
         self
     }

@@ -11,29 +11,29 @@ const SERIES: f64 = 8.0;
 const RADIUS: f64 = 4.0;
 
 /// A series of a [`DotPlot`].
-pub(in crate::report) struct Dots {
-    pub(in crate::report) name: String,
+pub struct Dots {
+    pub name: String,
     /// Which colour and marker.
-    pub(in crate::report) style: usize,
+    pub style: usize,
     /// A value for each row, if it has one.
-    pub(in crate::report) values: Vec<Option<f64>>,
+    pub values: Vec<Option<f64>>,
 }
 
 /// Values by category.
-pub(in crate::report) struct DotPlot {
-    pub(in crate::report) title: String,
-    pub(in crate::report) description: String,
-    pub(in crate::report) x: Axis,
-    pub(in crate::report) rows: Vec<String>,
-    pub(in crate::report) series: Vec<Dots>,
+pub struct DotPlot {
+    pub title: String,
+    pub description: String,
+    pub x: Axis,
+    pub rows: Vec<String>,
+    pub series: Vec<Dots>,
     /// Whether a row's dots lie on one line that joins them.
-    pub(in crate::report) joined: bool,
-    pub(in crate::report) mark: Option<Mark>,
+    pub joined: bool,
+    pub mark: Option<Mark>,
 }
 
 impl DotPlot {
     /// The plot as SVG.
-    pub(in crate::report) fn svg(&self) -> String {
+    pub fn svg(&self) -> String {
         let values = || self.series.iter().flat_map(|dots| dots.values.iter().flatten());
         let marked = self.mark.iter().map(|mark| mark.at);
         let x = self.x.ruler(values().copied().chain(marked));

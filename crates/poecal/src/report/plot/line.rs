@@ -11,26 +11,26 @@ const HEIGHT: f64 = 210.0;
 const MANY: usize = 25;
 
 /// A line of a [`LinePlot`].
-pub(in crate::report) struct Line {
-    pub(in crate::report) name: String,
+pub struct Line {
+    pub name: String,
     /// Which colour, dash and marker: the same thing has the same in every plot.
-    pub(in crate::report) style: usize,
-    pub(in crate::report) points: Vec<[f64; 2]>,
+    pub style: usize,
+    pub points: Vec<[f64; 2]>,
 }
 
 /// Lines over two axes.
-pub(in crate::report) struct LinePlot {
-    pub(in crate::report) title: String,
-    pub(in crate::report) description: String,
-    pub(in crate::report) x: Axis,
-    pub(in crate::report) y: Axis,
-    pub(in crate::report) lines: Vec<Line>,
-    pub(in crate::report) mark: Option<Mark>,
+pub struct LinePlot {
+    pub title: String,
+    pub description: String,
+    pub x: Axis,
+    pub y: Axis,
+    pub lines: Vec<Line>,
+    pub mark: Option<Mark>,
 }
 
 impl LinePlot {
     /// The plot as SVG.
-    pub(in crate::report) fn svg(&self) -> String {
+    pub fn svg(&self) -> String {
         let points = || self.lines.iter().flat_map(|line| &line.points);
         let marked = self.mark.iter().map(|mark| mark.at);
         let x = self.x.ruler(points().map(|point| point[0]).chain(marked));

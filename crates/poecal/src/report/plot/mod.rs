@@ -12,21 +12,21 @@ mod line;
 mod ranges;
 mod svg;
 
-pub(super) use axis::{Axis, Scale};
-pub(super) use dots::{DotPlot, Dots};
-pub(super) use line::{Line, LinePlot};
-pub(super) use ranges::{RangePlot, RangeRow};
-pub(super) use svg::escape;
+pub use axis::{Axis, Scale};
+pub use dots::{DotPlot, Dots};
+pub use line::{Line, LinePlot};
+pub use ranges::{RangePlot, RangeRow};
+pub use svg::escape;
 
 /// A plot and the name of its file, without the extension.
-pub(super) struct NamedPlot {
-    pub(super) name: String,
-    pub(super) title: String,
-    pub(super) svg: String,
+pub struct NamedPlot {
+    pub name: String,
+    pub title: String,
+    pub svg: String,
 }
 
 /// A place on the horizontal axis that is marked by a line, and what it is.
-pub(super) struct Mark {
-    pub(super) at: f64,
-    pub(super) label: String,
+pub struct Mark {
+    pub at: f64,
+    pub label: String,
 }

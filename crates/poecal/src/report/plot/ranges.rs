@@ -12,24 +12,24 @@ const BAR: f64 = 7.0;
 
 /// A row of a [`RangePlot`].
 #[derive(Default)]
-pub(in crate::report) struct RangeRow {
-    pub(in crate::report) label: String,
-    pub(in crate::report) line: Option<[f64; 2]>,
-    pub(in crate::report) bar: Option<[f64; 2]>,
-    pub(in crate::report) dot: Option<f64>,
+pub struct RangeRow {
+    pub label: String,
+    pub line: Option<[f64; 2]>,
+    pub bar: Option<[f64; 2]>,
+    pub dot: Option<f64>,
 }
 
 /// Ranges by category.
-pub(in crate::report) struct RangePlot {
-    pub(in crate::report) title: String,
-    pub(in crate::report) description: String,
-    pub(in crate::report) x: Axis,
-    pub(in crate::report) rows: Vec<RangeRow>,
+pub struct RangePlot {
+    pub title: String,
+    pub description: String,
+    pub x: Axis,
+    pub rows: Vec<RangeRow>,
 }
 
 impl RangePlot {
     /// The plot as SVG.
-    pub(in crate::report) fn svg(&self) -> String {
+    pub fn svg(&self) -> String {
         let values = || self.rows.iter().flat_map(RangeRow::values);
         let x = self.x.ruler(values());
         let mut canvas = Canvas::new();

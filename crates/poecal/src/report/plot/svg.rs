@@ -36,7 +36,7 @@ pub(super) enum Anchor {
 }
 
 /// Text for an element or an attribute: nothing in it is markup.
-pub(in crate::report) fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     if text.bytes().all(|byte| matches!(byte, b' '..=b'~') && !br#"&<>"'"#.contains(&byte)) {
         return text.to_owned();
     }

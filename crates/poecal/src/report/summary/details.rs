@@ -5,12 +5,11 @@ use std::fmt::Write as _;
 use super::super::identify::coverage_row;
 use super::super::outliers;
 use super::super::table::{accuracy_table, line, number};
-use crate::calibration::NoiseSource;
+use crate::calibration::{FormulationWords, NoiseSource};
 use crate::error::shown;
 use crate::io::calibration_file::{CalibrationFile, KindWord};
-use crate::measurement::PoseResidual;
-use crate::parameters::Formulation;
-use crate::solve::{Method, Termination};
+use crate::solve::Termination;
+use crate::text::visible;
 
 pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
     line(out, "robot", &robot_words(file));
@@ -87,19 +86,17 @@ fn solver_words(file: &CalibrationFile) -> String {
 fn formulation_words(file: &CalibrationFile) -> Option<String> {
     let solver = &file.solver;
     let poses = file.accuracy.training.calibrated.rotation_deg.is_some();
-    let usual_residual = !poses || solver.pose_residual == PoseResidual::default();
-    if usual_residual && (solver.formulation, solver.method) == (Formulation::default(), Method::default()) {
+    let usual = FormulationWords::default();
+    let usual_residual = !poses || solver.pose_residual == usual.pose_residual;
+    if usual_residual && (&*solver.formulation, &*solver.method) == (usual.formulation, usual.method) {
         return None;
     }
-    let residual =
-        if poses { format!(" {} residual of poses,", solver.pose_residual.word()) } else { String::new() };
-    let mut words = format!("{},{residual} {}", solver.formulation.word(), solver.method.word());
-    if solver.formulation.has_free_screws() && solver.method == Method::GaussNewton {
-        words
-            .push_str("; screws are normalised after each step, so with noise this is not the least squares");
-    }
-    if solver.formulation.has_offsets() {
-        words.push_str("; joint offsets cannot be told from screws, and stand moved into them");
+    let shown = [&solver.formulation, &solver.pose_residual, &solver.method].map(|word| visible(word));
+    let [formulation, pose_residual, method] = &shown;
+    let residual = if poses { format!(" {pose_residual} residual of poses,") } else { String::new() };
+    let mut words = format!("{formulation},{residual} {method}");
+    if let Some(note) = &solver.note {
+        words.push_str(&format!("; {}", visible(note)));
     }
     Some(words)
 }

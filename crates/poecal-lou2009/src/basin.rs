@@ -1,0 +1,103 @@
+//! From how far each formulation finds the truth.
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+use rayon::prelude::*;
+
+use super::seeds::{Purpose, derived};
+use super::session::Session;
+use super::{Basin, LENGTH_M, Seen, tables};
+use crate::{Formulation, Method, Residual};
+use poecal::error::Result;
+use poecal::estimate::Estimate;
+use poecal::lie::Pose;
+use poecal::measurement::Noise;
+use poecal::problem::Problem;
+use poecal::simulate::Simulation;
+use poecal::solve::Options;
+
+/// Configurations of a session.
+const ROWS: usize = 60;
+/// Angles by which every axis and the tip are off, degrees, and millimetres for each degree.
+const ERRORS_DEG: [f64; 4] = [1.0, 5.0, 10.0, 20.0];
+const MM_PER_DEG: f64 = 5.0;
+/// Held-out error below which the truth is reached, metres.
+const REACHED_M: f64 = 1e-6;
+/// Iterations after which a fit has failed. Gauss-Newton that converges does so in a dozen.
+const LIMIT: usize = 40;
+
+/// Formulation and method.
+const WAYS: [(Formulation, Method); 6] = [
+    (Formulation::Adjoint, Method::GaussNewton),
+    (Formulation::Screw, Method::GaussNewton),
+    (Formulation::ScrewOffsets, Method::GaussNewton),
+    (Formulation::AdjointOffsets, Method::GaussNewton),
+    (Formulation::Adjoint, Method::LevenbergMarquardt),
+    (Formulation::Screw, Method::LevenbergMarquardt),
+];
+
+/// Shares of noise-free fits that reach the truth, for each formulation, kind of measurement and size of error.
+pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
+    let mut found = Vec::new();
+    for seen in [Seen::Poses, Seen::Points] {
+        let mut by_error = Vec::new();
+        for error_deg in ERRORS_DEG {
+            let reached: Vec<[bool; WAYS.len()]> = (0..trials as u64)
+                .into_par_iter()
+                .map(|trial| reached(seen, error_deg, seed, trial))
+                .collect::<Result<_>>()?;
+            by_error.push((error_deg, reached));
+        }
+        for (way, (formulation, method)) in WAYS.into_iter().enumerate() {
+            for (error_deg, reached) in &by_error {
+                let count = reached.iter().filter(|reached| reached[way]).count();
+                found.push(Basin {
+                    formulation,
+                    measurement: seen,
+                    residual: residual(seen, method).word().to_owned(),
+                    method: method.word().to_owned(),
+                    error_deg: *error_deg,
+                    error_mm: error_deg * MM_PER_DEG,
+                    trials,
+                    share: count as f64 / trials as f64,
+                });
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// The paper's residual of poses belongs to the paper's method. Points have one residual only.
+fn residual(seen: Seen, method: Method) -> Residual {
+    match (seen, method) {
+        (Seen::Poses, Method::GaussNewton) => Residual::Spatial,
+        (Seen::Poses, Method::LevenbergMarquardt) | (Seen::Points, _) => Residual::Tool,
+    }
+}
+
+/// Which ways reach a random truth from the nominal elbow.
+fn reached(seen: Seen, error_deg: f64, seed: u64, trial: u64) -> Result<[bool; WAYS.len()]> {
+    let nominal = tables::nominal();
+    let simulation = Simulation {
+        error_rotation_rad: error_deg.to_radians(),
+        error_position_m: error_deg * MM_PER_DEG * 1e-3,
+        ..Simulation::default()
+    };
+    let mut generator = ChaCha8Rng::seed_from_u64(derived(seed, Purpose::Truth, trial));
+    let actual = simulation.perturbed(&nominal, &mut generator);
+    let truth = Estimate::new(&actual, vec![actual.home], Pose::identity());
+    let session = Session::new(&nominal, truth, seen, ROWS, derived(seed, Purpose::TruthRows, trial));
+    // Radians count as the length of the arm that they move, so that neither outweighs the other.
+    let noise = Noise { position_m: LENGTH_M, rotation_rad: 1.0 };
+    let exact = session.exact();
+    let mut reached = [false; WAYS.len()];
+    for (reached, (formulation, method)) in reached.iter_mut().zip(WAYS) {
+        let data = session.data(residual(seen, method), &exact)?;
+        let free = session.free(formulation);
+        let problem = Problem::new(&data, &session.packed, session.rows(), free, noise, LENGTH_M);
+        let options = Options { iterations: LIMIT, ..Options::default() };
+        let (found, _, _) = (method.minimize())(&problem, session.start(), &options);
+        *reached = session.held_out_rms_m(&found) < REACHED_M;
+    }
+    Ok(reached)
+}

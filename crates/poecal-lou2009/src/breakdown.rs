@@ -1,0 +1,151 @@
+//! What a growing share of gross errors does to a calibration, by loss.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::Options;
+use poecal::calibration::{CalibrationOptions, Loss, Models, Robust, calibrate, row_errors};
+use poecal::error::Result;
+use poecal::estimate::Packed;
+use poecal::measurement::Dataset;
+use poecal::robot::Robot;
+use poecal::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis};
+
+/// Shares of the rows that are wrong, percent.
+const SHARES: [u32; 11] = [0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50];
+/// Rows of a session.
+const ROWS: usize = 150;
+/// Rows, free of noise, that a calibration is judged by.
+const JUDGING: usize = 200;
+
+/// What gross errors did to many simulated sessions.
+///
+/// ```
+/// use poecal_lou2009::{Options, breakdown};
+/// let found = breakdown(&Options { trials: 1, ..Options::default() })?;
+/// assert_eq!((found.sessions, found.entries.len()), (1, 4 * 11));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Breakdown {
+    /// Sessions for each loss and share: the robots in turn, by poses and by points.
+    pub sessions: usize,
+    /// Rows of a session.
+    pub rows: usize,
+    /// Seed.
+    pub seed: u64,
+    /// By loss, then by share.
+    pub entries: Vec<BreakdownEntry>,
+}
+
+/// One loss and one share of gross errors.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BreakdownEntry {
+    /// `off` (least squares), `huber`, `cauchy` or `tukey`.
+    pub robust: String,
+    /// Share of the rows that are wrong, percent.
+    pub share_percent: u32,
+    /// Held-out error over that of least squares on the same session without gross errors: median over the sessions.
+    pub error_ratio_median: f64,
+    /// The same, 95th percentile.
+    pub error_ratio_p95: f64,
+    /// Share of the gross rows that are suspected; null if there are none.
+    pub gross_rows_suspected: Option<f64>,
+    /// Share of the other rows that are suspected.
+    pub other_rows_suspected: f64,
+}
+
+/// Spoils simulated sessions of an elbow, a SCARA, a 7-axis arm and a gantry, by poses and by points, and calibrates from them with
+/// every loss. [`Options::trials`] is the number of sessions.
+///
+/// # Errors
+/// As [`calibrate`].
+pub fn breakdown(options: &Options) -> Result<Breakdown> {
+    let robots = [elbow(), scara(), seven_axis(), gantry()];
+    let outcomes: Vec<Vec<Outcome>> = (0..options.trials)
+        .into_par_iter()
+        .map(|trial| {
+            let kind = if (trial / robots.len()).is_multiple_of(2) { Kind::Pose } else { Kind::Point };
+            session(&robots[trial % robots.len()], kind, options.seed.wrapping_add(trial as u64))
+        })
+        .collect::<Result<_>>()?;
+    let entries = losses().into_iter().enumerate().flat_map(|(l, (word, _))| {
+        let outcomes = &outcomes;
+        SHARES.iter().enumerate().map(move |(s, &share_percent)| {
+            let own: Vec<&Outcome> = outcomes.iter().map(|session| &session[l * SHARES.len() + s]).collect();
+            entry(word, share_percent, &own)
+        })
+    });
+    Ok(Breakdown { sessions: options.trials, rows: ROWS, seed: options.seed, entries: entries.collect() })
+}
+
+fn losses() -> [(&'static str, Robust); 4] {
+    let loss = |loss: Loss| (loss.word(), Robust::Loss(loss));
+    [("off", Robust::Off), loss(Loss::Huber), loss(Loss::Cauchy), loss(Loss::Tukey)]
+}
+
+/// One loss and share on one session.
+struct Outcome {
+    ratio: f64,
+    gross: usize,
+    others: usize,
+    gross_suspected: usize,
+    others_suspected: usize,
+}
+
+/// One session with every loss and share.
+fn session(robot: &Robot, kind: Kind, seed: u64) -> Result<Vec<Outcome>> {
+    let simulation = Simulation { count: ROWS, seed, ..Simulation::default() };
+    let made = simulation.run(robot, kind)?;
+    let judging = simulation.held_out(&made, kind, JUDGING)?;
+    let fit = |data: &Dataset, robust| {
+        calibrate(
+            robot,
+            data,
+            &CalibrationOptions { held_out: 0.0, robust, diagnose: false, ..Default::default() },
+        )
+    };
+    let clean = held_out_m(robot, &judging, &fit(&made.data, Robust::Off)?.models);
+    let mut outcomes = Vec::with_capacity(4 * SHARES.len());
+    for (_, robust) in losses() {
+        for share in SHARES {
+            let mut data = made.data.clone();
+            let gross = Gross { share: f64::from(share) / 100.0, seed, ..Gross::default() }.spoil(&mut data);
+            let found = fit(&data, robust)?;
+            let is_gross = |row: &u32| gross.binary_search(row).is_ok();
+            let gross_suspected = found.robustness.suspects().filter(is_gross).count();
+            outcomes.push(Outcome {
+                ratio: held_out_m(robot, &judging, &found.models) / clean,
+                gross: gross.len(),
+                others: data.len() - gross.len(),
+                gross_suspected,
+                others_suspected: found.robustness.suspects().count() - gross_suspected,
+            });
+        }
+    }
+    Ok(outcomes)
+}
+
+/// Root mean square position error on rows free of noise.
+fn held_out_m(robot: &Robot, judging: &Dataset, models: &Models) -> f64 {
+    let packed = Packed::new(robot, judging.all_readings(), judging.reading_names().len());
+    let rows: Vec<u32> = (0..u32::try_from(judging.len()).unwrap_or(u32::MAX)).collect();
+    let errors = row_errors(judging, &packed, &rows, &models.calibrated);
+    (errors.iter().map(|e| e.position_m.norm_squared()).sum::<f64>() / errors.len().max(1) as f64).sqrt()
+}
+
+fn entry(word: &str, share_percent: u32, outcomes: &[&Outcome]) -> BreakdownEntry {
+    let mut ratios: Vec<f64> = outcomes.iter().map(|outcome| outcome.ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    let at = |share: f64| ratios.get((share * ratios.len() as f64) as usize).copied().unwrap_or(f64::NAN);
+    let sum = |of: fn(&Outcome) -> usize| outcomes.iter().map(|outcome| of(outcome)).sum::<usize>();
+    let share = |suspected: usize, all: usize| (all > 0).then(|| suspected as f64 / all as f64);
+    BreakdownEntry {
+        robust: word.to_owned(),
+        share_percent,
+        error_ratio_median: at(0.5),
+        error_ratio_p95: at(0.95),
+        gross_rows_suspected: share(sum(|o| o.gross_suspected), sum(|o| o.gross)),
+        other_rows_suspected: share(sum(|o| o.others_suspected), sum(|o| o.others)).unwrap_or(0.0),
+    }
+}

@@ -1,0 +1,126 @@
+//! The statements of lou2009, and what it leaves out, against the runs.
+
+mod accuracy;
+mod left_out;
+mod offsets;
+mod simulations;
+
+use super::runs::Ended;
+use super::{Basin, Claim, Efficiency, Reproduction, Seen};
+use crate::{Formulation, Method, Residual};
+use poecal::error::{Error, ErrorKind, Result};
+
+/// Difference below which a coordinate is recovered and a prediction right: metres, or of a unit vector.
+const RECOVERED: f64 = 1e-9;
+/// What is left of an identity after rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// What the claims are judged by.
+pub(super) struct Evidence<'a> {
+    pub(super) runs: &'a [Ended],
+    pub(super) found: &'a Reproduction,
+    pub(super) seed: u64,
+}
+
+impl Evidence<'_> {
+    /// A noise-free run.
+    fn run(&self, formulation: Formulation, seen: Seen, offsets: bool) -> Result<&Ended> {
+        let of = |ended: &&Ended| {
+            let plan = ended.plan;
+            (plan.formulation, plan.seen, plan.offsets_in_truth, plan.noise)
+                == (formulation, seen, offsets, false)
+        };
+        self.runs.iter().find(of).ok_or_else(|| missing("run", formulation, seen))
+    }
+
+    /// The fits with noise by plain Gauss-Newton.
+    fn efficiency(&self, formulation: Formulation, seen: Seen, residual: Residual) -> Result<&Efficiency> {
+        let of = |it: &&Efficiency| {
+            (it.formulation, it.measurement, it.residual.as_str(), it.method.as_str())
+                == (formulation, seen, residual.word(), Method::GaussNewton.word())
+        };
+        self.found.efficiency.iter().find(of).ok_or_else(|| missing("noisy fit", formulation, seen))
+    }
+
+    /// The starts from afar, the nearest first.
+    fn basins(&self, formulation: Formulation, seen: Seen, method: Method) -> Result<Vec<&Basin>> {
+        let of = |it: &&Basin| {
+            (it.formulation, it.measurement, it.method.as_str()) == (formulation, seen, method.word())
+        };
+        let basins: Vec<&Basin> = self.found.basin.iter().filter(of).collect();
+        if basins.is_empty() {
+            return Err(missing("start from afar", formulation, seen));
+        }
+        Ok(basins)
+    }
+}
+
+fn missing(what: &str, formulation: Formulation, seen: Seen) -> Error {
+    let message = format!(
+        "found no {what} of `{}` with {}, expected one to judge a claim by",
+        formulation.word(),
+        seen.word()
+    );
+    Error::new(ErrorKind::Problem, message)
+}
+
+/// A statement of the paper.
+fn said(claim: &str, paper: &str, (criterion, holds): (String, bool), measured: String) -> Claim {
+    Claim {
+        claim: claim.to_owned(),
+        paper: paper.to_owned(),
+        measured,
+        criterion,
+        holds,
+        said_by_paper: true,
+    }
+}
+
+/// A finding that the paper leaves out.
+fn left_out(claim: &str, paper: &str, judged: (String, bool), measured: String) -> Claim {
+    Claim { said_by_paper: false, ..said(claim, paper, judged, measured) }
+}
+
+/// All claims, in the order of the paper; then what it leaves out.
+pub(super) fn claims(evidence: &Evidence<'_>) -> Result<Vec<Claim>> {
+    let parts: [fn(&Evidence<'_>) -> Result<Claim>; 17] = [
+        offsets::original_without_offsets,
+        offsets::original_parameters_with_offsets,
+        offsets::original_prediction_with_offsets,
+        offsets::equivalence,
+        offsets::proposition,
+        offsets::can_be_left_out,
+        simulations::constraints,
+        accuracy::normalisation,
+        simulations::poses_iterations,
+        simulations::points_iterations,
+        simulations::twice_as_many,
+        simulations::table,
+        accuracy::convergence,
+        left_out::redundancy,
+        left_out::point_on_axis,
+        left_out::lever_arm,
+        left_out::rounding,
+    ];
+    parts.iter().map(|part| part(evidence)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_claim_without_evidence_is_an_error() {
+        let found = super::super::lou2009(&super::super::Options { trials: 1, starts: 1, seed: 3 }).unwrap();
+        let runs = super::super::runs::runs(3).unwrap();
+        let without_fits = Reproduction { efficiency: vec![], ..found.clone() };
+        let without_starts = Reproduction { basin: vec![], ..found.clone() };
+        for (runs, found) in [(&runs[..0], &found), (&runs[..], &without_fits), (&runs[..], &without_starts)]
+        {
+            let error = claims(&Evidence { runs, found, seed: 3 }).unwrap_err();
+            println!("{error}");
+            assert_eq!(error.kind(), ErrorKind::Problem);
+        }
+        assert_eq!(claims(&Evidence { runs: &runs, found: &found, seed: 3 }).unwrap(), found.claims);
+    }
+}

@@ -1,0 +1,134 @@
+//! How far screws miss their constraints `v·ω = 0` and `|ω| = 1` while a fit goes on, before anything puts them right.
+
+use nalgebra::Vector3;
+use poecal::estimate::Estimate;
+use poecal::lie::{Pose, Twist};
+use poecal::parameters::Parameter;
+use poecal::problem::Problem;
+use poecal::robot::JointKind;
+use poecal::solve::{LeastSquares, Normal};
+
+/// A miss of the constraints of a revolute screw.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Miss {
+    /// `|v·ω|`, metres.
+    pub(super) pitch_m: f64,
+    /// `||ω| - 1|`.
+    pub(super) length: f64,
+}
+
+impl Miss {
+    fn of(screw: &Twist) -> Self {
+        Miss { pitch_m: screw.v.dot(&screw.w).abs(), length: (screw.w.norm() - 1.0).abs() }
+    }
+
+    fn or_larger(self, other: Miss) -> Self {
+        Miss { pitch_m: self.pitch_m.max(other.pitch_m), length: self.length.max(other.length) }
+    }
+}
+
+/// A problem that watches the constraints of the screws that its steps make.
+pub(super) struct Watched<'a>(pub(super) &'a Problem<'a>);
+
+/// An estimate, and the constraints until then.
+#[derive(Clone)]
+pub(super) struct State {
+    pub(super) estimate: Estimate,
+    /// Screws that only ever were moved by `ξ ← Ad(e^η) ξ`, without any projection.
+    screws: Vec<Twist>,
+    /// Largest miss by `ξ + dξ` before it is normalised, or by a screw that was moved as a body.
+    pub(super) miss: Miss,
+}
+
+impl State {
+    pub(super) fn new(estimate: Estimate) -> Self {
+        let screws = estimate.screws().iter().map(|screw| screw.twist()).collect();
+        State { estimate, screws, miss: Miss::default() }
+    }
+}
+
+impl LeastSquares for Watched<'_> {
+    type State = State;
+
+    fn dim(&self) -> usize {
+        self.0.dim()
+    }
+
+    fn normal(&self, state: &State) -> Normal {
+        self.0.normal(&state.estimate)
+    }
+
+    fn second_order(&self, state: &State, step: &[f64]) -> Vec<f64> {
+        self.0.second_order(&state.estimate, step)
+    }
+
+    fn curvature(&self, state: &State) -> Option<Vec<f64>> {
+        self.0.curvature(&state.estimate)
+    }
+
+    fn project_constraints(&self, step: &mut [f64]) {
+        self.0.project_constraints(step);
+    }
+
+    fn rounding(&self) -> f64 {
+        self.0.rounding()
+    }
+
+    fn retract(&self, state: &State, step: &[f64]) -> State {
+        let (mut screws, mut miss) = (state.screws.clone(), state.miss);
+        for (parameter, places) in self.0.layout().parameters() {
+            let own: Vec<f64> = places.iter().map(|&(place, scale)| step[place] / scale).collect();
+            match (parameter, own.as_slice()) {
+                (Parameter::OtherScrew(free), &[vx, vy, vz, wx, wy, wz])
+                    if free.kind == JointKind::Revolute =>
+                {
+                    // In the axis frame: length and pitch are the same in every frame.
+                    let freed = Twist::new(Vector3::new(vx, vy, vz), Vector3::new(wx, wy, 1.0 + wz));
+                    miss = miss.or_larger(Miss::of(&freed));
+                }
+                (Parameter::ScrewAxis(axis), &[vx, vy, wx, wy]) => {
+                    let local = Twist::new(Vector3::new(vx, vy, 0.0), Vector3::new(wx, wy, 0.0));
+                    let eta = state.estimate.base_from_axis[axis.joint].transform(&local);
+                    screws[axis.joint] = Pose::exp(&eta).transform(&screws[axis.joint]);
+                    miss = miss.or_larger(Miss::of(&screws[axis.joint]));
+                }
+                _ => {}
+            }
+        }
+        State { estimate: self.0.retract(&state.estimate, step), screws, miss }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Seen;
+    use super::super::runs;
+    use super::*;
+    use crate::{Formulation, Residual};
+    use poecal::measurement::Noise;
+
+    /// A step of 1e-2 in every unknown.
+    fn stepped(formulation: Formulation) -> State {
+        let session = runs::session(false, Seen::Poses, 1);
+        let data = session.data(Residual::Spatial, &session.exact()).unwrap();
+        let noise = Noise { position_m: 1.0, rotation_rad: 1.0 };
+        let free = session.free(formulation);
+        let problem = Problem::new(&data, &session.packed, session.rows(), free, noise, 1.0);
+        Watched(&problem).retract(&State::new(session.start()), &vec![1e-2; problem.dim()])
+    }
+
+    #[test]
+    fn free_screws_miss_their_constraints_and_moved_ones_do_not() {
+        let free = stepped(Formulation::Screw).miss;
+        // dξ = 0.01 (1, 1, 1; 1, 1, 1) about the axis z: v·ω = 0.01 (0.01 + 0.01 + 1.01), |ω|² = 2e-4 + 1.01².
+        assert!(
+            (free.pitch_m - 0.0103).abs() < 1e-15 && (free.length - (1.0203_f64.sqrt() - 1.0)).abs() < 1e-15
+        );
+        let moved = stepped(Formulation::Adjoint);
+        assert!(moved.miss.pitch_m < 1e-15 && moved.miss.length < 1e-15);
+        // The screws that are watched are those of the estimate, but for rounding.
+        for (watched, screw) in moved.screws.iter().zip(moved.estimate.screws()) {
+            assert!((watched.to_vector() - screw.twist().to_vector()).amax() < 1e-14);
+        }
+    }
+}

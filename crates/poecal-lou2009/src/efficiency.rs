@@ -1,0 +1,154 @@
+//! Many noisy sessions: how near each formulation comes to the least error that the data allow.
+
+use rayon::prelude::*;
+
+use super::seeds::{Purpose, derived};
+use super::session::Session;
+use super::{Efficiency, LENGTH_M, NOISE, Seen, runs, tables};
+use crate::{Formulation, Method, Residual};
+use nalgebra::{DMatrix, DVector, Vector3};
+use poecal::error::Result;
+use poecal::estimate::{Chain, Estimate, Linkage};
+use poecal::lie::TargetTwist;
+use poecal::problem::Problem;
+use poecal::solve::{LeastSquares, Options};
+
+/// Configurations of a session.
+const ROWS: usize = 40;
+/// Iterations after which a fit has failed.
+const LIMIT: usize = 60;
+
+/// What is compared: formulation, residual of poses, method.
+type Way = (Formulation, Residual, Method);
+
+const POSE_WAYS: [Way; 9] = [
+    (Formulation::Adjoint, Residual::Tool, Method::GaussNewton),
+    (Formulation::Screw, Residual::Tool, Method::GaussNewton),
+    (Formulation::ScrewOffsets, Residual::Tool, Method::GaussNewton),
+    (Formulation::AdjointOffsets, Residual::Tool, Method::GaussNewton),
+    (Formulation::Adjoint, Residual::Spatial, Method::GaussNewton),
+    (Formulation::Screw, Residual::Spatial, Method::GaussNewton),
+    (Formulation::ScrewOffsets, Residual::Spatial, Method::GaussNewton),
+    (Formulation::AdjointOffsets, Residual::Spatial, Method::GaussNewton),
+    (Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt),
+];
+
+/// Points have one residual only.
+const POINT_WAYS: [Way; 5] = [
+    (Formulation::Adjoint, Residual::Tool, Method::GaussNewton),
+    (Formulation::Screw, Residual::Tool, Method::GaussNewton),
+    (Formulation::ScrewOffsets, Residual::Tool, Method::GaussNewton),
+    (Formulation::AdjointOffsets, Residual::Tool, Method::GaussNewton),
+    (Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt),
+];
+
+/// All comparisons: one session of configurations for each kind of measurement, its noise drawn anew in every trial, the same for
+/// every way.
+pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
+    let mut found = Vec::new();
+    for (seen, ways) in [(Seen::Poses, &POSE_WAYS[..]), (Seen::Points, &POINT_WAYS[..])] {
+        let rows_seed = derived(seed, Purpose::Fits, 0);
+        let session = Session::new(&tables::nominal(), runs::truth(false), seen, ROWS, rows_seed);
+        let (bound_rms_m, unknowns) = bound(&session)?;
+        let trials: Vec<Vec<Option<f64>>> = (0..trials as u64)
+            .into_par_iter()
+            .map(|trial| fits(&session, ways, derived(seed, Purpose::FitNoise, trial)))
+            .collect::<Result<_>>()?;
+        for (k, &way) in ways.iter().enumerate() {
+            let ends: Vec<Option<f64>> = trials.iter().map(|ends| ends[k]).collect();
+            found.push(summary(seen, way, &ends, bound_rms_m, unknowns));
+        }
+    }
+    Ok(found)
+}
+
+/// Squared held-out errors of one noisy session fitted in every way; nothing for a fit that did not end.
+fn fits(session: &Session, ways: &[Way], seed: u64) -> Result<Vec<Option<f64>>> {
+    let measured = session.noisy(NOISE, seed);
+    let tool = session.data(Residual::Tool, &measured)?;
+    let spatial = session.data(Residual::Spatial, &measured)?;
+    let fit = |&(formulation, residual, method): &Way| {
+        let data = if residual == Residual::Tool { &tool } else { &spatial };
+        let free = session.free(formulation);
+        let problem = Problem::new(data, &session.packed, session.rows(), free, NOISE, LENGTH_M);
+        let options = Options { iterations: LIMIT, ..Options::default() };
+        let (found, _, summary) = (method.minimize())(&problem, session.start(), &options);
+        summary.termination.is_success().then(|| session.held_out_rms_m(&found).powi(2))
+    };
+    Ok(ways.iter().map(fit).collect())
+}
+
+/// What the fits of one way have in common.
+fn summary(seen: Seen, way: Way, ends: &[Option<f64>], bound_rms_m: f64, unknowns: usize) -> Efficiency {
+    let squares: Vec<f64> = ends.iter().flatten().copied().collect();
+    let count = squares.len() as f64;
+    // Not a number without any fit.
+    let mean = squares.iter().sum::<f64>() / count;
+    let variance = squares.iter().map(|square| (square - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    let least = 1.0 / (2.0 * unknowns as f64 * count).sqrt();
+    let scatter = (0.5 * (variance / count).sqrt() / mean).max(least);
+    let (formulation, residual, method) = way;
+    let ratio = mean.sqrt() / bound_rms_m;
+    Efficiency {
+        formulation,
+        measurement: seen,
+        residual: residual.word().to_owned(),
+        method: method.word().to_owned(),
+        trials: ends.len(),
+        converged: squares.len(),
+        held_out_rms_m: mean.sqrt(),
+        bound_rms_m,
+        ratio,
+        ratio_sigma: ratio * scatter,
+    }
+}
+
+/// The least RMS error of predicted positions that an unbiased estimator can have, metres: `tr(J N⁻¹ Jᵀ)` at the truth, N being the
+/// information of the minimal basis about what a device with this noise sees. With the number of unknowns.
+fn bound(session: &Session) -> Result<(f64, usize)> {
+    let data = session.data(Residual::Tool, &session.exact())?;
+    let free = session.free(Formulation::Adjoint);
+    let problem = Problem::new(&data, &session.packed, session.rows(), free, NOISE, LENGTH_M);
+    let n = problem.dim();
+    let upper = problem.normal(&session.truth).gram;
+    let gram = DMatrix::from_fn(n, n, |a, b| upper[a.min(b) * n + a.max(b)]);
+    let Some(factor) = gram.cholesky() else { return Ok((f64::INFINITY, n)) };
+    let sum = variance(session, &problem, &session.truth, |row| factor.solve(row).dot(row));
+    Ok(((sum / session.unseen.rows() as f64).sqrt(), n))
+}
+
+/// Sum over unseen configurations and coordinates of the variance of the predicted position.
+fn variance(
+    session: &Session,
+    problem: &Problem<'_>,
+    truth: &Estimate,
+    of_row: impl Fn(&DVector<f64>) -> f64,
+) -> f64 {
+    let linkage = Linkage::new(truth);
+    let mut chain = Chain::default();
+    let mut twists: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); problem.dim()];
+    let mut sum = 0.0;
+    for row in 0..session.unseen.rows() {
+        chain.evaluate(&linkage, &session.unseen, row, 0);
+        problem.layout().target_twists(&chain, 0, &mut twists);
+        for axis in 0..3 {
+            let derivative = DVector::from_iterator(twists.len(), twists.iter().map(|(v, _)| v[axis]));
+            sum += of_row(&derivative);
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_any_fit_there_is_no_ratio() {
+        let none = summary(Seen::Poses, POSE_WAYS[0], &[None, None], 1e-5, 30);
+        assert!(none.converged == 0 && none.ratio.is_nan() && none.held_out_rms_m.is_nan());
+        let some = summary(Seen::Poses, POSE_WAYS[0], &[Some(4e-10), None], 1e-5, 30);
+        assert!((some.ratio - 2.0).abs() < 1e-12 && (some.ratio_sigma - 2.0 / 60_f64.sqrt()).abs() < 1e-12);
+        assert!(!some.exceeds(&none) && !none.exceeds(&some));
+    }
+}

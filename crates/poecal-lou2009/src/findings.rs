@@ -1,0 +1,260 @@
+//! What a reproduction of lou2009 found: every number that its reports and plots show.
+
+use crate::Formulation;
+use serde::Serialize;
+
+/// What the device of a run saw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Seen {
+    /// Position and orientation of the tool frame (lou2009, first simulation).
+    Poses,
+    /// Position of one tool point (second simulation).
+    Points,
+}
+
+impl Seen {
+    /// The word used in files.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Seen::Poses => "poses",
+            Seen::Points => "points",
+        }
+    }
+}
+
+/// One calibration of the elbow from its nominal screws by plain Gauss-Newton, as in the paper.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Run {
+    /// How errors are written.
+    pub formulation: Formulation,
+    /// What was seen.
+    pub measurement: Seen,
+    /// Whether the true robot has joint offsets beside its screw errors.
+    pub offsets_in_truth: bool,
+    /// Whether the measurements are noisy.
+    pub noise: bool,
+    /// Number of measurements fitted.
+    pub measurements: usize,
+    /// Iterations until the step or the residual was nothing but rounding (noise-free), or the step promised nothing beyond the
+    /// noise. The paper gives no rule.
+    pub iterations: usize,
+    /// Whether it ended there, at the truth (noise-free: held-out error below 1 nm).
+    pub converged: bool,
+    /// Columns of the paper's own matrix for this formulation.
+    pub parameters: usize,
+    /// Its rank at the identified robot.
+    pub rank: usize,
+    /// Unknowns that were really solved for: the minimal basis, for the adjoint formulations.
+    pub unknowns: usize,
+    /// RMS distance from prediction to truth on configurations that were not measured, metres.
+    pub held_out_rms_m: f64,
+    /// Largest difference of a screw's coordinate from the prescribed one (metres for v, 1 for ω); not a number of the
+    /// prediction, and large where the formulation cannot tell screws from offsets.
+    pub screw_error_max: f64,
+    /// Its part of v, metres.
+    pub screw_error_max_v_m: f64,
+    /// Its part of ω, no unit.
+    pub screw_error_max_omega: f64,
+    /// As [`screw_error_max`](Self::screw_error_max), with all offsets moved into the screws (lou2009 14 and 15), in the truth and in what was identified: what data can tell.
+    pub equivalent_screw_error_max: f64,
+    /// Its part of v, metres.
+    pub equivalent_screw_error_max_v_m: f64,
+    /// Its part of ω, no unit.
+    pub equivalent_screw_error_max_omega: f64,
+    /// Largest `|v·ω|` over the iterations, metres: of `ξ + dξ` before it is normalised (free screws), or of the screws that
+    /// `ξ ← Ad(e^η) ξ` makes from the nominal ones without any normalisation (adjoint).
+    pub constraint_miss_pitch_m: f64,
+    /// Largest `||ω| - 1|` of the same.
+    pub constraint_miss_length: f64,
+    /// Largest difference of an identified joint offset from the prescribed one, degrees; null without offsets in the formulation.
+    pub offset_error_max_deg: Option<f64>,
+    /// By iteration, the start first.
+    pub trace: Vec<Iteration>,
+}
+
+/// The state of a run after an iteration.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Iteration {
+    /// RMS distance from prediction to measurement, metres.
+    pub residual_rms_m: f64,
+    /// As [`Run::screw_error_max`].
+    pub screw_error_max: f64,
+}
+
+/// A joint's screw beside Table II: `(v; ω)` in metres.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ScrewRow {
+    /// Joint name.
+    pub joint: String,
+    /// Table II, left.
+    pub nominal: [f64; 6],
+    /// Table II, right, as printed.
+    pub printed: [f64; 6],
+    /// Table II, right, projected to a screw: the prescribed truth.
+    pub prescribed: [f64; 6],
+    /// Identified from poses, noise-free.
+    pub from_poses: [f64; 6],
+    /// Identified from points, noise-free.
+    pub from_points: [f64; 6],
+}
+
+/// The point `P_c0` beside Table II, metres.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PointRow {
+    /// Table II, left.
+    pub nominal: [f64; 3],
+    /// Table II, right: the prescribed truth.
+    pub prescribed: [f64; 3],
+    /// Identified from points, noise-free.
+    pub from_points: [f64; 3],
+}
+
+/// A joint offset: prescribed, and as two formulations identified it (noise-free).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OffsetRow {
+    /// Joint name.
+    pub joint: String,
+    /// Prescribed, degrees.
+    pub prescribed_deg: f64,
+    /// By `screw-offsets` from poses, degrees.
+    pub screw_offsets_deg: f64,
+    /// By `adjoint-offsets` from poses, degrees.
+    pub adjoint_offsets_deg: f64,
+}
+
+/// Singular values of one of the paper's matrices, radians counted by [`Reproduction::length_m`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Spectrum {
+    /// Which matrix.
+    pub matrix: String,
+    /// Where it was evaluated: `nominal` or `identified`.
+    pub at: String,
+    /// Its columns.
+    pub columns: usize,
+    /// Singular values above 1e-9 of the largest.
+    pub rank: usize,
+    /// All of them, the largest first, as shares of the largest.
+    pub singular_values: Vec<f64>,
+}
+
+/// Many noisy fits of one formulation against the Cramér-Rao bound.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Efficiency {
+    /// How errors are written.
+    pub formulation: Formulation,
+    /// What was seen.
+    pub measurement: Seen,
+    /// `tool` (at the tool, whitened) or `spatial` (the paper's logarithm, whitened alike); points have `tool` only.
+    pub residual: String,
+    /// `gauss-newton` or `levenberg-marquardt`.
+    pub method: String,
+    /// Number of fits.
+    pub trials: usize,
+    /// Fits that ended at an optimum.
+    pub converged: usize,
+    /// RMS held-out position error of those, metres; not a number if there are none.
+    pub held_out_rms_m: f64,
+    /// RMS that the Cramér-Rao bound allows, metres.
+    pub bound_rms_m: f64,
+    /// Ratio of the two: 1 is the best that any unbiased estimator can do.
+    pub ratio: f64,
+    /// Standard deviation that chance gives the ratio, from the scatter of the fits, but at least `ratio / √(2 · unknowns · fits)`.
+    pub ratio_sigma: f64,
+}
+
+/// Standard deviations beyond which a difference is not chance.
+const BEYOND_CHANCE: f64 = 3.0;
+
+impl Efficiency {
+    /// Whether this ratio is larger than another by more than chance explains: three standard deviations.
+    #[must_use]
+    pub fn exceeds(&self, other: &Efficiency) -> bool {
+        self.ratio - other.ratio > BEYOND_CHANCE * self.ratio_sigma.hypot(other.ratio_sigma)
+    }
+}
+
+/// The share of random starts from which a formulation reaches the truth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Basin {
+    /// How errors are written.
+    pub formulation: Formulation,
+    /// What was seen.
+    pub measurement: Seen,
+    /// `tool` or `spatial`, as in [`Efficiency`].
+    pub residual: String,
+    /// `gauss-newton` or `levenberg-marquardt`.
+    pub method: String,
+    /// Angle by which each axis and the tip of the truth is off the nominal start, degrees.
+    pub error_deg: f64,
+    /// Distance by which each is off, millimetres.
+    pub error_mm: f64,
+    /// Number of starts.
+    pub trials: usize,
+    /// Share that reached the truth (held-out error below 1 µm, noise-free).
+    pub share: f64,
+}
+
+impl Basin {
+    /// Whether this share is larger than another by more than chance explains: three standard deviations.
+    #[must_use]
+    pub fn exceeds(&self, other: &Basin) -> bool {
+        // A share of 0 or 1 is known to about one start.
+        let sigma = |it: &Basin| {
+            let starts = it.trials as f64;
+            (it.share * (1.0 - it.share) / starts).sqrt().max(1.0 / starts)
+        };
+        self.share - other.share > BEYOND_CHANCE * sigma(self).hypot(sigma(other))
+    }
+}
+
+/// A statement of the paper, or a finding that it leaves out, against what was measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Claim {
+    /// The statement.
+    pub claim: String,
+    /// What the paper says, with the place; of a finding, what it says near by.
+    pub paper: String,
+    /// What the runs show, with the numbers.
+    pub measured: String,
+    /// What has to be so for the statement to hold.
+    pub criterion: String,
+    /// Whether it is so.
+    pub holds: bool,
+    /// Whether the paper makes the statement; else it is a finding that the paper leaves out.
+    pub said_by_paper: bool,
+}
+
+/// All that was found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reproduction {
+    /// Version of the program.
+    pub version: String,
+    /// Command that makes the same files.
+    pub command: String,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Standard deviation of each position component where there is noise, metres.
+    pub noise_position_m: f64,
+    /// Standard deviation of each rotation component where there is noise, radians.
+    pub noise_rotation_rad: f64,
+    /// Metres that a radian counts in ranks.
+    pub length_m: f64,
+    /// The calibrations.
+    pub runs: Vec<Run>,
+    /// Claim by claim.
+    pub claims: Vec<Claim>,
+    /// The screws beside Table II.
+    pub screws: Vec<ScrewRow>,
+    /// The point beside Table II.
+    pub point: PointRow,
+    /// Offsets, prescribed and identified.
+    pub offsets: Vec<OffsetRow>,
+    /// Ranks.
+    pub spectra: Vec<Spectrum>,
+    /// Accuracy with noise.
+    pub efficiency: Vec<Efficiency>,
+    /// Convergence from afar.
+    pub basin: Vec<Basin>,
+}

@@ -1,0 +1,207 @@
+//! The ways to write and to solve a calibration that lou2009 discusses: unknowns of the joints, errors of measured frames, steps.
+
+use poecal::calibration;
+use poecal::measurement::PoseResidual;
+use poecal::parameters::{JointOffset, Parameter, ScrewAxis};
+use poecal::robot::JointKind;
+use poecal::solve::minimize;
+use serde::Serialize;
+
+use crate::{FreeScrew, Spatial, gauss_newton};
+
+/// How the errors of the joints are written as unknowns (lou2009, sections II and III). All describe the same robots; they differ
+/// in the number of unknowns, in what becomes of constraints, and in what can be identified.
+///
+/// ```
+/// use poecal_lou2009::Formulation;
+/// assert_eq!(Formulation::ScrewOffsets.word(), "screw-offsets");
+/// assert!(Formulation::ScrewOffsets.has_offsets() && !Formulation::Adjoint.has_offsets());
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Formulation {
+    /// Each screw moves as a rigid body, `ξ ← Ad_exp(η) ξ`, in the minimal basis: no constraints, no offsets (lou2009 16 to 18).
+    #[default]
+    Adjoint,
+    /// Each screw is six free numbers, made a screw again after every iteration (okamura1996 without offsets).
+    Screw,
+    /// Free screws and joint offsets, 7n + 6 unknowns (okamura1996, lou2009 3 to 10).
+    ScrewOffsets,
+    /// Adjoint errors and joint offsets, to show what offsets add: unknowns, and no rank (lou2009 Proposition 1).
+    AdjointOffsets,
+}
+
+impl Formulation {
+    /// All formulations.
+    pub const ALL: [Formulation; 4] =
+        [Formulation::Adjoint, Formulation::Screw, Formulation::ScrewOffsets, Formulation::AdjointOffsets];
+
+    /// The stable word used in files and on the command line.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Formulation::Adjoint => "adjoint",
+            Formulation::Screw => "screw",
+            Formulation::ScrewOffsets => "screw-offsets",
+            Formulation::AdjointOffsets => "adjoint-offsets",
+        }
+    }
+
+    /// The unknowns of joints of some kinds, in the order of the chain.
+    #[must_use]
+    pub fn joint_parameters(self, kinds: &[JointKind]) -> Vec<Parameter> {
+        let mut parameters = Vec::with_capacity(2 * kinds.len());
+        for (joint, &kind) in kinds.iter().enumerate() {
+            parameters.push(if self.has_free_screws() {
+                FreeScrew::of(joint, kind)
+            } else {
+                Parameter::ScrewAxis(ScrewAxis { joint, kind })
+            });
+            if self.has_offsets() {
+                parameters.push(Parameter::JointOffset(JointOffset { joint, kind }));
+            }
+        }
+        parameters
+    }
+
+    /// The method that belongs to it: plain Gauss-Newton where screws are free numbers, since steps that are judged by the cost after
+    /// normalisation are cut short again and again (docs/theory.md §3).
+    #[must_use]
+    pub fn usual_method(self) -> Method {
+        if self.has_free_screws() { Method::GaussNewton } else { Method::LevenbergMarquardt }
+    }
+
+    /// Whether joint offsets are unknowns.
+    #[must_use]
+    pub fn has_offsets(self) -> bool {
+        matches!(self, Formulation::ScrewOffsets | Formulation::AdjointOffsets)
+    }
+
+    /// Whether screws are six free numbers, brought back to screws after every step.
+    #[must_use]
+    pub fn has_free_screws(self) -> bool {
+        matches!(self, Formulation::Screw | Formulation::ScrewOffsets)
+    }
+}
+
+/// How the errors of measured frames are written.
+///
+/// ```
+/// use poecal_lou2009::Residual;
+/// assert_eq!(Residual::Spatial.word(), "spatial");
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Residual {
+    /// Position and rotation at the target, as a device's data sheet states its noise.
+    #[default]
+    Tool,
+    /// The twist about the device's origin ([`Spatial`]).
+    Spatial,
+}
+
+impl Residual {
+    /// All ways.
+    pub const ALL: [Residual; 2] = [Residual::Tool, Residual::Spatial];
+
+    /// The stable word used in files and on the command line.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Residual::Tool => "tool",
+            Residual::Spatial => "spatial",
+        }
+    }
+
+    /// What the library is told.
+    #[must_use]
+    pub fn model(self) -> Option<&'static dyn PoseResidual> {
+        match self {
+            Residual::Tool => None,
+            Residual::Spatial => Some(&Spatial),
+        }
+    }
+}
+
+/// By which steps to minimise.
+///
+/// ```
+/// use poecal_lou2009::{Formulation, Method};
+/// assert_eq!(Formulation::Screw.usual_method(), Method::GaussNewton);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Damped steps, taken only if they lower the cost.
+    #[default]
+    LevenbergMarquardt,
+    /// Full steps, taken as they are: the iterated least squares of lou2009. It may diverge.
+    GaussNewton,
+}
+
+impl Method {
+    /// Both methods.
+    pub const ALL: [Method; 2] = [Method::LevenbergMarquardt, Method::GaussNewton];
+
+    /// The stable word used in files and on the command line.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Method::LevenbergMarquardt => "levenberg-marquardt",
+            Method::GaussNewton => "gauss-newton",
+        }
+    }
+
+    /// The minimisation by these steps.
+    #[must_use]
+    pub fn minimize(self) -> calibration::Minimize {
+        match self {
+            Method::LevenbergMarquardt => |problem, start, options| minimize(problem, start, options),
+            Method::GaussNewton => |problem, start, options| gauss_newton(problem, start, options),
+        }
+    }
+}
+
+/// A formulation with its residual and method, as [`CalibrationOptions`](calibration::CalibrationOptions) take it.
+///
+/// ```
+/// use poecal::calibration;
+/// use poecal_lou2009::{Formulation, Method, Residual, formulated};
+/// let usual = formulated(Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt);
+/// assert_eq!(usual, calibration::Formulation::default());
+/// ```
+#[must_use]
+pub fn formulated(formulation: Formulation, residual: Residual, method: Method) -> calibration::Formulation {
+    let joint_parameters: fn(&[JointKind]) -> Vec<Parameter> = match formulation {
+        Formulation::Adjoint => |kinds| Formulation::Adjoint.joint_parameters(kinds),
+        Formulation::Screw => |kinds| Formulation::Screw.joint_parameters(kinds),
+        Formulation::ScrewOffsets => |kinds| Formulation::ScrewOffsets.joint_parameters(kinds),
+        Formulation::AdjointOffsets => |kinds| Formulation::AdjointOffsets.joint_parameters(kinds),
+    };
+    calibration::Formulation {
+        words: calibration::FormulationWords {
+            formulation: formulation.word(),
+            pose_residual: residual.word(),
+            method: method.word(),
+            note: note(formulation, method),
+        },
+        joint_parameters,
+        pose_residual: residual.model(),
+        minimize: method.minimize(),
+    }
+}
+
+/// What the way does to the result.
+fn note(formulation: Formulation, method: Method) -> Option<&'static str> {
+    match (formulation, method) {
+        (Formulation::Adjoint, _) | (Formulation::Screw, Method::LevenbergMarquardt) => None,
+        (Formulation::Screw, Method::GaussNewton) => {
+            Some("screws are normalised after each step, so with noise this is not the least squares")
+        }
+        (Formulation::ScrewOffsets, Method::GaussNewton) => Some(
+            "screws are normalised after each step, so with noise this is not the least squares; joint offsets cannot be told from \
+             screws, and stand moved into them",
+        ),
+        (Formulation::ScrewOffsets | Formulation::AdjointOffsets, _) => {
+            Some("joint offsets cannot be told from screws, and stand moved into them")
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! What only lou2009 needs, beside the library: its formulations ([`formulated`]), its experiment with each of them and what became of its
+//! claims ([`lou2009`]), and an experiment on what gross errors do to a calibration ([`breakdown()`]). It uses public items of the library;
+//! nothing in there knows of it.
+
+mod basin;
+mod breakdown;
+mod claims;
+mod constraints;
+mod efficiency;
+mod findings;
+mod formulation;
+mod free_screw;
+mod gauss_newton;
+pub mod literal;
+pub mod report;
+mod runs;
+mod seeds;
+mod session;
+mod spatial;
+pub mod tables;
+
+pub use breakdown::{Breakdown, BreakdownEntry, breakdown};
+pub use findings::{
+    Basin, Claim, Efficiency, Iteration, OffsetRow, PointRow, Reproduction, Run, ScrewRow, Seen, Spectrum,
+};
+
+pub use formulation::{Formulation, Method, Residual, formulated};
+pub use free_screw::FreeScrew;
+pub use gauss_newton::gauss_newton;
+pub use spatial::Spatial;
+
+use claims::{Evidence, claims};
+use runs::Ended;
+
+use poecal::error::{Error, ErrorKind, Result};
+use poecal::lie::Screw;
+use poecal::measurement::Noise;
+
+/// Metres that a radian counts in ranks and steps: some third of the elbow's reach.
+const LENGTH_M: f64 = 0.5;
+
+/// Noise of a good laser tracker with a six-degree-of-freedom probe.
+const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 1.745_329_251_994_329_6e-4 };
+
+/// How much to try.
+///
+/// ```
+/// let options = poecal_lou2009::Options { trials: 50, ..Default::default() };
+/// assert_eq!(options.seed, 1);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Noisy sessions for each formulation.
+    pub trials: usize,
+    /// Random starts for each formulation and size of error.
+    pub starts: usize,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { trials: 1000, starts: 100, seed: 1 }
+    }
+}
+
+/// Repeats the experiment of lou2009: the elbow of its Tables I and II identified from poses and from points with every formulation, with
+/// and without joint offsets and noise; its claims; and the comparison of the formulations over many trials.
+///
+/// ```
+/// use poecal_lou2009::{Options, lou2009};
+/// let found = lou2009(&Options { trials: 4, starts: 2, seed: 1 })?;
+/// assert_eq!(found.runs.len(), 32);
+/// assert!(found.runs[0].converged && found.runs[0].iterations <= 5);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+///
+/// # Errors
+/// [`ErrorKind::Option`] without a trial or a start; [`ErrorKind::Problem`] if a claim lacks what it is judged by.
+pub fn lou2009(options: &Options) -> Result<Reproduction> {
+    if options.trials == 0 || options.starts == 0 {
+        return Err(Error::new(
+            ErrorKind::Option,
+            "found no trial or no start to compare formulations by, expected at least 1 of each",
+        ));
+    }
+    let ended = runs::runs(options.seed)?;
+    let mut found = Reproduction {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        command: format!(
+            "poecal reproduce lou2009 --trials {} --starts {} --seed {} --out DIR",
+            options.trials, options.starts, options.seed
+        ),
+        seed: options.seed,
+        noise_position_m: NOISE.position_m,
+        noise_rotation_rad: NOISE.rotation_rad,
+        length_m: LENGTH_M,
+        runs: ended.iter().map(|ended| ended.run.clone()).collect(),
+        claims: Vec::new(),
+        screws: screws(&ended),
+        point: point(&ended),
+        offsets: offsets(&ended),
+        spectra: spectra(&ended, options.seed),
+        efficiency: efficiency::efficiency(options.trials, options.seed)?,
+        basin: basin::basin(options.starts, options.seed)?,
+    };
+    found.claims = claims(&Evidence { runs: &ended, found: &found, seed: options.seed })?;
+    Ok(found)
+}
+
+/// A noise-free run.
+fn exact(ended: &[Ended], formulation: Formulation, seen: Seen, offsets: bool) -> Option<&Ended> {
+    ended.iter().find(|it| {
+        (it.plan.formulation, it.plan.seen, it.plan.offsets_in_truth, it.plan.noise)
+            == (formulation, seen, offsets, false)
+    })
+}
+
+fn coordinates(screw: &Screw) -> [f64; 6] {
+    screw.twist().to_vector().into()
+}
+
+fn screws(ended: &[Ended]) -> Vec<ScrewRow> {
+    let (nominal, prescribed) = (tables::nominal(), tables::prescribed());
+    let identified = |seen, joint: usize| {
+        exact(ended, Formulation::Adjoint, seen, false)
+            .map_or([f64::NAN; 6], |run| coordinates(&run.estimate.screws()[joint]))
+    };
+    let printed = tables::printed_screws();
+    nominal
+        .joints
+        .iter()
+        .zip(&prescribed.joints)
+        .zip(printed)
+        .enumerate()
+        .map(|(k, ((joint, truth), printed))| ScrewRow {
+            joint: joint.name.clone(),
+            nominal: coordinates(&joint.screw),
+            printed: printed.to_vector().into(),
+            prescribed: coordinates(&truth.screw),
+            from_poses: identified(Seen::Poses, k),
+            from_points: identified(Seen::Points, k),
+        })
+        .collect()
+}
+
+fn point(ended: &[Ended]) -> PointRow {
+    PointRow {
+        nominal: tables::nominal().home.translation.into(),
+        prescribed: tables::prescribed().home.translation.into(),
+        from_points: exact(ended, Formulation::Adjoint, Seen::Points, false)
+            .map_or([f64::NAN; 3], |run| run.estimate.base_from_target[0].translation.into()),
+    }
+}
+
+fn offsets(ended: &[Ended]) -> Vec<OffsetRow> {
+    let identified = |formulation, joint: usize| {
+        exact(ended, formulation, Seen::Poses, true)
+            .map_or(f64::NAN, |run| run.estimate.joint_offset[joint].to_degrees())
+    };
+    tables::nominal()
+        .joints
+        .iter()
+        .zip(tables::PRESCRIBED_OFFSETS_DEG)
+        .enumerate()
+        .map(|(k, (joint, prescribed_deg))| OffsetRow {
+            joint: joint.name.clone(),
+            prescribed_deg,
+            screw_offsets_deg: identified(Formulation::ScrewOffsets, k),
+            adjoint_offsets_deg: identified(Formulation::AdjointOffsets, k),
+        })
+        .collect()
+}
+
+/// The paper's matrices of all formulations, at the nominal and at the identified robot.
+fn spectra(ended: &[Ended], seed: u64) -> Vec<Spectrum> {
+    let mut spectra = Vec::new();
+    for seen in [Seen::Poses, Seen::Points] {
+        let session = runs::session(false, seen, seed);
+        for formulation in Formulation::ALL {
+            let Some(identified) = exact(ended, formulation, seen, false) else { continue };
+            for (at, estimate) in [("nominal", &session.start()), ("identified", &identified.estimate)] {
+                let matrix = runs::matrix(&session, estimate, formulation);
+                let (values, rank) = literal::singular_values(&matrix);
+                let largest = values.first().copied().unwrap_or(1.0);
+                spectra.push(Spectrum {
+                    matrix: format!("{}, {}", formulation.word(), seen.word()),
+                    at: at.to_owned(),
+                    columns: matrix.ncols(),
+                    rank,
+                    singular_values: values.iter().map(|value| value / largest).collect(),
+                });
+            }
+        }
+    }
+    spectra
+}

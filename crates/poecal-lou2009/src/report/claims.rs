@@ -1,0 +1,28 @@
+//! The claims of a paper as text of lines up to 80 characters.
+
+use crate::Reproduction;
+use poecal::report::table::line;
+
+/// What the paper says, and what it leaves out: for each statement its place, whether it holds, and what was measured.
+#[must_use]
+pub fn claims(found: &Reproduction) -> String {
+    let mut out = String::new();
+    for (said_by_paper, title) in [(true, "What the paper says"), (false, "What the paper leaves out")] {
+        let claims = || found.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper);
+        out.push_str(title);
+        out.push_str("\n\n");
+        for claim in claims() {
+            line(&mut out, if claim.holds { "holds" } else { "not so" }, &claim.claim);
+            line(&mut out, "  paper", &claim.paper);
+            line(&mut out, "  measured", &claim.measured);
+            line(&mut out, "  holds if", &claim.criterion);
+            out.push('\n');
+        }
+        if said_by_paper {
+            let holding = claims().filter(|claim| claim.holds).count();
+            line(&mut out, "claims", &format!("{holding} of {} hold as they are made", claims().count()));
+            out.push('\n');
+        }
+    }
+    out
+}

@@ -1,0 +1,44 @@
+//! A report as blocks, so that Markdown and HTML say the same.
+
+use poecal::report::plot::NamedPlot;
+
+/// A report.
+pub(super) struct Document {
+    pub(super) title: String,
+    pub(super) blocks: Vec<Block>,
+}
+
+/// A part of a report.
+pub(super) enum Block {
+    Heading(String),
+    /// A paragraph; words between backticks are code.
+    Text(String),
+    /// What is typed or printed as it stands.
+    Code(String),
+    Table(Table),
+    Figure(Figure),
+}
+
+/// A table; its rows are as long as its head.
+pub(super) struct Table {
+    pub(super) caption: String,
+    pub(super) head: Vec<String>,
+    pub(super) rows: Vec<Vec<String>>,
+    /// How many columns, from the left, hold words; the others hold numbers.
+    pub(super) words: usize,
+}
+
+/// Plots with a caption.
+pub(super) struct Figure {
+    pub(super) caption: String,
+    pub(super) plots: Vec<NamedPlot>,
+}
+
+impl Document {
+    pub(super) fn into_plots(self) -> impl Iterator<Item = NamedPlot> {
+        self.blocks.into_iter().flat_map(|block| match block {
+            Block::Figure(figure) => figure.plots,
+            Block::Heading(_) | Block::Text(_) | Block::Code(_) | Block::Table(_) => Vec::new(),
+        })
+    }
+}

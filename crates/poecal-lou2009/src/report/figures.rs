@@ -1,0 +1,286 @@
+//! The figures of the report.
+
+use super::document::Figure;
+use super::numbers::stated;
+use super::tables::distinct;
+use crate::Formulation;
+use crate::{Iteration, Reproduction, Run, ScrewRow, Seen, Spectrum};
+use poecal::report::plot::{Axis, DotPlot, Dots, Line, LinePlot, Mark, NamedPlot, Scale};
+
+const SEEN: [Seen; 2] = [Seen::Poses, Seen::Points];
+/// Names of the parts of `v` and `ω`.
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// From this ratio on, an axis of ratios is logarithmic.
+const WIDE_RATIO: f64 = 10.0;
+/// An axis of shares goes from here, or from the least share, to 1.
+const LEAST_SHARE: f64 = 0.9;
+
+/// The style of a formulation, the same in every figure.
+fn style(formulation: Formulation) -> usize {
+    Formulation::ALL.iter().position(|other| *other == formulation).unwrap_or_default()
+}
+
+/// A value of an iteration over iterations, for all noise-free runs of a measurement.
+fn trace_plot(
+    found: &Reproduction,
+    (seen, offsets_in_truth): (Seen, bool),
+    (what, unit): (&str, &str),
+    value: fn(&Iteration) -> f64,
+) -> LinePlot {
+    let chosen =
+        |run: &&Run| run.measurement == seen && run.offsets_in_truth == offsets_in_truth && !run.noise;
+    let line = |run: &Run| Line {
+        name: run.formulation.word().to_owned(),
+        style: style(run.formulation),
+        points: run.trace.iter().enumerate().map(|(k, state)| [k as f64, value(state)]).collect(),
+    };
+    let title =
+        format!("{what}, {}, {} joint offsets", seen.word(), if offsets_in_truth { "with" } else { "no" });
+    LinePlot {
+        description: format!("{title}, by iteration, a line for each formulation."),
+        title,
+        x: Axis::new("iteration", Scale::Count),
+        y: Axis::new(unit, Scale::Log),
+        lines: found.runs.iter().filter(chosen).map(line).collect(),
+        mark: None,
+    }
+}
+
+fn named(name: String, title: String, svg: String) -> NamedPlot {
+    NamedPlot { name: format!("figure-{name}"), title, svg }
+}
+
+fn named_lines(name: String, plot: LinePlot) -> NamedPlot {
+    let svg = plot.svg();
+    named(name, plot.title, svg)
+}
+
+fn named_dots(name: String, plot: DotPlot) -> NamedPlot {
+    let svg = plot.svg();
+    named(name, plot.title, svg)
+}
+
+/// Figure 1: residuals by iteration.
+pub(super) fn residuals(found: &Reproduction) -> Figure {
+    let plot = |seen: Seen| {
+        let words = ("Residual", "RMS residual of position, mm");
+        let plot = trace_plot(found, (seen, false), words, |state| 1e3 * state.residual_rms_m);
+        named_lines(format!("1-residual-{}", seen.word()), plot)
+    };
+    Figure {
+        caption: "Figure 1. Residuals by iteration, without noise and without joint offsets in the truth. Iteration 0 is the nominal robot.".to_owned(),
+        plots: SEEN.map(plot).into(),
+    }
+}
+
+/// Figure 2: screw errors by iteration.
+pub(super) fn screw_errors(found: &Reproduction) -> Figure {
+    let plot = |(seen, offsets): (Seen, bool)| {
+        let words = ("Screw error", "largest screw error, m (v), no unit (ω)");
+        let plot = trace_plot(found, (seen, offsets), words, |state| state.screw_error_max);
+        let case = if offsets { "with-offsets" } else { "no-offsets" };
+        named_lines(format!("2-screws-{}-{case}", seen.word()), plot)
+    };
+    let cases = [false, true].into_iter().flat_map(|offsets| SEEN.map(|seen| (seen, offsets)));
+    Figure {
+        caption: "Figure 2. Largest difference of any screw coordinate from the prescribed one by iteration, without noise. The residual can vanish while the screws stay off: then several robots predict the same.".to_owned(),
+        plots: cases.map(plot).collect(),
+    }
+}
+
+/// Figure 3: nominal and identified screws against the prescribed ones.
+pub(super) fn deviations(found: &Reproduction) -> Figure {
+    Figure {
+        caption: "Figure 3. Distance of each coordinate from its prescribed value: before (nominal) and after identification, without noise.".to_owned(),
+        plots: vec![
+            named_dots("3-deviations-v".to_owned(), deviations_of_v(found)),
+            named_dots("3-deviations-omega".to_owned(), deviations_of_omega(found)),
+        ],
+    }
+}
+
+fn deviations_of_v(found: &Reproduction) -> DotPlot {
+    let mut rows = coordinate_names(&found.screws, "v");
+    rows.extend(AXES.map(|axis| format!("point P_c0 {axis}")));
+    let point = |of: &[f64; 3]| differences_mm(of, &found.point.prescribed);
+    let series = |name: &str, style, of: fn(&ScrewRow) -> &[f64; 6], point: Vec<Option<f64>>| {
+        let screws = found.screws.iter().flat_map(|row| differences_mm(&of(row)[..3], &row.prescribed[..3]));
+        Dots { name: name.to_owned(), style, values: screws.chain(point).collect() }
+    };
+    DotPlot {
+        title: "Deviation of v and of the point".to_owned(),
+        description: "Differences of nominal and identified v and point from the prescribed ones.".to_owned(),
+        x: Axis::new("distance from prescribed, mm", Scale::Log),
+        rows,
+        series: vec![
+            series("nominal", 0, |row| &row.nominal, point(&found.point.nominal)),
+            series("from poses", 1, |row| &row.from_poses, vec![None; 3]),
+            series("from points", 2, |row| &row.from_points, point(&found.point.from_points)),
+        ],
+        joined: true,
+        mark: None,
+    }
+}
+
+fn deviations_of_omega(found: &Reproduction) -> DotPlot {
+    let series = |name: &str, style, of: fn(&ScrewRow) -> &[f64; 6]| {
+        let values = found.screws.iter().flat_map(|row| differences(&of(row)[3..], &row.prescribed[3..]));
+        Dots { name: name.to_owned(), style, values: values.collect() }
+    };
+    DotPlot {
+        title: "Deviation of ω".to_owned(),
+        description: "Differences of nominal and identified ω from the prescribed ones.".to_owned(),
+        x: Axis::new("distance from prescribed, no unit", Scale::Log),
+        rows: coordinate_names(&found.screws, "ω"),
+        series: vec![
+            series("nominal", 0, |row| &row.nominal),
+            series("from poses", 1, |row| &row.from_poses),
+            series("from points", 2, |row| &row.from_points),
+        ],
+        joined: true,
+        mark: None,
+    }
+}
+
+fn coordinate_names(screws: &[ScrewRow], part: &str) -> Vec<String> {
+    screws.iter().flat_map(|row| AXES.map(|axis| format!("{} {part}{axis}", row.joint))).collect()
+}
+
+fn differences(values: &[f64], prescribed: &[f64]) -> Vec<Option<f64>> {
+    values.iter().zip(prescribed).map(|(value, prescribed)| Some((value - prescribed).abs())).collect()
+}
+
+fn differences_mm(values: &[f64], prescribed: &[f64]) -> Vec<Option<f64>> {
+    differences(values, prescribed).into_iter().map(|value| value.map(|metres| 1e3 * metres)).collect()
+}
+
+/// Figure 4: offsets.
+pub(super) fn offsets(found: &Reproduction) -> Figure {
+    let series = |name: &str, style, value: fn(&crate::OffsetRow) -> f64| Dots {
+        name: name.to_owned(),
+        style,
+        values: found.offsets.iter().map(|row| Some(value(row))).collect(),
+    };
+    let plot = DotPlot {
+        title: "Joint offsets".to_owned(),
+        description: "Joint offsets: prescribed, and as two formulations identify them.".to_owned(),
+        x: Axis::new("joint offset, deg", Scale::Linear).including(&[0.0]),
+        rows: found.offsets.iter().map(|row| row.joint.clone()).collect(),
+        series: vec![
+            series("prescribed", 0, |row| row.prescribed_deg),
+            series(Formulation::ScrewOffsets.word(), style(Formulation::ScrewOffsets), |row| {
+                row.screw_offsets_deg
+            }),
+            series(Formulation::AdjointOffsets.word(), style(Formulation::AdjointOffsets), |row| {
+                row.adjoint_offsets_deg
+            }),
+        ],
+        joined: false,
+        mark: None,
+    };
+    Figure {
+        caption: "Figure 4. Joint offsets: prescribed, and identified from poses without noise.".to_owned(),
+        plots: vec![named_dots("4-offsets".to_owned(), plot)],
+    }
+}
+
+/// Figure 5: singular values.
+pub(super) fn spectra(found: &Reproduction) -> Figure {
+    let plot = |(k, spectrum): (usize, &Spectrum)| {
+        let values = spectrum.singular_values.iter().enumerate();
+        let gap = (spectrum.rank < spectrum.columns)
+            .then(|| Mark { at: spectrum.rank as f64 + 0.5, label: format!("rank {}", spectrum.rank) });
+        let title =
+            format!("{}, {}: rank {} of {}", spectrum.matrix, spectrum.at, spectrum.rank, spectrum.columns);
+        let plot = LinePlot {
+            description: format!("Singular values, the largest first. {title}."),
+            title,
+            x: Axis::new("number of the singular value", Scale::Count),
+            y: Axis::new("singular value, share of the largest", Scale::Log),
+            lines: vec![Line {
+                name: spectrum.matrix.clone(),
+                style: 0,
+                points: values.map(|(k, value)| [k as f64 + 1.0, *value]).collect(),
+            }],
+            mark: gap,
+        };
+        named_lines(format!("5-singular-values-{:02}", k + 1), plot)
+    };
+    Figure {
+        caption: format!(
+            "Figure 5. Singular values at the identified robot as shares of the largest. A dashed line marks the gap: singular values beyond it are rounding. A radian counts as {} m.",
+            stated(found.length_m)
+        ),
+        plots: found.spectra.iter().filter(|it| it.at == "identified").enumerate().map(plot).collect(),
+    }
+}
+
+/// Figure 6: accuracy with noise against the bound.
+pub(super) fn efficiency(found: &Reproduction) -> Figure {
+    let rows = distinct(found.efficiency.iter().map(|row| (row.formulation, row.measurement)));
+    let ways = distinct(found.efficiency.iter().map(|row| (row.residual.as_str(), row.method.as_str())));
+    let ratio = |(formulation, seen): (Formulation, Seen), way: (&str, &str)| {
+        let fits = |row: &&crate::Efficiency| {
+            (row.formulation, row.measurement) == (formulation, seen)
+                && (row.residual.as_str(), row.method.as_str()) == way
+        };
+        found.efficiency.iter().find(fits).map(|row| row.ratio)
+    };
+    let series = |(style, way): (usize, &(&str, &str))| Dots {
+        name: format!("{} residual, {}", way.0, way.1),
+        style,
+        values: rows.iter().map(|row| ratio(*row, *way)).collect(),
+    };
+    let wide = found.efficiency.iter().any(|row| row.ratio.is_finite() && row.ratio > WIDE_RATIO);
+    let scale = if wide { Scale::Log } else { Scale::Linear };
+    let plot = DotPlot {
+        title: "Held-out error over the Cramér-Rao bound".to_owned(),
+        description: "Ratio of the RMS held-out error of many noisy fits to the Cramér-Rao bound.".to_owned(),
+        // A scatter of a percent should not fill the plot.
+        x: Axis::new("held-out RMS error over bound, ratio", scale).including(&[0.9, 1.1]),
+        rows: rows
+            .iter()
+            .map(|(formulation, seen)| format!("{}, {}", formulation.word(), seen.word()))
+            .collect(),
+        series: ways.iter().enumerate().map(series).collect(),
+        joined: false,
+        mark: Some(Mark { at: 1.0, label: "bound".to_owned() }),
+    };
+    Figure {
+        caption: "Figure 6. Accuracy with noise: 1 is the best that any unbiased estimator can do."
+            .to_owned(),
+        plots: vec![named_dots("6-efficiency".to_owned(), plot)],
+    }
+}
+
+/// Figure 7: share of starts that converge.
+pub(super) fn basin(found: &Reproduction) -> Figure {
+    let panels = distinct(found.basin.iter().map(|row| (row.measurement, row.method.as_str())));
+    let plot = |(k, (seen, method)): (usize, &(Seen, &str))| {
+        let here =
+            || found.basin.iter().filter(|row| (row.measurement, row.method.as_str()) == (*seen, *method));
+        let line = |formulation: Formulation| Line {
+            name: formulation.word().to_owned(),
+            style: style(formulation),
+            points: here()
+                .filter(|row| row.formulation == formulation)
+                .map(|row| [row.error_deg, row.share])
+                .collect(),
+        };
+        let title = format!("Starts that converge, {}, {method}", seen.word());
+        let plot = LinePlot {
+            description: format!("{title}: share by the error of the start, a line for each formulation."),
+            title,
+            x: Axis::new("error of each axis, deg", Scale::Linear).including(&[0.0]),
+            y: Axis::new("share of starts", Scale::Linear).including(&[LEAST_SHARE, 1.0]),
+            lines: distinct(here().map(|row| row.formulation)).into_iter().map(line).collect(),
+            mark: None,
+        };
+        named_lines(format!("7-basin-{}-{}", seen.word(), k + 1), plot)
+    };
+    Figure {
+        caption: "Figure 7. Share of starts from which the truth is reached, without noise. The axis of shares does not begin at 0."
+            .to_owned(),
+        plots: panels.iter().enumerate().map(plot).collect(),
+    }
+}

@@ -1,0 +1,228 @@
+//! The paper's calibrations from the nominal screws, with every formulation, traced by iteration.
+
+use super::constraints::{State, Watched};
+use super::literal;
+use super::seeds::{Purpose, derived};
+use super::session::Session;
+use super::tables;
+use super::{Iteration, LENGTH_M, NOISE, Run, Seen};
+use crate::{Formulation, Residual, gauss_newton};
+use poecal::error::Result;
+use poecal::estimate::{Estimate, Packed};
+use poecal::measurement::{Dataset, Noise};
+use poecal::problem::Problem;
+use poecal::robot::Robot;
+use poecal::solve::{Options, Termination};
+
+/// Measurements of each kind that a run fits.
+pub(super) const POSES: usize = 30;
+pub(super) const POINTS: usize = 100;
+
+/// Iterations after which a run has failed.
+const LIMIT: usize = 50;
+
+/// RMS held-out error below which a noise-free run has reached the truth, metres.
+const REACHED_M: f64 = 1e-9;
+
+/// Multiple of the position noise within which a noisy run must predict.
+const NOISY_FACTOR: f64 = 10.0;
+
+/// What a run is to do.
+#[derive(Clone, Copy)]
+pub(super) struct Plan {
+    pub(super) formulation: Formulation,
+    pub(super) seen: Seen,
+    pub(super) offsets_in_truth: bool,
+    pub(super) noise: bool,
+}
+
+/// A run, and where it ended.
+pub(super) struct Ended {
+    pub(super) plan: Plan,
+    pub(super) run: Run,
+    pub(super) estimate: Estimate,
+}
+
+/// The truth of the experiment: the prescribed screws and point, with joint offsets or without.
+pub(super) fn truth(offsets: bool) -> Estimate {
+    let robot = tables::prescribed();
+    let mut truth = Estimate::new(&robot, vec![robot.home], poecal::lie::Pose::identity());
+    if offsets {
+        truth.joint_offset = tables::PRESCRIBED_OFFSETS_DEG.map(f64::to_radians).to_vec();
+    }
+    truth
+}
+
+/// All runs: every formulation, poses and points, with and without offsets and noise.
+pub(super) fn runs(seed: u64) -> Result<Vec<Ended>> {
+    let mut runs = Vec::new();
+    for seen in [Seen::Poses, Seen::Points] {
+        for offsets_in_truth in [false, true] {
+            for noise in [false, true] {
+                for formulation in Formulation::ALL {
+                    runs.push(run(Plan { formulation, seen, offsets_in_truth, noise }, seed)?);
+                }
+            }
+        }
+    }
+    Ok(runs)
+}
+
+/// Measurements of a kind that a run fits.
+fn count(seen: Seen) -> usize {
+    match seen {
+        Seen::Poses => POSES,
+        Seen::Points => POINTS,
+    }
+}
+
+/// The configurations of the runs of a kind, and the robot that is there.
+pub(super) fn session(offsets_in_truth: bool, seen: Seen, seed: u64) -> Session {
+    let seed = derived(seed, Purpose::Runs, 0);
+    Session::new(&tables::nominal(), truth(offsets_in_truth), seen, count(seen), seed)
+}
+
+/// One run by plain Gauss-Newton, with the paper's residual of poses.
+fn run(plan: Plan, seed: u64) -> Result<Ended> {
+    let session = session(plan.offsets_in_truth, plan.seen, seed);
+    let measured =
+        if plan.noise { session.noisy(NOISE, derived(seed, Purpose::RunNoise, 0)) } else { session.exact() };
+    let data = session.data(Residual::Spatial, &measured)?;
+    let sigma = if plan.noise { NOISE } else { Noise { position_m: 1.0, rotation_rad: 1.0 } };
+    let free = session.free(plan.formulation);
+    let problem = Problem::new(&data, &session.packed, session.rows(), free, sigma, LENGTH_M);
+    let once = Options { iterations: 1, ..Options::default() };
+
+    let mut state = State::new(session.start());
+    let mut trace = vec![iteration(&session, &data, &state.estimate)];
+    let termination = loop {
+        let (next, _, summary) = gauss_newton(&Watched(&problem), state.clone(), &once);
+        if summary.iterations == 0 || trace.len() > LIMIT {
+            break summary.termination;
+        }
+        state = next;
+        trace.push(iteration(&session, &data, &state.estimate));
+        if !matches!(summary.termination, Termination::IterationLimit) {
+            break summary.termination;
+        }
+    };
+    let run = measures(&session, plan, &state, trace, (problem.layout().dim(), termination));
+    Ok(Ended { plan, run, estimate: state.estimate })
+}
+
+/// What is told of a run that ended.
+fn measures(
+    session: &Session,
+    plan: Plan,
+    state: &State,
+    trace: Vec<Iteration>,
+    (unknowns, termination): (usize, Termination),
+) -> Run {
+    let estimate = &state.estimate;
+    let held_out_rms_m = session.held_out_rms_m(estimate);
+    let most = if plan.noise { NOISY_FACTOR * NOISE.position_m } else { REACHED_M };
+    let (parameters, rank) = rank(session, estimate, plan.formulation);
+    let error = ScrewError::of(estimate, &session.truth);
+    let equivalent = ScrewError::of(&estimate.without_offsets(), &session.truth.without_offsets());
+    Run {
+        formulation: plan.formulation,
+        measurement: plan.seen,
+        offsets_in_truth: plan.offsets_in_truth,
+        noise: plan.noise,
+        measurements: session.packed.rows(),
+        iterations: trace.len() - 1,
+        converged: termination.is_success() && held_out_rms_m < most,
+        parameters,
+        rank,
+        unknowns,
+        held_out_rms_m,
+        screw_error_max: error.largest(),
+        screw_error_max_v_m: error.v_m,
+        screw_error_max_omega: error.omega,
+        equivalent_screw_error_max: equivalent.largest(),
+        equivalent_screw_error_max_v_m: equivalent.v_m,
+        equivalent_screw_error_max_omega: equivalent.omega,
+        constraint_miss_pitch_m: state.miss.pitch_m,
+        constraint_miss_length: state.miss.length,
+        offset_error_max_deg: plan
+            .formulation
+            .has_offsets()
+            .then(|| offset_error_deg(estimate, &session.truth)),
+        trace,
+    }
+}
+
+/// Residual and parameter error of an estimate.
+fn iteration(session: &Session, data: &Dataset, estimate: &Estimate) -> Iteration {
+    let errors = poecal::calibration::row_errors(data, &session.packed, &session.rows(), estimate);
+    let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
+    Iteration {
+        residual_rms_m: (squares / errors.len() as f64).sqrt(),
+        screw_error_max: ScrewError::of(estimate, &session.truth).largest(),
+    }
+}
+
+/// Largest differences of screws' coordinates.
+#[derive(Clone, Copy, Default)]
+struct ScrewError {
+    v_m: f64,
+    omega: f64,
+}
+
+impl ScrewError {
+    fn of(found: &Estimate, truth: &Estimate) -> Self {
+        let pairs = found.screws().into_iter().zip(truth.screws());
+        pairs.fold(ScrewError::default(), |worst, (a, b)| ScrewError {
+            v_m: worst.v_m.max((a.v() - b.v()).amax()),
+            omega: worst.omega.max((a.w() - b.w()).amax()),
+        })
+    }
+
+    fn largest(self) -> f64 {
+        self.v_m.max(self.omega)
+    }
+}
+
+/// Largest difference of a joint offset, degrees, whole turns left out.
+fn offset_error_deg(found: &Estimate, truth: &Estimate) -> f64 {
+    let pairs = found.joint_offset.iter().zip(&truth.joint_offset);
+    pairs.map(|(a, b)| (a - b).sin().atan2((a - b).cos()).abs().to_degrees()).fold(0.0, f64::max)
+}
+
+/// Columns and rank of the paper's own matrix at an estimate, on the configurations of a session.
+fn rank(session: &Session, estimate: &Estimate, formulation: Formulation) -> (usize, usize) {
+    let matrix = matrix(session, estimate, formulation);
+    (matrix.ncols(), literal::singular_values(&matrix).1)
+}
+
+/// The paper's own matrix at an estimate.
+pub(super) fn matrix(
+    session: &Session,
+    estimate: &Estimate,
+    formulation: Formulation,
+) -> nalgebra::DMatrix<f64> {
+    let robot = as_robot(&session.nominal, estimate);
+    let values = configurations(&session.packed, estimate);
+    literal::stacked(&robot, &values, formulation, session.seen, LENGTH_M)
+}
+
+/// An estimate's screws and target as a robot; offsets belong to the joint values.
+pub(super) fn as_robot(nominal: &Robot, estimate: &Estimate) -> Robot {
+    let mut robot = nominal.with_screws(&estimate.screws());
+    robot.home = estimate.base_from_target[0];
+    robot
+}
+
+/// Joint values with the estimate's offsets.
+fn configurations(packed: &Packed, estimate: &Estimate) -> Vec<Vec<f64>> {
+    (0..packed.rows())
+        .map(|row| {
+            packed
+                .joint_values(row)
+                .iter()
+                .zip(&estimate.joint_offset)
+                .map(|(value, offset)| value + offset)
+                .collect()
+        })
+        .collect()
+}

@@ -1,0 +1,111 @@
+//! What a device sees of the elbow: the measurements that a run fits, and the configurations that judge it.
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::Seen;
+use crate::{Formulation, Residual};
+use nalgebra::Vector3;
+use poecal::error::Result;
+use poecal::estimate::{Chain, Estimate, Linkage, Packed};
+use poecal::lie::{Pose, rotation};
+use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
+use poecal::parameters::{Parameter, TargetFrame, TargetPlace};
+use poecal::robot::Robot;
+use poecal::simulate::{random, random_configuration};
+
+/// Configurations that a fit never saw.
+const UNSEEN: usize = 60;
+
+/// Random configurations of a robot within its limits, and the robot that is really there.
+pub(super) struct Session {
+    pub(super) nominal: Robot,
+    pub(super) truth: Estimate,
+    pub(super) seen: Seen,
+    pub(super) readings: Vec<f64>,
+    pub(super) packed: Packed,
+    pub(super) unseen: Packed,
+    /// Where the tip truly is in the unseen configurations.
+    unseen_positions: Vec<Vector3<f64>>,
+}
+
+impl Session {
+    pub(super) fn new(nominal: &Robot, truth: Estimate, seen: Seen, count: usize, seed: u64) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let mut configurations = |count: usize| -> Vec<f64> {
+            (0..count).flat_map(|_| random_configuration(nominal, &mut generator)).collect()
+        };
+        let readings = configurations(count);
+        let width = nominal.joints.len();
+        let packed = Packed::new(nominal, &readings, width);
+        let unseen = Packed::new(nominal, &configurations(UNSEEN), width);
+        let unseen_positions = poses(&truth, &unseen).map(|pose| pose.translation).collect();
+        Session { nominal: nominal.clone(), truth, seen, readings, packed, unseen, unseen_positions }
+    }
+
+    /// All rows.
+    pub(super) fn rows(&self) -> Vec<u32> {
+        (0..self.packed.rows() as u32).collect()
+    }
+
+    /// The target's poses in the measured configurations.
+    pub(super) fn exact(&self) -> Vec<Pose> {
+        poses(&self.truth, &self.packed).collect()
+    }
+
+    /// The same with noise drawn from a seed.
+    pub(super) fn noisy(&self, sigma: Noise, seed: u64) -> Vec<Pose> {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let measured = |pose: Pose| {
+            let position = pose.translation + random::normal_vector(&mut generator) * sigma.position_m;
+            let turn = rotation::exp(&(random::normal_vector(&mut generator) * sigma.rotation_rad));
+            Pose::new(turn * pose.rotation, position)
+        };
+        poses(&self.truth, &self.packed).map(measured).collect()
+    }
+
+    /// What the device says of these poses.
+    pub(super) fn data(&self, residual: Residual, measured: &[Pose]) -> Result<Dataset> {
+        let mut data = Dataset::new(self.nominal.reading_names());
+        data.pose_residual = residual.model();
+        for (readings, &pose) in self.readings.chunks_exact(self.nominal.joints.len()).zip(measured) {
+            let measurement = match self.seen {
+                Seen::Poses => Measurement::Pose(PoseMeasurement { pose }),
+                Seen::Points => Measurement::Point(PointMeasurement { position: pose.translation }),
+            };
+            data.push(readings, None, measurement)?;
+        }
+        Ok(data)
+    }
+
+    /// The estimate that every run starts from: nominal screws and home pose, no offsets, device at the base.
+    pub(super) fn start(&self) -> Estimate {
+        Estimate::new(&self.nominal, vec![self.nominal.home], Pose::identity())
+    }
+
+    /// The unknowns of a formulation.
+    pub(super) fn free(&self, formulation: Formulation) -> Vec<Parameter> {
+        let mut free = formulation.joint_parameters(&self.truth.kinds);
+        free.push(match self.seen {
+            Seen::Poses => Parameter::TargetFrame(TargetFrame { target: 0 }),
+            Seen::Points => Parameter::TargetPlace(TargetPlace { target: 0 }),
+        });
+        free
+    }
+
+    /// RMS distance from an estimate's predictions to the truth on configurations that were not measured, metres.
+    pub(super) fn held_out_rms_m(&self, estimate: &Estimate) -> f64 {
+        let pairs = poses(estimate, &self.unseen).zip(&self.unseen_positions);
+        let squares: f64 = pairs.map(|(pose, position)| (pose.translation - position).norm_squared()).sum();
+        (squares / self.unseen.rows() as f64).sqrt()
+    }
+}
+
+/// An estimate's target in configurations.
+fn poses(estimate: &Estimate, packed: &Packed) -> impl Iterator<Item = Pose> {
+    let (linkage, mut chain) = (Linkage::new(estimate), Chain::default());
+    (0..packed.rows()).map(move |row| {
+        chain.evaluate(&linkage, packed, row, 0);
+        chain.target
+    })
+}

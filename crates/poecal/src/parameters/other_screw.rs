@@ -1,0 +1,67 @@
+//! A joint's screw, its errors written as unknowns in another way than [`ScrewAxis`](super::ScrewAxis): given from outside.
+
+use std::fmt::Debug;
+
+use super::columns::{Column, Columns};
+use crate::estimate::{Chain, Estimate, JointView};
+use crate::lie::{Pose, TargetTwist};
+use crate::robot::JointKind;
+
+/// How the errors of a screw are written as unknowns. The solver serves it row by row and without the full Hessian.
+pub trait ScrewModel: Debug + Sync {
+    /// Its name; models of one name are equal.
+    fn name(&self) -> &'static str;
+
+    /// The unknowns of a joint of this kind, at most six.
+    fn columns(&self, kind: JointKind) -> &'static [Column];
+
+    /// The target's motion per unit of each unknown, as [`Columns::target_twists`] has it.
+    fn target_twists(&self, joint: &JointView, chain: &Chain, out: &mut [TargetTwist]);
+
+    /// As [`Columns::project_constraints`].
+    fn project_constraints(&self, kind: JointKind, step: &mut [f64]);
+
+    /// `base_from_axis` after a step (metres, radians).
+    fn retract(&self, kind: JointKind, base_from_axis: &Pose, step: &[f64]) -> Pose;
+}
+
+/// The screw of a joint by a [`ScrewModel`].
+#[derive(Clone, Copy, Debug)]
+pub struct OtherScrew {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Its kind.
+    pub kind: JointKind,
+    /// How its errors are written.
+    pub model: &'static dyn ScrewModel,
+}
+
+impl PartialEq for OtherScrew {
+    fn eq(&self, other: &Self) -> bool {
+        let key = |it: &OtherScrew| (it.joint, it.kind, it.model.name());
+        key(self) == key(other)
+    }
+}
+
+impl Columns for OtherScrew {
+    fn columns(&self) -> &'static [Column] {
+        self.model.columns(self.kind)
+    }
+
+    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+        self.model.target_twists(&chain.joints[self.joint], chain, out);
+    }
+
+    fn has_curvature(&self) -> bool {
+        false
+    }
+
+    fn project_constraints(&self, step: &mut [f64]) {
+        self.model.project_constraints(self.kind, step);
+    }
+
+    fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
+        let frame = &mut estimate.base_from_axis[self.joint];
+        *frame = self.model.retract(self.kind, frame, step);
+    }
+}
