@@ -28,7 +28,7 @@ NOTES = re.compile(r"(?:<!-- *(?:output|(?:file|given|exit|shorter|not run):[^\n
 NOTE = re.compile(r"<!-- *(?P<word>output|file|given|exit|shorter|not run)(?:: *(?P<value>.*?))? *-->")
 # Languages that are not run: what is shown, not done.
 SHOWN = {"", "text", "math"}
-# Files that are shown there are read by crates/poecal/tests/documented_files.rs.
+# Files that are shown there are read by crates/poecal/tests/it/documented_files.rs.
 DOCUMENTED_FILES = "docs/file-formats.md"
 
 
@@ -51,7 +51,6 @@ class Counts:
     compared: int = 0
     written: int = 0
     shown: int = 0
-    fences: int = 0
     excused: list[str] = field(default_factory=list)
 
 
@@ -92,7 +91,6 @@ class Page:
 
     def run(self) -> None:
         for block in blocks(self.path):
-            self.counts.fences += 1
             self.step(block)
 
     def step(self, block: Block) -> None:

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 from program import ROOT, program
-from snippets import Counts, Page, matches, plain
+from snippets import Counts, Page, blocks, matches, plain
 
 PAGES = sorted(
     path
@@ -15,21 +15,28 @@ PAGES = sorted(
 COUNTS = Counts()
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_every_block_does_what_the_page_says(page, tmp_path):
-    Page(page, tmp_path, COUNTS).run()
-
-
-def test_blocks_are_counted(capsys):
-    with capsys.disabled():
+@pytest.fixture(scope="module", autouse=True)
+def say_what_was_done(pytestconfig):
+    """Says after all pages what was done with their blocks; ./test shows it."""
+    yield
+    with pytestconfig.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
         print(
             f"\ndocumentation: {COUNTS.run} blocks run, {COUNTS.compared} outputs compared, {COUNTS.written} files written, "
             f"{COUNTS.shown} shown only, {len(COUNTS.excused)} not run:"
         )
         for reason in COUNTS.excused:
             print(f"documentation: not run: {reason}")
-    counted = COUNTS.run + COUNTS.compared + COUNTS.written + COUNTS.shown + len(COUNTS.excused)
-    assert counted == COUNTS.fences
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_block_does_what_the_page_says(page, tmp_path):
+    Page(page, tmp_path, COUNTS).run()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_fence_begins_or_ends_a_block_that_is_found(page):
+    fences = [line for line in page.read_text(encoding="utf-8").splitlines() if line.lstrip().startswith("```")]
+    assert len(fences) == 2 * len(blocks(page))
 
 
 def test_the_page_of_commands_is_what_the_program_says():

@@ -1,7 +1,12 @@
 //! Tries every target on its seeds and on variations of them, the same in every run. Names of targets, and of files to try as they are,
-//! may follow: `cargo test -p poecal-fuzz --test fuzz -- urdf broken.urdf`. `POECAL_TRIALS` says how many variations, or `full`.
+//! may follow: `cargo test -p poecal-fuzz --test fuzz -- urdf broken.urdf`. `POECAL_TRIALS` says how many variations, as everywhere.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+// Each crate uses what it needs of it.
+#[allow(dead_code)]
+#[path = "../../poecal/tests/trials/mod.rs"]
+mod trials;
 
 use std::fs;
 use std::panic::catch_unwind;
@@ -10,11 +15,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use poecal_fuzz::{Mutator, TARGETS, Target};
+use trials::trials;
 
 /// Longest that one input may take: what takes a second on an idle machine may take many on a busy one.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// How many times as many trials are `full`.
-const FULL: usize = 100;
 
 fn main() {
     let named: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
@@ -59,7 +63,7 @@ fn try_target(target: &Target, files: &[String]) -> bool {
     }
     let seeds: Vec<Vec<u8>> = seeds.into_iter().map(|(_, seed)| seed).collect();
     let mut mutator = Mutator::new(1, &seeds, &words);
-    for _ in 0..trials(target) {
+    for _ in 0..trials(target.trials).count {
         if !tried.input(target, &mutator.variation()) {
             return false;
         }
@@ -73,14 +77,6 @@ fn try_target(target: &Target, files: &[String]) -> bool {
         tried.slowest.as_secs_f64() * 1e3
     );
     true
-}
-
-fn trials(target: &Target) -> usize {
-    match std::env::var("POECAL_TRIALS") {
-        Ok(word) if word == "full" => target.trials * FULL,
-        Ok(word) => word.parse().unwrap_or(target.trials),
-        Err(_) => target.trials,
-    }
 }
 
 /// Names and content, in the order of the names.

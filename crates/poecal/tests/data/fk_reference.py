@@ -1,4 +1,4 @@
-"""Forward kinematics of the URDFs beside this file, by Pinocchio: the reference of tests/fk_reference.rs.
+"""Forward kinematics of the URDFs beside this file, by Pinocchio: the reference of tests/it/fk_reference.rs.
 
     pip install pin numpy
     python crates/poecal/tests/data/fk_reference.py

@@ -1,6 +1,6 @@
 //! Operations on files: one small trait behind which all of them stand, so that whole commands can run on a disk that fails.
 //!
-//! [`SystemDisk`] is the machine's. Another takes its place for the work of one thread by [`on`]; `tests/simulated_disk` has one
+//! [`SystemDisk`] is the machine's. Another takes its place for the work of one thread by [`on`]; `tests/it/simulated_disk` has one
 //! that writes short, runs full and loses what was not synced.
 
 mod system;

@@ -1,0 +1,36 @@
+//! The program as users run it: one program of tests, since linking it once takes less than linking several.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+mod bad_input;
+mod commands;
+mod diagnosis;
+mod example;
+mod exit_codes;
+// Each crate uses what it needs of it.
+#[allow(dead_code)]
+#[path = "../../../poecal/tests/files/mod.rs"]
+mod files;
+mod folder;
+mod hostile;
+mod identify;
+mod init;
+mod lost_beams;
+mod offsets;
+#[cfg(unix)]
+mod places;
+mod project;
+mod readme;
+mod report;
+mod reproduce;
+mod session;
+mod simulated_disk;
+mod stations;
+mod table;
+mod targets_and_validation;
+// Each crate uses what it needs of it.
+#[allow(dead_code)]
+#[path = "../../../poecal/tests/trials/mod.rs"]
+mod trials;
+mod trust;
+mod validate;

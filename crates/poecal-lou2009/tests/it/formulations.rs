@@ -1,0 +1,158 @@
+//! The formulations of lou2009 side by side: what each finds, and where they part.
+
+use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
+use poecal::measurement::Noise;
+use poecal::robot::Robot;
+use poecal::simulate::{Kind, Simulated, Simulation, elbow, gantry, random_chain, scara, seven_axis};
+use poecal_lou2009::{Formulation, Method, Residual, formulated};
+
+/// Noise-free fits end at the truth but for rounding of some hundred operations on metres.
+const EXACT_MM: f64 = 1e-7;
+
+fn robots() -> Vec<Robot> {
+    vec![elbow(), scara(), gantry(), seven_axis(), random_chain(6, 3), random_chain(8, 5)]
+}
+
+fn session(robot: &Robot, kind: Kind, noise: Noise, device_anywhere: bool) -> Simulated {
+    let simulation = Simulation {
+        noise_position_m: noise.position_m,
+        noise_rotation_rad: noise.rotation_rad,
+        count: 90,
+        device_anywhere,
+        ..Simulation::default()
+    };
+    simulation.run(robot, kind).unwrap()
+}
+
+fn options(made: &Simulated, way: Formulation) -> CalibrationOptions {
+    let known = made.device_from_base == poecal::lie::Pose::identity();
+    let frame = if known { DeviceFrameKnowledge::Base } else { DeviceFrameKnowledge::Unknown };
+    let formulation = formulated(way, Residual::Tool, way.usual_method());
+    CalibrationOptions { frame, formulation, ..CalibrationOptions::default() }
+}
+
+/// Largest held-out position error, millimetres.
+fn worst_mm(calibration: &Calibration) -> f64 {
+    calibration.accuracy.held_out.unwrap().calibrated.position_mm.max
+}
+
+#[test]
+fn every_formulation_finds_the_robot_without_noise() {
+    let none = Noise { position_m: 0.0, rotation_rad: 0.0 };
+    for robot in robots() {
+        for kind in [Kind::Pose, Kind::Point] {
+            for anywhere in [false, true] {
+                let made = session(&robot, kind, none, anywhere);
+                for formulation in Formulation::ALL {
+                    let found = calibrate(&made.nominal, &made.data, &options(&made, formulation)).unwrap();
+                    let worst = worst_mm(&found);
+                    println!(
+                        "{:14} {:5} anywhere {anywhere:5} {:15} {:2} iterations, {worst:.1e} mm",
+                        robot.name,
+                        kind.word(),
+                        formulation.word(),
+                        found.solver.iterations
+                    );
+                    assert!(found.solver.termination.is_success() && worst < EXACT_MM);
+                    assert_eq!(found.solver.joint_offsets.is_some(), formulation.has_offsets());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn offsets_of_the_joints_are_found_without_being_unknowns() {
+    let none = Noise { position_m: 0.0, rotation_rad: 0.0 };
+    for robot in robots() {
+        let mut made = session(&robot, Kind::Pose, none, false);
+        let offsets: Vec<f64> =
+            (0..robot.joints.len()).map(|k| 0.03 * (k as f64 * 1.3 + 0.4).sin()).collect();
+        let shifted = poecal::offsets::into_screws(&made.actual, &offsets).unwrap();
+        let exact = Simulation {
+            noise_position_m: 0.0,
+            noise_rotation_rad: 0.0,
+            count: 90,
+            device_anywhere: false,
+            ..Simulation::default()
+        };
+        let mut generator = rand_chacha::rand_core::SeedableRng::seed_from_u64(4);
+        made = exact.measure(&made.nominal, shifted, Kind::Pose, &mut generator).unwrap();
+        for formulation in Formulation::ALL {
+            let found = calibrate(&made.nominal, &made.data, &options(&made, formulation)).unwrap();
+            println!("{:14} {:15} {:.1e} mm", robot.name, formulation.word(), worst_mm(&found));
+            assert!(worst_mm(&found) < EXACT_MM);
+        }
+    }
+}
+
+/// With noise, the adjoint forms end at one optimum by either method; free screws, normalised after each step, do not.
+#[test]
+fn formulations_part_with_noise() {
+    let noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
+    let made = session(&elbow(), Kind::Point, noise, false);
+    let fit = |formulation, method| {
+        let mut options = options(&made, formulation);
+        options.held_out = 0.0;
+        // A belief is held by none of the formulations for comparison.
+        options.tolerance = None;
+        options.formulation = formulated(formulation, Residual::Tool, method);
+        options.solver.decrement = 1e-14;
+        calibrate(&made.nominal, &made.data, &options).unwrap().accuracy.training.calibrated.position_mm.rms
+    };
+    let best = fit(Formulation::Adjoint, Method::LevenbergMarquardt);
+    let others = [
+        fit(Formulation::Adjoint, Method::GaussNewton),
+        fit(Formulation::AdjointOffsets, Method::LevenbergMarquardt),
+        fit(Formulation::AdjointOffsets, Method::GaussNewton),
+    ];
+    let free = fit(Formulation::Screw, Method::GaussNewton);
+    println!("residual, mm: adjoint {best:.9}, others {others:.9?}, free screws {free:.9}");
+    // The residual is stationary there: a difference of parameters of 1e-6 changes it by its square.
+    assert!(others.iter().all(|other| (other / best - 1.0).abs() < 1e-9));
+    assert!(free > best * (1.0 + 1e-6));
+}
+
+/// The residual of the paper finds the same robot without noise, and a worse one with it.
+#[test]
+fn spatial_residual_costs_accuracy() {
+    let exact = session(&elbow(), Kind::Pose, Noise { position_m: 0.0, rotation_rad: 0.0 }, true);
+    let with = |residual| formulated(Formulation::Adjoint, residual, Method::LevenbergMarquardt);
+    let spatial =
+        CalibrationOptions { formulation: with(Residual::Spatial), ..CalibrationOptions::default() };
+    let found = calibrate(&exact.nominal, &exact.data, &spatial).unwrap();
+    println!("noise-free {:.1e} mm", worst_mm(&found));
+    assert!(worst_mm(&found) < EXACT_MM);
+    let noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
+    let (mut with_spatial, mut with_tool) = (0.0, 0.0);
+    for seed in 0..20 {
+        let simulation = Simulation {
+            noise_position_m: noise.position_m,
+            noise_rotation_rad: noise.rotation_rad,
+            count: 60,
+            seed,
+            device_anywhere: false,
+            ..Simulation::default()
+        };
+        let made = simulation.run(&elbow(), Kind::Pose).unwrap();
+        let unseen = simulation.held_out(&made, Kind::Pose, 100).unwrap();
+        for (residual, sum) in [(Residual::Spatial, &mut with_spatial), (Residual::Tool, &mut with_tool)] {
+            let options = CalibrationOptions {
+                frame: DeviceFrameKnowledge::Base,
+                formulation: with(residual),
+                sigma_position_m: Some(noise.position_m),
+                sigma_rotation_rad: Some(noise.rotation_rad),
+                held_out: 0.0,
+                ..CalibrationOptions::default()
+            };
+            let robot = calibrate(&made.nominal, &made.data, &options).unwrap().robot;
+            for row in 0..unseen.len() {
+                let truth = unseen.observations[row].measurement.pose().translation;
+                *sum += (robot.forward_kinematics(unseen.readings(row)).translation - truth).norm_squared();
+            }
+        }
+    }
+    let ratio = f64::sqrt(with_spatial / with_tool);
+    println!("RMS held-out error: spatial over tool {ratio:.2}");
+    assert!(ratio > 1.5);
+}

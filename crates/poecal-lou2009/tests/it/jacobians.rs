@@ -1,0 +1,140 @@
+//! Free screws and the spatial residual: their derivatives against central differences of tenth order.
+
+use std::f64::consts::PI;
+
+use nalgebra::Vector3;
+use poecal::estimate::{Chain, Estimate, Linkage, Packed};
+use poecal::lie::{Pose, Screw, rotation};
+use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
+use poecal::parameters::{JointOffset, Parameter, ScrewAxis, TargetFrame};
+use poecal::problem::Problem;
+use poecal::robot::{Joint, Robot};
+use poecal::solve::LeastSquares as _;
+use poecal_lou2009::{FreeScrew, Residual};
+
+/// What the differences can tell: their truncation error is some (0.2 rad)¹⁰ / 2772, far less.
+const RELATIVE: f64 = 1e-6;
+/// Rounding of one whitened residual of order one, which differences magnify by the inverse of their step.
+const ROUNDING: f64 = 2e-15;
+/// Different for position and rotation, so that a mix-up shows.
+const NOISE: Noise = Noise { position_m: 0.5, rotation_rad: 0.8 };
+const LENGTH_M: f64 = 0.7;
+
+fn robot() -> Robot {
+    let turning =
+        |name: &str, w: [f64; 3], q: [f64; 3]| Joint::revolute(name, Screw::revolute(&w.into(), &q.into()));
+    let joints = vec![
+        turning("a", [0.1, -0.2, 0.9], [0.05, 0.1, 0.0]),
+        Joint::prismatic("b", Screw::prismatic(&Vector3::new(0.7, 0.2, -0.4))),
+        turning("c", [-0.3, 0.8, 0.2], [0.1, -0.05, 0.2]),
+    ];
+    Robot::new("r_p_r", joints, Pose::from_xyz_rpy([0.25, 0.15, 0.3], [0.4, -0.3, 0.8])).unwrap()
+}
+
+/// A measurement that is off the estimate's prediction by a shift and a turn.
+fn data(
+    robot: &Robot,
+    estimate: &Estimate,
+    readings: &[f64],
+    residual: Option<Residual>,
+    turn: f64,
+) -> Dataset {
+    let packed = Packed::new(robot, readings, readings.len());
+    let mut chain = Chain::default();
+    chain.evaluate(&Linkage::new(estimate), &packed, 0, 0);
+    let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turn));
+    let position = chain.target.translation + Vector3::new(0.02, -0.01, 0.03);
+    let mut data = Dataset::new(robot.reading_names());
+    let measurement = match residual {
+        None => Measurement::Point(PointMeasurement { position }),
+        Some(_) => {
+            Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * chain.target.rotation, position) })
+        }
+    };
+    data.push(readings, None, measurement).unwrap();
+    data.pose_residual = residual.and_then(Residual::model);
+    data
+}
+
+/// The whitened Jacobian of the prediction, row-major, and the residual.
+fn row(problem: &Problem<'_>, state: &Estimate) -> (Vec<f64>, Vec<f64>) {
+    let mut found = None;
+    problem.for_rows(state, &[0], |_, jacobian, e| found = Some((jacobian.to_vec(), e.to_vec())));
+    found.unwrap()
+}
+
+/// Central differences of the prediction by one unknown.
+fn differences(problem: &Problem<'_>, state: &Estimate, unknown: usize, step: f64) -> Vec<f64> {
+    let weights = [5.0 / 6.0, -5.0 / 21.0, 5.0 / 84.0, -5.0 / 504.0, 1.0 / 1260.0];
+    let mut sum = vec![0.0; row(problem, state).1.len()];
+    for (k, weight) in weights.into_iter().enumerate() {
+        for sign in [1.0, -1.0] {
+            let mut delta = vec![0.0; problem.dim()];
+            delta[unknown] = sign * step * (k + 1) as f64;
+            let (_, moved) = row(problem, &problem.retract(state, &delta));
+            for (sum, e) in sum.iter_mut().zip(moved) {
+                *sum -= sign * weight * e / step;
+            }
+        }
+    }
+    sum
+}
+
+#[test]
+fn jacobians_agree_with_differences() {
+    let robot = robot();
+    let device = Pose::from_xyz_rpy([0.3, -0.2, 0.1], [-0.5, 0.9, 2.0]);
+    let state = Estimate::new(&robot, vec![robot.home], device);
+    let mut parameters = vec![("target frame", Parameter::TargetFrame(TargetFrame { target: 0 }))];
+    for (joint, it) in robot.joints.iter().enumerate() {
+        parameters.push(("free screw", FreeScrew::of(joint, it.kind)));
+        parameters.push(("screw axis", Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
+        parameters.push(("offset", Parameter::JointOffset(JointOffset { joint, kind: it.kind })));
+    }
+    let mut compared = 0;
+    for (seen, residual) in
+        [("point", None), ("pose", Some(Residual::Tool)), ("spatial pose", Some(Residual::Spatial))]
+    {
+        for &(name, parameter) in &parameters {
+            let mut worst = 0.0;
+            for value in [0.0, 1e-8, 0.9, PI - 1e-8] {
+                for angle in [0.0, 1e-8, 1.1, PI - 1e-3] {
+                    let data = data(&robot, &state, &[value; 3], residual, angle);
+                    let packed = Packed::new(&robot, &[value; 3], 3);
+                    let problem = Problem::new(&data, &packed, vec![0], vec![parameter], NOISE, LENGTH_M);
+                    // No step must carry the residual over half a turn, where its logarithm jumps. Free screws are normalised, which
+                    // is no polynomial: their steps are shorter.
+                    let longest = if matches!(parameter, Parameter::OtherScrew(_)) { 0.03 } else { 0.1 };
+                    let step = f64::min(longest, (PI - angle) / 20.0);
+                    let (jacobian, e) = row(&problem, &state);
+                    // Unknowns that the retraction drops are checked against the paper's own columns.
+                    let mut kept = vec![1.0; problem.dim()];
+                    parameter.model().project_constraints(&mut kept);
+                    for unknown in (0..problem.dim()).filter(|&k| problem_keeps(&problem, &kept, k)) {
+                        let numeric = differences(&problem, &state, unknown, step);
+                        let column = (0..e.len()).map(|k| jacobian[k * problem.dim() + unknown]);
+                        let (mut apart, mut size) = (0.0, 0.0);
+                        for (a, b) in column.zip(&numeric) {
+                            apart += (a - b) * (a - b);
+                            size += a * a;
+                        }
+                        let floor = ROUNDING / step / RELATIVE;
+                        let relative = f64::sqrt(apart) / f64::sqrt(size).max(floor);
+                        assert!(relative < RELATIVE, "{seen} by {name}, unknown {unknown}: {relative:e}");
+                        worst = f64::max(worst, relative);
+                        compared += 1;
+                    }
+                }
+            }
+            println!("{seen:12} by {name:13} {worst:.1e}");
+        }
+    }
+    // Of each of 16 cases and 3 kinds: 6 of the target, 4 of a turning axis by either way, 2 of a sliding one, an offset each.
+    assert_eq!(compared, 16 * 3 * (6 + 2 * (4 + 4 + 2) + 3));
+}
+
+/// Whether the retraction keeps the unknown at a place of a step.
+fn problem_keeps(problem: &Problem<'_>, kept: &[f64], place: usize) -> bool {
+    let own = problem.layout().parameters().flat_map(|(_, places)| places);
+    own.zip(kept).any(|(&(other, _), &kept)| other == place && kept != 0.0)
+}

@@ -1,0 +1,248 @@
+//! Mistakes put into simulated sessions are named, and clean sessions are left in peace.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::mistakes::Session;
+use crate::trials::trials;
+use nalgebra::Vector3;
+use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
+use poecal::estimate::Packed;
+use poecal::forensics::{Diagnosis, DiagnosisKind, Options, diagnose};
+use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement};
+use poecal::simulate::{Kind, Simulation, elbow};
+use poecal::start::{Registration, register};
+use rayon::prelude::*;
+
+const KINDS: [DiagnosisKind; 12] = [
+    DiagnosisKind::JointUnit,
+    DiagnosisKind::PositionUnit,
+    DiagnosisKind::JointSign,
+    DiagnosisKind::JointsSwapped,
+    DiagnosisKind::JointZero,
+    DiagnosisKind::QuaternionOrder,
+    DiagnosisKind::InvertedPose,
+    DiagnosisKind::EulerConvention,
+    DiagnosisKind::LeftHanded,
+    DiagnosisKind::RowShift,
+    DiagnosisKind::TargetsSwapped,
+    DiagnosisKind::DuplicateRows,
+];
+
+fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
+    let rows: Vec<u32> = data.all_rows();
+    diagnose(&session.robot, data, &rows, &Options { device_free: session.device_free, ..Options::default() })
+}
+
+/// Root mean square position error of the nominal robot with device and targets found, metres.
+fn registered_m(session: &Session, data: &Dataset) -> f64 {
+    let packed = Packed::new(&session.robot, data.all_readings(), data.reading_names().len());
+    let rows: Vec<u32> = data.all_rows();
+    let registration = Registration {
+        data,
+        packed: &packed,
+        rows: &rows,
+        noise: Noise { position_m: 1e-3, rotation_rad: 3e-3 },
+        length_m: 0.33,
+        device_free: session.device_free,
+        targets_free: true,
+    };
+    let (_, cost) = register(&registration, &delivered(&session.robot, data));
+    1e-3 * (2.0 * cost / data.len() as f64).sqrt()
+}
+
+/// A drawn session with a mistake of the kind that belongs to the index. What a session cannot have is drawn again, and so are joint
+/// zeros that are not gross, the registered error being below 2.5 times that of the clean session: a calibration takes them in, as
+/// it is meant to (the zero of the first and last joint, and of slides that only shift the base, move nothing at all).
+fn mistaken(index: u64) -> (Session, DiagnosisKind, Dataset, String) {
+    let kind = KINDS[index as usize % KINDS.len()];
+    for attempt in 0.. {
+        let seed = index / KINDS.len() as u64 + 1000 * index + 77_777 * attempt;
+        let session = Session::drawn(seed);
+        let Some((data, words)) = session.mistaken(kind, seed) else { continue };
+        if kind == DiagnosisKind::JointZero
+            && registered_m(&session, &data) < 2.5 * registered_m(&session, &session.data)
+        {
+            continue;
+        }
+        return (session, kind, data, words);
+    }
+    unreachable!("some session can have every mistake")
+}
+
+#[test]
+fn mistakes_are_named() {
+    let sessions = trials(60).at_least(KINDS.len());
+    let count = sessions.count;
+    let results: Vec<(DiagnosisKind, bool)> = (sessions.seeds())
+        .into_par_iter()
+        .map(|index| {
+            let (session, kind, data, words) = mistaken(index);
+            let found = found(&session, &data);
+            let right = !found.is_empty() && found.iter().all(|one| one.kind == kind);
+            if !right {
+                println!("MISSED {index} {kind:?} ({words}); {}", session.words);
+                found.iter().for_each(|one| println!("    found {:?}: {}", one.kind, one.statement));
+            }
+            (kind, right)
+        })
+        .collect();
+    let mut by_kind: BTreeMap<DiagnosisKind, (usize, usize)> = BTreeMap::new();
+    for (kind, right) in &results {
+        let entry = by_kind.entry(*kind).or_default();
+        entry.0 += usize::from(*right);
+        entry.1 += 1;
+    }
+    for (kind, (right, all)) in &by_kind {
+        println!("{kind:?}: {right} of {all}");
+    }
+    let right = results.iter().filter(|(_, right)| *right).count();
+    println!("named correctly: {right} of {count}");
+    assert!(right as f64 >= (0.95 - sessions.more_of_a_share(0.95)) * count as f64, "{right} of {count}");
+}
+
+/// An elbow of which each reading of a joint is that of the data plus so many times that of the joint before.
+fn coupled(session: &Session, column: usize, own: f64, factor: f64) -> Dataset {
+    let mut data = Dataset::new(session.data.reading_names().to_vec());
+    data.targets.clone_from(&session.data.targets);
+    for row in 0..session.data.len() {
+        let mut readings = session.data.readings(row).to_vec();
+        readings[column] = own * readings[column] + factor * readings[column - 1];
+        data.push_observation(&readings, session.data.observations[row]).unwrap();
+    }
+    data
+}
+
+#[test]
+fn readings_that_are_sums_of_two_joints_are_named() {
+    for (seed, own, factor) in [(0, 1.0, 1.0), (10, 1.0, -1.0), (20, -1.0, 1.0), (30, -1.0, -1.0)] {
+        let session = Session::drawn(seed);
+        let found = found(&session, &coupled(&session, 2, own, factor));
+        let kinds: Vec<_> = found.iter().map(|one| one.kind).collect();
+        assert_eq!(kinds, [DiagnosisKind::JointsCoupled], "{}: {found:?}", session.words);
+        // joint3 = (reading - factor joint2) / own
+        let (own, factor) = (own as i32, (-factor / own) as i32);
+        let line = format!("`joint3 = {{ columns = {{ joint3 = {own}, joint2 = {factor} }} }}`");
+        assert!(found[0].statement.contains(&line), "{line}: {}", found[0].statement);
+    }
+}
+
+/// What `poecal calibrate` names.
+fn told_with_calibration(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
+    let frame = if session.device_free { DeviceFrameKnowledge::Unknown } else { DeviceFrameKnowledge::Base };
+    calibrate(&session.robot, data, &CalibrationOptions { frame, ..Default::default() }).unwrap().diagnosis
+}
+
+#[test]
+fn check_and_calibrate_name_the_same_mistakes() {
+    let mut different = Vec::new();
+    let planted = (0..KINDS.len() as u64).map(mistaken);
+    let elbow = Session::drawn(0);
+    let data = coupled(&elbow, 2, 1.0, 1.0);
+    for (session, kind, data, words) in
+        planted.chain([(elbow, DiagnosisKind::JointsCoupled, data, "joint3 + joint2".to_owned())])
+    {
+        let kinds = |found: Vec<Diagnosis>| found.into_iter().map(|one| one.kind).collect::<BTreeSet<_>>();
+        let (checked, calibrated) =
+            (kinds(found(&session, &data)), kinds(told_with_calibration(&session, &data)));
+        if checked != calibrated || !checked.contains(&kind) {
+            different.push(format!(
+                "{kind:?} ({words}; {}): checked {checked:?}, calibrated {calibrated:?}",
+                session.words
+            ));
+        }
+    }
+    assert!(different.is_empty(), "{different:#?}");
+}
+
+/// A session of an elbow whose rows see so many targets in turn, with the sign of one joint wrong or not.
+fn of_targets(targets: usize, sign: f64) -> (Session, Dataset) {
+    let mut session = Session::drawn(0);
+    let made = Simulation { count: 3 * targets, ..Simulation::default() }.run(&elbow(), Kind::Point).unwrap();
+    session.robot = made.nominal;
+    let mut data = Dataset::new(made.data.reading_names().to_vec());
+    for row in 0..made.data.len() {
+        let mut readings = made.data.readings(row).to_vec();
+        readings[2] *= sign;
+        let name = format!("T{}", row % targets);
+        data.push(&readings, Some(&name), made.data.observations[row].measurement).unwrap();
+    }
+    (session, data)
+}
+
+/// Each target had unknowns of its own in every fit of every supposition, and each pair was a supposition: hours.
+#[test]
+fn a_thousand_targets_are_looked_through() {
+    let (session, data) = of_targets(1000, 1.0);
+    assert_eq!(found(&session, &data), []);
+    let (session, data) = of_targets(1000, -1.0);
+    let found = found(&session, &data);
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].kind, DiagnosisKind::JointSign);
+    let options = CalibrationOptions { held_out: 0.0, ..Default::default() };
+    let error = calibrate(&session.robot, &data, &options).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "found 3024 unknowns (24 of the screws, 3000 of 1000 targets), expected at most 1000, which one fit can bear: \
+         calibrate with fewer targets, or a shorter chain"
+    );
+}
+
+/// An elbow and 600 rows of 30 targets, each at a place of its own.
+fn of_many_places() -> (Session, Dataset) {
+    let (session, _) = of_targets(30, 1.0);
+    let made = Simulation { count: 600, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let mut data = Dataset::new(made.data.reading_names().to_vec());
+    for row in 0..made.data.len() {
+        let target = row % 30;
+        let angle = target as f64;
+        let place = Vector3::new(0.1 * angle.sin(), 0.1 * angle.cos(), 0.003 * angle);
+        let position = made.data.observations[row].measurement.pose().act(&place);
+        let seen = Measurement::Point(PointMeasurement { position });
+        data.push(made.data.readings(row), Some(&format!("T{target}")), seen).unwrap();
+    }
+    (session, data)
+}
+
+/// Names exchanged in rows of two of many targets.
+#[test]
+fn two_of_many_targets_exchanged_in_some_rows_are_named() {
+    let (session, mut data) = of_many_places();
+    for row in data.observations.iter_mut().skip(300) {
+        row.target = match row.target {
+            7 => 21,
+            21 => 7,
+            other => other,
+        };
+    }
+    let found = found(&session, &data);
+    assert_eq!(found.iter().map(|one| one.kind).collect::<Vec<_>>(), [DiagnosisKind::TargetsSwapped]);
+    let statement = &found[0].statement;
+    assert!(statement.contains("T7 and T21") || statement.contains("T21 and T7"), "{statement}");
+}
+
+#[test]
+fn a_clean_calibration_has_no_mistake() {
+    let simulation = poecal::simulate::Simulation::default();
+    let made = simulation.run(&poecal::simulate::elbow(), poecal::simulate::Kind::Point).unwrap();
+    let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+    let rows: Vec<u32> = made.data.all_rows();
+    let options = Options { calibrated: Some(&calibration.models.calibrated), ..Options::default() };
+    assert_eq!(diagnose(&made.nominal, &made.data, &rows, &options), []);
+}
+
+#[test]
+fn clean_sessions_raise_no_alarm() {
+    let sessions = trials(200);
+    let count = sessions.count;
+    let alarms: Vec<String> = (sessions.seeds())
+        .into_par_iter()
+        .flat_map_iter(|index| {
+            let session = Session::drawn(index + 5_000_000);
+            let found = found(&session, &session.data);
+            found.into_iter().map(move |one| format!("{}: {:?}: {}", session.words, one.kind, one.statement))
+        })
+        .collect();
+    alarms.iter().for_each(|alarm| println!("ALARM {alarm}"));
+    println!("alarms: {} of {count}", alarms.len());
+    assert!(alarms.len() as f64 <= (0.01 + sessions.more_of_a_share(0.01)) * count as f64);
+}

@@ -1,0 +1,52 @@
+//! What the library does, seen from outside: one program, since linking it once takes less than linking one for each subject.
+//!
+//! A test that needs a process of its own is a program of its own, beside this folder.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+mod basin;
+mod common;
+mod determinism;
+mod documented_files;
+mod drawing;
+mod fast_path;
+// Each crate uses what it needs of it.
+#[allow(dead_code)]
+#[path = "../files/mod.rs"]
+mod files;
+mod fk_reference;
+mod forensics;
+mod gauge;
+mod identifiability;
+mod jacobians;
+#[path = "../largest/mod.rs"]
+mod largest;
+mod mapping_errors;
+mod mapping_forms;
+mod measurement_choices;
+mod measurement_errors;
+mod measurement_forms;
+mod measurement_long;
+mod mistakes;
+mod model_convert;
+mod model_errors;
+mod moves;
+mod noise_free;
+mod offsets;
+mod oracle;
+mod promises;
+mod refit_promise;
+mod report_page;
+mod robust;
+mod starts;
+mod stations;
+mod statistics;
+mod suspicion;
+mod theory;
+#[allow(dead_code)]
+#[path = "../trials/mod.rs"]
+mod trials;
+mod uncertainty;
+mod unnamed_targets;
+mod urdf_patch;
+mod verdict;

@@ -1,0 +1,208 @@
+//! A device that stood at several places: each has a frame of its own, the robot and its targets are one.
+
+use nalgebra::Vector3;
+use poecal::calibration::{
+    Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, row_errors, row_influence,
+};
+use poecal::estimate::Packed;
+use poecal::lie::{Pose, rotation};
+use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Set};
+use poecal::robot::Robot;
+use poecal::simulate::{Kind, Simulated, Simulation, elbow, gantry, scara, seven_axis};
+
+/// Another place of the device, in the first one's frame.
+fn moved(station: usize) -> Pose {
+    Pose::from_xyz_rpy([1.5, -2.0 * station as f64, 0.3], [0.2, -0.1, 1.1 * station as f64])
+}
+
+/// The measurement as the device sees it from another place.
+fn seen_from(place: &Pose, measurement: &Measurement) -> Measurement {
+    match measurement {
+        Measurement::Point(seen) => {
+            Measurement::Point(PointMeasurement { position: place.act(&seen.position) })
+        }
+        other => Measurement::Pose(PoseMeasurement { pose: *place * other.pose() }),
+    }
+}
+
+/// The rows of a session dealt out to several places.
+fn dealt(made: &Simulated, stations: usize) -> Dataset {
+    let mut data = made.data.clone();
+    let parts = data.len().div_ceil(stations);
+    data.stations = (0..stations).map(|station| Some(format!("tracker {station}"))).collect();
+    for (row, observation) in data.observations.iter_mut().enumerate() {
+        observation.station = row / parts;
+        if observation.station > 0 {
+            observation.measurement = seen_from(&moved(observation.station), &observation.measurement);
+        }
+    }
+    data
+}
+
+fn session(robot: &Robot, kind: Kind, count: usize, seed: u64) -> (Simulation, Simulated) {
+    let simulation = Simulation { count, seed, ..Simulation::default() };
+    (simulation, simulation.run(robot, kind).unwrap())
+}
+
+fn fit(robot: &Robot, data: &Dataset) -> Calibration {
+    calibrate(robot, data, &CalibrationOptions { held_out: 0.0, ..Default::default() }).unwrap()
+}
+
+/// Root mean square distance from the truth in configurations that no fit saw, metres, in the first place's frame.
+fn unseen_m(simulation: &Simulation, made: &Simulated, kind: Kind, calibration: &Calibration) -> f64 {
+    let unseen = simulation.held_out(made, kind, 300).unwrap();
+    let packed = Packed::new(&made.nominal, unseen.all_readings(), unseen.reading_names().len());
+    let errors = row_errors(&unseen, &packed, &unseen.all_rows(), &calibration.models.calibrated);
+    (errors.iter().map(|error| error.position_m.norm_squared()).sum::<f64>() / 300.0).sqrt()
+}
+
+#[test]
+fn several_places_calibrate_as_one_does() {
+    for (robot, kind) in
+        [(elbow(), Kind::Point), (elbow(), Kind::Pose), (scara(), Kind::Pose), (seven_axis(), Kind::Mixed)]
+    {
+        let (mut one, mut two) = (0.0_f64, 0.0);
+        for seed in 1..=4 {
+            let (simulation, made) = session(&robot, kind, 120, seed);
+            let alone = fit(&robot, &made.data);
+            let found = fit(&robot, &dealt(&made, 2));
+            one += unseen_m(&simulation, &made, kind, &alone).powi(2);
+            two += unseen_m(&simulation, &made, kind, &found).powi(2);
+            assert_eq!(found.stations.len(), 2);
+            let apart = found.stations[1].base_from_device.inverse() * found.stations[0].base_from_device;
+            let off = apart.inverse() * moved(1);
+            let angle = rotation::log(&off.rotation).norm();
+            assert!(
+                off.translation.norm() < 1e-3 && angle < 1e-3,
+                "{} m, {angle} rad",
+                off.translation.norm()
+            );
+            assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+            assert_eq!(found.verdict.level, alone.verdict.level, "{:?}", found.verdict);
+        }
+        let ratio = (two / one).sqrt();
+        println!(
+            "{} {kind:?}: {:.4} mm, with two places {ratio:.2} times",
+            robot.name,
+            (one / 4.0).sqrt() * 1e3
+        );
+        // Six more unknowns take some of the numbers, no more.
+        assert!(ratio < 1.3, "{ratio}");
+    }
+}
+
+#[test]
+fn exact_measurements_from_three_places_leave_nothing() {
+    for robot in [elbow(), scara(), gantry()] {
+        for kind in [Kind::Pose, Kind::Point] {
+            let exact = Simulation {
+                count: 90,
+                noise_position_m: 0.0,
+                noise_rotation_rad: 0.0,
+                ..Simulation::default()
+            };
+            let made = exact.run(&robot, kind).unwrap();
+            let found = fit(&robot, &dealt(&made, 3));
+            let worst = found.accuracy.training.calibrated.position_mm.max;
+            println!("{} {kind:?}: {worst:.1e} mm", robot.name);
+            assert!(worst < 1e-6, "{worst}");
+        }
+    }
+}
+
+#[test]
+fn each_further_place_adds_six_to_the_rank() {
+    for (robot, kind, plain) in [
+        (elbow(), Kind::Point, 27),
+        (elbow(), Kind::Pose, 30),
+        (scara(), Kind::Pose, 20),
+        (gantry(), Kind::Pose, 24),
+    ] {
+        let (_, made) = session(&robot, kind, 90, 2);
+        for stations in 1..=3 {
+            let data = dealt(&made, stations);
+            let found = fit(&robot, &data);
+            let expected = plain + 6 * (stations - 1);
+            assert_eq!(found.identifiability.parameters, expected);
+            assert_eq!(found.identifiability.rank, expected, "{}", robot.name);
+            // The same rank, by another way: what each row means to the fit.
+            let dims = data.observations.iter().map(|row| row.measurement.residual_model().dim() as f64);
+            let leverages = row_influence(&found, &data, &data.all_rows());
+            let sum: f64 = leverages.iter().zip(dims).map(|(row, dim)| row.leverage * dim).sum();
+            assert!((sum - expected as f64).abs() < 1e-3, "{sum}");
+        }
+    }
+}
+
+#[test]
+fn a_target_that_only_one_place_saw_is_found_too() {
+    let robot = elbow();
+    let (_, made) = session(&robot, Kind::Point, 120, 3);
+    let mut data = dealt(&made, 2);
+    data.targets = vec![Some("a".into()), Some("b".into()), Some("c".into())];
+    for (row, observation) in data.observations.iter_mut().enumerate() {
+        observation.target = [row % 2, 1 + row % 2][observation.station];
+        let shift = Vector3::new(0.05, 0.02, -0.03) * observation.target as f64;
+        let tip = made.device_from_base * made.actual.forward_kinematics(made.data.readings(row));
+        let by = tip.rotation * shift;
+        let by = if observation.station == 0 { by } else { moved(1).rotation * by };
+        let Measurement::Point(seen) = &mut observation.measurement else { continue };
+        seen.position += by;
+    }
+    let found = fit(&robot, &data);
+    assert_eq!(found.identifiability.rank, 24 + 9 + 6);
+    assert!(found.accuracy.training.calibrated.position_mm.rms < 0.1);
+}
+
+fn refusal(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> String {
+    calibrate(robot, data, options).unwrap_err().to_string()
+}
+
+#[test]
+fn places_that_cannot_be_found_are_refused() {
+    let robot = elbow();
+    let (_, made) = session(&robot, Kind::Point, 60, 1);
+    let data = dealt(&made, 2);
+    let base = CalibrationOptions { frame: DeviceFrameKnowledge::Base, ..Default::default() };
+    assert_eq!(
+        refusal(&robot, &data, &base),
+        "found measurements of 2 instruments that are to be in the base frame (--frame base), expected one of the two: leave the \
+         instruments' names out if all measure in the base frame, or --frame base if each has a frame of its own"
+    );
+    let mut judged = data.clone();
+    for observation in &mut judged.observations {
+        observation.set = Some(if observation.station == 0 { Set::Fit } else { Set::HeldOut });
+    }
+    assert_eq!(
+        refusal(&robot, &judged, &CalibrationOptions::default()),
+        "found 30 measurements of instrument `tracker 1` held out and none to fit, expected at least 3 to find its frame from: fit some of \
+         them, or judge by `poecal validate --refit-frame` afterwards"
+    );
+    let mut few = data.clone();
+    few.observations.iter_mut().skip(32).for_each(|observation| observation.station = 0);
+    let all = CalibrationOptions { held_out: 0.0, ..Default::default() };
+    assert_eq!(
+        refusal(&robot, &few, &all),
+        "found 2 measurements of instrument `tracker 1` to fit, expected at least 3 to find its frame from: measure more from there, \
+         hold out fewer, or leave its rows out"
+    );
+}
+
+#[test]
+fn mistakes_are_named_whatever_place_they_were_seen_from() {
+    let robot = elbow();
+    let (_, made) = session(&robot, Kind::Pose, 80, 1);
+    let mut data = Dataset::new(made.data.reading_names().to_vec());
+    let two = dealt(&made, 2);
+    for row in 0..two.len() {
+        let mut readings = two.readings(row).to_vec();
+        readings[2] = -readings[2];
+        let name = two.stations[two.observations[row].station].clone();
+        let station = data.station_index(name.as_deref());
+        data.push(&readings, None, two.observations[row].measurement).unwrap();
+        data.observations[row].station = station;
+    }
+    let found = fit(&robot, &data);
+    assert_eq!(found.diagnosis.len(), 1, "{:?}", found.diagnosis);
+    assert!(found.diagnosis[0].statement.contains("joint3"), "{}", found.diagnosis[0].statement);
+}

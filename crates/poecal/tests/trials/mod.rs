@@ -1,0 +1,50 @@
+//! How many trials a test makes, which `POECAL_TRIALS` says: nothing, as many as usual; `quick`, a twentieth; `full`, a hundred times as
+//! many; or a number.
+
+/// A number of trials, and by how much a figure that is made of them may be off more than one of the usual number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Trials {
+    pub(crate) count: usize,
+    usual: usize,
+}
+
+/// The fewest trials that show anything.
+const FEWEST: usize = 5;
+
+/// So many trials as `POECAL_TRIALS` makes of the usual number.
+pub(crate) fn trials(usual: usize) -> Trials {
+    let said = std::env::var("POECAL_TRIALS").ok();
+    let count = match said.as_deref() {
+        None | Some("") => usual,
+        Some("quick") => (usual / 20).max(FEWEST).min(usual),
+        Some("full") => 100 * usual,
+        Some(number) => number.parse().ok().filter(|&count| count > 0).unwrap_or_else(|| {
+            panic!("POECAL_TRIALS: found `{number}`, expected `quick`, `full`, or a number from 1")
+        }),
+    };
+    Trials { count, usual }
+}
+
+impl Trials {
+    /// No fewer than these, if the usual number is not below it.
+    pub(crate) fn at_least(self, fewest: usize) -> Self {
+        Trials { count: self.count.max(fewest.min(self.usual)), ..self }
+    }
+
+    /// Numbers of the trials, as seeds are.
+    pub(crate) fn seeds(self) -> std::ops::Range<u64> {
+        0..self.count as u64
+    }
+
+    /// What a tolerance of a mean over the trials grows by: three standard errors, less those that the usual number has. Nothing for the
+    /// usual number and more. `sigma` is the standard deviation of one trial.
+    pub(crate) fn more(self, sigma: f64) -> f64 {
+        let root = |count: usize| (count as f64).sqrt();
+        3.0 * sigma * (1.0 / root(self.count) - 1.0 / root(self.usual)).max(0.0)
+    }
+
+    /// What the tolerance of a share of the trials grows by.
+    pub(crate) fn more_of_a_share(self, share: f64) -> f64 {
+        self.more((share * (1.0 - share)).sqrt())
+    }
+}
