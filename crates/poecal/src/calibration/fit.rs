@@ -148,12 +148,12 @@ pub(super) fn minimal(
     (problem.layout().clone(), problem.normal(estimate))
 }
 
-/// What an undamped step promises.
-fn promised(normal: &Normal) -> f64 {
+/// Predicted reduction of an undamped step.
+fn predicted_reduction(normal: &Normal) -> f64 {
     let n = normal.dim();
     let largest = (0..n).map(|k| normal.gram[k * n + k]).fold(0.0, f64::max);
     linalg::cholesky(&normal.gram, n, 1e-13 * largest)
-        .map_or(0.0, |factor| normal.promise(&linalg::cholesky_solve(&factor, &normal.gradient)))
+        .map_or(0.0, |factor| normal.predicted_reduction(&linalg::cholesky_solve(&factor, &normal.gradient)))
 }
 
 /// Whether stated noise explains a variance of the whitened residuals.
@@ -291,7 +291,7 @@ impl Task<'_> {
         let mut found = found;
         let mut normal = self.problem(&found.estimate, noise).normal(&found.estimate);
         // The optimum moved with the last noise.
-        if promised(&normal) > self.options.solver.decrement * normal.mean_square() {
+        if predicted_reduction(&normal) > self.options.solver.decrement * normal.mean_square() {
             let start = found.estimate.clone();
             found.follow(minimize(&self.problem(&start, noise), start, &self.options.solver));
             normal = self.problem(&found.estimate, noise).normal(&found.estimate);

@@ -18,11 +18,11 @@ pub(super) fn gauss_newton<P: LeastSquares>(
     let termination = loop {
         let Some(step) = full_step(&normal) else { break Termination::NotFinite };
         let kept = kept(problem, &step);
-        let promise = normal.promise(&kept);
+        let predicted = normal.predicted_reduction(&kept);
         if norm(&kept) < options.step || normal.mean_square() < problem.rounding() {
             break Termination::StepVanished;
         }
-        if promise.abs() < options.decrement * normal.mean_square() {
+        if predicted.abs() < options.decrement * normal.mean_square() {
             break Termination::Optimum;
         }
         if iterations >= options.iterations {

@@ -2,16 +2,17 @@
 
 mod gauss_newton;
 mod levenberg_marquardt;
-mod near;
 mod normal;
 mod options;
+mod reuse;
 mod termination;
+mod warm_start;
 
 pub use levenberg_marquardt::minimize;
-pub use near::{Near, minimize_near};
 pub use normal::Normal;
 pub use options::{Method, Options, Summary};
 pub use termination::Termination;
+pub use warm_start::{WarmStart, minimize_warm};
 
 /// A problem `min ½ Σ e(x)²` whose unknowns are scaled so that one unit of each is comparable (metres, and radians times a length).
 pub trait LeastSquares {

@@ -38,7 +38,7 @@ pub struct Options {
     pub method: Method,
     /// Most iterations (evaluations of the Jacobian after the first).
     pub iterations: usize,
-    /// Ends when the undamped step promises a decrease below this times the mean squared residual.
+    /// Ends when the predicted reduction of the undamped step is below this times the mean squared residual.
     pub decrement: f64,
     /// Ends when the undamped step is shorter than this (scaled units: metres).
     pub step: f64,
@@ -47,6 +47,10 @@ pub struct Options {
     pub trust: f64,
     /// Whether to follow curvature: geodesic acceleration and the full Hessian.
     pub acceleration: bool,
+    /// Whether close to the optimum steps may go on with the `JᵀJ` of an earlier state, where the problem gives
+    /// [residuals and gradient](super::LeastSquares::gradient) apart from it. Without, each iteration builds `JᵀJ` anew: slower, with the
+    /// same optimum.
+    pub reuse: bool,
 }
 
 impl Default for Options {
@@ -58,6 +62,7 @@ impl Default for Options {
             step: 1e-14,
             trust: 0.3,
             acceleration: true,
+            reuse: true,
         }
     }
 }
