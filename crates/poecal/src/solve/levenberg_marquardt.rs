@@ -3,19 +3,21 @@
 
 use super::gauss_newton::{gauss_newton, kept};
 use super::normal::quadratic;
+use super::refine;
 use super::reuse::Reuse;
-use super::{LeastSquares, Method, Normal, Options, Summary, Termination};
+use super::scaling::Scaled;
+use super::{LeastSquares, Method, Normal, Options, Scaling, Summary, Termination};
 pub(super) use crate::linalg::dot;
 use crate::linalg::{self, Factor};
 
 /// Largest ratio of a geodesic correction to the step that it corrects (transtrum2012).
 const LARGEST_ACCELERATION: f64 = 0.75;
 
-/// A step of this length (scaled units: metres) that fails to lower the cost ends the search.
-const ROUNDING_STEP: f64 = 1e-9;
-
 /// Share of the largest diagonal element that rounding makes of the normal equations' small eigenvalues.
 pub(super) const ROUNDING: f64 = 1e-13;
+
+/// Share of the cost that rounding makes of it: a smaller reduction does not show.
+const COST_ROUNDING: f64 = 1e-15;
 
 /// Smallest gain ratio of an accepted step.
 const ACCEPTED: f64 = 1e-3;
@@ -38,12 +40,13 @@ pub fn minimize<P: LeastSquares>(
     }
     let mut search = Search::new(problem, start, *options);
     let termination = search.run();
+    search.problem.restore(&mut search.normal);
     let summary = Summary { iterations: search.iterations, termination, trace: search.trace };
     (search.state, search.normal, summary)
 }
 
 struct Search<'a, P: LeastSquares> {
-    problem: &'a P,
+    problem: Scaled<'a, P>,
     options: Options,
     state: P::State,
     /// Of this state; with the `JᵀJ` of an earlier one while that is frozen.
@@ -66,7 +69,13 @@ struct Search<'a, P: LeastSquares> {
 
 impl<'a, P: LeastSquares> Search<'a, P> {
     fn new(problem: &'a P, state: P::State, options: Options) -> Self {
-        let normal = problem.nearly_normal(&state);
+        let mut problem = Scaled::new(problem, options.scaling);
+        let mut normal = problem.nearly_normal(&state);
+        problem.adapt(&mut normal);
+        let damping = match options.scaling {
+            Scaling::Given => 1.0 / (options.trust * options.trust),
+            Scaling::Columns { damping } => damping / normal.mean_square(),
+        };
         Search {
             problem,
             options,
@@ -76,7 +85,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             trace: vec![normal.mean_square()],
             normal,
             reuse: Reuse::new(options.reuse),
-            damping: 1.0 / (options.trust * options.trust),
+            damping,
             increase: 2.0,
             nonlinear: false,
             iterations: 0,
@@ -105,6 +114,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
                 return Termination::IterationLimit;
             }
             if !self.try_step(trial) {
+                self.refine();
                 return Termination::NoProgress;
             }
         }
@@ -137,6 +147,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     fn rebuild_normal(&mut self) {
         self.reuse.rebuilt();
         self.normal = self.problem.nearly_normal(&self.state);
+        self.problem.adapt(&mut self.normal);
         self.rebuild_hessian();
     }
 
@@ -162,7 +173,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
         let (_, factor) = self.factor.as_ref()?;
         let velocity = linalg::cholesky_solve(factor, &self.normal.gradient);
-        let kept = kept(self.problem, &velocity);
+        let kept = kept(&self.problem, &velocity);
         let is_cut = kept != velocity;
         let damped = damping * dot(&velocity, &velocity);
         let predicted = if is_cut {
@@ -174,20 +185,24 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     }
 
     /// The damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature, with t below one
-    /// where the acceleration `a` would overtake `v`.
-    fn geodesic_step(&self, trial: Trial) -> Trial {
+    /// where the acceleration `a` would overtake `v`. `None` where less than
+    /// the shortest part is left.
+    fn geodesic_step(&self, trial: Trial) -> Option<Trial> {
         if !(self.options.acceleration && self.nonlinear) || trial.is_cut {
-            return trial;
+            return Some(trial);
         }
-        let Some((_, factor)) = &self.factor else { return trial };
+        let Some((_, factor)) = &self.factor else { return Some(trial) };
         let velocity = &trial.step;
         let second = self.problem.second_order(&self.state, velocity);
         let acceleration = linalg::cholesky_solve(factor, &second);
         let t = (LARGEST_ACCELERATION * norm(velocity) / norm(&acceleration)).min(1.0);
+        if t < self.options.shortest || norm(&acceleration).is_nan() {
+            return None;
+        }
         let step = velocity.iter().zip(&acceleration).map(|(v, a)| t * v + 0.5 * t * t * a).collect();
         let descent = dot(velocity, &self.normal.gradient);
         let predicted = predicted_reduction(t, descent, trial.damping * dot(velocity, velocity));
-        Trial { step, predicted, shortened: t < 1.0, ..trial }
+        Some(Trial { step, predicted, shortened: t < 1.0, ..trial })
     }
 
     // Its judgement.
@@ -195,15 +210,19 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     /// Tries one step; `false` where steps have become too small to matter without having helped.
     fn try_step(&mut self, trial: Option<Trial>) -> bool {
         self.iterations += 1;
-        let Some(trial) = trial.map(|trial| self.geodesic_step(trial)) else {
+        let Some(trial) = trial else {
             self.trace.push(self.normal.mean_square());
             self.damping *= 10.0;
+            return self.damping.is_finite();
+        };
+        let Some(trial) = self.geodesic_step(trial) else {
+            self.reject();
             return self.damping.is_finite();
         };
         if trial.predicted <= 0.0 {
             // The part of the step that the retraction keeps leads upwards; a shorter step is nearer to the gradient.
             self.reject();
-            return norm(&trial.step) > ROUNDING_STEP && self.damping.is_finite();
+            return norm(&trial.step) > self.options.rejected_step && self.damping.is_finite();
         }
         let state = self.problem.retract(&self.state, &trial.step);
         let without_jtj = self.evaluate_without_jtj(&state, trial.predicted);
@@ -228,9 +247,9 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         if !before {
             self.rebuild_hessian();
         }
-        // Steps below a nanometre that do not help, or whose predicted reduction is below rounding, are rounding themselves.
-        norm(&trial.step) > ROUNDING_STEP
-            && trial.predicted > 1e-15 * self.normal.cost
+        // Shorter steps that do not help, or whose predicted reduction the cost cannot show, are rounding themselves.
+        norm(&trial.step) > self.options.rejected_step
+            && trial.predicted > COST_ROUNDING * self.normal.cost
             && self.damping.is_finite()
     }
 
@@ -259,6 +278,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         self.normal = normal;
         self.trace.push(self.normal.mean_square());
         if !self.reuse.is_frozen() {
+            self.problem.adapt(&mut self.normal);
             self.rebuild_hessian();
         } else if self.nonlinear {
             self.rebuild_normal();
@@ -274,6 +294,18 @@ impl<'a, P: LeastSquares> Search<'a, P> {
     }
 
     // The end.
+
+    /// Goes on by the gradient where the cost cannot show the reductions that the stopping rule asks for.
+    fn refine(&mut self) {
+        if self.options.decrement * self.normal.mean_square() < COST_ROUNDING * self.normal.cost {
+            let most = self.options.iterations.saturating_sub(self.iterations);
+            let floor = ROUNDING * self.scale();
+            let steps =
+                refine::refine(&self.problem, &mut self.state, &mut self.normal, &self.hessian, floor, most);
+            self.iterations += steps;
+            self.trace.extend(std::iter::repeat_n(self.normal.mean_square(), steps));
+        }
+    }
 
     /// Why an undamped step is not worth taking; `None` where it is.
     fn stopping_rule(&self, step: &[f64], predicted: f64) -> Option<Termination> {
@@ -303,7 +335,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
         let factor = linalg::cholesky(&self.hessian, n, floor)?;
         let step = linalg::cholesky_solve(&factor, &self.normal.gradient);
-        let kept = kept(self.problem, &step);
+        let kept = kept(&self.problem, &step);
         let (predicted, step) = if kept == step {
             (0.5 * dot(&step, &self.normal.gradient), step)
         } else {
