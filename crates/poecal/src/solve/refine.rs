@@ -1,10 +1,11 @@
-//! The last digits: steps that are judged by the gradient, since rounding of the cost hides their reductions (theory.md §6, *End*).
+//! The last digits: steps that are judged by the gradient, since rounding of the cost hides their reductions (theory.md §6, *The last
+//! digits*; hager2005).
 
 use super::{LeastSquares, Normal};
 use crate::linalg;
 
 /// Largest increase of the cost that may be rounding, as a share of it.
-const COST_ROUNDING: f64 = 1e-9;
+const SAME_COST: f64 = 1e-9;
 
 /// Largest ratio of a step's predicted reduction to that of the step before: larger ones are rounding of the gradient.
 const LARGEST_RATIO: f64 = 0.7;
@@ -30,7 +31,7 @@ pub(super) fn refine<P: LeastSquares>(
         let next = problem.retract(state, &step);
         let after = problem.nearly_normal(&next);
         let (next_step, next_predicted) = undamped(&after);
-        let is_same_cost = after.cost <= normal.cost * (1.0 + COST_ROUNDING);
+        let is_same_cost = after.cost <= normal.cost * (1.0 + SAME_COST);
         if !(is_same_cost && next_predicted < LARGEST_RATIO * predicted) {
             return count;
         }

@@ -1,5 +1,5 @@
 //! The solver on problems without robots: NIST's certified regressions (StRD) and the test problems of Moré, Garbow and Hillstrom
-//! (ACM Transactions on Mathematical Software 7, 1981, 17–41), through the public trait.
+//! (more1981, nist1999 in docs/bibliography.md), through the public trait.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
