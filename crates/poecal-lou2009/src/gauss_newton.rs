@@ -22,7 +22,7 @@ pub fn gauss_newton<P: LeastSquares>(
         if length < options.step || normal.mean_square() < problem.rounding() {
             break Termination::StepVanished;
         }
-        if normal.promise(&kept).abs() < options.decrement * normal.mean_square() {
+        if normal.predicted_reduction(&kept).abs() < options.decrement * normal.mean_square() {
             break Termination::Optimum;
         }
         if iterations >= options.iterations {

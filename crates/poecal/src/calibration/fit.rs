@@ -147,9 +147,9 @@ pub(super) fn minimal(
     (problem.layout().clone(), problem.normal(estimate))
 }
 
-/// What a full step promises.
-fn promised(normal: &Normal) -> f64 {
-    normal.full_step().map_or(0.0, |step| normal.promise(&step))
+/// Predicted reduction of a full step.
+fn predicted_reduction(normal: &Normal) -> f64 {
+    normal.full_step().map_or(0.0, |step| normal.predicted_reduction(&step))
 }
 
 /// Whether stated noise explains a variance of the whitened residuals.
@@ -287,7 +287,7 @@ impl Task<'_> {
         let mut found = found;
         let mut normal = self.problem(&found.estimate, noise).normal(&found.estimate);
         // The optimum moved with the last noise.
-        if promised(&normal) > self.options.solver.decrement * normal.mean_square() {
+        if predicted_reduction(&normal) > self.options.solver.decrement * normal.mean_square() {
             let start = found.estimate.clone();
             found.follow(self.minimize(&self.problem(&start, noise), start, &self.options.solver));
             normal = self.problem(&found.estimate, noise).normal(&found.estimate);

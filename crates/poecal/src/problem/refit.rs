@@ -3,7 +3,7 @@
 use super::Problem;
 use crate::estimate::Estimate;
 use crate::measurement::Measurement;
-use crate::solve::{LeastSquares, Near, Normal, Options, Summary, minimize_near};
+use crate::solve::{LeastSquares, Normal, Options, Summary, WarmStart, minimize_warm};
 use crate::threads;
 
 /// Fits that one thread makes one after the other, with a copy of what they share.
@@ -45,7 +45,7 @@ const TOGETHER: usize = 25;
 #[derive(Clone, Debug)]
 pub struct Refit<'a> {
     problem: Problem<'a>,
-    near: Near<Estimate>,
+    start: WarmStart<Estimate>,
     options: Options,
 }
 
@@ -54,14 +54,14 @@ impl<'a> Refit<'a> {
     #[must_use]
     pub fn new(problem: Problem<'a>, optimum: Estimate, options: Options) -> Self {
         let normal = problem.normal(&optimum);
-        Refit { problem, near: Near::new(optimum, normal), options }
+        Refit { problem, start: WarmStart::new(optimum, normal), options }
     }
 
     /// Fits other measurements, one a row of the data and of the same kind as there. As [`crate::solve::minimize`] says, `JᵀJ` may
     /// be that of a state close by.
     pub fn fit(&mut self, measured: &[Measurement]) -> (Estimate, Normal, Summary) {
         self.problem.set_measurements(measured);
-        minimize_near(&self.problem, &self.near, &self.options)
+        minimize_warm(&self.problem, &self.start, &self.options)
     }
 
     /// [`Refit::fit`] of each of many trials by all threads, in their order, and what is to be `kept` of each.

@@ -1,7 +1,9 @@
 //! Normal information: what the solver needs of all residuals, in O(n²) memory.
 
-use super::levenberg_marquardt::ROUNDING;
 use crate::linalg;
+
+/// Share of the largest diagonal element that rounding makes of the normal equations' small eigenvalues.
+pub(super) const ROUNDING: f64 = 1e-13;
 
 /// `JᵀJ` (upper triangle, row-major), `Jᵀe` and `½ Σ e²` of whitened residuals, with their number: theory.md §6 (27)
 /// and (28).
@@ -57,15 +59,15 @@ impl Normal {
         self.residuals += other.residuals;
     }
 
-    /// Cost and gradient as the quadratic model has them after a last full step that promises so much.
-    pub(super) fn end(&mut self, promise: f64) {
-        self.cost -= promise;
+    /// Cost and gradient by the quadratic model after a full step with this predicted reduction.
+    pub(super) fn take_final_step(&mut self, predicted: f64) {
+        self.cost -= predicted;
         self.gradient.fill(0.0);
     }
 
-    /// How much less a step makes the cost, by the quadratic model: `gᵀδ - ½ δᵀ JᵀJ δ`.
+    /// Predicted reduction of a step: the decrease of the cost by the quadratic model, `gᵀδ - ½ δᵀ JᵀJ δ`.
     #[must_use]
-    pub fn promise(&self, step: &[f64]) -> f64 {
+    pub fn predicted_reduction(&self, step: &[f64]) -> f64 {
         quadratic(&self.gram, &self.gradient, step)
     }
 

@@ -1,34 +1,36 @@
-//! Minimisation close to a known optimum, with its factorised `JᵀJ`.
+//! Minimisation that begins close to a known optimum, with its factorised `JᵀJ`.
 
-use super::levenberg_marquardt::{FAST, ROUNDING, is_sure, minimize};
+use super::levenberg_marquardt::minimize;
+use super::normal::ROUNDING;
+use super::reuse::{converges_fast, is_final_step};
 use super::{LeastSquares, Normal, Options, Summary, Termination};
 use crate::linalg::{self, Factor};
 
 /// A state with its normal information and the factor of its `JᵀJ`.
 ///
 /// ```
-/// use poecal::solve::{Near, Normal};
+/// use poecal::solve::{Normal, WarmStart};
 /// let mut normal = Normal::new(1);
 /// normal.add_rows(&[2.0], &[0.1], 0);
-/// let near = Near::new("a state", normal);
-/// assert_eq!(near.state(), &"a state");
+/// let start = WarmStart::new("a state", normal);
+/// assert_eq!(start.state(), &"a state");
 /// ```
 #[derive(Clone, Debug)]
-pub struct Near<S> {
+pub struct WarmStart<S> {
     state: S,
     normal: Normal,
     /// None where `JᵀJ` is singular.
     factor: Option<Factor>,
 }
 
-impl<S> Near<S> {
+impl<S> WarmStart<S> {
     /// Factorises.
     #[must_use]
     pub fn new(state: S, normal: Normal) -> Self {
         let n = normal.dim();
         let scale = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
         let factor = linalg::cholesky(&normal.gram, n, ROUNDING * scale);
-        Near { state, normal, factor }
+        WarmStart { state, normal, factor }
     }
 
     /// The state.
@@ -38,30 +40,33 @@ impl<S> Near<S> {
     }
 }
 
-/// Minimises from a state close to the optimum by full steps with the `JᵀJ` of that state, which need residuals and gradients alone;
-/// ends as [`minimize`] does. Where such steps do not converge fast, or do not lower the cost, [`minimize`] goes on from the best state.
-pub fn minimize_near<P: LeastSquares>(
+/// Minimises from a state close to the optimum by undamped steps with the frozen `JᵀJ` of that state, which need residuals and gradients
+/// alone; ends as [`minimize`] does. Where such steps do not converge fast, or do not lower the cost, [`minimize`] goes on from the best
+/// state. Without [`Options::reuse`] it is [`minimize`] throughout.
+pub fn minimize_warm<P: LeastSquares>(
     problem: &P,
-    near: &Near<P::State>,
+    start: &WarmStart<P::State>,
     options: &Options,
 ) -> (P::State, Normal, Summary) {
-    let mut state = near.state.clone();
-    let mut promised = f64::INFINITY;
-    let mut trace: Vec<f64> = Vec::new();
-    let Some(factor) = &near.factor else { return minimize(problem, state, options) };
+    let mut state = start.state.clone();
+    let Some(factor) = start.factor.as_ref().filter(|_| options.reuse) else {
+        return minimize(problem, state, options);
+    };
     let Some(mut normal) = problem.gradient(&state) else { return minimize(problem, state, options) };
+    let mut last_reduction = f64::INFINITY;
+    let mut trace: Vec<f64> = Vec::new();
     loop {
         trace.push(normal.mean_square());
         let step = linalg::cholesky_solve(factor, &normal.gradient);
-        let promise = 0.5 * linalg::dot(&step, &normal.gradient);
-        let end = options.decrement * normal.mean_square();
+        let predicted = 0.5 * linalg::dot(&step, &normal.gradient);
+        let threshold = options.decrement * normal.mean_square();
         let is_short = linalg::dot(&step, &step).sqrt() < options.step;
-        let is_last = is_short || promise < end;
-        if is_last || is_sure(promise, promised, end) {
-            normal.gram.clone_from(&near.normal.gram);
-            if !is_last {
+        let is_converged = is_short || predicted < threshold;
+        if is_converged || is_final_step(predicted, last_reduction, threshold) {
+            normal.gram.clone_from(&start.normal.gram);
+            if !is_converged {
                 state = problem.retract(&state, &step);
-                normal.end(promise);
+                normal.take_final_step(predicted);
                 trace.push(normal.mean_square());
             }
             let termination = if is_short { Termination::StepVanished } else { Termination::Optimum };
@@ -69,10 +74,11 @@ pub fn minimize_near<P: LeastSquares>(
             return (state, normal, summary);
         }
         let next = problem.retract(&state, &step);
-        let after =
-            problem.gradient(&next).filter(|after| after.cost < normal.cost && promise < FAST * promised);
+        let after = problem
+            .gradient(&next)
+            .filter(|after| after.cost < normal.cost && converges_fast(predicted, last_reduction));
         let Some(after) = after else { break };
-        promised = promise;
+        last_reduction = predicted;
         (state, normal) = (next, after);
     }
     let (state, normal, mut summary) = minimize(problem, state, options);
