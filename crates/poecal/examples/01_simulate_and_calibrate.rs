@@ -19,9 +19,7 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
-use poecal::calibration::{CalibrationOptions, calibrate};
-use poecal::io::model::Model;
-use poecal::simulate::{Kind, Simulation};
+use poecal::{CalibrationOptions, Kind, Model, Simulation, calibrate};
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
 

@@ -20,16 +20,14 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
-use poecal::calibration::{CalibrationOptions, calibrate};
-use poecal::io::measurements;
-use poecal::io::model::Model;
+use poecal::{CalibrationOptions, Model, calibrate, read_measurements};
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
 const POINTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/points.csv");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Model::read(ELBOW, &Default::default())?;
-    let measured = measurements::read(&[POINTS], &model.robot, &Default::default())?;
+    let measured = read_measurements(&[POINTS], &model.robot, &Default::default())?;
     let calibration = calibrate(&model.robot, &measured.data, &CalibrationOptions::default())?;
 
     let [x, y, z]: [f64; 3] = (calibration.base_from_device.translation * 1e3).into();

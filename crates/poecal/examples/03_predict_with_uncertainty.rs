@@ -19,11 +19,10 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
-use poecal::calibration::{CalibrationOptions, calibrate};
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::model::{Model, ModelSource};
-use poecal::io::predictions::{PredictionFrame, predicted};
-use poecal::simulate::{Kind, Simulation};
+use poecal::{
+    CalibrationFile, CalibrationOptions, Inputs, Kind, Model, ModelSource, PredictionFrame, Simulation,
+    calibrate, predicted,
+};
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
 

@@ -18,11 +18,9 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
-use poecal::analysis::{Session, identify};
-use poecal::calibration::{CalibrationOptions, calibrate};
-use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::model::Model;
-use poecal::simulate::{Kind, Simulation};
+use poecal::{
+    CalibrationFile, CalibrationOptions, Inputs, Kind, Model, Session, Simulation, calibrate, identify,
+};
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
 

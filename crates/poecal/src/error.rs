@@ -7,6 +7,13 @@ use std::path::{Path, PathBuf};
 use crate::text::visible;
 
 /// What went wrong, as a word that does not change between versions.
+///
+/// ```
+/// use poecal::{ErrorKind, Model};
+/// let error = Model::read("no_such_file.urdf", &Default::default()).err().ok_or("a file that is not there")?;
+/// assert_eq!(error.kind(), ErrorKind::File);
+/// # Ok::<(), &str>(())
+/// ```
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {

@@ -7,11 +7,11 @@
 //! ```
 //!
 //! A real robot's screws are a little off. A device that stands somewhere and sees the tool, as points or poses, tells by how much:
-//! [`calibration::calibrate`] finds the screws, the tool and the device's frame that explain best what was measured.
+//! [`calibrate`] finds the screws, the tool and the device's frame that explain best what was measured.
 //!
 //! ```
-//! use poecal::calibration::{CalibrationOptions, calibrate};
-//! use poecal::simulate::{Kind, Simulation, elbow};
+//! use poecal::simulate::elbow;
+//! use poecal::{CalibrationOptions, Kind, Simulation, calibrate};
 //!
 //! // A six-axis arm whose axes are off by 1° and 2 mm, and 60 points of its tip with noise of 0.05 mm from a tracker anywhere.
 //! let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
@@ -28,65 +28,90 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # The way of a calibration
+//! # What is here
 //!
-//! 1. [`io::model`] reads a robot, [`io::measurements`] what was seen of it, in SI.
-//! 2. [`start`] finds the device's frame and the tool in closed form, with the screws as delivered: the *registered* model.
-//! 3. [`solve`] minimises the whitened residuals over all screws, tool points and frames. [`problem`] gives it the normal information,
-//!    rows of a [`measurement`] times columns of the [`parameters`].
-//! 4. [`gauge`] picks, among all models that predict the same, the one nearest to nominal; [`analysis`] says what the data leave open.
-//! 5. [`calibration`] judges the nominal, registered and calibrated model on fitted and on held-out rows; [`report`] tells it and
-//!    [`io::output`] writes it.
-//!
-//! # Modules
-//!
-//! | module | holds |
+//! | to | there is |
 //! |---|---|
-//! | [`lie`] | poses, twists, screws: the geometry |
-//! | [`robot`] | joints, home pose, forward kinematics |
-//! | [`measurement`] | what a device sees: points, poses; residuals |
-//! | [`simulate`] | robots and measurements with known errors |
-//! | [`offsets`] | joint offsets as screws, and back |
-//! | [`estimate`] | the state that a fit moves, and what a row sees of it |
-//! | [`parameters`] | what may be wrong: screws, targets, device frame |
-//! | [`solve`] | Levenberg-Marquardt; knows no robots |
-//! | [`problem`] | rows × columns |
-//! | [`analysis`], [`gauge`] | what the data determine, or would; the choice among equals |
-//! | [`start`] | device frame and tool without a guess |
-//! | [`forensics`] | mistakes in the input, named with evidence |
-//! | [`calibration`] | all steps in order |
-//! | [`report`] | the result as text |
-//! | [`text`] | text from outside as people may see it |
-//! | [`io`] | files: the only module that opens them |
+//! | describe a robot | [`Robot`], [`Joint`], [`JointKind`], [`Limits`], [`Reading`], [`Tolerance`]; [`Model`] and [`ChainSelection`] read it from URDF, TOML or a calibration |
+//! | say what was measured | [`Dataset`], [`Observation`], [`Measurement`], [`PointMeasurement`], [`PoseMeasurement`], [`Noise`], [`Set`]; [`read_measurements`] with [`ReadOptions`] gives a [`MeasurementFile`] |
+//! | calibrate | [`calibrate`] with [`CalibrationOptions`] ([`DeviceFrameKnowledge`], [`Robust`], [`Loss`], [`Formulation`]) gives a [`Calibration`] with its [`CalibratedTarget`]s |
+//! | know how good it is | [`Accuracy`] ([`SetAccuracy`], [`ModelAccuracy`], [`Statistic`]), [`Verdict`], [`Trust`], [`Identifiability`] ([`Direction`]), [`Diagnosis`] of mistakes in the input |
+//! | judge it by other measurements | [`judge`], which gives a [`Judgement`] |
+//! | predict | [`Robot::forward_kinematics`]; [`predicted`], which gives [`Predicted`] poses in a [`PredictionFrame`] with their uncertainty |
+//! | plan a session | [`identify`] a [`Session`], which gives a [`Foresight`] |
+//! | hand it on | [`CalibrationFile`] with its [`Inputs`], [`Residuals`], [`ModelFormat`], [`calibration_page`] (the report), [`summary`] (the table) |
+//! | try it without a robot | [`Simulation`], [`Simulated`], [`Kind`] and the robots of [`simulate`] |
+//! | compute with poses | [`lie`]: poses, twists, screws |
+//! | solve other least squares | [`solve`]: Levenberg-Marquardt on a manifold, which knows no robots |
+//!
+//! Whatever fails says so by [`Error`] with an [`ErrorKind`].
 //!
 //! Lengths are in metres and angles in radians, a twist is `(v; ω)`, `a_from_b` takes coordinates in b to coordinates in a. The
-//! formulas stand in `docs/theory.md`, the conventions in `docs/conventions.md`, the import directions in `ARCHITECTURE.md`.
+//! formulas stand in `docs/theory.md`, the conventions in `docs/conventions.md`, the modules and what they may import in
+//! `ARCHITECTURE.md`. Modules without a place in this list are there for the program, the Python package and the tests, and change
+//! without notice.
 
+#[doc(hidden)]
 pub mod analysis;
+#[doc(hidden)]
 pub mod calibration;
 mod distributions;
+#[doc(hidden)]
 pub mod error;
+#[doc(hidden)]
 pub mod estimate;
+#[doc(hidden)]
 pub mod forensics;
+#[doc(hidden)]
 pub mod gauge;
+#[doc(hidden)]
 pub mod io;
 mod lanes;
 pub mod lie;
 mod linalg;
+#[doc(hidden)]
 pub mod measurement;
+#[doc(hidden)]
 pub mod offsets;
+#[doc(hidden)]
 pub mod parameters;
+#[doc(hidden)]
 pub mod problem;
+#[doc(hidden)]
 pub mod report;
+#[doc(hidden)]
 pub mod robot;
 pub mod simulate;
 pub mod solve;
+#[doc(hidden)]
 pub mod start;
+#[doc(hidden)]
 pub mod text;
 mod threads;
+#[doc(hidden)]
 pub mod uncertainty;
 
-pub use error::{Error, ErrorKind, Result, nearest};
+pub use analysis::{Direction, Foresight, Identifiability, Session, identify};
+pub use calibration::{
+    Accuracy, CalibratedTarget, Calibration, CalibrationOptions, DeviceFrameKnowledge, Formulation,
+    Judgement, Loss, ModelAccuracy, Robust, SetAccuracy, Statistic, Trust, Verdict, calibrate, judge,
+};
+pub use error::{Error, ErrorKind, Result};
+pub use forensics::Diagnosis;
+pub use io::calibration_file::{CalibrationFile, Inputs};
+pub use io::measurements::{MeasurementFile, ReadOptions, read as read_measurements};
+pub use io::model::{Model, ModelFormat, ModelSource};
+pub use io::predictions::{Predicted, PredictionFrame, predicted};
+pub use io::residuals::Residuals;
+pub use io::urdf::ChainSelection;
+pub use measurement::{Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Set};
+pub use report::{calibration_page, summary};
+pub use robot::{Joint, JointKind, Limits, Reading, Robot, Tolerance};
+pub use simulate::{Kind, Simulated, Simulation};
+
+#[doc(hidden)]
+pub use error::nearest;
+#[doc(hidden)]
 pub use threads::MOST_THREADS;
 
 /// The example of the README is compiled with the tests.

@@ -75,6 +75,16 @@ impl Cause {
 }
 
 /// Something that the measurements do not tell, or hardly.
+///
+/// ```
+/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let structural = &calibration.identifiability.structural;
+/// // Points of a tracker that stands anywhere do not tell the base frame: a choice that changes no prediction.
+/// assert!(structural.iter().any(|direction| direction.description.contains("base")));
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Direction {
     /// What it is, in words.

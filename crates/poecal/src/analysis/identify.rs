@@ -23,6 +23,12 @@ const SEED: u64 = 1;
 const OPEN_EFFECT: f64 = 1.0;
 
 /// What is to be measured, and how well.
+///
+/// ```
+/// use poecal::{Kind, Session};
+/// let session = Session { kind: Kind::Point, ..Session::default() };
+/// assert!(session.device_free);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Session {
     /// What the device will see of the tip.
@@ -56,6 +62,14 @@ pub struct ExpectedError {
 }
 
 /// What configurations would tell.
+///
+/// ```
+/// use poecal::{Kind, Session, Simulation, identify, simulate::elbow};
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// let foresight = identify(&made.nominal, made.data.all_readings(), &Session::default())?;
+/// assert_eq!((foresight.count, foresight.identifiability.rank), (40, 30));
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foresight {
     /// Number of configurations.

@@ -47,6 +47,15 @@ impl Statistic {
 }
 
 /// Errors of one model on one set of rows.
+///
+/// ```
+/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let calibrated = calibration.accuracy.training.calibrated;
+/// assert!(calibrated.position_mm.rms < 0.1 && calibrated.rotation_deg.is_some());
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ModelAccuracy {
     /// Distance from measured to predicted position, millimetres.
@@ -56,6 +65,15 @@ pub struct ModelAccuracy {
 }
 
 /// Errors of the three models on one set of rows.
+///
+/// ```
+/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let fitted = calibration.accuracy.training;
+/// assert!(fitted.calibrated.position_mm.rms < fitted.registered.position_mm.rms);
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SetAccuracy {
     /// Number of measurements.
@@ -69,6 +87,15 @@ pub struct SetAccuracy {
 }
 
 /// Errors on the rows that were fitted and on those that were not.
+///
+/// ```
+/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let accuracy = calibration.accuracy;
+/// assert_eq!((accuracy.training.count, accuracy.held_out.map(|set| set.count)), (28, Some(12)));
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Accuracy {
     /// On the rows that were fitted.

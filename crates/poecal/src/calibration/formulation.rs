@@ -15,6 +15,13 @@ pub type Minimize = fn(&Problem<'_>, Estimate, &Options) -> Minimum;
 
 /// A way to write the unknowns of the joints and the errors of measured frames, and to minimise. What is delivered is judged in the
 /// minimal basis, whatever the way.
+///
+/// ```
+/// use poecal::{Formulation, JointKind};
+/// // The usual one has four unknowns for an axis that turns.
+/// let unknowns = (Formulation::default().joint_parameters)(&[JointKind::Revolute]);
+/// assert_eq!(unknowns[0].model().columns().len(), 4);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Formulation {
     /// Its words in `calibration.json`.

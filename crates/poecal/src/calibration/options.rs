@@ -6,6 +6,12 @@ use crate::solve;
 use super::{Formulation, Robust};
 
 /// What is known of the measuring device's frame.
+///
+/// ```
+/// use poecal::{CalibrationOptions, DeviceFrameKnowledge};
+/// let options = CalibrationOptions { frame: DeviceFrameKnowledge::Base, ..Default::default() };
+/// assert_ne!(options, CalibrationOptions::default());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum DeviceFrameKnowledge {
     /// The device stands anywhere: its frame is found (and is exactly redundant with the screws, docs/theory.md §8).

@@ -15,6 +15,15 @@ use crate::solve;
 use crate::threads;
 
 /// A target as calibrated.
+///
+/// ```
+/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let [tip] = &calibration.targets[..] else { unreachable!() };
+/// assert!(tip.name.is_none() && tip.is_frame && tip.tip_from_target.translation.norm() < 1e-12);
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibratedTarget {
     /// Its name; `None` is the tip itself.

@@ -82,6 +82,15 @@ pub struct JointCorrection {
 }
 
 /// How far a calibration can be trusted.
+///
+/// ```
+/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let expected = calibration.trust.range.ok_or("too few rows")?;
+/// println!("{:.3} mm (RMS) to be expected anywhere within the limits", expected.sigma_m * 1e3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trust {
     /// What of each joint's range was sampled.

@@ -10,6 +10,12 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Robot;
 
 /// What a model was read from.
+///
+/// ```
+/// use poecal::{Model, ModelSource, simulate::elbow};
+/// let model = Model { robot: elbow(), source: ModelSource::Toml, path: "elbow.toml".into() };
+/// assert_eq!(model.robot.joints.len(), 6);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelSource {
     /// A URDF text, which can be written back with other values.

@@ -11,6 +11,11 @@ use crate::lie::Pose;
 use crate::uncertainty::PredictedError;
 
 /// The frame in which poses are predicted.
+///
+/// ```
+/// use poecal::PredictionFrame;
+/// assert_ne!(PredictionFrame::Base, PredictionFrame::Device);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PredictionFrame {
     /// The robot's base.

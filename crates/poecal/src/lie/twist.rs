@@ -7,6 +7,12 @@ use super::{hat, series};
 /// An infinitesimal motion of a target about its own origin, in the device's axes: `v` moves the origin (metres), `w` turns the
 /// target (radians). With `p` the target's place it is `(v_s + ω_s × p; ω_s)` of the spatial twist `(v_s; ω_s)`: the factor
 /// `[I -p̂]` of lou2009 (23) is already applied (theory.md §4 (14)).
+///
+/// ```
+/// use nalgebra::Vector3;
+/// let lifted: poecal::lie::TargetTwist = (Vector3::z() * 1e-3, Vector3::zeros());
+/// assert_eq!(lifted.1.norm(), 0.0);
+/// ```
 pub type TargetTwist = (Vector3<f64>, Vector3<f64>);
 
 /// A twist `ξ = (v; ω)`: linear part `v` (metres), angular part `ω` (radians), in the frame that the name or the text states

@@ -9,6 +9,15 @@ use super::{Measurement, Noise, PoseResidual};
 use crate::error::{Error, ErrorKind, Result};
 
 /// What a row is for.
+///
+/// ```
+/// # use poecal::{Kind, Set, Simulation, simulate::elbow};
+/// let mut data = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?.data;
+/// for (row, observation) in data.observations.iter_mut().enumerate() {
+///     observation.set = Some(if row < 30 { Set::Fit } else { Set::HeldOut });
+/// }
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Set {
     /// Used to fit.
@@ -27,6 +36,16 @@ pub struct Source {
 }
 
 /// One row: which target was seen how, and how well.
+///
+/// ```
+/// # use poecal::{Dataset, Measurement, PointMeasurement};
+/// # use nalgebra::Vector3;
+/// let mut data = Dataset::new(vec!["joint1".into()]);
+/// let seen = Measurement::Point(PointMeasurement { position: Vector3::new(0.1, 0.2, 0.3) });
+/// data.push(&[0.1], Some("ball"), seen)?;
+/// assert_eq!((data.observations[0].target, &data.targets[0]), (0, &Some("ball".to_owned())));
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// Index into [`Dataset::targets`].

@@ -6,6 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::lie::{Pose, Screw, rotation};
 
 /// What a joint does.
+///
+/// ```
+/// assert_eq!(poecal::JointKind::Revolute.word(), "revolute");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointKind {
     /// Turns about an axis; value in radians. URDF's continuous joints are revolute ones without limits.
@@ -26,6 +30,11 @@ impl JointKind {
 }
 
 /// Lower and upper limit of a joint's value, radians or metres.
+///
+/// ```
+/// let limits = poecal::Limits { lower: -3.1, upper: 3.1 };
+/// assert!(limits.lower < limits.upper);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     /// Smallest value.

@@ -19,6 +19,10 @@ use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement
 use crate::robot::Robot;
 
 /// What the simulated device sees.
+///
+/// ```
+/// assert_eq!(poecal::Kind::Point.word(), "point");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The tip's position and orientation.
@@ -82,6 +86,17 @@ impl Default for Simulation {
 }
 
 /// A simulated session with its truth.
+///
+/// ```
+/// use poecal::{Kind, Simulation, simulate::scara};
+/// let made = Simulation::default().run(&scara(), Kind::Point)?;
+/// let readings = made.data.readings(0);
+/// let tip = made.device_from_base * made.actual.forward_kinematics(readings);
+/// let seen = made.data.observations[0].measurement.pose();
+/// // The device sees the actual robot's tip, but for its noise.
+/// assert!((tip.translation - seen.translation).norm() < 1e-3);
+/// # Ok::<(), poecal::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulated {
     /// The robot as drawn.

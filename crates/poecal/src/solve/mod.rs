@@ -17,6 +17,39 @@ pub use warm_start::{WarmStart, minimize_warm};
 
 /// A problem `min ½ Σ e(x)²` whose unknowns are scaled so that one unit of each is comparable (metres, and radians times a length);
 /// or else are to be scaled by the solver ([`Scaling::Columns`]).
+///
+/// ```
+/// use poecal::solve::{LeastSquares, Normal, Options, minimize};
+///
+/// /// `y = a exp(b x)`, two unknowns.
+/// struct Growth([(f64, f64); 4]);
+///
+/// impl LeastSquares for Growth {
+///     type State = [f64; 2];
+///
+///     fn dim(&self) -> usize {
+///         2
+///     }
+///
+///     fn normal(&self, &[a, b]: &Self::State) -> Normal {
+///         let mut normal = Normal::new(2);
+///         for (x, y) in self.0 {
+///             let grown = (b * x).exp();
+///             // The Jacobian of the prediction, and what was measured less the prediction.
+///             normal.add_rows(&[grown, a * x * grown], &[y - a * grown], 0);
+///         }
+///         normal
+///     }
+///
+///     fn retract(&self, &[a, b]: &Self::State, step: &[f64]) -> Self::State {
+///         [a + step[0], b + step[1]]
+///     }
+/// }
+///
+/// let seen = [0.0, 1.0, 2.0, 3.0].map(|x: f64| (x, 2.0 * (0.3 * x).exp()));
+/// let ([a, b], _, summary) = minimize(&Growth(seen), [1.0, 0.0], &Options::default());
+/// assert!(summary.termination.is_success() && (a - 2.0).abs() < 1e-6 && (b - 0.3).abs() < 1e-6);
+/// ```
 pub trait LeastSquares {
     /// A point of the manifold.
     type State: Clone;

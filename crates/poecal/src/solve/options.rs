@@ -3,6 +3,12 @@
 use super::Termination;
 
 /// By which units steps are measured, and damped.
+///
+/// ```
+/// use poecal::solve::{Options, Scaling};
+/// let options = Options { scaling: Scaling::Columns { damping: 1e-3 }, ..Options::default() };
+/// assert!(options.reuse);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Scaling {
     /// Those that the problem gives its unknowns, which are comparable.

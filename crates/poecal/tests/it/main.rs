@@ -9,6 +9,7 @@ mod common;
 mod determinism;
 mod documented_files;
 mod drawing;
+mod facade;
 mod fast_path;
 // Each crate uses what it needs of it.
 #[allow(dead_code)]
