@@ -5,32 +5,9 @@ use nalgebra::Matrix3;
 use super::vector::{Vector, Vectors, Wide};
 use crate::lie::{rotation, series};
 
-/// Squared sine below which the logarithm is a polynomial: residual rotations up to 14°.
+/// Squared sine below which the logarithm is a polynomial: residual rotations up to 14°. The first omitted terms are 2e-17 of
+/// [`series::ARCSINE`] and 1e-17 of [`series::COTC`].
 const SMALL: f64 = 1.0 / 16.0;
-
-/// `asin(s) / s` of `s²`, exact to rounding below [`SMALL`]: the first omitted term is 2e-17.
-const ARCSINE: [f64; 12] = arcsine();
-
-const fn arcsine() -> [f64; 12] {
-    let mut out = [1.0; 12];
-    let (mut k, mut factor) = (1, 1.0);
-    while k < out.len() {
-        factor *= (2 * k - 1) as f64 / (2 * k) as f64;
-        out[k] = factor / (2 * k + 1) as f64;
-        k += 1;
-    }
-    out
-}
-
-/// [`series::cotc`] of the squared angle, up to that of [`SMALL`]: the first omitted term is 1e-17 of the value.
-const COTC: [f64; 6] = [
-    1.0 / 12.0,
-    1.0 / 720.0,
-    1.0 / 30_240.0,
-    1.0 / 1_209_600.0,
-    1.0 / 47_900_160.0,
-    691.0 / 1_307_674_368_000.0,
-];
 
 /// Residual rotations `r = log(Y Rᵀ)` with the coefficient `k` of `J_r(r)⁻¹ = I + r̂/2 + k r̂²` (theory.md §4 (16)).
 pub(super) struct Turn<V: Vector> {
@@ -54,8 +31,8 @@ impl<V: Vector> Turn<V> {
         if !(sine_squared.are_below(SMALL) && (-trace).are_below(-1.0)) {
             return Self::large(measured, predicted);
         }
-        let r = sine.scale(sine_squared.polynomial(ARCSINE));
-        Turn { r, k: r.dot(r).polynomial(COTC) }
+        let r = sine.scale(sine_squared.polynomial(series::ARCSINE));
+        Turn { r, k: r.dot(r).polynomial(series::COTC) }
     }
 
     /// One row after the other, for rotations of any size.

@@ -68,6 +68,30 @@ pub fn sincc(angle_squared: f64) -> f64 {
     }
 }
 
+/// The series of [`cotc`] in `θ²`.
+pub(crate) const COTC: [f64; 6] = [
+    1.0 / 12.0,
+    1.0 / 720.0,
+    1.0 / 30_240.0,
+    1.0 / 1_209_600.0,
+    1.0 / 47_900_160.0,
+    691.0 / 1_307_674_368_000.0,
+];
+
+/// The series of `asin(s) / s` in `s²`.
+pub(crate) const ARCSINE: [f64; 12] = arcsine();
+
+const fn arcsine() -> [f64; 12] {
+    let mut out = [1.0; 12];
+    let (mut k, mut factor) = (1, 1.0);
+    while k < out.len() {
+        factor *= (2 * k - 1) as f64 / (2 * k) as f64;
+        out[k] = factor / (2 * k + 1) as f64;
+        k += 1;
+    }
+    out
+}
+
 /// `(1 - (θ/2) cot(θ/2)) / θ²` of `θ²`: the second coefficient of the inverse left Jacobian, defined up to θ < 2π.
 ///
 /// ```
@@ -76,17 +100,7 @@ pub fn sincc(angle_squared: f64) -> f64 {
 #[must_use]
 pub fn cotc(angle_squared: f64) -> f64 {
     if angle_squared < SWITCH {
-        horner(
-            angle_squared,
-            &[
-                1.0 / 12.0,
-                1.0 / 720.0,
-                1.0 / 30_240.0,
-                1.0 / 1_209_600.0,
-                1.0 / 47_900_160.0,
-                691.0 / 1_307_674_368_000.0,
-            ],
-        )
+        horner(angle_squared, &COTC)
     } else {
         let half = 0.5 * angle_squared.sqrt();
         (1.0 - half * half.cos() / half.sin()) / angle_squared
