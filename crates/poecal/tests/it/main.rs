@@ -31,6 +31,7 @@ mod measurement_long;
 mod mistakes;
 mod model_convert;
 mod model_errors;
+mod modern_robotics;
 mod moves;
 mod noise_free;
 mod offsets;
