@@ -87,7 +87,8 @@ impl Literal {
 /// (theory.md §3 (10a)).
 ///
 /// ```
-/// use poecal::{lie::Twist, reproduce::{literal::screw_by_adjoint_error, tables}};
+/// use poecal::lie::Twist;
+/// use poecal_lou2009::{literal::screw_by_adjoint_error, tables};
 /// let screw = tables::nominal().joints[0].screw;
 /// // A motion of the axis along itself does not move it.
 /// assert!((screw_by_adjoint_error(&screw, &Twist::zero()) * screw.twist().to_vector()).norm() < 1e-15);
@@ -101,7 +102,8 @@ pub fn screw_by_adjoint_error(nominal: &Screw, eta: &Twist) -> Matrix6<f64> {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use poecal::{lie::Twist, reproduce::literal::point_rows};
+/// use poecal::lie::Twist;
+/// use poecal_lou2009::literal::point_rows;
 /// let turn = Twist::new(Vector3::zeros(), Vector3::z());
 /// assert_eq!(point_rows(&Vector3::x()) * turn.to_vector(), Vector3::y());
 /// ```
@@ -127,7 +129,7 @@ pub fn point_rows(point: &Vector3<f64>) -> Matrix3x6<f64> {
 /// The free screw of a prismatic joint has 3 columns instead of 6: its ω is zero, "and thus left out of the calibration".
 ///
 /// ```
-/// use poecal::{parameters::Formulation, reproduce::{Seen, literal::jacobian, tables}};
+/// use poecal_lou2009::{Formulation, Seen, literal::jacobian, tables};
 /// let a = jacobian(&tables::nominal(), &[0.1; 6], Formulation::ScrewOffsets, Seen::Poses);
 /// assert_eq!(a.shape(), (6, 48));
 /// ```
@@ -204,7 +206,7 @@ fn assemble(
 /// columns, so that singular values compare. A length of 1 leaves the numbers as they are.
 ///
 /// ```
-/// use poecal::{parameters::Formulation, reproduce::{Seen, literal::stacked, tables}};
+/// use poecal_lou2009::{Formulation, Seen, literal::stacked, tables};
 /// let configurations = [vec![0.1; 6], vec![0.7; 6]];
 /// let a = stacked(&tables::nominal(), &configurations, Formulation::Adjoint, Seen::Poses, 0.5);
 /// assert_eq!(a.shape(), (12, 42));
