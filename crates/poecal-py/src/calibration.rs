@@ -2,10 +2,10 @@
 
 mod content;
 
-use content::{Found, part};
+pub(crate) use content::Calibration;
+use content::part;
 
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 
 use numpy::PyArray2;
 use poecal::io::calibration_file::CalibrationFile;
@@ -29,18 +29,6 @@ use crate::places::{reserved_file, reserved_folder, said};
 use crate::prediction::Prediction;
 use crate::robot::{Robot, poses};
 use crate::words::chosen;
-
-/// A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
-///
-/// `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`; what is not asked for
-/// is not converted.
-#[pyclass(frozen, module = "poecal", name = "Calibration")]
-pub(crate) struct Calibration {
-    /// The robot as delivered, after whose file models are written.
-    nominal: Robot,
-    found: Found,
-    calibrated: OnceLock<Robot>,
-}
 
 /// Where a report goes: among the results or not, or to a file.
 #[derive(FromPyObject)]

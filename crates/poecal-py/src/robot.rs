@@ -2,14 +2,11 @@
 
 mod state;
 
-pub(crate) use state::RobotState;
+pub(crate) use state::{Robot, RobotState};
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use numpy::{PyArray2, PyArray3, PyArrayMethods as _};
-use poecal::io::calibration_file::Inputs;
 use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
 use poecal::io::output::Existing;
 use poecal::io::predictions::{PredictionFrame, predicted};
@@ -27,38 +24,6 @@ use crate::html::Html;
 use crate::pickle;
 use crate::places::reserved_file;
 use crate::words::chosen;
-
-/// A serial robot: joints with screws, and a home pose. It never changes.
-///
-/// Make one by `Robot.read` (any file), `from_urdf`, `from_toml`, `from_screws` or `from_dh`. Lengths are in metres, angles in
-/// radians. Robots compare by value, and can be copied and pickled.
-#[pyclass(frozen, module = "poecal", name = "Robot")]
-pub(crate) struct Robot {
-    pub(crate) model: Arc<Model>,
-    /// SHA-256 of the file that it was read from, by its name.
-    pub(crate) sha256: Arc<BTreeMap<String, String>>,
-}
-
-impl Robot {
-    pub(crate) fn new(model: Model) -> Self {
-        Robot { model: Arc::new(model), sha256: Arc::default() }
-    }
-
-    /// A model of a file, with the file's checksum.
-    fn of_file(model: Model) -> PyResult<Self> {
-        let sha256 = Inputs::checksums([model.path.as_path()].into_iter()).map_err(raise)?;
-        Ok(Robot { model: Arc::new(model), sha256: Arc::new(sha256) })
-    }
-
-    /// The same robot and file.
-    pub(crate) fn same(&self) -> Self {
-        Robot { model: Arc::clone(&self.model), sha256: Arc::clone(&self.sha256) }
-    }
-
-    fn robot(&self) -> &poecal::robot::Robot {
-        &self.model.robot
-    }
-}
 
 /// The form that is named, or that the extension of a file names.
 pub(crate) fn form(to: Option<&str>, path: Option<&Path>) -> PyResult<ModelFormat> {

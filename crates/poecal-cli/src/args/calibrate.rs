@@ -7,17 +7,9 @@ use poecal::calibration::{Level, Loss, Robust};
 use poecal::io::output::Existing;
 use poecal_lou2009::{Formulation, Method, Residual};
 
-use super::{Chain, Reading, ReportPlace};
+use super::report::ReportPlace;
+use super::shared::{Chain, Frame, Reading};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
-
-/// What is known of the measuring device's frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Frame {
-    /// The device stands anywhere
-    Unknown,
-    /// Measurements are in the robot's base frame
-    Base,
-}
 
 /// How errors of the joints are written as unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

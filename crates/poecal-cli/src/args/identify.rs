@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Chain, Columns, Frame, SimulatedKind};
+use super::shared::{Chain, Columns, Frame};
+use super::simulate::SimulatedKind;
 use crate::quantity::{sigma_m, sigma_rad};
 
 /// Arguments of `poecal identify`.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use poecal::simulate::Kind;
 
-use super::Chain;
+use super::shared::Chain;
 use crate::quantity::whole;
 
 /// What will be measured.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use poecal::offsets;
 
-use super::{Chain, OutFile};
+use super::shared::{Chain, OutFile};
 
 /// Whether a frame is the same in both models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

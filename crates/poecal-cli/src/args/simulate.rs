@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use poecal::simulate::Kind;
 
-use super::{Chain, Frame};
+use super::shared::{Chain, Frame};
 use crate::quantity::LengthAndAngle;
 
 /// What a simulated device sees.

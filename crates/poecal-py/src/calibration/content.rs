@@ -11,12 +11,23 @@ use poecal::report;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::Calibration;
 use crate::errors::{argument, raise};
 use crate::robot::{Robot, RobotState};
 
+/// A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
+///
+/// `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`; what is not asked for
+/// is not converted.
+#[pyclass(frozen, module = "poecal", name = "Calibration")]
+pub(crate) struct Calibration {
+    /// The robot as delivered, after whose file models are written.
+    pub(super) nominal: Robot,
+    found: Found,
+    calibrated: OnceLock<Robot>,
+}
+
 /// What all else follows from.
-pub(super) enum Found {
+enum Found {
     /// A calibration that was made just now.
     Fit(Box<Fit>),
     /// A calibration of files, or of a pickle.
@@ -24,7 +35,7 @@ pub(super) enum Found {
 }
 
 /// A calibration that was made just now. What it is written as is made when it is asked for.
-pub(super) struct Fit {
+struct Fit {
     calibration: poecal::calibration::Calibration,
     data: Arc<MeasurementFile>,
     inputs: Inputs,
@@ -35,7 +46,7 @@ pub(super) struct Fit {
 }
 
 /// A calibration of files.
-pub(super) struct Written {
+struct Written {
     /// The calibrated robot with its targets, to the last digit as fitted.
     robot: poecal::robot::Robot,
     file: CalibrationFile,

@@ -1,35 +1,48 @@
-//! What rebuilds a robot exactly.
+//! A robot and its file, and what rebuilds them exactly.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use poecal::io::calibration_file::CalibrationFile;
+use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::Robot;
 use crate::errors::raise;
 
-/// A robot and the file that it came from.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct RobotState {
-    robot: poecal::robot::Robot,
-    path: PathBuf,
-    source: SourceState,
-    sha256: BTreeMap<String, String>,
-}
-
-#[derive(Serialize, Deserialize)]
-enum SourceState {
-    Urdf { text: String, base: String, tip: String },
-    Toml,
-    Calibration { text: String },
+/// A serial robot: joints with screws, and a home pose. It never changes.
+///
+/// Make one by `Robot.read` (any file), `from_urdf`, `from_toml`, `from_screws` or `from_dh`. Lengths are in metres, angles in
+/// radians. Robots compare by value, and can be copied and pickled.
+#[pyclass(frozen, module = "poecal", name = "Robot")]
+pub(crate) struct Robot {
+    pub(crate) model: Arc<Model>,
+    /// SHA-256 of the file that it was read from, by its name.
+    pub(crate) sha256: Arc<BTreeMap<String, String>>,
 }
 
 impl Robot {
+    pub(crate) fn new(model: Model) -> Self {
+        Robot { model: Arc::new(model), sha256: Arc::default() }
+    }
+
+    /// A model of a file, with the file's checksum.
+    pub(super) fn of_file(model: Model) -> PyResult<Self> {
+        let sha256 = Inputs::checksums([model.path.as_path()].into_iter()).map_err(raise)?;
+        Ok(Robot { model: Arc::new(model), sha256: Arc::new(sha256) })
+    }
+
+    /// The same robot and file.
+    pub(crate) fn same(&self) -> Self {
+        Robot { model: Arc::clone(&self.model), sha256: Arc::clone(&self.sha256) }
+    }
+
+    pub(super) fn robot(&self) -> &poecal::robot::Robot {
+        &self.model.robot
+    }
+
     /// The robot as a state.
     pub(crate) fn state(&self) -> PyResult<RobotState> {
         let source = match &self.model.source {
@@ -66,4 +79,20 @@ impl Robot {
         };
         Ok(Robot { model: Arc::new(Model { robot, source, path }), sha256: Arc::new(sha256) })
     }
+}
+
+/// A robot and the file that it came from.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct RobotState {
+    robot: poecal::robot::Robot,
+    path: PathBuf,
+    source: SourceState,
+    sha256: BTreeMap<String, String>,
+}
+
+#[derive(Serialize, Deserialize)]
+enum SourceState {
+    Urdf { text: String, base: String, tip: String },
+    Toml,
+    Calibration { text: String },
 }

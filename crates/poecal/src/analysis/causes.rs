@@ -3,8 +3,10 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
+use super::direction::{Cause, Direction};
 use super::excitation::{Excitation, Turning};
-use super::identifiability::{Cause, Direction, Setup, Spectrum};
+use super::setup::Setup;
+use super::spectrum::Spectrum;
 use super::subspace;
 use crate::parameters::{Parameter, Unit};
 use crate::robot::JointKind;

@@ -134,3 +134,11 @@ pub(crate) fn ranges(joints: usize, packed: &Packed, rows: &[u32]) -> Vec<(f64, 
         whole.into_iter().zip(part).map(|(a, b)| (a.0.min(b.0), a.1.max(b.1))).collect()
     })
 }
+
+/// Whether the joint values of some readings are all within the sampled ranges.
+pub(crate) fn inside(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]) -> bool {
+    let indices = robot.reading_indices();
+    robot.joints.iter().zip(&indices).zip(coverage).all(|((joint, &index), coverage)| {
+        coverage.contains(joint.kind, joint.reading.value(readings[index]))
+    })
+}

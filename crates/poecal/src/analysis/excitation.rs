@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use nalgebra::{Matrix3, Vector3};
 
 use super::coverage::ranges;
-use super::identifiability::{Cause, Direction, Setup};
+use super::direction::{Cause, Direction};
+use super::setup::Setup;
 use super::subspace;
 use crate::estimate::{Chain, Linkage, sample_rows};
 use crate::linalg;

@@ -5,7 +5,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::coverage::{JointCoverage, coverage};
-use super::identifiability::{Identifiability, PLAUSIBLE, Setup, identifiability};
+use super::identifiability::{Identifiability, identifiability};
+use super::setup::Setup;
+use super::spectrum::PLAUSIBLE;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Chain, Linkage, Packed, delivered, radian_m};
 use crate::lie::Pose;

@@ -1,8 +1,9 @@
 //! What no plain cause explains: whether the joints' combination is to blame, and else the directions as they are.
 
 use super::causes::{Degree, NOTABLE, Rules, join, joint_of};
+use super::direction::Cause;
 use super::excitation::target_name;
-use super::identifiability::{Cause, PLAUSIBLE, Spectrum, WEAK};
+use super::spectrum::{PLAUSIBLE, Spectrum, WEAK};
 use super::subspace;
 use crate::estimate::{Packed, sample_rows};
 use crate::measurement::Dataset;

@@ -3,9 +3,19 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Models;
 use crate::estimate::{Estimate, Packed, RowError, row_errors};
 use crate::measurement::Dataset;
+
+/// The three models that every result is stated for, as estimates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Models {
+    /// As delivered: only an unknown device frame is fitted.
+    pub nominal: Estimate,
+    /// Device frame and targets fitted, screws nominal.
+    pub registered: Estimate,
+    /// Screws, targets and device frame fitted.
+    pub calibrated: Estimate,
+}
 
 /// Mean, root mean square, 95th percentile (linear between ranks) and maximum of errors.
 ///

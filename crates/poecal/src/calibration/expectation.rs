@@ -3,8 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-use super::trust::inside;
-use crate::analysis::JointCoverage;
+use crate::analysis::{JointCoverage, inside};
 use crate::estimate::{Packed, RowError};
 use crate::measurement::{Dataset, Noise};
 use crate::robot::Robot;

@@ -5,8 +5,8 @@ use rand_core::SeedableRng;
 
 use super::noise::stated;
 use super::{
-    CalibrationOptions, DeviceFrameKnowledge, Formulation, Minimum, NoiseSource, SolverReport, delivered,
-    estimate_noise, row_errors,
+    CalibrationOptions, DeviceFrameKnowledge, Formulation, Minimum, NoiseSource, delivered, estimate_noise,
+    row_errors,
 };
 use crate::analysis::unknowns_told;
 use crate::distributions::is_within_band;
@@ -18,7 +18,7 @@ use crate::parameters::{DeviceFrame, Parameter, screw_axes};
 use crate::problem::{Layout, Prior, Problem};
 use crate::robot::Robot;
 use crate::simulate::random;
-use crate::solve::{LeastSquares, Normal, Options, Summary};
+use crate::solve::{LeastSquares, Normal, Options, Summary, Termination};
 use crate::start::target_parameters;
 
 /// Rows of the sample on which a fit of many rows begins: at least, for each unknown, and for the root of the number of rows, so
@@ -39,6 +39,22 @@ const SUSPICIOUS: f64 = 3e-3;
 /// Most times that noise and the weight of the prior are found anew. Two or three will do, but for data without noise: there each lowers
 /// what the prior leaves.
 const RENEWALS: usize = 12;
+
+/// How the minimisation went.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolverReport {
+    /// Iterations of the full fit, re-weighted rounds included.
+    pub iterations: usize,
+    /// Why it ended.
+    pub termination: Termination,
+    /// Further starts that were tried.
+    pub restarts: usize,
+    /// Mean square whitened residual by iteration.
+    pub trace: Vec<f64>,
+    /// Joint offsets (radians or metres): joint value minus reading, where the formulation has offsets. They are not
+    /// identifiable beside the screws (lou2009 Proposition 1); the calibrated robot has them in its screws.
+    pub joint_offsets: Option<Vec<f64>>,
+}
 
 /// A fit under way.
 pub(super) struct Found {

@@ -3,17 +3,22 @@
 use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy};
-use super::expectation::{Kept, Promise};
-use super::promised::{InSampledRange, promised};
+use super::expectation::{Kept, KeptPart, Promise};
+use super::promised::{InSampledRange, ROUNDING, Seen, promised};
+use super::verdict::Level;
 use super::{DeviceFrameKnowledge, delivered, measurements_words, radian_m};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Estimate, Packed, RowError, row_errors};
+use crate::estimate::{Packed, row_errors};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
-use crate::parameters::Parameter;
 use crate::problem::MOST_UNKNOWNS;
 use crate::robot::Robot;
 use crate::start::{Registration, free_parameters, register};
+
+/// Share of the errors inside their 95 % bounds that a promise asks for at least.
+const INSIDE: f64 = 0.8;
+/// Most times the expected error that the error may be.
+const TIMES: f64 = 2.0;
 
 /// What is judged, and what of it is found anew from the measurements that judge it.
 ///
@@ -115,19 +120,12 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     let nominal = (frame_is_common && subject.refit_tool)
         .then(|| model_accuracy(&seen(subject, subject.nominal, data).errors));
     let seen = seen(subject, subject.calibrated, data);
-    let promised = subject.promise.and_then(|promise| promised(&promise, subject, data, &seen));
+    let promised = subject
+        .promise
+        .and_then(|promise| promised(&promise, subject.calibrated, subject.refit_tool, data, &seen));
     let (promised, in_sampled_range) = promised.map_or((None, None), |(all, some)| (Some(all), some));
     let calibrated = model_accuracy(&seen.errors);
     Ok(Judgement { count: data.len(), refitted, calibrated, nominal, promised, in_sampled_range })
-}
-
-/// The judging rows as a robot predicts them.
-pub(super) struct Seen {
-    pub(super) packed: Packed,
-    pub(super) estimate: Estimate,
-    pub(super) errors: Vec<RowError>,
-    /// The unknowns that were found anew.
-    pub(super) free: Vec<Parameter>,
 }
 
 /// Joint values, and the errors of a robot's screws with device frame and targets found anew as asked.
@@ -185,4 +183,51 @@ fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
             frame + tool
         ),
     ))
+}
+
+impl Judgement {
+    /// Why the measurements do not show the calibration to be as good as this; none if they do. *Good* is a promise kept by all rows,
+    /// *inside the sampled range* one kept by those inside it: at least 80 % of the errors inside their 95 % bounds, and the error (RMS) at most
+    /// twice the expected one.
+    #[must_use]
+    pub fn falls_short(&self, required: Level) -> Option<String> {
+        let (which, found) = match required {
+            Level::DoNotUse => return None,
+            Level::InsideSampledRange => {
+                let some = self.in_sampled_range.as_ref();
+                ("inside the sampled range", some.map(|some| (&some.calibrated, &some.promised)))
+            }
+            Level::Good => ("of these rows", self.promised.as_ref().map(|kept| (&self.calibrated, kept))),
+        };
+        let Some((errors, kept)) = found else {
+            return Some(match self.promised {
+                None => "the calibration promises nothing that these rows could keep".to_owned(),
+                Some(_) => "no row lies inside the sampled range".to_owned(),
+            });
+        };
+        let rotation = kept
+            .rotation_deg
+            .zip(errors.rotation_deg)
+            .map(|(part, found)| ("rotation", part, found.rms, "deg"));
+        let position = ("position", kept.position_mm, errors.position_mm.rms, "mm");
+        std::iter::once(position).chain(rotation).find_map(|(what, part, rms, unit)| {
+            let KeptPart { expected_rms, inside_bound95 } = part;
+            // Of exact data nothing but rounding is left.
+            if rms <= ROUNDING * 1e6 {
+                None
+            } else if inside_bound95 < INSIDE {
+                Some(format!(
+                    "{:.0} % of the {what} errors {which} are inside their 95 % bounds, {:.0} % are asked for",
+                    100.0 * inside_bound95,
+                    100.0 * INSIDE
+                ))
+            } else if rms > TIMES * expected_rms {
+                Some(format!(
+                    "the {what} error {which} is {rms:.3} {unit} (RMS), more than twice the expected {expected_rms:.3} {unit}"
+                ))
+            } else {
+                None
+            }
+        })
+    }
 }

@@ -21,21 +21,21 @@ mod suspicion;
 mod trust;
 mod verdict;
 
-pub use accuracy::{Accuracy, ModelAccuracy, SetAccuracy, Statistic, set_accuracy};
+pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
 pub use expectation::{Kept, KeptPart, Promise};
-pub use fit::fit_screws;
+pub use fit::{SolverReport, fit_screws};
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
 pub use options::{CalibrationOptions, DeviceFrameKnowledge};
 pub use promised::InSampledRange;
 pub use repeatability::{RepeatedPose, repeatability};
-pub use result::{CalibratedStation, CalibratedTarget, Calibration, Models, SolverReport};
+pub use result::{CalibratedStation, CalibratedTarget, Calibration};
 pub(crate) use robust::RowInfluence;
 pub use robust::{Loss, Robust, Robustness, RowJudgement, row_influence};
 pub use split::{settle_sets, split_rows};
-pub(crate) use trust::inside;
-pub use trust::{Expected, JointCorrection, RangePart, Trust};
+pub use suspicion::JointCorrection;
+pub use trust::{Expected, RangePart, Trust};
 pub use verdict::{Level, Verdict};
 
 pub use crate::estimate::{RowError, delivered, radian_m, row_errors};

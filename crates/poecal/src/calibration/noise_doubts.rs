@@ -2,7 +2,6 @@
 
 use std::cmp::Ordering;
 
-use super::Trust;
 use crate::uncertainty::{Part, Remainder};
 
 /// What speaks against the stated noise.
@@ -20,8 +19,9 @@ const LESS: f64 = 4.0;
 /// Correlation of what is left in rows that follow each other from which on it is said.
 const IN_TIME: f64 = 0.5;
 
-/// What of the stated noise the residuals contradict, and whether they hang together in time (theory.md §9 (41)).
-pub(super) fn noise_doubts(remainder: &Remainder, trust: &Trust) -> Vec<NoiseDoubt> {
+/// What of the stated noise the residuals contradict, and whether they hang together in time (theory.md §9 (41)): by the correlation of those
+/// that follow each other.
+pub(super) fn noise_doubts(remainder: &Remainder, lag_one: Option<f64>) -> Vec<NoiseDoubt> {
     let mut doubts: Vec<NoiseDoubt> = [
         ("position", &remainder.position, 1e3, "mm"),
         ("rotation", &remainder.rotation, 1f64.to_degrees(), "deg"),
@@ -29,7 +29,6 @@ pub(super) fn noise_doubts(remainder: &Remainder, trust: &Trust) -> Vec<NoiseDou
     .into_iter()
     .filter_map(|(what, part, unit, name)| of_part(what, part, unit, name))
     .collect();
-    let lag_one = trust.uncertainty.as_ref().and_then(|it| it.discrepancy.lag_one);
     if let Some(correlation) = lag_one.filter(|correlation| *correlation > IN_TIME) {
         doubts.push(NoiseDoubt {
             statement: format!(

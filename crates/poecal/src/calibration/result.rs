@@ -1,8 +1,8 @@
 //! What a calibration comes to.
 
 use super::{
-    Accuracy, CalibrationOptions, DeviceFrameKnowledge, Formulation, NoiseSource, Robustness, Trust, Verdict,
-    fit_screws, radian_m,
+    Accuracy, CalibrationOptions, DeviceFrameKnowledge, Formulation, Models, NoiseSource, Robustness,
+    SolverReport, Trust, Verdict, fit_screws, radian_m,
 };
 use crate::analysis::Identifiability;
 use crate::estimate::{Estimate, Packed};
@@ -41,33 +41,6 @@ pub struct CalibratedStation {
     pub name: Option<String>,
     /// `base_from_device` there.
     pub base_from_device: Pose,
-}
-
-/// How the minimisation went.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SolverReport {
-    /// Iterations of the full fit, re-weighted rounds included.
-    pub iterations: usize,
-    /// Why it ended.
-    pub termination: solve::Termination,
-    /// Further starts that were tried.
-    pub restarts: usize,
-    /// Mean square whitened residual by iteration.
-    pub trace: Vec<f64>,
-    /// Joint offsets (radians or metres): joint value minus reading, where the formulation has offsets. They are not
-    /// identifiable beside the screws (lou2009 Proposition 1); the calibrated robot has them in its screws.
-    pub joint_offsets: Option<Vec<f64>>,
-}
-
-/// The three models that every result is stated for, as estimates.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Models {
-    /// As delivered: only an unknown device frame is fitted.
-    pub nominal: Estimate,
-    /// Device frame and targets fitted, screws nominal.
-    pub registered: Estimate,
-    /// Screws, targets and device frame fitted.
-    pub calibrated: Estimate,
 }
 
 /// A finished calibration.

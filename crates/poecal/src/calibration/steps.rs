@@ -129,7 +129,8 @@ impl<'a> Prepared<'a> {
             .map(FramesApart::moved)
             .or_else(|| self.moved(&models.calibrated, &fitted, robustness.loss.is_some()));
         let input = self.input_doubts(&accuracy, moved.as_ref());
-        let noise_doubts = noise_doubts(&remainder, &trust);
+        let lag_one = trust.uncertainty.as_ref().and_then(|it| it.discrepancy.lag_one);
+        let noise_doubts = noise_doubts(&remainder, lag_one);
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
         let grave_move = moved.iter().filter(|it| it.is_grave).map(|it| it.statement.clone());
         let mistakes: Vec<String> =

@@ -1,9 +1,25 @@
-//! Which joint is suspicious: its correction stands out, or what the fit leaves follows its position.
+//! A joint's correction, and whether the joint is suspicious: the correction stands out, or what the fit leaves follows its position.
 
-use super::trust::JointCorrection;
 use crate::robot::JointKind;
 use crate::solve::Normal;
 use crate::uncertainty::{Pattern, View, strongest_pattern};
+
+/// A joint's correction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointCorrection {
+    /// Angle between nominal and calibrated direction, radians.
+    pub tilt_rad: f64,
+    /// Distance of the calibrated axis from the nominal joint's origin, metres.
+    pub shift_m: f64,
+    /// Root mean square error to expect of the direction, radians; `None` where the data do not tell it.
+    pub sigma_tilt_rad: Option<f64>,
+    /// Root mean square error to expect of the axis' place at the joint, metres.
+    pub sigma_shift_m: Option<f64>,
+    /// Root mean square position error if this screw alone stayed nominal, tool and device frame found anew, metres.
+    pub left_nominal_rms_m: f64,
+    /// What speaks against the joint: a correction beyond those of the others, or errors left that follow its position.
+    pub suspicious: Option<String>,
+}
 
 /// Multiple of the other joints' median correction from which one stands out, and multiple of its standard deviation.
 const STANDS_OUT: f64 = 5.0;

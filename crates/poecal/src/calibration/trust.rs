@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::suspicion::suspicions;
+use super::suspicion::{JointCorrection, suspicions};
 use super::{Kept, Models, row_errors};
 use crate::analysis::{JointCoverage, PLAUSIBLE, coverage};
 use crate::estimate::{Estimate, Packed, sample_rows};
@@ -62,23 +62,6 @@ pub struct RangePart {
     pub range: [f64; 2],
     /// Root mean square distance to expect, metres.
     pub sigma_m: f64,
-}
-
-/// A joint's correction.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JointCorrection {
-    /// Angle between nominal and calibrated direction, radians.
-    pub tilt_rad: f64,
-    /// Distance of the calibrated axis from the nominal joint's origin, metres.
-    pub shift_m: f64,
-    /// Root mean square error to expect of the direction, radians; `None` where the data do not tell it.
-    pub sigma_tilt_rad: Option<f64>,
-    /// Root mean square error to expect of the axis' place at the joint, metres.
-    pub sigma_shift_m: Option<f64>,
-    /// Root mean square position error if this screw alone stayed nominal, tool and device frame found anew, metres.
-    pub left_nominal_rms_m: f64,
-    /// What speaks against the joint: a correction beyond those of the others, or errors left that follow its position.
-    pub suspicious: Option<String>,
 }
 
 /// How far a calibration can be trusted.
@@ -306,12 +289,4 @@ fn registered_again(finished: &Finished<'_>, rows: &[u32], start: &Estimate) -> 
         targets_free: true,
     };
     register_again(&registration, start)
-}
-
-/// Whether the joint values of some readings are all within the sampled ranges.
-pub(crate) fn inside(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]) -> bool {
-    let indices = robot.reading_indices();
-    robot.joints.iter().zip(&indices).zip(coverage).all(|((joint, &index), coverage)| {
-        coverage.contains(joint.kind, joint.reading.value(readings[index]))
-    })
 }

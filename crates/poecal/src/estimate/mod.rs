@@ -11,8 +11,9 @@ mod sight;
 
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
-pub use row_error::{RowError, row_errors};
-pub(crate) use row_error::{map_squares, turn_to_first};
+pub use predictions::row_errors;
+pub(crate) use predictions::{map_squares, turn_to_first};
+pub use row_error::RowError;
 pub use sight::Sight;
 
 use std::collections::BTreeMap;

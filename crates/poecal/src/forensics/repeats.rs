@@ -2,14 +2,10 @@
 
 use super::judge::short;
 use super::session::Session;
-use super::{Diagnosis, DiagnosisKind, unnamed};
-use crate::lie::rotation;
-use crate::measurement::{Dataset, Measurement};
+use super::unnamed::{self, contradiction_m};
+use super::{Diagnosis, DiagnosisKind};
+use crate::measurement::Dataset;
 
-/// Rows of one configuration contradict each other when they lie further apart than this share of the reach, or are turned by more
-/// than this angle (radians): a hundred times what a robot repeats to.
-const CONTRADICTION_SHARE: f64 = 5e-3;
-const CONTRADICTION_RAD: f64 = 0.035;
 /// Rows of one configuration before a row that it is compared with: a robot may stand still for thousands.
 const NEAR: usize = 100;
 /// Pairs that a statement names.
@@ -97,15 +93,6 @@ fn contradiction(data: &Dataset, contradicting: &[Pair], furthest_mm: f64) -> Op
         before_mm: furthest_mm,
         after_mm: 0.0,
     })
-}
-
-/// How far two measurements of one configuration are apart, metres, if that is more than a robot's repeatability.
-pub(super) fn contradiction_m(session: &Session<'_>, a: &Measurement, b: &Measurement) -> Option<f64> {
-    let (first, second) = (a.pose(), b.pose());
-    let apart_m = (first.translation - second.translation).norm();
-    let both = a.sees_orientation() && b.sees_orientation();
-    let turn = if both { rotation::log(&(first.rotation * second.rotation.transpose())).norm() } else { 0.0 };
-    (apart_m > CONTRADICTION_SHARE * session.reach_m() || turn > CONTRADICTION_RAD).then_some(apart_m)
 }
 
 /// The first few pairs of rows by name.

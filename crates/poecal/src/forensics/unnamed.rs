@@ -3,11 +3,15 @@
 use nalgebra::Vector3;
 
 use super::judge::short;
-use super::repeats::contradiction_m;
 use super::session::Session;
 use super::{Diagnosis, DiagnosisKind};
+use crate::lie::rotation;
 use crate::measurement::{Dataset, Measurement};
 
+/// Rows of one configuration contradict each other when they lie further apart than this share of the reach, or are turned by more
+/// than this angle (radians): a hundred times what a robot repeats to.
+const CONTRADICTION_SHARE: f64 = 5e-3;
+const CONTRADICTION_RAD: f64 = 0.035;
 /// Fewest configurations that show the same places.
 const FEWEST: usize = 3;
 /// Their share of the configurations that show more than one place.
@@ -119,4 +123,13 @@ fn usual(mut numbers: Vec<usize>) -> Option<usize> {
 fn usual_number(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_unstable_by(f64::total_cmp);
     numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// How far two measurements of one configuration are apart, metres, if that is more than a robot's repeatability.
+pub(super) fn contradiction_m(session: &Session<'_>, a: &Measurement, b: &Measurement) -> Option<f64> {
+    let (first, second) = (a.pose(), b.pose());
+    let apart_m = (first.translation - second.translation).norm();
+    let both = a.sees_orientation() && b.sees_orientation();
+    let turn = if both { rotation::log(&(first.rotation * second.rotation.transpose())).norm() } else { 0.0 };
+    (apart_m > CONTRADICTION_SHARE * session.reach_m() || turn > CONTRADICTION_RAD).then_some(apart_m)
 }

@@ -4,7 +4,7 @@ use super::csv_text::cell;
 use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
 use super::numbers::push_number;
-use crate::calibration::inside;
+use crate::analysis::inside;
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::estimate::Packed;
 use crate::lie::Pose;

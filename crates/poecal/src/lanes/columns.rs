@@ -1,7 +1,8 @@
 //! Jacobian and residuals of some rows, where more is asked of them than sums.
 
 use super::influence::NUMBERS;
-use super::kernel::{Arm, add_rows};
+use super::kernel::add_rows;
+use super::plan::Arm;
 use super::vector::{Vector, WIDTH, Wide};
 use super::work::WORK;
 

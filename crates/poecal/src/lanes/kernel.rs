@@ -4,21 +4,11 @@
 
 use super::frame::{Frame, turned};
 use super::gram::{TILE, add_products};
-use super::plan::{Plan, Step};
+use super::plan::{Arm, Plan, Step};
 use super::totals::Totals;
 use super::turn::Turn;
 use super::vector::{Vector, Vectors, WIDTH, Wide};
 use super::work::{Axis, WORK, Work};
-
-/// An arm as it stands: what is unknown of it, its frames at zero, and the way from the last one to the target.
-#[derive(Clone, Copy)]
-pub(crate) struct Arm<'a> {
-    pub(crate) plan: &'a Plan,
-    pub(crate) steps: &'a [Step],
-    pub(crate) end: &'a Step,
-    /// Whether the curvature of the logarithm may be left out of the products where that spares time (theory.md §6 (28a)).
-    pub(crate) nearly: bool,
-}
 
 /// Sums over all rows of `blocks`.
 #[inline(always)]

@@ -22,8 +22,7 @@ mod x86;
 pub(crate) use dense::Factor;
 pub(crate) use errors::Frames;
 pub(crate) use influence::NUMBERS;
-pub(crate) use kernel::Arm;
-pub(crate) use plan::{JointPlan, Plan, RowData, Rows, Step};
+pub(crate) use plan::{Arm, JointPlan, Plan, RowData, Rows, Step};
 pub(crate) use poses::Exponential;
 pub use simd::{Level, levels};
 pub(crate) use simd::{

@@ -141,3 +141,13 @@ fn put(block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
         }
     }
 }
+
+/// An arm as it stands: what is unknown of it, its frames at zero, and the way from the last one to the target.
+#[derive(Clone, Copy)]
+pub(crate) struct Arm<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) steps: &'a [Step],
+    pub(crate) end: &'a Step,
+    /// Whether the curvature of the logarithm may be left out of the products where that spares time (theory.md §6 (28a)).
+    pub(crate) nearly: bool,
+}

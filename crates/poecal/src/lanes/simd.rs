@@ -4,11 +4,11 @@ use super::columns;
 use super::dense::{self, Factor};
 use super::errors::{self, Frames};
 use super::influence::{self, NUMBERS};
-use super::kernel::{self, Arm};
+use super::kernel;
 #[cfg(target_arch = "x86_64")]
 use super::plain::Pair;
 use super::plain::Two;
-use super::plan::Step;
+use super::plan::{Arm, Step};
 use super::poses::{self, Exponential};
 use super::sincos;
 use super::tip;

@@ -3,8 +3,7 @@
 use std::cell::RefCell;
 
 use super::gram::{TILE, sums_len};
-use super::kernel::Arm;
-use super::plan::Plan;
+use super::plan::{Arm, Plan};
 use super::vector::Wide;
 
 /// Memory of columns that are waiting for their products, in wide numbers: with the sums it just fits the first cache.

@@ -1,15 +1,25 @@
-//! Registration of a device that stood at several places, each with a frame of its own, while the targets stayed on the arm.
+//! Registration of a device that stood at one place, or at several with a frame each while the targets stayed on the arm.
 
 use std::cmp::Reverse;
 
-use super::registration::{Registration, register};
+use super::registration::{Registration, at_one_place, polish};
 use crate::estimate::Estimate;
 
 /// Rows that tell a frame if the targets are known: three points.
 const FEWEST: usize = 3;
 
+/// Registers the data to an estimate's screws: several closed-form starts, the best polished to the optimum. Its cost (`½ Σ e²`
+/// of whitened residuals) is returned with it.
+#[must_use]
+pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64) {
+    if problem.device_free && !start.further_devices.is_empty() {
+        return polish(problem, one_by_one(problem, start), problem.rows.to_vec(), 50);
+    }
+    at_one_place(problem, start)
+}
+
 /// Each frame from its own rows, those of most rows first; the targets that these saw are known to the others (theory.md §6, *Start*).
-pub(super) fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
+fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     // As if all had been measured from one place: only the rows of one are looked at, at a time.
     let alone = problem.data.without_stations();
     let mut stations: Vec<(usize, Vec<u32>)> = (0..problem.data.station_count())
@@ -25,7 +35,7 @@ pub(super) fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estima
         let by_known = of_known.len() >= FEWEST.min(rows.len());
         let rows = if by_known { of_known } else { rows };
         let one = Registration { data: &alone, rows: &rows, targets_free: !by_known, ..*problem };
-        let (seen, _) = register(&one, &found.seen_from(station));
+        let (seen, _) = at_one_place(&one, &found.seen_from(station));
         *found.device_mut(station) = seen.device_from_base;
         if !by_known {
             for row in &rows {

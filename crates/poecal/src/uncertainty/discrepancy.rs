@@ -1,25 +1,11 @@
 //! What the model does not describe, as the residuals show it.
 
-use serde::{Deserialize, Serialize};
-
 use super::folds::CrossValidation;
-use super::remainder::Remainder;
+use super::remainder::{Attribution, Remainder};
 use super::view::View;
 use super::{clusters, neighbours, order};
 use crate::measurement::Noise;
 use crate::solve::Normal;
-
-/// Whose what the fit leaves is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Attribution {
-    /// The robot's: nothing shows that it is noise of measuring.
-    Robot,
-    /// The instrument's: stated noise explains it, and no structure is found in it.
-    StatedNoise,
-    /// The instrument's: measurements that were repeated in one configuration scatter as much as the others.
-    Repeats,
-}
 
 /// What residuals show beside noise.
 ///

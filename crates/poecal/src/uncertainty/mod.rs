@@ -14,12 +14,12 @@ mod remainder;
 mod view;
 
 pub use bootstrap::{Bootstrap, bootstrap};
-pub use discrepancy::{Attribution, Discrepancy, discrepancy};
+pub use discrepancy::{Discrepancy, discrepancy};
 pub use folds::{CrossValidation, LeftOut, cross_validate, leave_clusters_out};
 pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, Quantile, bound};
 pub use refit::Refit;
-pub use remainder::{Part, Remainder, Settled, remainder};
+pub use remainder::{Attribution, Part, Remainder, Settled, remainder};
 pub use view::{Belief, View};
 
 use motions::{motions, products};

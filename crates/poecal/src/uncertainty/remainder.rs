@@ -1,8 +1,8 @@
 //! What a fit leaves, by its kinds and by configurations: sums of squares and their degrees of freedom.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
-use super::discrepancy::Attribution;
 use super::factor;
 use super::view::View;
 use crate::distributions::{f_quantile, is_within_band};
@@ -36,6 +36,18 @@ pub struct Part {
     pub repeats: f64,
     /// Mean variance that is stated of a component, and the mean square in its units; if all rows state it, or it holds for all.
     pub stated: Option<(f64, f64)>,
+}
+
+/// Whose what the fit leaves is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Attribution {
+    /// The robot's: nothing shows that it is noise of measuring.
+    Robot,
+    /// The instrument's: stated noise explains it, and no structure is found in it.
+    StatedNoise,
+    /// The instrument's: measurements that were repeated in one configuration scatter as much as the others.
+    Repeats,
 }
 
 /// Whose a part is.

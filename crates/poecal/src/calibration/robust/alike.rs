@@ -3,10 +3,12 @@
 use nalgebra::Vector3;
 
 use super::super::row_errors;
-use super::rows::TAILS;
 use crate::estimate::{Estimate, Packed};
 use crate::measurement::Dataset;
 
+/// A row is suspected beyond so many times that bound: what real robots leave has heavier tails than noise, and no row of these is
+/// wrong.
+pub(super) const TAILS: f64 = 2.0;
 /// A row is off like the others of its configuration if it differs from their mean by less than this share of its own error.
 const SHARE: f64 = 0.5;
 /// Configurations whose rows are off alike are suspected beyond so many times the bound of normal noise: gears and links give by less.

@@ -2,15 +2,17 @@
 //! *Outliers*).
 
 mod alike;
+mod influence;
 mod loss;
 mod rows;
 mod scale;
 
 use alike::Configurations;
+pub(crate) use influence::RowInfluence;
+pub use influence::row_influence;
 pub use loss::{Loss, Robust};
-pub(crate) use rows::RowInfluence;
 pub(super) use rows::registrable;
-pub use rows::{Robustness, RowJudgement, row_influence};
+pub use rows::{Robustness, RowJudgement};
 
 use super::fit::{Fitted, Found, Task};
 use super::noise::{NoiseSource, stated};

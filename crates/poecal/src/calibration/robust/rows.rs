@@ -1,23 +1,15 @@
 //! What each row means to the fit, and which rows are suspected (theory.md §6 (34d) to (34f)).
 
-use std::borrow::Cow;
-
+use super::alike::TAILS;
 use super::{Configurations, Loss, Parts, Scale, parts};
-use crate::analysis::{Influence, influence};
-use crate::calibration::fit::{self, Fitted, Task};
-use crate::calibration::{Calibration, SetAccuracy, measurements_words, radian_m, written};
+use crate::analysis::influence;
+use crate::calibration::fit::{Fitted, Task};
+use crate::calibration::{SetAccuracy, measurements_words};
 use crate::distributions;
-use crate::estimate::Packed;
 use crate::measurement::Dataset;
-use crate::parameters::{Parameter, screw_axes};
-use crate::problem::Problem;
-use crate::solve::{LeastSquares, Normal};
 
 /// Probability that clean, normal data show a row beyond the bound of normal noise.
 const FAMILY: f64 = 1e-3;
-/// A row is suspected beyond so many times that bound: what real robots leave has heavier tails than noise, and no row of these is
-/// wrong.
-pub(super) const TAILS: f64 = 2.0;
 
 /// What a fit says of one row.
 ///
@@ -223,81 +215,9 @@ pub(super) fn judge_rows(
 }
 
 /// The scale of one number of a row's residual.
-fn component_scale(data: &Dataset, scale: [f64; 2], row: u32, component: usize) -> f64 {
+pub(super) fn component_scale(data: &Dataset, scale: [f64; 2], row: u32, component: usize) -> f64 {
     let turns = data.observations[row as usize].measurement.residual_model().rotation_row();
     scale[usize::from(component >= turns)]
-}
-
-/// What each of these rows means to a finished calibration, and how far it is off when that is allowed for (theory.md §6 (34d), (34e)).
-///
-/// ```
-/// use poecal::calibration::{CalibrationOptions, calibrate, row_influence};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
-/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let found = row_influence(&calibration, &made.data, &calibration.fit_rows);
-/// let sum: f64 = found.iter().map(|row| 6.0 * row.leverage).sum();
-/// assert!((sum - 30.0).abs() < 1e-3);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-#[must_use]
-pub fn row_influence(calibration: &Calibration, data: &Dataset, rows: &[u32]) -> Vec<Influence> {
-    if rows.is_empty() {
-        return Vec::new();
-    }
-    RowInfluence::new(calibration, data).of(rows)
-}
-
-/// [`row_influence`] for some rows after the other.
-pub(crate) struct RowInfluence<'a> {
-    calibration: &'a Calibration,
-    data: Cow<'a, Dataset>,
-    packed: Packed,
-    weights: Vec<f64>,
-    free: Vec<Parameter>,
-    length_m: f64,
-    /// Of the fitted rows; none if there is no row.
-    normal: Option<Normal>,
-}
-
-impl<'a> RowInfluence<'a> {
-    /// Prepares a finished calibration.
-    pub(crate) fn new(calibration: &'a Calibration, data: &'a Dataset) -> Self {
-        let data = written(data, calibration.formulation.pose_residual);
-        let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
-        let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
-        let Calibration { nominal, fit_rows, models, .. } = calibration;
-        let free =
-            fit::free_parameters(&models.calibrated, &data, fit_rows, screw_axes(&models.calibrated.kinds));
-        let length_m = radian_m(nominal, &packed);
-        let mut made = RowInfluence { calibration, data, packed, weights, free, length_m, normal: None };
-        if !made.data.is_empty() {
-            let problem = made.problem(&calibration.fit_rows).with_weights(&made.weights);
-            made.normal = Some(problem.normal(&calibration.models.calibrated));
-        }
-        made
-    }
-
-    /// The joint values of the data.
-    pub(crate) fn packed(&self) -> &Packed {
-        &self.packed
-    }
-
-    fn problem(&self, rows: &[u32]) -> Problem<'_> {
-        let noise = self.calibration.noise;
-        Problem::new(&self.data, &self.packed, rows.to_vec(), self.free.clone(), noise, self.length_m)
-    }
-
-    /// Of these rows.
-    pub(crate) fn of(&self, rows: &[u32]) -> Vec<Influence> {
-        let (Some(normal), false) = (&self.normal, rows.is_empty()) else { return Vec::new() };
-        let Calibration { fit_rows, models, robustness, .. } = self.calibration;
-        let weight = |row: &u32| fit_rows.binary_search(row).map_or(0.0, |_| self.weights[*row as usize]);
-        let counted: Vec<f64> = rows.iter().map(weight).collect();
-        influence(&self.problem(rows), &models.calibrated, normal, rows, &counted, |row, component| {
-            component_scale(&self.data, robustness.scale, row, component)
-        })
-    }
 }
 
 /// The rows by which devices and targets are registered for the table: without those suspected, unless that would leave too few.

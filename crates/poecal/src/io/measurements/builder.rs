@@ -3,14 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::header::{Header, unit_in_name};
-use super::layout::{Input, Source, TargetLayout, Term, reading_quantity};
+use super::inputs::{Input, Source, Term};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
-use super::understanding::UnitSource;
-use super::units::{Quantity, Unit};
+use super::units::{Quantity, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::robot::Robot;
+use crate::robot::{JointKind, Robot};
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
@@ -40,6 +39,16 @@ const OUR_NAMES: [&str; 19] = [
 
 /// What to do about a column of ours that is not found.
 const MISSING: &str = ": rename or add a column, or name the right one in a mapping file (--columns)";
+
+/// One target of each row; numbers are indices into [`Builder::inputs`].
+#[derive(Clone, Debug)]
+pub(super) struct TargetLayout {
+    pub(super) name: Option<String>,
+    pub(super) position: [usize; 3],
+    pub(super) orientation: Option<(OrientationForm, Vec<usize>)>,
+    pub(super) sigma_position: Option<usize>,
+    pub(super) sigma_rotation: Option<usize>,
+}
 
 /// Finds one thing after the other in a header and keeps account of the columns used.
 pub(super) struct Builder<'a> {
@@ -378,4 +387,13 @@ fn clash(name: &str) -> String {
         "expected different names for the model's joint `{name}` and the measured `{name}`: call the joint's column \
          `joint_{name}`, and say so with `joints = {{ {name} = \"joint_{name}\" }}` in a mapping file (--columns)"
     )
+}
+
+/// What a reading measures: as the joint of its name, else as a joint that follows it.
+fn reading_quantity(robot: &Robot, reading: &str) -> Quantity {
+    let users = || robot.joints.iter().filter(|joint| joint.reading.name == reading);
+    match users().find(|joint| joint.name == reading).or_else(|| users().next()).map(|joint| joint.kind) {
+        Some(JointKind::Prismatic) => Quantity::Length,
+        Some(JointKind::Revolute) | None => Quantity::Angle,
+    }
 }

@@ -1,9 +1,11 @@
 //! A line's cells.
 
 use std::borrow::Cow;
+use std::path::Path;
 
 use serde::Serialize;
 
+use crate::error::{Error, ErrorKind, Result};
 use crate::io::csv_text::plain;
 
 /// What stands between two cells.
@@ -186,6 +188,19 @@ fn closing_quote(text: &str) -> Option<usize> {
         }
         from = at + 2;
     }
+}
+
+/// [`split`], and the error of a line that cannot be.
+pub(super) fn split_line<'a>(
+    path: &Path,
+    line: usize,
+    text: &'a str,
+    separator: Separator,
+    cells: &mut Vec<Cell<'a>>,
+) -> Result<()> {
+    split(text, separator, cells).map_err(|(offset, message)| {
+        Error::new(ErrorKind::Syntax, message).at(path, line, character_column(text, offset))
+    })
 }
 
 #[cfg(test)]

@@ -3,10 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::cells::{Cell, Separator, character_column, split};
-use super::table::split_line;
-use super::understanding::UnitSource;
-use super::units::{Quantity, Unit};
+use super::cells::{Cell, Separator, character_column, split, split_line};
+use super::units::{Quantity, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 
 /// A column of the header: `name[unit]` or `name (unit)`.

@@ -1,12 +1,52 @@
 //! The numbers of a row, in metres and radians.
 
-use super::layout::{Input, Source};
 use super::number::Numbers;
 use super::table::Row;
-use super::understanding::Range;
-use super::units::Quantity;
+use super::units::{Quantity, Unit, UnitSource};
 use crate::error::{Error, Result};
 use crate::io::numbers::LARGEST_NUMBER;
+
+/// A number of each row.
+#[derive(Clone, Debug)]
+pub(super) struct Input {
+    /// Our name for it.
+    pub(super) name: String,
+    /// What messages call it: the file's column, our name for a constant.
+    pub(super) label: String,
+    pub(super) source: Source,
+    pub(super) unit: Unit,
+    pub(super) unit_from: UnitSource,
+    /// What is added up, if it is a sum of columns: `source` is then the first of them.
+    pub(super) sum: Vec<Term>,
+}
+
+/// A column of a sum.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Term {
+    pub(super) column: usize,
+    pub(super) unit: Unit,
+    pub(super) factor: f64,
+}
+
+/// Where a number comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Source {
+    /// Index of the file's column.
+    Column(usize),
+    /// The same in every row (metres, radians).
+    Constant(f64),
+}
+
+/// Smallest and largest of the values seen.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Range(pub(super) Option<(f64, f64)>);
+
+impl Range {
+    pub(super) fn include(&mut self, value: f64) {
+        let (min, max) = self.0.unwrap_or((value, value));
+        self.0 = Some((min.min(value), max.max(value)));
+    }
+}
 
 /// Reads the inputs of row after row into the same buffers.
 pub(super) struct InputReader<'a> {

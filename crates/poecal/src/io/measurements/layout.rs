@@ -1,55 +1,12 @@
 //! Which column of a file is what: the header, the mapping and the robot put together.
 
-use super::builder::Builder;
+use super::builder::{Builder, TargetLayout};
 use super::header::Header;
+use super::inputs::Input;
 use super::mapping::{ColumnMap, PoseDirection};
-use super::orientation::OrientationForm;
-use super::understanding::UnitSource;
-use super::units::{Quantity, Unit};
 use super::{FitWhere, ReadOptions};
 use crate::error::Result;
-use crate::robot::{JointKind, Robot};
-
-/// A number of each row.
-#[derive(Clone, Debug)]
-pub(super) struct Input {
-    /// Our name for it.
-    pub(super) name: String,
-    /// What messages call it: the file's column, our name for a constant.
-    pub(super) label: String,
-    pub(super) source: Source,
-    pub(super) unit: Unit,
-    pub(super) unit_from: UnitSource,
-    /// What is added up, if it is a sum of columns: `source` is then the first of them.
-    pub(super) sum: Vec<Term>,
-}
-
-/// A column of a sum.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Term {
-    pub(super) column: usize,
-    pub(super) unit: Unit,
-    pub(super) factor: f64,
-}
-
-/// Where a number comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Source {
-    /// Index of the file's column.
-    Column(usize),
-    /// The same in every row (metres, radians).
-    Constant(f64),
-}
-
-/// One target of each row; numbers are indices into [`Layout::inputs`].
-#[derive(Clone, Debug)]
-pub(super) struct TargetLayout {
-    pub(super) name: Option<String>,
-    pub(super) position: [usize; 3],
-    pub(super) orientation: Option<(OrientationForm, Vec<usize>)>,
-    pub(super) sigma_position: Option<usize>,
-    pub(super) sigma_rotation: Option<usize>,
-}
+use crate::robot::Robot;
 
 /// How a row's set is known; numbers are columns of the file.
 #[derive(Clone, Debug)]
@@ -140,14 +97,5 @@ impl Layout {
             pose: map.pose,
             ignored: Vec::new(),
         })
-    }
-}
-
-/// What a reading measures: as the joint of its name, else as a joint that follows it.
-pub(super) fn reading_quantity(robot: &Robot, reading: &str) -> Quantity {
-    let users = || robot.joints.iter().filter(|joint| joint.reading.name == reading);
-    match users().find(|joint| joint.name == reading).or_else(|| users().next()).map(|joint| joint.kind) {
-        Some(JointKind::Prismatic) => Quantity::Length,
-        Some(JointKind::Revolute) | None => Quantity::Angle,
     }
 }

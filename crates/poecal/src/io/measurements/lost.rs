@@ -5,8 +5,8 @@ use std::path::Path;
 use nalgebra::Matrix3;
 use serde::Serialize;
 
+use super::builder::TargetLayout;
 use super::inputs::InputReader;
-use super::layout::TargetLayout;
 use super::table::Row;
 use crate::error::{Error, Result};
 

@@ -37,8 +37,8 @@ pub use mapping::ColumnMap;
 pub use number::DecimalSign;
 pub use read::{parse, read};
 pub(in crate::io) use template::{plan, template};
-pub use understanding::{ColumnUnderstanding, FileUnderstanding, UnitSource};
-pub use units::{Quantity, Unit};
+pub use understanding::{ColumnUnderstanding, FileUnderstanding};
+pub use units::{Quantity, Unit, UnitSource};
 pub(in crate::io) use write::text;
 
 use std::collections::BTreeMap;

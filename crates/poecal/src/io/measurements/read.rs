@@ -4,8 +4,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::builder::TargetLayout;
 use super::inputs::InputReader;
-use super::layout::{Layout, SetRule, TargetLayout};
+use super::layout::{Layout, SetRule};
 use super::lost::LostBeams;
 use super::mapping::ColumnMap;
 use super::naming::Naming;

@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::builder::TargetLayout;
 use super::inputs::InputReader;
-use super::layout::TargetLayout;
 use super::mapping::PoseDirection;
 use super::table::Row;
 use crate::error::Result;

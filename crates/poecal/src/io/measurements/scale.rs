@@ -4,11 +4,10 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 
-use super::inputs::InputReader;
-use super::layout::{Input, Layout};
+use super::inputs::{Input, InputReader};
+use super::layout::Layout;
 use super::table::Row;
-use super::understanding::UnitSource;
-use super::units::{Quantity, Unit};
+use super::units::{Quantity, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Observation;
 use crate::robot::{Joint, Limits, Robot};

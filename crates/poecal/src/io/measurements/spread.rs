@@ -5,7 +5,8 @@ use std::path::Path;
 use nalgebra::Vector3;
 
 use super::header::Header;
-use super::layout::{Input, Layout, Source};
+use super::inputs::{Input, Source};
+use super::layout::Layout;
 use super::scale::{middle, short};
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::cells::{Cell, Separator, character_column, split};
+use super::cells::{Cell, Separator, character_column, split, split_line};
 use super::header::{Header, are_units};
 use super::mapping::ColumnMap;
 use super::text::{Blocks, Lines};
@@ -174,18 +174,6 @@ fn stated_separator(path: &Path, line: usize, text: &str) -> Result<Option<Separ
             Err(Error::new(ErrorKind::Syntax, message).at(path, line, 1))
         }
     }
-}
-
-pub(super) fn split_line<'a>(
-    path: &Path,
-    line: usize,
-    text: &'a str,
-    separator: Separator,
-    cells: &mut Vec<Cell<'a>>,
-) -> Result<()> {
-    split(text, separator, cells).map_err(|(offset, message)| {
-        Error::new(ErrorKind::Syntax, message).at(path, line, character_column(text, offset))
-    })
 }
 
 /// Measurements, or rows of joint readings, that are read at most: they are held in memory, and an endless pipe has more.

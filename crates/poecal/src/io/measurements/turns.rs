@@ -6,7 +6,8 @@ use std::path::Path;
 
 use super::header::Header;
 use super::inputs::InputReader;
-use super::layout::{Input, Layout, Source};
+use super::inputs::{Input, Source};
+use super::layout::Layout;
 use super::mapping::ColumnMap;
 use super::orientation::OrientationForm;
 use super::table::Row;

@@ -6,24 +6,12 @@ use serde::Serialize;
 
 use super::cells::Separator;
 use super::header::Header;
-use super::layout::{Input, Layout, SetRule, Source};
+use super::inputs::{Input, Range, Source};
+use super::layout::{Layout, SetRule};
 use super::lost::LostBeams;
 use super::mapping::PoseDirection;
 use super::number::DecimalSign;
-
-/// Where a column's unit came from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum UnitSource {
-    /// Brackets in the header.
-    Header,
-    /// The line of units below the header.
-    UnitsLine,
-    /// The mapping file.
-    Mapping,
-    /// Nowhere: SI.
-    Si,
-}
+use super::units::UnitSource;
 
 /// What one of our columns was read from.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -78,17 +66,6 @@ pub struct FileUnderstanding {
     pub pose: &'static str,
     /// Columns that were left alone.
     pub ignored: Vec<String>,
-}
-
-/// Smallest and largest of the values seen.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Range(Option<(f64, f64)>);
-
-impl Range {
-    pub(super) fn include(&mut self, value: f64) {
-        let (min, max) = self.0.unwrap_or((value, value));
-        self.0 = Some((min.min(value), max.max(value)));
-    }
 }
 
 /// Our columns and what they were read from.

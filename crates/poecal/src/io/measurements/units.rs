@@ -2,7 +2,23 @@
 
 use std::f64::consts::PI;
 
+use serde::Serialize;
+
 use crate::error::{Error, ErrorKind, Result, nearest};
+
+/// Where a column's unit came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UnitSource {
+    /// Brackets in the header.
+    Header,
+    /// The line of units below the header.
+    UnitsLine,
+    /// The mapping file.
+    Mapping,
+    /// Nowhere: SI.
+    Si,
+}
 
 /// What a number measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,23 +1,13 @@
 //! The results of a calibration.
 
-use std::borrow::Cow;
-
-use super::{FilePlace, FolderPlace, NewFile, Written, robot_files, write_files};
+use super::contents::REPORT;
+use super::{FilePlace, FolderPlace, NewFile, Page, Written, robot_files, write_files};
 use crate::calibration::Calibration;
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::model::Model;
 use crate::io::residuals::Rows;
 use crate::robot::Robot;
-
-/// Every name that a calibration may write.
-pub(super) const OWN_NAMES: [&str; 5] =
-    ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv", REPORT];
-/// A page in pieces that follow each other, so that those which never change need not be copied.
-pub type Page = Vec<Cow<'static, str>>;
-
-/// The report's name among the results.
-pub const REPORT: &str = "report.html";
 
 /// What is written of a calibration beside its models.
 ///

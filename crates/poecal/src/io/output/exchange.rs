@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
 
+use super::existing::{Existing, refused};
 use super::journal::{Journal, Step};
-use super::place::{Existing, FolderPlace, check_existing, check_own, own_names, refused};
+use super::place::{FolderPlace, check_existing, check_own, own_names};
 use super::staging::{self, OLD, Staging};
 use super::{NewFile, interrupted, leftovers};
 use crate::error::{Error, Result};

@@ -3,7 +3,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::place::{Existing, GENERATOR, found, is_of_poecal, led_to, new_place, refuse_input, refused};
+use super::existing::{Existing, GENERATOR, found, is_of_poecal, led_to, new_place, refuse_input, refused};
 use super::staging::{self, Staging};
 use super::{NewFile, Page, interrupted, leftovers};
 use crate::error::{Error, Result};

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::io::{self, Read as _, Write as _};
 use std::path::Path;
 
-use super::place::Contents;
-use super::staging::{NEW, OLD, gone};
+use super::contents::Contents;
+use super::staging::{JOURNAL, JOURNAL_BACK, NEW, OLD, UNFINISHED_JOURNAL, gone};
 use crate::io::disk::{Disk, FoundKind};
 use crate::io::named_files;
 
@@ -13,11 +13,6 @@ use crate::io::named_files;
 const HEAD: &str = "poecal-journal-1";
 /// The last line, without which the text is not whole.
 const END: &str = "end";
-const NAME: &str = "journal";
-/// The name under which it is written.
-const UNFINISHED: &str = "journal.unfinished";
-/// The name of the journal that takes its place where the exchange fails: it lies ready, since a full disk may be what fails.
-const BACK: &str = "journal.back";
 /// Bytes that a journal has at most.
 const LONGEST: u64 = 1 << 20;
 
@@ -73,18 +68,18 @@ impl Journal {
 
     /// Keeps the journal in a staging folder, and what undoes it.
     pub(super) fn keep(&self, disk: &dyn Disk, staging: &Path, back: &Journal) -> io::Result<()> {
-        for (journal, name) in [(back, BACK), (self, UNFINISHED)] {
+        for (journal, name) in [(back, JOURNAL_BACK), (self, UNFINISHED_JOURNAL)] {
             let mut file = disk.create(&staging.join(name))?;
             file.write_all(journal.text().as_bytes())?;
             file.sync()?;
         }
-        disk.rename(&staging.join(UNFINISHED), &staging.join(NAME))?;
+        disk.rename(&staging.join(UNFINISHED_JOURNAL), &staging.join(JOURNAL))?;
         disk.sync_folder(staging)
     }
 
     /// Keeps what undoes the journal instead.
     pub(super) fn turn_back(disk: &dyn Disk, staging: &Path) -> io::Result<()> {
-        disk.rename(&staging.join(BACK), &staging.join(NAME))?;
+        disk.rename(&staging.join(JOURNAL_BACK), &staging.join(JOURNAL))?;
         disk.sync_folder(staging)
     }
 
@@ -93,7 +88,7 @@ impl Journal {
     /// # Errors
     /// Those of the disk; [`io::ErrorKind::InvalidData`] if it is no journal.
     pub(super) fn kept(disk: &dyn Disk, staging: &Path) -> io::Result<Option<Self>> {
-        let path = staging.join(NAME);
+        let path = staging.join(JOURNAL);
         if !is_file(disk, &path)? {
             return Ok(None);
         }
@@ -158,7 +153,7 @@ impl Journal {
 
     /// Ends an exchange: nothing is left to do.
     pub(super) fn end(disk: &dyn Disk, staging: &Path) -> io::Result<()> {
-        gone(disk.remove_file(&staging.join(NAME)))
+        gone(disk.remove_file(&staging.join(JOURNAL)))
     }
 }
 
@@ -189,9 +184,6 @@ fn is_file(disk: &dyn Disk, path: &Path) -> io::Result<bool> {
         Err(error) => Err(error),
     }
 }
-
-/// Names that a staging folder has for its journal.
-pub(super) const NAMES: [&str; 3] = [UNFINISHED, NAME, BACK];
 
 #[cfg(test)]
 mod tests {

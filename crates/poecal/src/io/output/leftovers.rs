@@ -4,10 +4,13 @@ use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::contents::Contents;
 use super::journal::Journal;
-use super::place::Contents;
-use super::staging;
-use crate::io::disk::{Disk, FoundKind, Lock};
+use super::{interrupted, staging};
+use crate::io::disk::{Disk, FoundKind, Lock, SystemDisk};
+
+/// Another thread may be writing into a folder while it is removed.
+const ATTEMPTS: usize = 100;
 
 /// Settles what lies at a place without links, beside it and inside if it is a folder. Says what was done, a sentence each.
 pub(super) fn settle(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String)) {
@@ -98,5 +101,17 @@ pub(super) fn give_back(
     match disk.remove_folder(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
         removed => removed,
+    }
+}
+
+/// Removes what runs of this process have written and not yet put in place. Results that are being put in place are waited for, and
+/// none are afterwards: for a program that was asked to end, and ends then.
+pub fn clean_up() {
+    for folder in interrupted::at_last() {
+        for _ in 0..ATTEMPTS {
+            if staging::remove(&SystemDisk, &folder).is_ok() {
+                break;
+            }
+        }
     }
 }

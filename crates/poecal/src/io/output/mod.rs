@@ -5,7 +5,9 @@
 //! (`leftovers.rs`), or a signal's handler at once ([`clean_up`]).
 
 mod calibration;
+mod contents;
 mod exchange;
+mod existing;
 mod file;
 mod interrupted;
 mod journal;
@@ -16,14 +18,17 @@ mod reproduction;
 mod simulation;
 mod staging;
 
-pub use calibration::{Page, REPORT, Results, write, write_robot};
+pub use calibration::{Results, write, write_robot};
+pub use contents::{Contents, REPORT};
+pub use existing::Existing;
 pub use file::FilePlace;
-pub use interrupted::clean_up;
-pub use place::{Contents, Existing, FolderPlace};
+pub use leftovers::clean_up;
+pub use place::FolderPlace;
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
 pub use simulation::{Session, write_simulation};
 
+use std::borrow::Cow;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -58,6 +63,9 @@ pub struct Written {
     /// What had to be added or left out, a sentence each.
     pub notes: Vec<String>,
 }
+
+/// A page in pieces that follow each other, so that those which never change need not be copied.
+pub type Page = Vec<Cow<'static, str>>;
 
 /// What a file will hold.
 enum Content<'a> {

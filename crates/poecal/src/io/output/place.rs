@@ -4,72 +4,12 @@ use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::contents::{self, Contents, REPORT};
+use super::existing::{Existing, found, is_of_poecal, led_to, new_place, refuse_input, refused};
 use super::staging::{self, Staging};
-use super::{FilePlace, REPORT, leftovers};
+use super::{FilePlace, leftovers};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::disk::{self, Disk, Found, FoundKind};
-use crate::io::named_files;
-
-/// What may become of files that exist.
-///
-/// ```
-/// use poecal::io::output::Existing;
-/// assert_ne!(Existing::Kept, Existing::Replaced);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Existing {
-    /// They stay, and nothing is written.
-    Kept,
-    /// They are replaced where poecal wrote them: a folder with a `calibration.json`, a report.
-    Own,
-    /// They are replaced.
-    Replaced,
-}
-
-impl Existing {
-    /// As a switch says it.
-    #[must_use]
-    pub fn forced(force: bool) -> Self {
-        if force { Existing::Replaced } else { Existing::Kept }
-    }
-}
-
-/// What a folder is to hold.
-///
-/// ```
-/// use poecal::io::output::Contents;
-/// assert!(Contents::Calibration.is_own("report.html") && !Contents::Calibration.is_own("notes.txt"));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Contents {
-    /// The results of a calibration.
-    Calibration,
-    /// A simulated session.
-    Simulation,
-    /// The report of a reproduction.
-    Reproduction,
-    /// A project to start from.
-    Project,
-}
-
-impl Contents {
-    /// Whether a run of any kind may have written a file of this name.
-    pub(super) fn is_of_any(name: &str) -> bool {
-        let all = [Contents::Calibration, Contents::Simulation, Contents::Reproduction, Contents::Project];
-        all.into_iter().any(|contents| contents.is_own(name)) || super::project::MODELS.contains(&name)
-    }
-
-    /// Whether a file of this name is one that may be written, so that one of an earlier run goes.
-    #[must_use]
-    pub fn is_own(self, name: &str) -> bool {
-        match self {
-            Contents::Calibration => super::calibration::OWN_NAMES.contains(&name),
-            Contents::Simulation => super::simulation::OWN_NAMES.contains(&name),
-            Contents::Reproduction => super::reproduction::is_own(name),
-            Contents::Project => super::project::OWN_NAMES.contains(&name),
-        }
-    }
-}
+use crate::io::disk::{self, Disk, FoundKind};
 
 /// A folder in which files are about to be written. Nothing in it has changed yet, and nothing will unless all is written.
 ///
@@ -97,51 +37,6 @@ impl std::fmt::Debug for FolderPlace {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("FolderPlace").field("named", &self.named).finish_non_exhaustive()
     }
-}
-
-/// A complaint about a place.
-pub(super) fn refused(path: &Path, message: impl Into<String>) -> Error {
-    Error::new(ErrorKind::File, message).in_file(path)
-}
-
-/// What is at a path, if anything is.
-pub(super) fn found(disk: &dyn Disk, path: &Path) -> Result<Option<Found>> {
-    match disk.look(path) {
-        Ok(found) => Ok(Some(found)),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(refused(
-            path,
-            format!("the place cannot be looked at ({error}), expected one to write to: choose another"),
-        )),
-    }
-}
-
-/// The path without links of a place in a folder that exists, where nothing is yet.
-pub(super) fn new_place(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, PathBuf)> {
-    let parent = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let Some(name) = path.file_name() else {
-        return Err(refused(path, "found no name at the end of the path, expected one: name the place"));
-    };
-    match disk.actual(parent) {
-        Ok(actual) if disk.follow(&actual).is_ok_and(|found| found.kind == FoundKind::Folder) => {
-            Ok((actual.clone(), actual.join(name)))
-        }
-        _ => {
-            let message = "the folder above does not exist, expected one to write into: create it first";
-            Err(refused(path, message))
-        }
-    }
-}
-
-/// What a link leads to.
-pub(super) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Found)> {
-    let actual = disk.actual(path).and_then(|actual| Ok((actual.clone(), disk.look(&actual)?)));
-    actual.map_err(|error| {
-        refused(path, format!("found a link that leads nowhere ({error}), expected one to something: remove it, or choose another"))
-    })
 }
 
 impl FolderPlace {
@@ -249,8 +144,8 @@ pub(super) fn check_existing(
     names: &[String],
 ) -> Result<()> {
     if contents == Contents::Project {
-        return match super::project::OWN_NAMES.into_iter().find(|own| names.iter().any(|name| name == own)) {
-            Some(name) => Err(super::project::taken(&folder.join(name))),
+        return match contents::PROJECT.into_iter().find(|own| names.iter().any(|name| name == own)) {
+            Some(name) => Err(taken(&folder.join(name))),
             None => Ok(()),
         };
     }
@@ -289,35 +184,11 @@ pub(super) fn check_own(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Resul
     Err(refused(path, message))
 }
 
-/// Refuses a place where an input of the same run lies, whatever path names it.
-pub(super) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {
-    match inputs.iter().find(|input| named_files::are_same(disk, input, path)) {
-        Some(input) => Err(refused(
-            path,
-            format!(
-                "found a file that this run reads ({}), expected another place to write to: an input is never replaced, choose another \
-                 with --out",
-                input.display()
-            ),
-        )),
-        None => Ok(()),
-    }
-}
-
 /// By what a `calibration.json` is known.
 const SCHEMA: &str = "\"schema\": \"poecal-calibration-";
-/// By what a report is known.
-pub(super) const GENERATOR: &str = "<meta name=\"generator\" content=\"poecal ";
-/// Bytes in which that stands.
-const HEAD: u64 = 4096;
 
-/// Whether poecal wrote a file.
-pub(super) fn is_of_poecal(disk: &dyn Disk, path: &Path, mark: &str) -> bool {
-    let mut head = Vec::new();
-    let is_file = disk.look(path).is_ok_and(|found| found.kind == FoundKind::File);
-    let read =
-        |file: Box<dyn io::Read + Send>| io::Read::read_to_end(&mut io::Read::take(file, HEAD), &mut head);
-    is_file
-        && disk.open(path).and_then(read).is_ok()
-        && head.windows(mark.len()).any(|part| part == mark.as_bytes())
+/// The error of a file that is in the way.
+pub(super) fn taken(path: &Path) -> Error {
+    let message = "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out";
+    Error::new(ErrorKind::File, message).in_file(path)
 }

@@ -1,26 +1,14 @@
 //! A folder to start a calibration from.
 
-use std::path::Path;
-
+use super::place::taken;
 use super::{FolderPlace, NewFile, Written, write_files};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::io::disk;
 use crate::io::measurements::{plan, template};
 use crate::io::model::{Model, ModelSource};
 use crate::io::source_text;
 use crate::io::urdf::ChainSelection;
 use crate::simulate::Kind;
-
-/// Names that every project has.
-pub(super) const OWN_NAMES: [&str; 4] = ["measurements.csv", "joints.csv", "poecal.toml", "README.md"];
-/// Names of its model, of which it has one.
-pub(super) const MODELS: [&str; 3] = ["robot.urdf", "robot.toml", "robot.json"];
-
-/// The error of a file that is in the way.
-pub(super) fn taken(path: &Path) -> Error {
-    let message = "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out";
-    Error::new(ErrorKind::File, message).in_file(path)
-}
 
 const SETTINGS: &str = include_str!("project/poecal.toml");
 const README: &str = include_str!("project/README.md");

@@ -13,17 +13,6 @@ use crate::simulate::{Kind, Simulated, Simulation};
 /// Version word of `truth.json`.
 const SCHEMA: &str = "poecal-truth-1";
 
-/// Every name that a simulated session may write.
-pub(super) const OWN_NAMES: [&str; 7] = [
-    "nominal.urdf",
-    "nominal.toml",
-    "actual.urdf",
-    "actual.toml",
-    "measurements.csv",
-    "held_out.csv",
-    "truth.json",
-];
-
 /// A simulated session and how it was made.
 #[derive(Clone, Copy, Debug)]
 pub struct Session<'a> {

@@ -8,7 +8,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{NewFile, interrupted, journal};
+use super::{NewFile, interrupted};
 use crate::io::disk::{Disk, FoundKind, Lock, Output};
 
 /// The folder of new files in a staging folder.
@@ -16,6 +16,13 @@ pub(super) const NEW: &str = "new";
 /// The folder of the files that are replaced.
 pub(super) const OLD: &str = "old";
 const LOCK: &str = "lock";
+/// The journal of an exchange.
+pub(super) const JOURNAL: &str = "journal";
+/// The name under which it is written.
+pub(super) const UNFINISHED_JOURNAL: &str = "journal.unfinished";
+/// The name of the journal that takes its place where the exchange fails: it lies ready, since a full disk may be what fails.
+pub(super) const JOURNAL_BACK: &str = "journal.back";
+const JOURNALS: [&str; 3] = [UNFINISHED_JOURNAL, JOURNAL, JOURNAL_BACK];
 /// What the name of a staging folder has before the numbers of its process and of itself.
 const UNFINISHED: &str = ".poecal-unfinished-";
 /// Names that are taken which are passed over.
@@ -141,7 +148,7 @@ fn discard(disk: &dyn Disk, folder: &Path) {
 pub(super) fn remove(disk: &dyn Disk, folder: &Path) -> io::Result<()> {
     // The journal first, and for good: without its files it would tell the next run half of what there was to do.
     let mut had_one = false;
-    for name in journal::NAMES {
+    for name in JOURNALS {
         match disk.remove_file(&folder.join(name)) {
             Ok(()) => had_one = true,
             removed => gone(removed)?,
@@ -205,7 +212,7 @@ fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
     };
     is(folder, FoundKind::Folder)
         && [NEW, OLD].into_iter().all(|half| is(&folder.join(half), FoundKind::Folder))
-        && journal::NAMES.into_iter().chain([LOCK]).all(|name| is(&folder.join(name), FoundKind::File))
+        && JOURNALS.into_iter().chain([LOCK]).all(|name| is(&folder.join(name), FoundKind::File))
 }
 
 /// Staging folders in a folder that nobody has locked, each with its lock, now ours.

@@ -6,7 +6,6 @@ use std::cmp::Ordering;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-use super::rows::place;
 use super::{reading_index, readings_of};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::{CalibrationFile, KindWord, PoseEntry, ScrewEntry};
@@ -213,4 +212,21 @@ fn rounded(value: f64) -> f64 {
     }
     let scale = 10_f64.powi(places);
     (value * scale).round_ties_even() / scale
+}
+
+/// The place of a row: its file and line, or its number.
+pub(super) fn place(residuals: &Residuals, index: usize) -> String {
+    let Some(row) = residuals.rows.get(index) else { return String::new() };
+    match residuals.file(row) {
+        "" => format!("row {}", index + 1),
+        file => format!("{}:{}", short(&residuals.files, file), row.line),
+    }
+}
+
+/// A file's name without its folders, if no other file has that name.
+pub(super) fn short<'a>(files: &[String], file: &'a str) -> &'a str {
+    let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+    let own = name(file);
+    let same = files.iter().filter(|other| name(other) == own).count();
+    if same == 1 { &file[file.len() - own.len()..] } else { file }
 }

@@ -1,6 +1,6 @@
 //! What the rows leave: charts of them, tables with the same facts, suspected rows, and configurations that were measured several times.
 
-use super::data::{MOST_ROWS, drawn, keep_first};
+use super::data::{MOST_ROWS, drawn, keep_first, place, short};
 use super::first::{position_table, rotation_table};
 use super::html::{Html, Table, count, decimal, figure};
 use super::{figures, readings_of};
@@ -176,29 +176,12 @@ fn joint_table(residuals: &Residuals) -> Table {
     table
 }
 
-/// The place of a row: its file and line, or its number.
-pub(super) fn place(residuals: &Residuals, index: usize) -> String {
-    let Some(row) = residuals.rows.get(index) else { return String::new() };
-    match residuals.file(row) {
-        "" => format!("row {}", index + 1),
-        file => format!("{}:{}", short(&residuals.files, file), row.line),
-    }
-}
-
 /// The place of a row as the calibration file has it; rows that came from no file have none.
 fn named(residuals: &Residuals, file: &str, row: u32, key: &str) -> String {
     match file {
         "" => "–".to_owned(),
         file => format!("{}:{}", escape(short(&residuals.files, file)), count(row as usize, key)),
     }
-}
-
-/// A file's name without its folders, if no other file has that name.
-fn short<'a>(files: &[String], file: &'a str) -> &'a str {
-    let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
-    let own = name(file);
-    let same = files.iter().filter(|other| name(other) == own).count();
-    if same == 1 { &file[file.len() - own.len()..] } else { file }
 }
 
 fn leverage_table(residuals: &Residuals) -> Option<Table> {

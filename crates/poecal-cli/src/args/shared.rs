@@ -1,0 +1,127 @@
+//! Arguments of several commands.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use poecal::io::measurements::{ColumnMap, Frames, ReadOptions};
+use poecal::io::output::{Existing, FilePlace};
+use poecal::io::urdf::ChainSelection;
+
+use crate::console::Console;
+
+/// Which chain of a URDF.
+#[derive(Args, Debug)]
+pub(crate) struct Chain {
+    /// First link of the chain, where a URDF has several
+    #[arg(long, value_name = "LINK")]
+    pub(crate) base_link: Option<String>,
+    /// Last link of the chain, where a URDF has several
+    #[arg(long, value_name = "LINK")]
+    pub(crate) tip_link: Option<String>,
+}
+
+impl Chain {
+    pub(crate) fn selection(&self) -> ChainSelection {
+        ChainSelection { base_link: self.base_link.clone(), tip_link: self.tip_link.clone() }
+    }
+}
+
+/// What is known of the measuring device's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Frame {
+    /// The device stands anywhere
+    Unknown,
+    /// Measurements are in the robot's base frame
+    Base,
+}
+
+/// What columns of files mean.
+#[derive(Args, Debug)]
+pub(crate) struct Columns {
+    /// Mapping file that says what the columns of other people's files mean
+    #[arg(long, value_name = "MAP.toml")]
+    pub(crate) columns: Option<PathBuf>,
+}
+
+impl Columns {
+    pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
+        let mapping = self.columns.as_ref().map(ColumnMap::read).transpose()?;
+        Ok(ReadOptions { mapping, ..ReadOptions::default() })
+    }
+}
+
+/// How to treat lost beams.
+#[derive(Args, Debug)]
+pub(crate) struct Strictness {
+    /// Refuse lost beams (empty or zero positions) instead of leaving them out with a warning
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+/// Which rows share a device frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FramesWord {
+    /// All, or those of one name in the column `instrument`
+    Common,
+    /// Those of a file
+    PerFile,
+}
+
+impl From<FramesWord> for Frames {
+    fn from(word: FramesWord) -> Self {
+        match word {
+            FramesWord::Common => Frames::Common,
+            FramesWord::PerFile => Frames::PerFile,
+        }
+    }
+}
+
+/// Where the measuring device stood.
+#[derive(Args, Debug)]
+pub(crate) struct DeviceFrames {
+    /// Which rows share a frame of the measuring device: per-file if it was moved between the files
+    #[arg(long, value_enum, default_value = "common")]
+    pub(crate) frames: FramesWord,
+}
+
+/// How to read measurement files.
+#[derive(Args, Debug)]
+pub(crate) struct Reading {
+    #[command(flatten)]
+    pub(crate) columns: Columns,
+    #[command(flatten)]
+    pub(crate) strictness: Strictness,
+    #[command(flatten)]
+    pub(crate) frames: DeviceFrames,
+    /// Fit only rows whose COLUMN has one of these values, and hold out all others
+    #[arg(long, value_name = "COLUMN=VALUE[,VALUE]")]
+    pub(crate) fit_where: Option<String>,
+}
+
+impl Reading {
+    pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
+        let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
+        let (strict, frames) = (self.strictness.strict, self.frames.frames.into());
+        Ok(ReadOptions { fit_where, strict, frames, ..self.columns.options()? })
+    }
+}
+
+/// Where a text goes.
+#[derive(Args, Debug)]
+pub(crate) struct OutFile {
+    /// File to write; a device or a pipe is written to as it is [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Write over a file that exists
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+impl OutFile {
+    /// The place, which none of the files that are read may be; none for standard output.
+    pub(crate) fn reserve(&self, inputs: &[&Path], console: &Console) -> poecal::Result<Option<FilePlace>> {
+        let out = self.out.as_deref().filter(|out| *out != Path::new("-"));
+        out.map(|out| FilePlace::reserve(out, Existing::forced(self.force), inputs, &mut console.warner()))
+            .transpose()
+    }
+}

@@ -1,0 +1,80 @@
+//! Something that the measurements do not tell, and why.
+
+use serde::{Deserialize, Serialize};
+
+/// Why something is not told. The words stand in `calibration.json` and do not change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// Structure: along and about its own axis a joint may be moved without effect.
+    OwnAxis,
+    /// Structure: the device's frame is unknown, so the base frame is a choice.
+    BaseFrame,
+    /// Structure: zeros of joints cannot be told from screws.
+    JointOffsets,
+    /// Structure: only positions were measured.
+    NoOrientation,
+    /// A joint did not move, or its reading only jittered.
+    StoodStill,
+    /// Fewer measured numbers than unknowns.
+    TooFew,
+    /// Of a target seen as a point, and lying on the axis of a joint.
+    PointOnAxis,
+    /// The tool kept one orientation.
+    OneOrientation,
+    /// The tool turned about one direction only.
+    OneTurningDirection,
+    /// Joints moved in a fixed relation only.
+    MovedTogether,
+    /// A joint moved by little.
+    SmallMotion,
+    /// Joints moved in combinations that hide something, though no simpler cause is seen.
+    DependentMotion,
+    /// A target was seen once, so that nothing checks it.
+    SeenOnce,
+    /// None of these.
+    #[default]
+    Other,
+}
+
+impl Cause {
+    /// Whether other combinations of the same joint values would have told it.
+    pub(super) fn is_combination(self) -> bool {
+        matches!(
+            self,
+            Cause::OneOrientation
+                | Cause::OneTurningDirection
+                | Cause::MovedTogether
+                | Cause::DependentMotion
+        )
+    }
+}
+
+/// Something that the measurements do not tell, or hardly.
+///
+/// ```
+/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
+/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let structural = &calibration.identifiability.structural;
+/// // Points of a tracker that stands anywhere do not tell the base frame: a choice that changes no prediction.
+/// assert!(structural.iter().any(|direction| direction.description.contains("base")));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Direction {
+    /// What it is, in words.
+    pub description: String,
+    /// The joints concerned.
+    pub joints: Vec<String>,
+    /// Why.
+    #[serde(default)]
+    pub cause: Cause,
+    /// How many independent directions of the unknowns it accounts for.
+    #[serde(default = "one")]
+    pub directions: usize,
+}
+
+fn one() -> usize {
+    1
+}

@@ -1,0 +1,85 @@
+//! What each row means to a finished calibration.
+
+use std::borrow::Cow;
+
+use super::rows::component_scale;
+use crate::analysis::{Influence, influence};
+use crate::calibration::fit;
+use crate::calibration::{Calibration, radian_m, written};
+use crate::estimate::Packed;
+use crate::measurement::Dataset;
+use crate::parameters::{Parameter, screw_axes};
+use crate::problem::Problem;
+use crate::solve::{LeastSquares, Normal};
+
+/// What each of these rows means to a finished calibration, and how far it is off when that is allowed for (theory.md §6 (34d), (34e)).
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, calibrate, row_influence};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
+/// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let found = row_influence(&calibration, &made.data, &calibration.fit_rows);
+/// let sum: f64 = found.iter().map(|row| 6.0 * row.leverage).sum();
+/// assert!((sum - 30.0).abs() < 1e-3);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[must_use]
+pub fn row_influence(calibration: &Calibration, data: &Dataset, rows: &[u32]) -> Vec<Influence> {
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    RowInfluence::new(calibration, data).of(rows)
+}
+
+/// [`row_influence`] for some rows after the other.
+pub(crate) struct RowInfluence<'a> {
+    calibration: &'a Calibration,
+    data: Cow<'a, Dataset>,
+    packed: Packed,
+    weights: Vec<f64>,
+    free: Vec<Parameter>,
+    length_m: f64,
+    /// Of the fitted rows; none if there is no row.
+    normal: Option<Normal>,
+}
+
+impl<'a> RowInfluence<'a> {
+    /// Prepares a finished calibration.
+    pub(crate) fn new(calibration: &'a Calibration, data: &'a Dataset) -> Self {
+        let data = written(data, calibration.formulation.pose_residual);
+        let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
+        let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
+        let Calibration { nominal, fit_rows, models, .. } = calibration;
+        let free =
+            fit::free_parameters(&models.calibrated, &data, fit_rows, screw_axes(&models.calibrated.kinds));
+        let length_m = radian_m(nominal, &packed);
+        let mut made = RowInfluence { calibration, data, packed, weights, free, length_m, normal: None };
+        if !made.data.is_empty() {
+            let problem = made.problem(&calibration.fit_rows).with_weights(&made.weights);
+            made.normal = Some(problem.normal(&calibration.models.calibrated));
+        }
+        made
+    }
+
+    /// The joint values of the data.
+    pub(crate) fn packed(&self) -> &Packed {
+        &self.packed
+    }
+
+    fn problem(&self, rows: &[u32]) -> Problem<'_> {
+        let noise = self.calibration.noise;
+        Problem::new(&self.data, &self.packed, rows.to_vec(), self.free.clone(), noise, self.length_m)
+    }
+
+    /// Of these rows.
+    pub(crate) fn of(&self, rows: &[u32]) -> Vec<Influence> {
+        let (Some(normal), false) = (&self.normal, rows.is_empty()) else { return Vec::new() };
+        let Calibration { fit_rows, models, robustness, .. } = self.calibration;
+        let weight = |row: &u32| fit_rows.binary_search(row).map_or(0.0, |_| self.weights[*row as usize]);
+        let counted: Vec<f64> = rows.iter().map(weight).collect();
+        influence(&self.problem(rows), &models.calibrated, normal, rows, &counted, |row, component| {
+            component_scale(&self.data, robustness.scale, row, component)
+        })
+    }
+}

@@ -1,0 +1,108 @@
+//! What is at a place already, and whether it may go.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::disk::{Disk, Found, FoundKind};
+use crate::io::named_files;
+
+/// By what a report is known.
+pub(super) const GENERATOR: &str = "<meta name=\"generator\" content=\"poecal ";
+/// Bytes in which that stands.
+const HEAD: u64 = 4096;
+
+/// What may become of files that exist.
+///
+/// ```
+/// use poecal::io::output::Existing;
+/// assert_ne!(Existing::Kept, Existing::Replaced);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// They stay, and nothing is written.
+    Kept,
+    /// They are replaced where poecal wrote them: a folder with a `calibration.json`, a report.
+    Own,
+    /// They are replaced.
+    Replaced,
+}
+
+impl Existing {
+    /// As a switch says it.
+    #[must_use]
+    pub fn forced(force: bool) -> Self {
+        if force { Existing::Replaced } else { Existing::Kept }
+    }
+}
+
+/// A complaint about a place.
+pub(super) fn refused(path: &Path, message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::File, message).in_file(path)
+}
+
+/// What is at a path, if anything is.
+pub(super) fn found(disk: &dyn Disk, path: &Path) -> Result<Option<Found>> {
+    match disk.look(path) {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(refused(
+            path,
+            format!("the place cannot be looked at ({error}), expected one to write to: choose another"),
+        )),
+    }
+}
+
+/// The path without links of a place in a folder that exists, where nothing is yet.
+pub(super) fn new_place(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, PathBuf)> {
+    let parent = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let Some(name) = path.file_name() else {
+        return Err(refused(path, "found no name at the end of the path, expected one: name the place"));
+    };
+    match disk.actual(parent) {
+        Ok(actual) if disk.follow(&actual).is_ok_and(|found| found.kind == FoundKind::Folder) => {
+            Ok((actual.clone(), actual.join(name)))
+        }
+        _ => {
+            let message = "the folder above does not exist, expected one to write into: create it first";
+            Err(refused(path, message))
+        }
+    }
+}
+
+/// What a link leads to.
+pub(super) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Found)> {
+    let actual = disk.actual(path).and_then(|actual| Ok((actual.clone(), disk.look(&actual)?)));
+    actual.map_err(|error| {
+        refused(path, format!("found a link that leads nowhere ({error}), expected one to something: remove it, or choose another"))
+    })
+}
+
+/// Refuses a place where an input of the same run lies, whatever path names it.
+pub(super) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {
+    match inputs.iter().find(|input| named_files::are_same(disk, input, path)) {
+        Some(input) => Err(refused(
+            path,
+            format!(
+                "found a file that this run reads ({}), expected another place to write to: an input is never replaced, choose another \
+                 with --out",
+                input.display()
+            ),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Whether poecal wrote a file.
+pub(super) fn is_of_poecal(disk: &dyn Disk, path: &Path, mark: &str) -> bool {
+    let mut head = Vec::new();
+    let is_file = disk.look(path).is_ok_and(|found| found.kind == FoundKind::File);
+    let read =
+        |file: Box<dyn io::Read + Send>| io::Read::read_to_end(&mut io::Read::take(file, HEAD), &mut head);
+    is_file
+        && disk.open(path).and_then(read).is_ok()
+        && head.windows(mark.len()).any(|part| part == mark.as_bytes())
+}
