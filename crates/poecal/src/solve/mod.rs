@@ -98,7 +98,9 @@ mod tests {
     use super::*;
 
     /// Residuals and their gradients by the unknowns.
-    struct Plain<const N: usize>(fn(&[f64; N]) -> Vec<(f64, [f64; N])>);
+    type Rows<const N: usize> = Vec<(f64, [f64; N])>;
+
+    struct Plain<const N: usize>(fn(&[f64; N]) -> Rows<N>);
 
     impl<const N: usize> LeastSquares for Plain<N> {
         type State = [f64; N];
@@ -124,12 +126,12 @@ mod tests {
         }
     }
 
-    fn rosenbrock(x: &[f64; 2]) -> Vec<(f64, [f64; 2])> {
+    fn rosenbrock(x: &[f64; 2]) -> Rows<2> {
         vec![(10.0 * (x[1] - x[0] * x[0]), [-20.0 * x[0], 10.0]), (1.0 - x[0], [-1.0, 0.0])]
     }
 
     /// `JᵀJ` is singular at the minimum, 0.
-    fn powell_singular(x: &[f64; 4]) -> Vec<(f64, [f64; 4])> {
+    fn powell_singular(x: &[f64; 4]) -> Rows<4> {
         let (five, ten) = (5.0_f64.sqrt(), 10.0_f64.sqrt());
         let (a, b) = (x[1] - 2.0 * x[2], x[0] - x[3]);
         vec![

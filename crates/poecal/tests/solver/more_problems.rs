@@ -14,12 +14,12 @@ fn rows<const N: usize>(rows: impl IntoIterator<Item = (f64, [f64; N])>) -> Eval
 }
 
 /// 1
-pub fn rosenbrock(x: &[f64]) -> Evaluation {
+pub(crate) fn rosenbrock(x: &[f64]) -> Evaluation {
     rows([(10.0 * (x[1] - x[0] * x[0]), [-20.0 * x[0], 10.0]), (1.0 - x[0], [-1.0, 0.0])])
 }
 
 /// 2
-pub fn freudenstein_roth(x: &[f64]) -> Evaluation {
+pub(crate) fn freudenstein_roth(x: &[f64]) -> Evaluation {
     let (a, b) = (x[0], x[1]);
     rows([
         (-13.0 + a + ((5.0 - b) * b - 2.0) * b, [1.0, (10.0 - 3.0 * b) * b - 2.0]),
@@ -28,18 +28,18 @@ pub fn freudenstein_roth(x: &[f64]) -> Evaluation {
 }
 
 /// 3
-pub fn powell_badly_scaled(x: &[f64]) -> Evaluation {
+pub(crate) fn powell_badly_scaled(x: &[f64]) -> Evaluation {
     let (e, f) = ((-x[0]).exp(), (-x[1]).exp());
     rows([(1e4 * x[0] * x[1] - 1.0, [1e4 * x[1], 1e4 * x[0]]), (e + f - 1.0001, [-e, -f])])
 }
 
 /// 4
-pub fn brown_badly_scaled(x: &[f64]) -> Evaluation {
+pub(crate) fn brown_badly_scaled(x: &[f64]) -> Evaluation {
     rows([(x[0] - 1e6, [1.0, 0.0]), (x[1] - 2e-6, [0.0, 1.0]), (x[0] * x[1] - 2.0, [x[1], x[0]])])
 }
 
 /// 5
-pub fn beale(x: &[f64]) -> Evaluation {
+pub(crate) fn beale(x: &[f64]) -> Evaluation {
     rows([1.5, 2.25, 2.625].into_iter().zip(1..).map(|(y, i)| {
         let power = x[1].powi(i);
         (y - x[0] * (1.0 - power), [power - 1.0, f64::from(i) * x[0] * x[1].powi(i - 1)])
@@ -47,7 +47,7 @@ pub fn beale(x: &[f64]) -> Evaluation {
 }
 
 /// 6, of ten residuals
-pub fn jennrich_sampson(x: &[f64]) -> Evaluation {
+pub(crate) fn jennrich_sampson(x: &[f64]) -> Evaluation {
     rows((1..=10).map(f64::from).map(|i| {
         let (e, f) = ((i * x[0]).exp(), (i * x[1]).exp());
         (2.0 + 2.0 * i - (e + f), [-i * e, -i * f])
@@ -55,7 +55,7 @@ pub fn jennrich_sampson(x: &[f64]) -> Evaluation {
 }
 
 /// 7
-pub fn helical_valley(x: &[f64]) -> Evaluation {
+pub(crate) fn helical_valley(x: &[f64]) -> Evaluation {
     let (a, b) = (x[0], x[1]);
     let (square, radius) = (a * a + b * b, a.hypot(b));
     let turns = (b / a).atan() / (2.0 * PI) + if a < 0.0 { 0.5 } else { 0.0 };
@@ -68,7 +68,7 @@ pub fn helical_valley(x: &[f64]) -> Evaluation {
 }
 
 /// 8
-pub fn bard(x: &[f64]) -> Evaluation {
+pub(crate) fn bard(x: &[f64]) -> Evaluation {
     const Y: [f64; 15] =
         [0.14, 0.18, 0.22, 0.25, 0.29, 0.32, 0.35, 0.39, 0.37, 0.58, 0.73, 0.96, 1.34, 2.10, 4.39];
     rows(Y.into_iter().zip(1..).map(|(y, i)| {
@@ -81,7 +81,7 @@ pub fn bard(x: &[f64]) -> Evaluation {
 }
 
 /// 9
-pub fn gaussian(x: &[f64]) -> Evaluation {
+pub(crate) fn gaussian(x: &[f64]) -> Evaluation {
     const Y: [f64; 8] = [0.0009, 0.0044, 0.0175, 0.0540, 0.1295, 0.2420, 0.3521, 0.3989];
     rows((1..=15).map(|i: i32| {
         let away = f64::from(8 - i) / 2.0 - x[2];
@@ -92,7 +92,7 @@ pub fn gaussian(x: &[f64]) -> Evaluation {
 }
 
 /// 10
-pub fn meyer(x: &[f64]) -> Evaluation {
+pub(crate) fn meyer(x: &[f64]) -> Evaluation {
     const Y: [f64; 16] = [
         34780.0, 28610.0, 23650.0, 19630.0, 16370.0, 13720.0, 11540.0, 9744.0, 8261.0, 7030.0, 6005.0,
         5147.0, 4427.0, 3820.0, 3307.0, 2872.0,
@@ -105,7 +105,7 @@ pub fn meyer(x: &[f64]) -> Evaluation {
 }
 
 /// 11, of 99 residuals, with `|y - x₂|` where the paper misprints `|y m i x₂|`
-pub fn gulf(x: &[f64]) -> Evaluation {
+pub(crate) fn gulf(x: &[f64]) -> Evaluation {
     rows((1..=99).map(|i| {
         let t = f64::from(i) / 100.0;
         let y = 25.0 + (-50.0 * t.ln()).powf(2.0 / 3.0);
@@ -118,7 +118,7 @@ pub fn gulf(x: &[f64]) -> Evaluation {
 }
 
 /// 12, of ten residuals
-pub fn box_three(x: &[f64]) -> Evaluation {
+pub(crate) fn box_three(x: &[f64]) -> Evaluation {
     rows((1..=10).map(|i| {
         let t = 0.1 * f64::from(i);
         let (e, f, g) = ((-t * x[0]).exp(), (-t * x[1]).exp(), (-t).exp() - (-10.0 * t).exp());
@@ -127,7 +127,7 @@ pub fn box_three(x: &[f64]) -> Evaluation {
 }
 
 /// 13
-pub fn powell_singular(x: &[f64]) -> Evaluation {
+pub(crate) fn powell_singular(x: &[f64]) -> Evaluation {
     let (five, ten) = (5.0_f64.sqrt(), 10.0_f64.sqrt());
     let (a, b) = (x[1] - 2.0 * x[2], x[0] - x[3]);
     rows([
@@ -139,7 +139,7 @@ pub fn powell_singular(x: &[f64]) -> Evaluation {
 }
 
 /// 14
-pub fn wood(x: &[f64]) -> Evaluation {
+pub(crate) fn wood(x: &[f64]) -> Evaluation {
     let (ninety, ten) = (90.0_f64.sqrt(), 10.0_f64.sqrt());
     rows([
         (10.0 * (x[1] - x[0] * x[0]), [-20.0 * x[0], 10.0, 0.0, 0.0]),
@@ -152,7 +152,7 @@ pub fn wood(x: &[f64]) -> Evaluation {
 }
 
 /// 15
-pub fn kowalik_osborne(x: &[f64]) -> Evaluation {
+pub(crate) fn kowalik_osborne(x: &[f64]) -> Evaluation {
     const Y: [f64; 11] =
         [0.1957, 0.1947, 0.1735, 0.1600, 0.0844, 0.0627, 0.0456, 0.0342, 0.0323, 0.0235, 0.0246];
     const U: [f64; 11] = [4.0, 2.0, 1.0, 0.5, 0.25, 0.167, 0.125, 0.1, 0.0833, 0.0714, 0.0625];
@@ -164,7 +164,7 @@ pub fn kowalik_osborne(x: &[f64]) -> Evaluation {
 }
 
 /// 16, of twenty residuals
-pub fn brown_dennis(x: &[f64]) -> Evaluation {
+pub(crate) fn brown_dennis(x: &[f64]) -> Evaluation {
     rows((1..=20).map(|i| {
         let t = f64::from(i) / 5.0;
         let (a, b) = (x[0] + t * x[1] - t.exp(), x[2] + x[3] * t.sin() - t.cos());
@@ -173,7 +173,7 @@ pub fn brown_dennis(x: &[f64]) -> Evaluation {
 }
 
 /// 17
-pub fn osborne_1(x: &[f64]) -> Evaluation {
+pub(crate) fn osborne_1(x: &[f64]) -> Evaluation {
     const Y: [f64; 33] = [
         0.844, 0.908, 0.932, 0.936, 0.925, 0.908, 0.881, 0.850, 0.818, 0.784, 0.751, 0.718, 0.685, 0.658,
         0.628, 0.603, 0.580, 0.558, 0.538, 0.522, 0.506, 0.490, 0.478, 0.467, 0.457, 0.448, 0.438, 0.431,
@@ -187,7 +187,7 @@ pub fn osborne_1(x: &[f64]) -> Evaluation {
 }
 
 /// 18, of thirteen residuals
-pub fn biggs_exp6(x: &[f64]) -> Evaluation {
+pub(crate) fn biggs_exp6(x: &[f64]) -> Evaluation {
     rows((1..=13).map(|i| {
         let t = 0.1 * f64::from(i);
         let y = (-t).exp() - 5.0 * (-10.0 * t).exp() + 3.0 * (-4.0 * t).exp();
@@ -198,7 +198,7 @@ pub fn biggs_exp6(x: &[f64]) -> Evaluation {
 }
 
 /// 19
-pub fn osborne_2(x: &[f64]) -> Evaluation {
+pub(crate) fn osborne_2(x: &[f64]) -> Evaluation {
     const Y: [f64; 65] = [
         1.366, 1.191, 1.112, 1.013, 0.991, 0.885, 0.831, 0.847, 0.786, 0.725, 0.746, 0.679, 0.608, 0.655,
         0.616, 0.606, 0.602, 0.626, 0.651, 0.724, 0.649, 0.649, 0.694, 0.644, 0.624, 0.661, 0.612, 0.558,

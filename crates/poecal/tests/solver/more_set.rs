@@ -13,10 +13,10 @@ const ZERO: f64 = 1e-20;
 const JACOBIAN: f64 = 1e-6;
 
 /// A problem with its standard start and its sum of squares: the global minimum first, then known local ones.
-pub struct Problem {
-    pub name: &'static str,
-    pub function: fn(&[f64]) -> Evaluation,
-    pub start: Vec<f64>,
+pub(crate) struct Problem {
+    pub(crate) name: &'static str,
+    pub(crate) function: fn(&[f64]) -> Evaluation,
+    pub(crate) start: Vec<f64>,
     minima: &'static [f64],
 }
 
@@ -100,7 +100,7 @@ fn variable() -> Vec<Problem> {
     ]
 }
 
-pub fn all() -> impl Iterator<Item = Problem> {
+pub(crate) fn all() -> impl Iterator<Item = Problem> {
     fixed().into_iter().chain(variable())
 }
 

@@ -1,5 +1,7 @@
 //! The problems of Moré, Garbow and Hillstrom with any number of unknowns, numbered as in the paper: residuals and Jacobians.
 
+#![allow(clippy::needless_range_loop, reason = "indices as in the paper's formulas")]
+
 use crate::plain::Evaluation;
 
 /// Residuals and the dense Jacobian of `m` rows, filled in by `fill`.
@@ -15,7 +17,7 @@ fn number(index: usize) -> f64 {
 }
 
 /// 20
-pub fn watson(x: &[f64]) -> Evaluation {
+pub(crate) fn watson(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(31, n, |f, rows| {
         for i in 0..29 {
@@ -36,7 +38,7 @@ pub fn watson(x: &[f64]) -> Evaluation {
 }
 
 /// 21
-pub fn extended_rosenbrock(x: &[f64]) -> Evaluation {
+pub(crate) fn extended_rosenbrock(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(n, n, |f, rows| {
         for k in (0..n).step_by(2) {
@@ -49,7 +51,7 @@ pub fn extended_rosenbrock(x: &[f64]) -> Evaluation {
 }
 
 /// 22
-pub fn extended_powell(x: &[f64]) -> Evaluation {
+pub(crate) fn extended_powell(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(n, n, |f, rows| {
         for k in (0..n).step_by(4) {
@@ -63,7 +65,7 @@ pub fn extended_powell(x: &[f64]) -> Evaluation {
 }
 
 /// 23
-pub fn penalty_1(x: &[f64]) -> Evaluation {
+pub(crate) fn penalty_1(x: &[f64]) -> Evaluation {
     let (n, root) = (x.len(), 1e-5_f64.sqrt());
     dense(n + 1, n, |f, rows| {
         for k in 0..n {
@@ -76,7 +78,7 @@ pub fn penalty_1(x: &[f64]) -> Evaluation {
 }
 
 /// 24
-pub fn penalty_2(x: &[f64]) -> Evaluation {
+pub(crate) fn penalty_2(x: &[f64]) -> Evaluation {
     let (n, root) = (x.len(), 1e-5_f64.sqrt());
     let e = |value: f64| (value / 10.0).exp();
     dense(2 * n, n, |f, rows| {
@@ -98,7 +100,7 @@ pub fn penalty_2(x: &[f64]) -> Evaluation {
 }
 
 /// 25
-pub fn variably_dimensioned(x: &[f64]) -> Evaluation {
+pub(crate) fn variably_dimensioned(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(n + 2, n, |f, rows| {
         let sum: f64 = (0..n).map(|k| number(k) * (x[k] - 1.0)).sum();
@@ -112,7 +114,7 @@ pub fn variably_dimensioned(x: &[f64]) -> Evaluation {
 }
 
 /// 26
-pub fn trigonometric(x: &[f64]) -> Evaluation {
+pub(crate) fn trigonometric(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(n, n, |f, rows| {
         let sum: f64 = x.iter().map(|x| x.cos()).sum();
@@ -127,7 +129,7 @@ pub fn trigonometric(x: &[f64]) -> Evaluation {
 }
 
 /// 27
-pub fn brown_almost_linear(x: &[f64]) -> Evaluation {
+pub(crate) fn brown_almost_linear(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(n, n, |f, rows| {
         let sum: f64 = x.iter().sum();
@@ -144,7 +146,7 @@ pub fn brown_almost_linear(x: &[f64]) -> Evaluation {
 }
 
 /// 28
-pub fn discrete_boundary_value(x: &[f64]) -> Evaluation {
+pub(crate) fn discrete_boundary_value(x: &[f64]) -> Evaluation {
     let n = x.len();
     let h = 1.0 / number(n);
     dense(n, n, |f, rows| {
@@ -165,7 +167,7 @@ pub fn discrete_boundary_value(x: &[f64]) -> Evaluation {
 }
 
 /// 29
-pub fn discrete_integral_equation(x: &[f64]) -> Evaluation {
+pub(crate) fn discrete_integral_equation(x: &[f64]) -> Evaluation {
     let n = x.len();
     let h = 1.0 / number(n);
     let t = |j: usize| number(j) * h;
@@ -184,7 +186,7 @@ pub fn discrete_integral_equation(x: &[f64]) -> Evaluation {
 }
 
 /// 30
-pub fn broyden_tridiagonal(x: &[f64]) -> Evaluation {
+pub(crate) fn broyden_tridiagonal(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(n, n, |f, rows| {
         for i in 0..n {
@@ -203,7 +205,7 @@ pub fn broyden_tridiagonal(x: &[f64]) -> Evaluation {
 }
 
 /// 31
-pub fn broyden_banded(x: &[f64]) -> Evaluation {
+pub(crate) fn broyden_banded(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(n, n, |f, rows| {
         for i in 0..n {
@@ -218,10 +220,10 @@ pub fn broyden_banded(x: &[f64]) -> Evaluation {
 }
 
 /// Residuals that the linear problems have, as in the paper's tables.
-pub const LINEAR_ROWS: usize = 10;
+pub(crate) const LINEAR_ROWS: usize = 10;
 
 /// 32
-pub fn linear_full_rank(x: &[f64]) -> Evaluation {
+pub(crate) fn linear_full_rank(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(LINEAR_ROWS, n, |f, rows| {
         let (share, sum) = (2.0 / LINEAR_ROWS as f64, x.iter().sum::<f64>());
@@ -237,7 +239,7 @@ pub fn linear_full_rank(x: &[f64]) -> Evaluation {
 }
 
 /// 33
-pub fn linear_rank_1(x: &[f64]) -> Evaluation {
+pub(crate) fn linear_rank_1(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(LINEAR_ROWS, n, |f, rows| {
         let sum: f64 = (0..n).map(|j| number(j) * x[j]).sum();
@@ -251,7 +253,7 @@ pub fn linear_rank_1(x: &[f64]) -> Evaluation {
 }
 
 /// 34
-pub fn linear_rank_1_with_zeros(x: &[f64]) -> Evaluation {
+pub(crate) fn linear_rank_1_with_zeros(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(LINEAR_ROWS, n, |f, rows| {
         let sum: f64 = (1..n - 1).map(|j| number(j) * x[j]).sum();
@@ -266,7 +268,7 @@ pub fn linear_rank_1_with_zeros(x: &[f64]) -> Evaluation {
 }
 
 /// 35, with as many residuals as unknowns
-pub fn chebyquad(x: &[f64]) -> Evaluation {
+pub(crate) fn chebyquad(x: &[f64]) -> Evaluation {
     let n = x.len();
     dense(n, n, |f, rows| {
         for (j, &x) in x.iter().enumerate() {

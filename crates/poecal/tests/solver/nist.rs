@@ -19,18 +19,18 @@ const LANCZOS1_SUM: f64 = 1e-20;
 const JACOBIAN: f64 = 1e-6;
 
 /// A regression: its data and its certificate.
-pub struct Regression {
-    pub name: &'static str,
+pub(crate) struct Regression {
+    pub(crate) name: &'static str,
     model: Model,
     y: Vec<f64>,
     x: Vec<Vec<f64>>,
-    pub starts: [Vec<f64>; 2],
+    pub(crate) starts: [Vec<f64>; 2],
     certified: Vec<f64>,
     sum: f64,
 }
 
 impl Regression {
-    pub fn read(name: &'static str, model: Model) -> Self {
+    pub(crate) fn read(name: &'static str, model: Model) -> Self {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/data/nist/{name}.dat"));
         let text = std::fs::read_to_string(path).unwrap();
         let numbers = |line: &str| -> Vec<f64> {
@@ -56,7 +56,7 @@ impl Regression {
         Regression { name, model, y, x, starts, certified, sum: sum.trim().parse().unwrap() }
     }
 
-    pub fn residuals(&self, b: &[f64]) -> Evaluation {
+    pub(crate) fn residuals(&self, b: &[f64]) -> Evaluation {
         let (mut f, mut jacobian) = (Vec::new(), Vec::new());
         for (y, x) in self.y.iter().zip(&self.x) {
             let (value, gradient) = (self.model)(b, x);
@@ -66,7 +66,7 @@ impl Regression {
         (f, jacobian)
     }
 
-    pub fn solve(&self, start: &[f64], reuse: bool) -> Found {
+    pub(crate) fn solve(&self, start: &[f64], reuse: bool) -> Found {
         solve(start.len(), start, |b| self.residuals(b), reuse)
     }
 
@@ -82,7 +82,7 @@ fn digits(value: f64, certified: f64) -> f64 {
     if apart.is_nan() { 0.0 } else { (-apart.log10()).clamp(0.0, CERTIFIED) }
 }
 
-pub fn all() -> impl Iterator<Item = Regression> {
+pub(crate) fn all() -> impl Iterator<Item = Regression> {
     MODELS.iter().map(|&(name, model)| Regression::read(name, model))
 }
 

@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 /// Value and gradient of a prediction from parameters `b` and predictors `x`.
-pub type Model = fn(&[f64], &[f64]) -> (f64, Vec<f64>);
+pub(crate) type Model = fn(&[f64], &[f64]) -> (f64, Vec<f64>);
 
 /// All 27, in the order of NIST's list, by rising difficulty.
-pub const MODELS: [(&str, Model); 27] = [
+pub(crate) const MODELS: [(&str, Model); 27] = [
     ("Misra1a", saturation),
     ("Chwirut2", chwirut),
     ("Chwirut1", chwirut),

@@ -4,10 +4,10 @@ use poecal::solve::{LeastSquares, Normal, Options, Scaling, Summary, minimize};
 use std::cell::Cell;
 
 /// Residuals `f` and their Jacobian, row after row.
-pub type Evaluation = (Vec<f64>, Vec<f64>);
+pub(crate) type Evaluation = (Vec<f64>, Vec<f64>);
 
 /// A function of `dim` unknowns.
-pub struct Plain<F> {
+pub(crate) struct Plain<F> {
     dim: usize,
     function: F,
     has_curvature: bool,
@@ -18,18 +18,18 @@ pub struct Plain<F> {
 }
 
 impl<F: Fn(&[f64]) -> Evaluation> Plain<F> {
-    pub fn new(dim: usize, function: F) -> Self {
+    pub(crate) fn new(dim: usize, function: F) -> Self {
         Plain { dim, function, has_curvature: false, evaluations: Cell::new(0), products: Cell::new(0) }
     }
 
     /// The same with the full Hessian.
-    pub fn with_curvature(mut self) -> Self {
+    pub(crate) fn with_curvature(mut self) -> Self {
         self.has_curvature = true;
         self
     }
 
     /// Minimises to the last digits.
-    pub fn solve(&self, start: &[f64], reuse: bool) -> Found {
+    pub(crate) fn solve(&self, start: &[f64], reuse: bool) -> Found {
         let (x, _, summary) = minimize(self, start.to_vec(), &to_the_last_digits(reuse));
         let (evaluations, products) = (self.evaluations.get(), self.products.get());
         let sum = (self.function)(&x).0.iter().map(|f| f * f).sum();
@@ -122,17 +122,17 @@ impl<F: Fn(&[f64]) -> Evaluation> LeastSquares for Plain<F> {
 }
 
 /// What a minimisation found and what it took.
-pub struct Found {
-    pub x: Vec<f64>,
+pub(crate) struct Found {
+    pub(crate) x: Vec<f64>,
     /// `Σ f²`.
-    pub sum: f64,
-    pub summary: Summary,
-    pub evaluations: usize,
-    pub products: usize,
+    pub(crate) sum: f64,
+    pub(crate) summary: Summary,
+    pub(crate) evaluations: usize,
+    pub(crate) products: usize,
 }
 
 /// Unknowns have any units, and nothing but rounding ends the search.
-pub fn to_the_last_digits(reuse: bool) -> Options {
+pub(crate) fn to_the_last_digits(reuse: bool) -> Options {
     Options {
         iterations: 10_000,
         decrement: 1e-30,
@@ -146,7 +146,12 @@ pub fn to_the_last_digits(reuse: bool) -> Options {
 }
 
 /// Minimises to the last digits.
-pub fn solve(dim: usize, start: &[f64], function: impl Fn(&[f64]) -> Evaluation, reuse: bool) -> Found {
+pub(crate) fn solve(
+    dim: usize,
+    start: &[f64],
+    function: impl Fn(&[f64]) -> Evaluation,
+    reuse: bool,
+) -> Found {
     Plain::new(dim, function).solve(start, reuse)
 }
 
@@ -156,7 +161,8 @@ fn magnitude(x: f64) -> f64 {
 }
 
 /// Largest difference of the Jacobian from central differences of sixth order, as a share of what each column has at most.
-pub fn jacobian_error(x: &[f64], function: impl Fn(&[f64]) -> Evaluation) -> f64 {
+#[allow(clippy::needless_range_loop, reason = "rows and columns of several matrices")]
+pub(crate) fn jacobian_error(x: &[f64], function: impl Fn(&[f64]) -> Evaluation) -> f64 {
     // Errors of the step's sixth power and rounding, magnified by its inverse, are about as large here.
     const STEP: f64 = 5e-4;
     let n = x.len();
