@@ -16,7 +16,7 @@ fn threads() -> usize {
     std::fs::read_dir("/proc/self/task").unwrap().count()
 }
 
-// The only test of this file, so that no other one wakes threads meanwhile.
+// A program of its own with this one test: others would wake threads of the same process meanwhile.
 #[test]
 fn fifty_rows_are_one_threads_work() {
     let before = threads();

@@ -2,6 +2,7 @@
 //! machine has, and with any number of threads.
 
 use crate::largest::larger;
+use crate::trials::some;
 use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, fit_screws};
 use poecal::estimate::{Estimate, Packed, delivered, row_errors};
@@ -187,7 +188,7 @@ fn both_paths_agree() {
     for (name, robot) in robots() {
         let mut worst = (0.0, String::new());
         for kind in [Kind::Pose, Kind::Point, Kind::Mixed] {
-            for case in cases().iter().filter(|case| robot.joints.len() < 20 || case.rows < 100) {
+            for case in some(cases()).iter().filter(|case| robot.joints.len() < 20 || case.rows < 100) {
                 let session = Session::new(&robot, kind, case);
                 let general = session.problem(case, Level::Baseline).normal_row_by_row(&session.estimate);
                 for level in levels() {

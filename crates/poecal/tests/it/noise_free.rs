@@ -1,5 +1,6 @@
 //! Without noise a calibration is exact: it predicts configurations that it has not seen, and its rank is what theory says.
 
+use crate::trials::some;
 use nalgebra::Vector3;
 use poecal::analysis::{Setup, identifiability};
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
@@ -139,6 +140,7 @@ fn robots_of_every_structure_are_recovered_from_anywhere() {
         .iter()
         .flat_map(|robot| [Kind::Pose, Kind::Point, Kind::Mixed].map(|kind| (robot, kind)))
         .collect();
+    let cases = some(cases);
     let failures: Vec<String> = cases
         .par_iter()
         .filter_map(|&(robot, kind)| {

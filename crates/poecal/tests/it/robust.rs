@@ -2,7 +2,7 @@
 
 use crate::common::{calibrated, with_threads};
 use crate::largest::larger;
-use crate::trials::{Trials, trials};
+use crate::trials::{Trials, some, trials};
 use nalgebra::Vector3;
 use poecal::calibration::{
     Calibration, CalibrationOptions, Loss, Robust, calibrate, delivered, radian_m, row_errors, row_influence,
@@ -116,7 +116,7 @@ fn three_tenths_of_the_rows_wrong_cost_less_than_a_half_and_are_found() {
 #[test]
 fn every_loss_bounds_what_a_tenth_of_the_rows_can_do() {
     let off = over_sessions(0.1, Robust::Off, trials(3)).0;
-    for (loss, bound) in [(Loss::Huber, 1.6), (Loss::Cauchy, 1.5), (Loss::Tukey, 1.3)] {
+    for (loss, bound) in some([(Loss::Huber, 1.6), (Loss::Cauchy, 1.5), (Loss::Tukey, 1.3)]) {
         let (worst, _) = over_sessions(0.1, Robust::Loss(loss), trials(6));
         println!("{}: {worst:.2}, least squares {off:.1}", loss.word());
         assert!(worst < bound && worst < 0.1 * off);

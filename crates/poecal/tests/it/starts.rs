@@ -238,7 +238,8 @@ fn registration_from_the_truth_is_near_it() {
         let cost = cost_from_truth(&data, &packed, &rows, truth);
         let rms_m = (2.0 * cost / (3.0 * ROWS as f64)).sqrt() * NOISE.position_m;
         println!("{:36} {:.1} mm a component", session.name, rms_m * 1e3);
-        // Axes that are 1° and 2 mm off leave some 10 to 30 mm of position and, weighted with it, of rotation.
-        assert!(rms_m < 0.1);
+        // Axes that are 1° and 2 mm off leave millimetres to a centimetre of position and, weighted with it, of rotation: more than noise,
+        // and far less than the decimetres of another optimum.
+        assert!((2.0 * NOISE.position_m..0.02).contains(&rms_m));
     }
 }

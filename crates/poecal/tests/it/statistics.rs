@@ -22,8 +22,8 @@ const PREDICTED: usize = 50;
 const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
 /// Largest deviation from the bound in that many runs: chance alone makes some 1 % of it.
 const TOLERANCE: f64 = 0.05;
-/// Standard deviation of one run's mean square over the bound: unknowns are some thirty, and predictions share them.
-const OF_ONE_RUN: f64 = 0.4;
+/// Standard deviation of one run's mean square over the bound: 1 % times √1,000.
+const OF_ONE_RUN: f64 = 0.32;
 /// Metres that a radian counts; any does.
 const LENGTH_M: f64 = 0.5;
 

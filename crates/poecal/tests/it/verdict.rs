@@ -1,7 +1,7 @@
 //! The verdict and the warnings say what is wrong with a session, and nothing of a sound one.
 
 use crate::common::{calibrated as fit, simulated};
-use crate::trials::trials;
+use crate::trials::{some, trials};
 use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, calibrate};
 use poecal::forensics::DiagnosisKind;
@@ -60,7 +60,7 @@ fn sound_sessions_are_good_and_without_a_warning() {
 #[test]
 fn rows_that_are_known_to_be_wrong_do_not_decide() {
     for (share, level) in [(0.1, Level::Good), (0.3, Level::InsideSampledRange)] {
-        for seed in 0..5 {
+        for seed in trials(5).seeds() {
             let mut made = session(80, 40 + seed);
             let gross = Gross { share, seed, ..Gross::default() };
             gross.spoil(&mut made.data);
@@ -73,7 +73,7 @@ fn rows_that_are_known_to_be_wrong_do_not_decide() {
 
 #[test]
 fn a_device_that_was_moved_is_named_with_its_place() {
-    for (seed, from) in [(1, 40), (2, 25), (3, 60)] {
+    for (seed, from) in some([(1, 40), (2, 25), (3, 60)]) {
         let made = session(80, seed);
         let moved = Vector3::new(0.0, 4e-3, -3e-3);
         let data = changed(&made, |row| if row < from { Vector3::zeros() } else { moved }, |_, _| {});
