@@ -1,6 +1,6 @@
 //! The hot path: rows grouped by place of the device, target and kind, packed side by side, and summed by [`crate::lanes`].
 //!
-//! What it serves, [`Problem::is_served`] says; everything else takes the general path in `mod.rs`, which is also what this one is tested
+//! What it serves, [`Problem::is_served`] says; everything else takes the row-by-row path (`row_by_row.rs`), which is also what this one is tested
 //! against.
 
 use super::Problem;

@@ -7,6 +7,7 @@ mod fast;
 mod layout;
 mod prior;
 mod refit;
+mod row_by_row;
 mod scatter;
 
 pub use crate::lanes::{Level, levels};
@@ -15,35 +16,25 @@ pub use layout::Layout;
 pub use prior::Prior;
 pub use refit::Refit;
 
-use crate::estimate::{Chain, Estimate, Linkage, Packed};
-use crate::lie::TargetTwist;
+use crate::estimate::{Estimate, Packed};
 use crate::measurement::{Dataset, Measurement, Noise, Written};
-use crate::parameters::{Parameter, Wrench};
+use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
-use crate::threads;
 use fast::{Fast, Sums};
-use nalgebra::Vector3;
 use std::mem::discriminant;
 use std::sync::OnceLock;
 
 /// Unknowns that a fit has at most: its work grows with the cube of their number, its memory with the square. 1,000 take about half a
 /// minute of one core.
 pub const MOST_UNKNOWNS: usize = 1000;
-/// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
-const CHUNK: usize = 1024;
-/// Partial sums that exist at a time: memory beside the data stays bounded.
-const GROUP: usize = 64;
 /// Rows of which the farthest measurement is looked for, at most.
 const SEEN: usize = 500;
-/// Rows whose Jacobian is held at a time.
-const BLOCK: usize = 16;
 
 /// A calibration problem: which rows of which data, what is free, and the noise by which residuals are whitened
 /// (theory.md §6 (27) and (28)).
 ///
 /// ```
-/// # use nalgebra::Vector3;
-/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot, JointKind}, measurement::*};
+/// # /// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot, JointKind}, measurement::*};
 /// use poecal::{estimate::{Estimate, Packed}, parameters::*, problem::Problem, solve::{minimize, Options}};
 /// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
 /// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
@@ -199,101 +190,11 @@ impl<'a> Problem<'a> {
             self.fast = OnceLock::from(Some(fast));
         }
     }
-
-    /// Gives the whitened Jacobian of the prediction (row-major) and residual of each of some rows of the data, in turn.
-    pub fn for_rows(&self, state: &Estimate, rows: &[u32], mut each: impl FnMut(u32, &[f64], &[f64])) {
-        let n = self.layout.dim();
-        let linkage = Linkage::new(state);
-        let mut chain = Chain::default();
-        let mut columns: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
-        let mut jacobian = vec![0.0; 6 * n];
-        let mut residual = [0.0; 6];
-        for &row in rows {
-            let observation = &self.data.observations[row as usize];
-            let written = self.written(row as usize);
-            let measurement = written.model();
-            let (noise, dim) = (self.noise(row as usize), measurement.dim());
-            chain.evaluate(&linkage, self.packed, row as usize, observation);
-            self.layout.target_twists(&chain, observation.target, &mut columns);
-            measurement.project(&chain.target, &columns, &noise, n, &mut jacobian);
-            measurement.residual(&chain.target, &noise, &mut residual);
-            each(row, &jacobian[..dim * n], &residual[..dim]);
-        }
-    }
-
-    /// Sums what `add` makes of each fixed chunk of rows, in the order of the rows whatever the number of threads.
-    fn sum_chunks(&self, add: impl Fn(&[u32]) -> Normal + Sync + Send) -> Normal {
-        if self.rows.len() <= CHUNK {
-            return add(&self.rows);
-        }
-        let mut total = Normal::new(self.layout.dim());
-        for group in self.rows.chunks(CHUNK * GROUP) {
-            let parts = threads::map_chunks(group, CHUNK, |_, rows| add(rows));
-            parts.iter().for_each(|part| total.add(part));
-        }
-        total
-    }
-
-    /// Gathers the rows' Jacobian and residuals in blocks, and hands each block over.
-    fn for_blocks(
-        &self,
-        linkage: &Linkage,
-        rows: &[u32],
-        mut residual: impl FnMut(&Chain, usize, &mut [f64]),
-        normal: &mut Normal,
-    ) {
-        let n = self.layout.dim();
-        let mut chain = Chain::default();
-        let mut columns: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
-        let mut jacobian = vec![0.0; 6 * n];
-        let mut residuals = [0.0; 6];
-        let mut full = Block::default();
-        let mut turning = Block::default();
-        for (count, &row) in rows.iter().enumerate() {
-            let row = row as usize;
-            let observation = &self.data.observations[row];
-            let written = self.written(row);
-            let measurement = written.model();
-            chain.evaluate(linkage, self.packed, row, observation);
-            self.layout.target_twists(&chain, observation.target, &mut columns);
-            let (dim, split) = (measurement.dim(), measurement.rotation_row());
-            measurement.project(&chain.target, &columns, &self.noise(row), n, &mut jacobian);
-            residual(&chain, row, &mut residuals);
-            full.push(&jacobian[..split * n], &residuals[..split]);
-            turning.push(&jacobian[split * n..dim * n], &residuals[split..dim]);
-            if count % BLOCK == BLOCK - 1 {
-                full.flush(normal, 0);
-                turning.flush(normal, self.layout.shifts());
-            }
-        }
-        full.flush(normal, 0);
-        turning.flush(normal, self.layout.shifts());
-    }
-}
-
-/// Rows of the Jacobian waiting to be accumulated.
-#[derive(Default)]
-struct Block {
-    rows: Vec<f64>,
-    residuals: Vec<f64>,
-}
-
-impl Block {
-    fn push(&mut self, rows: &[f64], residuals: &[f64]) {
-        self.rows.extend_from_slice(rows);
-        self.residuals.extend_from_slice(residuals);
-    }
-
-    fn flush(&mut self, normal: &mut Normal, start: usize) {
-        normal.add_rows(&self.rows, &self.residuals, start);
-        self.rows.clear();
-        self.residuals.clear();
-    }
 }
 
 impl Problem<'_> {
     /// Whether the kernels serve this problem in this state: points and poses with the residuals of their types; screws in the minimal
-    /// basis, targets and device frames; no joint offsets. Whatever else there is takes the general path, row by row.
+    /// basis, targets and device frames; no joint offsets. Whatever else there is takes the row-by-row path.
     #[doc(hidden)]
     #[must_use]
     pub fn is_served(&self, state: &Estimate) -> bool {
@@ -314,25 +215,6 @@ impl Problem<'_> {
             }
         };
         fast.as_ref()
-    }
-
-    /// [`LeastSquares::normal`] by the general path, which serves every problem: row after row, as measurements and parameters write it.
-    #[must_use]
-    pub fn normal_row_by_row(&self, state: &Estimate) -> Normal {
-        let linkage = Linkage::new(state);
-        let seen = self.sum_chunks(|rows| {
-            let mut normal = Normal::new(self.layout.dim());
-            self.for_blocks(
-                &linkage,
-                rows,
-                |chain, row, out| {
-                    self.written(row).model().residual(&chain.target, &self.noise(row), out);
-                },
-                &mut normal,
-            );
-            normal
-        });
-        self.believing(state, seen)
     }
 }
 
@@ -362,66 +244,11 @@ impl LeastSquares for Problem<'_> {
     }
 
     fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {
-        // Central second difference along the step; 0.1 of the step keeps both truncation and rounding far below what a
-        // correction of the step needs.
-        const FRACTION: f64 = 0.1;
-        let along = |sign: f64| {
-            let part: Vec<f64> = step.iter().map(|s| sign * FRACTION * s).collect();
-            Linkage::new(&self.retract(state, &part))
-        };
-        let (ahead, behind) = (along(1.0), along(-1.0));
-        let linkage = Linkage::new(state);
-        let total = self.sum_chunks(|rows| {
-            let mut normal = Normal::new(self.layout.dim());
-            let mut chain = Chain::default();
-            let (mut e_ahead, mut e_behind) = ([0.0; 6], [0.0; 6]);
-            self.for_blocks(
-                &linkage,
-                rows,
-                |here, row, out| {
-                    let observation = &self.data.observations[row];
-                    let written = self.written(row);
-                    let measurement = written.model();
-                    let noise = self.noise(row);
-                    chain.evaluate(&ahead, self.packed, row, observation);
-                    measurement.residual(&chain.target, &noise, &mut e_ahead);
-                    chain.evaluate(&behind, self.packed, row, observation);
-                    measurement.residual(&chain.target, &noise, &mut e_behind);
-                    measurement.residual(&here.target, &noise, out);
-                    for (e, (a, b)) in out.iter_mut().zip(e_ahead.iter().zip(&e_behind)) {
-                        *e = (a + b - 2.0 * *e) / (FRACTION * FRACTION);
-                    }
-                },
-                &mut normal,
-            );
-            normal
-        });
-        total.gradient
+        self.second_order_by_rows(state, step)
     }
 
     fn curvature(&self, state: &Estimate) -> Option<Vec<f64>> {
-        if !self.layout.has_curvature() {
-            return None;
-        }
-        let linkage = Linkage::new(state);
-        let total = self.sum_chunks(|rows| {
-            let mut normal = Normal::new(self.layout.dim());
-            let mut chain = Chain::default();
-            for &row in rows {
-                let row = row as usize;
-                let observation = &self.data.observations[row];
-                chain.evaluate(&linkage, self.packed, row, observation);
-                let written = self.written(row);
-                let Some((force, torque)) = written.model().wrench(&chain.target, &self.noise(row)) else {
-                    return normal;
-                };
-                normal.residuals += 1;
-                let wrench = Wrench { force, torque };
-                self.layout.add_curvature(&chain, observation.target, &wrench, &mut normal.gram);
-            }
-            normal
-        });
-        (total.residuals == self.rows.len()).then_some(total.gram)
+        self.curvature_by_rows(state)
     }
 
     fn project_constraints(&self, step: &mut [f64]) {

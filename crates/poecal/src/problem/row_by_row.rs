@@ -1,0 +1,194 @@
+//! The row-by-row path: every kind of measurement and parameter by its own formulas. It is what the kernels are tested against, and what
+//! serves whatever they do not; curvature is summed by it in every problem.
+
+use nalgebra::Vector3;
+
+use super::Problem;
+use crate::estimate::{Chain, Estimate, Linkage};
+use crate::lie::TargetTwist;
+use crate::parameters::Wrench;
+use crate::solve::{LeastSquares as _, Normal};
+use crate::threads;
+
+/// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
+const CHUNK: usize = 1024;
+/// Partial sums that exist at a time: memory beside the data stays bounded.
+const GROUP: usize = 64;
+/// Rows whose Jacobian is held at a time.
+const BLOCK: usize = 16;
+
+impl Problem<'_> {
+    /// Gives the whitened Jacobian of the prediction (row-major) and residual of each of some rows of the data, in turn.
+    pub fn for_rows(&self, state: &Estimate, rows: &[u32], mut each: impl FnMut(u32, &[f64], &[f64])) {
+        let n = self.layout.dim();
+        let linkage = Linkage::new(state);
+        let mut chain = Chain::default();
+        let mut columns: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
+        let mut jacobian = vec![0.0; 6 * n];
+        let mut residual = [0.0; 6];
+        for &row in rows {
+            let observation = &self.data.observations[row as usize];
+            let written = self.written(row as usize);
+            let measurement = written.model();
+            let (noise, dim) = (self.noise(row as usize), measurement.dim());
+            chain.evaluate(&linkage, self.packed, row as usize, observation);
+            self.layout.target_twists(&chain, observation.target, &mut columns);
+            measurement.project(&chain.target, &columns, &noise, n, &mut jacobian);
+            measurement.residual(&chain.target, &noise, &mut residual);
+            each(row, &jacobian[..dim * n], &residual[..dim]);
+        }
+    }
+
+    /// [`LeastSquares::normal`] by the general path, which serves every problem: row after row, as measurements and parameters write it.
+    #[must_use]
+    pub fn normal_row_by_row(&self, state: &Estimate) -> Normal {
+        let linkage = Linkage::new(state);
+        let seen = self.sum_chunks(|rows| {
+            let mut normal = Normal::new(self.layout.dim());
+            self.for_blocks(
+                &linkage,
+                rows,
+                |chain, row, out| {
+                    self.written(row).model().residual(&chain.target, &self.noise(row), out);
+                },
+                &mut normal,
+            );
+            normal
+        });
+        self.believing(state, seen)
+    }
+
+    /// [`LeastSquares::second_order`].
+    pub(super) fn second_order_by_rows(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {
+        // Central second difference along the step; 0.1 of the step keeps both truncation and rounding far below what a
+        // correction of the step needs.
+        const FRACTION: f64 = 0.1;
+        let along = |sign: f64| {
+            let part: Vec<f64> = step.iter().map(|s| sign * FRACTION * s).collect();
+            Linkage::new(&self.retract(state, &part))
+        };
+        let (ahead, behind) = (along(1.0), along(-1.0));
+        let linkage = Linkage::new(state);
+        let total = self.sum_chunks(|rows| {
+            let mut normal = Normal::new(self.layout.dim());
+            let mut chain = Chain::default();
+            let (mut e_ahead, mut e_behind) = ([0.0; 6], [0.0; 6]);
+            self.for_blocks(
+                &linkage,
+                rows,
+                |here, row, out| {
+                    let observation = &self.data.observations[row];
+                    let written = self.written(row);
+                    let measurement = written.model();
+                    let noise = self.noise(row);
+                    chain.evaluate(&ahead, self.packed, row, observation);
+                    measurement.residual(&chain.target, &noise, &mut e_ahead);
+                    chain.evaluate(&behind, self.packed, row, observation);
+                    measurement.residual(&chain.target, &noise, &mut e_behind);
+                    measurement.residual(&here.target, &noise, out);
+                    for (e, (a, b)) in out.iter_mut().zip(e_ahead.iter().zip(&e_behind)) {
+                        *e = (a + b - 2.0 * *e) / (FRACTION * FRACTION);
+                    }
+                },
+                &mut normal,
+            );
+            normal
+        });
+        total.gradient
+    }
+
+    /// [`LeastSquares::curvature`].
+    pub(super) fn curvature_by_rows(&self, state: &Estimate) -> Option<Vec<f64>> {
+        if !self.layout.has_curvature() {
+            return None;
+        }
+        let linkage = Linkage::new(state);
+        let total = self.sum_chunks(|rows| {
+            let mut normal = Normal::new(self.layout.dim());
+            let mut chain = Chain::default();
+            for &row in rows {
+                let row = row as usize;
+                let observation = &self.data.observations[row];
+                chain.evaluate(&linkage, self.packed, row, observation);
+                let written = self.written(row);
+                let Some((force, torque)) = written.model().wrench(&chain.target, &self.noise(row)) else {
+                    return normal;
+                };
+                normal.residuals += 1;
+                let wrench = Wrench { force, torque };
+                self.layout.add_curvature(&chain, observation.target, &wrench, &mut normal.gram);
+            }
+            normal
+        });
+        (total.residuals == self.rows.len()).then_some(total.gram)
+    }
+
+    /// Sums what `add` makes of each fixed chunk of rows, in the order of the rows whatever the number of threads.
+    fn sum_chunks(&self, add: impl Fn(&[u32]) -> Normal + Sync + Send) -> Normal {
+        if self.rows.len() <= CHUNK {
+            return add(&self.rows);
+        }
+        let mut total = Normal::new(self.layout.dim());
+        for group in self.rows.chunks(CHUNK * GROUP) {
+            let parts = threads::map_chunks(group, CHUNK, |_, rows| add(rows));
+            parts.iter().for_each(|part| total.add(part));
+        }
+        total
+    }
+
+    /// Gathers the rows' Jacobian and residuals in blocks, and hands each block over.
+    fn for_blocks(
+        &self,
+        linkage: &Linkage,
+        rows: &[u32],
+        mut residual: impl FnMut(&Chain, usize, &mut [f64]),
+        normal: &mut Normal,
+    ) {
+        let n = self.layout.dim();
+        let mut chain = Chain::default();
+        let mut columns: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
+        let mut jacobian = vec![0.0; 6 * n];
+        let mut residuals = [0.0; 6];
+        let mut full = Block::default();
+        let mut turning = Block::default();
+        for (count, &row) in rows.iter().enumerate() {
+            let row = row as usize;
+            let observation = &self.data.observations[row];
+            let written = self.written(row);
+            let measurement = written.model();
+            chain.evaluate(linkage, self.packed, row, observation);
+            self.layout.target_twists(&chain, observation.target, &mut columns);
+            let (dim, split) = (measurement.dim(), measurement.rotation_row());
+            measurement.project(&chain.target, &columns, &self.noise(row), n, &mut jacobian);
+            residual(&chain, row, &mut residuals);
+            full.push(&jacobian[..split * n], &residuals[..split]);
+            turning.push(&jacobian[split * n..dim * n], &residuals[split..dim]);
+            if count % BLOCK == BLOCK - 1 {
+                full.flush(normal, 0);
+                turning.flush(normal, self.layout.shifts());
+            }
+        }
+        full.flush(normal, 0);
+        turning.flush(normal, self.layout.shifts());
+    }
+}
+
+/// Rows of the Jacobian waiting to be accumulated.
+#[derive(Default)]
+struct Block {
+    rows: Vec<f64>,
+    residuals: Vec<f64>,
+}
+
+impl Block {
+    fn push(&mut self, rows: &[f64], residuals: &[f64]) {
+        self.rows.extend_from_slice(rows);
+        self.residuals.extend_from_slice(residuals);
+    }
+
+    fn flush(&mut self, normal: &mut Normal, start: usize) {
+        normal.add_rows(&self.rows, &self.residuals, start);
+        self.rows.clear();
+        self.residuals.clear();
+    }
+}
