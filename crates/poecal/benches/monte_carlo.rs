@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [cpu_ms, wall_ms] = [begin.elapsed(), wall.elapsed()].map(|time| time.as_secs_f64() * 1e3);
 
     let iterations: usize = found.iter().map(|(_, iterations)| iterations).sum();
-    let packed = Packed::new(&robot, held_out.all_readings(), held_out.reading_names().len());
+    let packed = Packed::of(&robot, &held_out);
     let rows = held_out.all_rows();
     let squares: f64 = found
         .iter()
@@ -67,7 +67,7 @@ fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(E
     let mut begun = data.clone();
     begun.observations.iter_mut().zip(first).for_each(|(row, seen)| row.measurement = *seen);
     let start = delivered(robot, &begun);
-    let packed = Packed::new(robot, begun.all_readings(), begun.reading_names().len());
+    let packed = Packed::of(robot, &begun);
     let mut free = screw_axes(&start.kinds);
     free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
     let problem = Problem::new(&begun, &packed, begun.all_rows(), free, NOISE, robot.reach_m() / 3.0);

@@ -51,7 +51,7 @@ fn solve_session(bencher: Bencher<'_, '_>, made: &Simulated) {
     let all: Vec<u32> = (0..made.data.len() as u32).collect();
     let options = CalibrationOptions::default();
     bencher.bench_local(|| {
-        let packed = Packed::new(&made.nominal, made.data.all_readings(), made.data.reading_names().len());
+        let packed = Packed::of(&made.nominal, &made.data);
         let length_m = made.nominal.reach_m() / 3.0;
         black_box(fit_screws(&made.data, &packed, &all, start.clone(), NOISE, length_m, None, &options))
     });

@@ -113,7 +113,7 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Fo
         return Err(Error::new(ErrorKind::Problem, message));
     }
     let data = imagined(robot, readings, session)?;
-    let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
+    let packed = Packed::of(robot, &data);
     let rows: Vec<u32> = data.all_rows();
     let length_m = radian_m(robot, &packed);
     let mut estimate = delivered(robot, &data);

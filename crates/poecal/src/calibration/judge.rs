@@ -130,7 +130,7 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
 
 /// Joint values, and the errors of a robot's screws with device frame and targets found anew as asked.
 fn seen(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> Seen {
-    let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
+    let packed = Packed::of(robot, data);
     let rows: Vec<u32> = data.all_rows();
     let mut estimate = delivered(robot, data);
     estimate.device_from_base = subject.base_from_device.inverse();

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{Calibration, RowError, row_errors};
-use crate::estimate::{Estimate, Packed, turn_to_first};
+use crate::estimate::{Estimate, turn_to_first};
 use crate::measurement::Dataset;
 use crate::threads;
 
@@ -51,7 +51,7 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
     if groups.is_empty() {
         return Vec::new();
     }
-    let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
+    let packed = calibration.packed(data);
     let models = &calibration.models;
     let poses = groups.into_iter().map(|rows| {
         let errors = |estimate: &Estimate| {

@@ -1,5 +1,7 @@
 //! What a calibration comes to.
 
+use std::sync::Arc;
+
 use super::{
     Accuracy, CalibrationOptions, DeviceFrameKnowledge, Formulation, Models, NoiseSource, Robustness,
     SolverReport, Trust, Verdict, fit_screws, radian_m,
@@ -97,9 +99,19 @@ pub struct Calibration {
     pub fit_rows: Vec<u32>,
     /// Rows held out.
     pub held_out_rows: Vec<u32>,
+    /// Joint values of its measurements with their sines and cosines.
+    pub(super) packed: Arc<Packed>,
 }
 
 impl Calibration {
+    /// Joint values of measurements: those at hand, if they are the ones that were calibrated by.
+    pub(crate) fn packed(&self, data: &Dataset) -> Arc<Packed> {
+        if self.packed.is_of(&self.nominal, data) {
+            return Arc::clone(&self.packed);
+        }
+        Arc::new(Packed::of(&self.nominal, data))
+    }
+
     /// The calibrated robot with the named targets in its tip frame, as models of it are written.
     #[must_use]
     pub fn robot_with_targets(&self) -> Robot {
@@ -116,7 +128,7 @@ impl Calibration {
     }
 
     fn solved_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
-        let packed = Packed::new(&self.nominal, data.all_readings(), data.reading_names().len());
+        let packed = Packed::of(&self.nominal, data);
         let length_m = radian_m(&self.nominal, &packed);
         let start = match self.frame {
             DeviceFrameKnowledge::Base => self.models.nominal.clone(),

@@ -1,5 +1,7 @@
 //! The steps of a calibration, each from what the ones before it found.
 
+use std::sync::Arc;
+
 use super::doubts::doubts;
 use super::fit::{self, Fitted, Task};
 use super::moves::{Doubtful, FramesApart, Looked, Moved, frames_apart, moved};
@@ -51,7 +53,7 @@ impl<'a> Prepared<'a> {
         let (fit_rows, held_out_rows) = split_rows(data, options)?;
         check_stations(data, [&fit_rows, &held_out_rows], options)?;
         check_count(robot, data, &fit_rows)?;
-        let packed = Packed::new(robot, data.all_readings(), data.reading_names().len());
+        let packed = Packed::of(robot, data);
         let (delivered, length_m) = (delivered(robot, data), radian_m(robot, &packed));
         let base_free = options.frame == DeviceFrameKnowledge::Unknown;
         let prior = options.believed().map(|tolerance| Prior::new(robot, tolerance, base_free));
@@ -184,6 +186,7 @@ impl<'a> Prepared<'a> {
             diagnosis,
             fit_rows: self.fit_rows,
             held_out_rows: self.held_out_rows,
+            packed: Arc::new(self.packed),
         }
     }
 

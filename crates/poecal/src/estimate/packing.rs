@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::lanes::{self, Level};
+use crate::measurement::Dataset;
 use crate::robot::{JointKind, Robot};
 
 /// Rows that one thread takes at a time.
@@ -43,6 +44,23 @@ impl Packed {
                 }
             }
         })
+    }
+
+    /// Packs the readings of measurements.
+    #[must_use]
+    pub fn of(robot: &Robot, data: &Dataset) -> Self {
+        Packed::new(robot, data.all_readings(), data.reading_names().len())
+    }
+
+    /// Whether these are the joint values of measurements.
+    pub(crate) fn is_of(&self, robot: &Robot, data: &Dataset) -> bool {
+        let indices = robot.reading_indices();
+        let is_row = |row| {
+            let (values, readings) = (self.joint_values(row), data.readings(row));
+            let mut joints = values.iter().zip(&robot.joints).zip(&indices);
+            joints.all(|((&value, joint), &index)| joint.reading.value(readings[index]) == value)
+        };
+        self.rows() == data.len() && self.joints == robot.joints.len() && (0..self.rows()).all(is_row)
     }
 
     /// Packs joint values (radians, metres), one a joint and row.

@@ -79,7 +79,7 @@ impl<'a> Session<'a> {
     }
 
     pub(super) fn packed(&self, data: &Dataset) -> Packed {
-        Packed::new(self.robot, data.all_readings(), data.reading_names().len())
+        Packed::of(self.robot, data)
     }
 
     /// Registers the nominal robot.

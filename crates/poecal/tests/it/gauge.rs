@@ -40,7 +40,7 @@ fn calibrated(made: &Simulated) -> Calibration {
 }
 
 fn packed(robot: &Robot, data: &Dataset) -> Packed {
-    Packed::new(robot, data.all_readings(), data.reading_names().len())
+    Packed::of(robot, &data)
 }
 
 /// Largest distance and angle between predictions of two estimates.
@@ -90,7 +90,7 @@ fn gauge_brings_the_screws_nearest_to_nominal_once_and_for_all() {
     for robot in robots() {
         let made = simulated(&robot, Kind::Pose);
         let chosen = calibrated(&made).models.calibrated;
-        let packed = Packed::new(&robot, made.data.all_readings(), made.data.reading_names().len());
+        let packed = Packed::of(&robot, &made.data);
         let length_m = radian_m(&robot, &packed);
         let targets = delivered(&robot, &made.data).base_from_target;
         let again = base_motion(&chosen, &robot, &targets, length_m).log().to_vector().norm();

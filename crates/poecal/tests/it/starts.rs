@@ -186,7 +186,7 @@ fn excess(session: &Session, seed: u64) -> f64 {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let robot = (session.robots)(seed);
     let (data, truth) = measure(session, &robot, &mut generator);
-    let packed = Packed::new(&robot, data.all_readings(), data.reading_names().len());
+    let packed = Packed::of(&robot, &data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let problem = Registration {
         data: &data,
@@ -233,7 +233,7 @@ fn registration_from_the_truth_is_near_it() {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let robot = (session.robots)(seed);
         let (data, truth) = measure(session, &robot, &mut generator);
-        let packed = Packed::new(&robot, data.all_readings(), data.reading_names().len());
+        let packed = Packed::of(&robot, &data);
         let rows: Vec<u32> = (0..ROWS as u32).collect();
         let cost = cost_from_truth(&data, &packed, &rows, truth);
         let rms_m = (2.0 * cost / (3.0 * ROWS as f64)).sqrt() * NOISE.position_m;

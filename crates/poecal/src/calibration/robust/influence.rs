@@ -1,6 +1,7 @@
 //! What each row means to a finished calibration.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use super::rows::component_scale;
 use crate::analysis::{Influence, influence};
@@ -36,7 +37,7 @@ pub fn row_influence(calibration: &Calibration, data: &Dataset, rows: &[u32]) ->
 pub(crate) struct RowInfluence<'a> {
     calibration: &'a Calibration,
     data: Cow<'a, Dataset>,
-    packed: Packed,
+    packed: Arc<Packed>,
     weights: Vec<f64>,
     free: Vec<Parameter>,
     length_m: f64,
@@ -47,8 +48,8 @@ pub(crate) struct RowInfluence<'a> {
 impl<'a> RowInfluence<'a> {
     /// Prepares a finished calibration.
     pub(crate) fn new(calibration: &'a Calibration, data: &'a Dataset) -> Self {
+        let packed = calibration.packed(data);
         let data = written(data, calibration.formulation.pose_residual);
-        let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
         let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
         let Calibration { nominal, fit_rows, models, .. } = calibration;
         let free =

@@ -4,7 +4,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::{Calibration, Loss, RowError, SetAccuracy, row_errors, row_influence};
-use crate::estimate::Packed;
 use crate::measurement::Dataset;
 
 /// Suspected rows that a file lists at most; `robust` has their number.
@@ -84,7 +83,7 @@ impl OutlierEntry {
         rows.sort_by(|(a, first), (b, second)| second.total_cmp(first).then(a.cmp(b)));
         rows.truncate(LISTED);
         let numbers: Vec<u32> = rows.iter().map(|(row, _)| *row).collect();
-        let packed = Packed::new(&calibration.nominal, data.all_readings(), data.reading_names().len());
+        let packed = calibration.packed(data);
         let errors = row_errors(data, &packed, &numbers, &calibration.models.calibrated);
         let entry = |((row, studentized), error): (&(u32, f64), &RowError)| {
             let source = data.observations[*row as usize].source;
