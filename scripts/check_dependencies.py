@@ -21,7 +21,7 @@ KNOWN = {
     "graph": {"all-features"},
     "advisories": {"yanked"},
     "licenses": {"allow", "confidence-threshold"},
-    "bans": {"multiple-versions", "wildcards", "allow-wildcard-paths", "deny"},
+    "bans": {"multiple-versions", "wildcards", "allow-wildcard-paths", "deny", "skip"},
     "sources": {"unknown-registry", "unknown-git", "allow-registry"},
 }
 
@@ -103,7 +103,10 @@ def complaints(rules, packages, shipped):
             by_path = dependency.get("path") and bans["allow-wildcard-paths"]
             if bans["wildcards"] == "deny" and dependency["req"] == "*" and not by_path:
                 yield f"{full}: takes any version of {dependency['name']}, expected a range"
+    skipped = [entry["crate"].split("@") for entry in bans.get("skip", ())]
     for package in shipped:
+        if any(package["name"] == name and f"{package['version']}.".startswith(f"{version}.") for name, version in skipped):
+            continue
         versions.setdefault(package["name"], set()).add(package["version"])
     if bans["multiple-versions"] == "deny":
         for name, found in sorted(versions.items()):

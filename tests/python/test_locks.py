@@ -76,14 +76,16 @@ def test_two_versions_are_refused_where_not_only_tests_need_them():
     assert not list(dependencies.complaints(RULES, packages, packages[:1]))
     (found,) = dependencies.complaints(RULES, packages, packages)
     assert found.startswith("good: found the versions 1.0.0, 2.0.0")
+    rules = {**RULES, "bans": {**RULES["bans"], "skip": [{"crate": "good@2", "reason": "why"}]}}
+    assert not list(dependencies.complaints(rules, packages, packages))
     by_path = crate(source=None, dependencies=[{"name": "x", "req": "*", "path": "/x"}])
     assert not list(dependencies.complaints(RULES, [by_path], [by_path]))
 
 
 def test_a_rule_that_is_not_applied_is_a_complaint():
-    rules = {**RULES, "bans": {**RULES["bans"], "skip": []}}
+    rules = {**RULES, "bans": {**RULES["bans"], "skip-tree": []}}
     (found,) = dependencies.complaints(rules, [], [])
-    assert found.startswith("deny.toml: found [bans] skip")
+    assert found.startswith("deny.toml: found [bans] skip-tree")
 
 
 LOCK = """# Not to be edited.

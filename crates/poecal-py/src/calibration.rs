@@ -7,6 +7,7 @@ use content::part;
 
 use std::path::{Path, PathBuf};
 
+use maud::html;
 use numpy::PyArray2;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::model::{Model, ModelSource};
@@ -14,6 +15,7 @@ use poecal::io::output::{self, Contents, Existing, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
 use poecal::io::residuals::{Residuals, Rows};
 use poecal::report;
+use poecal::text::visible_markup;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
@@ -22,7 +24,6 @@ use crate::accuracy::{Accuracy, Verdict};
 use crate::arrays::{Joints, pose_array};
 use crate::errors::{python_words, raise};
 use crate::findings::{self, Findings};
-use crate::html::Html;
 use crate::measurements::Measurements;
 use crate::pickle;
 use crate::places::{reserved_file, reserved_folder, said};
@@ -271,33 +272,32 @@ impl Calibration {
 
     fn _repr_html_(&self) -> String {
         let file = self.file();
-        let mut html = Html::new();
-        if let Some(verdict) = &file.verdict {
-            html.paragraph(&format!(
-                "{}: {} ({})",
-                file.robot.name,
-                verdict.level.words(),
-                verdict.reasons.join("; ")
-            ));
-        }
-        html.head(&["error (RMS)", "rows", "nominal", "registered", "calibrated"]);
-        for (name, set) in
-            [("fitted", Some(&file.accuracy.training)), ("held out", file.accuracy.held_out.as_ref())]
-        {
-            let Some(set) = set else { continue };
-            let models = [&set.nominal, &set.registered, &set.calibrated];
-            let count = set.count.to_string();
-            let [a, b, c] = models.map(|model| format!("{:.4} mm", model.position_mm.rms));
-            html.row(&[&format!("position, {name}"), &count, &a, &b, &c]);
-            let [a, b, c] = models.map(|model| model.rotation_deg.map(|it| format!("{:.4}°", it.rms)));
-            if let (Some(a), Some(b), Some(c)) = (a, b, c) {
-                html.row(&[&format!("rotation, {name}"), &count, &a, &b, &c]);
+        let fitted = ("fitted", &file.accuracy.training);
+        let sets = std::iter::once(fitted).chain(file.accuracy.held_out.iter().map(|set| ("held out", set)));
+        visible_markup(html! {
+            div {
+                @if let Some(verdict) = &file.verdict {
+                    p { (file.robot.name) ": " (verdict.level.words()) " (" (verdict.reasons.join("; ")) ")" }
+                }
+                table {
+                    tr { @for name in ["error (RMS)", "rows", "nominal", "registered", "calibrated"] { th { (name) } } }
+                    @for (name, set) in sets {
+                        @let models = [&set.nominal, &set.registered, &set.calibrated];
+                        tr {
+                            td { "position, " (name) } td { (set.count) }
+                            @for model in models { td { (format_args!("{:.4} mm", model.position_mm.rms)) } }
+                        }
+                        @if let [Some(a), Some(b), Some(c)] = models.map(|model| model.rotation_deg) {
+                            tr {
+                                td { "rotation, " (name) } td { (set.count) }
+                                @for it in [a, b, c] { td { (format_args!("{:.4}°", it.rms)) } }
+                            }
+                        }
+                    }
+                }
+                @for warning in self.warnings() { p { "warning: " (warning) } }
             }
-        }
-        for warning in self.warnings() {
-            html.paragraph(&format!("warning: {warning}"));
-        }
-        html.finish()
+        })
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

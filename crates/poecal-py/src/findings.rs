@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
+use maud::html;
 use poecal::analysis::{self, Session};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::output::{self, Contents, Existing};
 use poecal::measurement::Noise;
+use poecal::text::visible_markup;
 use poecal::{forensics, offsets as explanations, report};
 use poecal_lou2009::{self as experiments, report as reproduced};
 use pyo3::prelude::*;
@@ -15,7 +17,6 @@ use serde::{Deserialize, Serialize};
 use crate::arrays::Joints;
 use crate::calibration::Calibration;
 use crate::errors::raise;
-use crate::html::Html;
 use crate::measurements::Measurements;
 use crate::pickle;
 use crate::places::reserved_folder;
@@ -73,10 +74,9 @@ impl Findings {
     }
 
     fn _repr_html_(&self) -> String {
-        let mut html = Html::new();
-        html.lines(&self.text);
-        self.warnings.iter().for_each(|warning| html.paragraph(&format!("warning: {warning}")));
-        html.finish()
+        visible_markup(html! {
+            div { pre { (self.text) } @for warning in &self.warnings { p { "warning: " (warning) } } }
+        })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {

@@ -10,7 +10,6 @@ mod errors;
 mod findings;
 mod from_arrays;
 mod from_dataframe;
-mod html;
 mod measurements;
 mod pickle;
 mod places;

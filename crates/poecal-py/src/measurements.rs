@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use maud::html;
 use numpy::{PyArray1, PyArray2, PyArray3};
 use poecal::io::calibration_file::Inputs;
 use poecal::io::measurements::{self, ColumnMap, Frames, MeasurementFile, ReadOptions};
 use poecal::io::named_files::refuse_repeats;
 use poecal::measurement::{Dataset, Set};
+use poecal::text::visible_markup;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use serde::{Deserialize, Serialize};
@@ -17,7 +19,6 @@ use crate::arrays::{pose_arrays, table};
 use crate::errors::{argument, python_words, raise};
 use crate::from_arrays::{Columns, dataset};
 use crate::from_dataframe;
-use crate::html::Html;
 use crate::pickle;
 use crate::robot::Robot;
 use crate::words::chosen;
@@ -345,10 +346,12 @@ impl Measurements {
     }
 
     fn _repr_html_(&self) -> String {
-        let mut html = Html::new();
-        html.paragraph(&format!("{}, from {}", self.words(), self.source.names.join(", ")));
-        self.file.warnings.iter().for_each(|warning| html.paragraph(&format!("warning: {warning}")));
-        html.finish()
+        visible_markup(html! {
+            div {
+                p { (self.words()) ", from " (self.source.names.join(", ")) }
+                @for warning in &self.file.warnings { p { "warning: " (warning) } }
+            }
+        })
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

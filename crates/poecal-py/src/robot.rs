@@ -6,13 +6,15 @@ pub(crate) use state::{Robot, RobotState};
 
 use std::path::{Path, PathBuf};
 
+use maud::html;
 use numpy::{PyArray2, PyArray3, PyArrayMethods as _};
 use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
 use poecal::io::output::Existing;
 use poecal::io::predictions::{PredictionFrame, predicted};
 use poecal::io::robot_toml;
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
-use poecal::robot::JointKind;
+use poecal::robot::{Joint, JointKind};
+use poecal::text::visible_markup;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
@@ -20,7 +22,6 @@ use pyo3::types::{PyBytes, PyDict, PyTuple};
 use crate::arrays::{Joints, pose_array, pose_arrays, table};
 use crate::build::{DhTable, Naming, from_dh, from_screws};
 use crate::errors::{argument, raise};
-use crate::html::Html;
 use crate::pickle;
 use crate::places::reserved_file;
 use crate::words::chosen;
@@ -288,23 +289,31 @@ impl Robot {
     }
 
     fn _repr_html_(&self) -> String {
-        let mut html = Html::new();
-        html.paragraph(&self.words());
-        html.head(&["joint", "kind", "lower", "upper", "direction"]);
-        for joint in &self.robot().joints {
+        let ends = |joint: &Joint| {
             let (factor, unit) = match joint.kind {
                 JointKind::Revolute => (1f64.to_degrees(), "°"),
                 JointKind::Prismatic => (1e3, " mm"),
             };
-            let limit = |limit: Option<f64>| {
-                limit.map_or("none".to_owned(), |limit| format!("{:.1}{unit}", limit * factor))
-            };
-            let lower = limit(joint.limits.map(|limits| limits.lower));
-            let upper = limit(joint.limits.map(|limits| limits.upper));
-            let [x, y, z]: [f64; 3] = joint.screw.direction().into();
-            html.row(&[&joint.name, joint.kind.word(), &lower, &upper, &format!("({x:.4}, {y:.4}, {z:.4})")]);
-        }
-        html.finish()
+            let ends = [joint.limits.map(|limits| limits.lower), joint.limits.map(|limits| limits.upper)];
+            ends.map(|end| end.map_or("none".to_owned(), |end| format!("{:.1}{unit}", end * factor)))
+        };
+        visible_markup(html! {
+            div {
+                p { (self.words()) }
+                table {
+                    tr { @for name in ["joint", "kind", "lower", "upper", "direction"] { th { (name) } } }
+                    @for joint in &self.robot().joints {
+                        @let [x, y, z]: [f64; 3] = joint.screw.direction().into();
+                        tr {
+                            td { (joint.name) }
+                            td { (joint.kind.word()) }
+                            @for end in ends(joint) { td { (end) } }
+                            td { (format_args!("({x:.4}, {y:.4}, {z:.4})")) }
+                        }
+                    }
+                }
+            }
+        })
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

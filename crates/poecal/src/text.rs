@@ -27,6 +27,21 @@ pub fn visible_lines(text: &str) -> Cow<'_, str> {
     made_visible(text, |c| c != '\n' && acts(c))
 }
 
+/// The same of HTML or SVG, where breaks of lines and tabs are blanks: done to the whole, it cannot be forgotten of a part.
+///
+/// ```
+/// assert_eq!(poecal::text::visible_markup("<b>a\u{202e}</b>\n"), "<b>a\\u{202e}</b>\n");
+/// ```
+#[must_use]
+pub fn visible_markup(text: impl Into<String>) -> String {
+    let text = text.into();
+    let shown = match made_visible(&text, |c| !matches!(c, '\n' | '\t' | '\r') && acts(c)) {
+        Cow::Borrowed(_) => None,
+        Cow::Owned(shown) => Some(shown),
+    };
+    shown.unwrap_or(text)
+}
+
 fn made_visible(text: &str, hides: impl Fn(char) -> bool) -> Cow<'_, str> {
     if !text.contains(&hides) {
         return Cow::Borrowed(text);

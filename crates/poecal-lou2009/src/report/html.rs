@@ -1,73 +1,71 @@
-//! A report as one HTML page: its style and its plots are in it, and it loads nothing.
+//! A report as one HTML page: its style and its plots are in it, and it loads nothing. maud escapes every text.
 
-use std::fmt::Write as _;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::document::{Block, Document, Figure, Table};
-use poecal::report::plot::escape;
+use poecal::text::visible_markup;
 
 const STYLE: &str = include_str!("report.css");
 
 pub(super) fn html(document: &Document) -> String {
-    let title = escape(&document.title);
-    let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n"
-    );
-    for block in &document.blocks {
-        // Writing to a String cannot fail.
-        let _ = match block {
-            Block::Heading(text) => writeln!(out, "<h2>{}</h2>", escape(text)),
-            Block::Text(text) => writeln!(out, "<p>{}</p>", with_code(text)),
-            Block::Code(text) => writeln!(out, "<pre><code>{}</code></pre>", escape(text)),
-            Block::Table(table) => {
-                write_table(&mut out, table);
-                Ok(())
+    visible_markup(html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (document.title) }
+                style { (PreEscaped(STYLE)) }
             }
-            Block::Figure(figure) => {
-                write_figure(&mut out, figure);
-                Ok(())
+            body { main { h1 { (document.title) } @for block in &document.blocks { (of_block(block)) "\n" } } }
+        }
+        "\n"
+    })
+}
+
+fn of_block(block: &Block) -> Markup {
+    match block {
+        Block::Heading(text) => html! { h2 { (text) } },
+        Block::Text(text) => html! {
+            p {
+                @for (k, piece) in text.split('`').enumerate() {
+                    @if k % 2 == 1 { code { (piece) } } @else { (piece) }
+                }
             }
-        };
+        },
+        Block::Code(text) => html! { pre { code { (text) } } },
+        Block::Table(table) => of_table(table),
+        Block::Figure(figure) => of_figure(figure),
     }
-    out.push_str("</main>\n</body>\n</html>\n");
-    out
 }
 
-/// Text in which words between backticks are code.
-fn with_code(text: &str) -> String {
-    let pieces = text.split('`').map(escape).enumerate();
-    pieces.map(|(k, piece)| if k % 2 == 1 { format!("<code>{piece}</code>") } else { piece }).collect()
-}
-
-fn write_table(out: &mut String, table: &Table) {
-    // The box scrolls on narrow screens, and is reached by the keyboard.
-    let caption = escape(&table.caption);
+fn of_table(table: &Table) -> Markup {
     // Sentences in columns are too wide for a narrow screen: there each row becomes a block of labelled cells.
     let sentences = table.rows.iter().flatten().any(|cell| is_long(cell));
-    let class = if sentences { " class=\"sentences\"" } else { "" };
-    let _ = writeln!(
-        out,
-        "<p class=\"caption\">{caption}</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{caption}\"><table{class}>"
-    );
-    out.push_str("<thead><tr>");
-    for (k, name) in table.head.iter().enumerate() {
-        let class = if k < table.words { "" } else { " class=\"number\"" };
-        let _ = write!(out, "<th{class}>{}</th>", escape(name));
-    }
-    out.push_str("</tr>\n</thead>\n<tbody>\n");
-    for cells in &table.rows {
-        out.push_str("<tr>");
-        for (k, (cell, name)) in cells.iter().zip(&table.head).enumerate() {
-            let class = match (k < table.words, is_long(cell)) {
-                (true, true) => " class=\"long\"",
-                (true, false) => "",
-                (false, _) => " class=\"number\"",
-            };
-            let label = if sentences { format!(" data-label=\"{}\"", escape(name)) } else { String::new() };
-            let _ = write!(out, "<td{class}{label}>{}</td>", escape(cell));
+    let class = |k: usize, long: bool| match (k < table.words, long) {
+        (true, true) => Some("long"),
+        (true, false) => None,
+        (false, _) => Some("number"),
+    };
+    // The box scrolls on narrow screens, and is reached by the keyboard.
+    html! {
+        p.caption { (table.caption) }
+        div.scroll tabindex="0" role="region" aria-label=(table.caption) {
+            table class=[sentences.then_some("sentences")] {
+                thead { tr { @for (k, name) in table.head.iter().enumerate() { th class=[class(k, false)] { (name) } } } }
+                tbody {
+                    @for cells in &table.rows {
+                        tr {
+                            @for (k, (cell, name)) in cells.iter().zip(&table.head).enumerate() {
+                                td class=[class(k, is_long(cell))] data-label=[sentences.then_some(name)] { (cell) }
+                            }
+                        }
+                    }
+                }
+            }
         }
-        out.push_str("</tr>\n");
     }
-    out.push_str("</tbody>\n</table></div>\n");
 }
 
 /// Whether a cell holds a sentence, which needs room.
@@ -75,10 +73,12 @@ fn is_long(cell: &str) -> bool {
     cell.chars().count() > 30
 }
 
-fn write_figure(out: &mut String, figure: &Figure) {
-    out.push_str("<figure>\n<div class=\"plots\">\n");
-    for plot in &figure.plots {
-        out.push_str(&plot.svg);
+fn of_figure(figure: &Figure) -> Markup {
+    // The plots' own writer has escaped every text of theirs.
+    html! {
+        figure {
+            div.plots { @for plot in &figure.plots { (PreEscaped(&plot.svg)) } }
+            figcaption { (figure.caption) }
+        }
     }
-    let _ = writeln!(out, "</div>\n<figcaption>{}</figcaption>\n</figure>", escape(&figure.caption));
 }

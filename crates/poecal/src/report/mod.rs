@@ -1,7 +1,6 @@
 //! Results as text for people. No number here that is not in the result.
 
 mod check;
-mod fixed;
 mod identify;
 mod judgement;
 mod offsets;

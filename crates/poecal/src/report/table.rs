@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use super::fixed::Fixed;
 use crate::analysis::{Cause, Identifiability};
 use crate::calibration::{ModelAccuracy, SetAccuracy, Statistic};
 use crate::error::shown;
@@ -115,7 +114,7 @@ pub fn number(value: f64) -> String {
         return format!("{value:.1e}");
     }
     let digits = (3 - value.log10().floor() as i32).clamp(1, 4) as usize;
-    Fixed(value, digits).to_string()
+    format!("{value:.digits$}")
 }
 
 pub(super) fn robot_words(robot: &Robot) -> String {

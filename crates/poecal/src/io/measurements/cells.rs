@@ -81,17 +81,17 @@ impl Separator {
 
 /// One cell: its text without padding and quotes, and where it starts in the line (bytes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Cell<'a> {
+pub(in crate::io) struct Cell<'a> {
     /// Text, in which a quote may still be doubled.
-    pub(super) raw: &'a str,
+    pub(in crate::io) raw: &'a str,
     /// Byte offset of its first character, the quote if it has one.
-    pub(super) offset: usize,
+    pub(in crate::io) offset: usize,
     escaped: bool,
 }
 
 impl<'a> Cell<'a> {
     /// The text as meant: without doubled quotes, and without the apostrophe that files of ours have before what would be run.
-    pub(super) fn text(&self) -> Cow<'a, str> {
+    pub(in crate::io) fn text(&self) -> Cow<'a, str> {
         let text = plain(self.raw);
         if self.escaped { Cow::Owned(text.replace("\"\"", "\"")) } else { Cow::Borrowed(text) }
     }
@@ -105,7 +105,7 @@ pub(super) fn character_column(line: &str, offset: usize) -> usize {
 /// Splits a line into cells.
 ///
 /// On failure returns the byte offset and what was found and expected.
-pub(super) fn split<'a>(
+pub(in crate::io) fn split<'a>(
     line: &'a str,
     separator: Separator,
     cells: &mut Vec<Cell<'a>>,

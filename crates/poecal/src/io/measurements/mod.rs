@@ -30,6 +30,7 @@ mod write;
 
 pub use super::numbers::LARGEST_NUMBER;
 pub use cells::Separator;
+pub(in crate::io) use cells::{Cell, split};
 pub use fit_where::FitWhere;
 pub use joints::{JointsTable, parse_joints, read_joints};
 pub use lost::LostBeams;

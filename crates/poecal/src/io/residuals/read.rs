@@ -1,10 +1,11 @@
 //! Reads a `residuals.csv` back.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use super::{COLUMNS, INSTRUMENT, Judged, ModelErrors, ResidualRow, Residuals, unit};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::csv_text::plain;
+use crate::io::measurements::{Cell, Separator, split};
 use crate::io::source::LARGEST_TABLE;
 use crate::io::source_text;
 use crate::robot::JointKind;
@@ -27,34 +28,32 @@ impl Residuals {
     /// # Errors
     /// [`ErrorKind::Syntax`] if it is no `residuals.csv` of this version.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        let mut reader =
-            csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
         let mut found = Residuals::default();
-        let mut named = false;
-        for (index, record) in reader.records().enumerate() {
-            let record = record.map_err(|error| {
-                let line = error.position().map_or(1, |position| position.line() as usize);
-                let message = format!(
-                    "found a row that cannot be read ({error}), expected {EXPECTED}: calibrate again"
-                );
-                Error::new(ErrorKind::Syntax, message).at(path, line, 1)
-            })?;
-            let cells: Vec<&str> = record.iter().collect();
-            let done = if index == 0 { found.head(&cells, &mut named) } else { found.row(&cells, named) };
-            done.map_err(|Wrong { cell, message }| {
-                let start = record.position().map_or(0, |position| position.byte() as usize);
-                let (line, column) = source_text::position(text, cell_start(text, start, cell));
-                Error::new(ErrorKind::Syntax, message).at(path, line, column)
+        let (mut named, mut is_head) = (false, true);
+        let mut cells = Vec::new();
+        for (start, record) in records(text) {
+            let done = split(record, Separator::Comma, &mut cells)
+                .map_err(|(offset, what)| (offset, format!("{what}, in {EXPECTED}: calibrate again")));
+            let done = done.and_then(|()| {
+                let texts: Vec<Cow<'_, str>> = cells.iter().map(Cell::text).collect();
+                let read = if is_head { found.head(&texts, &mut named) } else { found.row(&texts, named) };
+                read.map_err(|Wrong { cell, message }| {
+                    (cells.get(cell).map_or(record.len(), |cell| cell.offset), message)
+                })
+            });
+            is_head = false;
+            done.map_err(|(offset, message)| {
+                let (line, column) = source_text::position(text, start + offset);
+                Error::new(ErrorKind::Syntax, message).at(path.as_ref(), line, column)
             })?;
         }
         Ok(found)
     }
 
     /// Reads the header, and tells whether the last column names the instrument.
-    fn head(&mut self, cells: &[&str], named: &mut bool) -> std::result::Result<(), Wrong> {
+    fn head(&mut self, cells: &[Cow<'_, str>], named: &mut bool) -> std::result::Result<(), Wrong> {
         for (column, expected) in COLUMNS.split(',').enumerate() {
-            let cell = cells.get(column).copied().unwrap_or_default();
+            let cell = cells.get(column).map_or("", |cell| cell);
             if cell != expected {
                 let message = format!(
                     "found the column `{cell}`, expected `{expected}`, as in {EXPECTED}: calibrate again"
@@ -64,7 +63,7 @@ impl Residuals {
         }
         let first = COLUMNS.split(',').count();
         let cells = match cells.split_last() {
-            Some((&INSTRUMENT, rest)) => {
+            Some((last, rest)) if last == INSTRUMENT => {
                 *named = true;
                 rest
             }
@@ -73,7 +72,7 @@ impl Residuals {
         for (column, cell) in cells.iter().enumerate().skip(first) {
             let kinds = [JointKind::Revolute, JointKind::Prismatic];
             let reading = kinds.into_iter().find_map(|kind| {
-                let name = plain(cell).strip_suffix(&format!("[{}]", unit(kind)))?;
+                let name = cell.strip_suffix(&format!("[{}]", unit(kind)))?;
                 Some((name.to_owned(), kind))
             });
             let message = || {
@@ -86,24 +85,24 @@ impl Residuals {
         Ok(())
     }
 
-    fn row(&mut self, cells: &[&str], named: bool) -> std::result::Result<(), Wrong> {
+    fn row(&mut self, cells: &[Cow<'_, str>], named: bool) -> std::result::Result<(), Wrong> {
         let mut cells = Cells { cells, next: 0 };
-        let file = index_of(&mut self.files, plain(cells.text()?));
+        let file = index_of(&mut self.files, cells.text()?);
         let line = cells.parsed("a line number")?;
-        let id = plain(cells.text()?).to_owned();
+        let id = cells.text()?.to_owned();
         let held_out = match cells.text()? {
             "held_out" => true,
             "fit" => false,
             other => return Err(cells.wrong(other, "fit or held_out")),
         };
-        let target = index_of(&mut self.targets, plain(cells.text()?));
+        let target = index_of(&mut self.targets, cells.text()?);
         let position_mm = cells.errors()?.ok_or_else(|| cells.wrong("", "a number"))?;
         let rotation_deg = cells.errors()?;
         let judged = cells.judged()?;
         for _ in 0..self.readings.len() {
             self.values.push(cells.number()?);
         }
-        let station = if named { index_of(&mut self.stations, plain(cells.text()?)) } else { 0 };
+        let station = if named { index_of(&mut self.stations, cells.text()?) } else { 0 };
         if let Some(extra) = cells.cells.get(cells.next) {
             cells.next += 1;
             return Err(cells.wrong(extra, "no further cell"));
@@ -131,22 +130,22 @@ fn index_of(names: &mut Vec<String>, name: &str) -> usize {
     })
 }
 
-/// Byte offset of a record's cell, or of the record's end if it has fewer; `start` is where the record before ended.
-fn cell_start(text: &str, start: usize, cell: usize) -> usize {
-    let rest = text.get(start..).unwrap_or_default();
-    let record = rest.trim_start_matches(['\u{feff}', '\r', '\n']);
-    let start = text.len() - record.len();
-    let (mut quoted, mut cells) = (false, 0);
-    for (at, character) in record.char_indices() {
-        match character {
-            _ if cells == cell => return start + at,
-            '"' => quoted = !quoted,
-            ',' if !quoted => cells += 1,
-            '\r' | '\n' if !quoted => return start + at,
-            _ => {}
+/// The records that are not blank, each with its byte offset: lines, but for breaks within quotes, which names may have.
+fn records(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let (mut is_quoted, mut next) = (false, 0);
+    let records = text.split(move |c| {
+        is_quoted ^= c == '"';
+        c == '\n' && !is_quoted
+    });
+    let placed = records.map(move |record| {
+        let start = next;
+        next += record.len() + 1;
+        match record.strip_prefix('\u{feff}') {
+            Some(rest) if start == 0 => (record.len() - rest.len(), rest),
+            _ => (start, record),
         }
-    }
-    text.len()
+    });
+    placed.map(|(start, record)| (start, record.trim_end_matches('\r'))).filter(|(_, it)| !it.is_empty())
 }
 
 /// What is wrong, and in which cell, from 0.
@@ -157,7 +156,7 @@ struct Wrong {
 
 /// The cells of a row, one after the other.
 struct Cells<'a> {
-    cells: &'a [&'a str],
+    cells: &'a [Cow<'a, str>],
     next: usize,
 }
 
@@ -171,7 +170,7 @@ impl<'a> Cells<'a> {
     }
 
     fn text(&mut self) -> std::result::Result<&'a str, Wrong> {
-        let cell = self.cells.get(self.next).copied();
+        let cell = self.cells.get(self.next).map(|cell| &**cell);
         self.next += 1;
         let message =
             || "found the end of the row, expected a cell for each column: calibrate again".to_owned();
@@ -185,8 +184,7 @@ impl<'a> Cells<'a> {
 
     fn number(&mut self) -> std::result::Result<f64, Wrong> {
         let number: f64 = self.parsed("a number")?;
-        let cell =
-            self.next.checked_sub(1).and_then(|last| self.cells.get(last)).copied().unwrap_or_default();
+        let cell = self.next.checked_sub(1).and_then(|last| self.cells.get(last)).map_or("", |cell| cell);
         if number.is_finite() { Ok(number) } else { Err(self.wrong(cell, "a finite number")) }
     }
 

@@ -1,4 +1,6 @@
-//! Plots that need no script.
+//! Plots that need no script. They are markup already, in which the plots' own writer has escaped every text.
+
+use maud::{Markup, PreEscaped};
 
 use crate::io::calibration_file::{CalibrationFile, KindWord};
 use crate::io::residuals::{ResidualRow, Residuals};
@@ -11,7 +13,7 @@ const STEPS: usize = 20;
 const INTERVAL: f64 = 2.0;
 
 /// Which share of the rows is off by how much, for the three models.
-pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> String {
+pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
     let lines = ["nominal", "registered", "calibrated"].iter().enumerate().map(|(model, name)| {
         let rows = residuals.rows.iter().filter(|row| row.held_out == held_out);
         let errors = rows.map(|row| row.position_mm.models.get(model).copied().unwrap_or(f64::NAN)).collect();
@@ -26,11 +28,11 @@ pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> String {
         lines: lines.collect(),
         mark: None,
     };
-    plot.svg()
+    PreEscaped(plot.svg())
 }
 
 /// Errors of the calibrated model on fitted rows and on those held out.
-pub(super) fn sets(residuals: &Residuals) -> String {
+pub(super) fn sets(residuals: &Residuals) -> Markup {
     let of = |name: &str, style, held_out: bool| {
         let rows = residuals.rows.iter().filter(|row| row.held_out == held_out);
         let errors: Vec<f64> = rows.map(calibrated).collect();
@@ -45,7 +47,7 @@ pub(super) fn sets(residuals: &Residuals) -> String {
         lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
         mark: None,
     };
-    plot.svg()
+    PreEscaped(plot.svg())
 }
 
 fn calibrated(row: &ResidualRow) -> f64 {
@@ -65,7 +67,7 @@ fn distribution(mut errors: Vec<f64>) -> Vec<[f64; 2]> {
 }
 
 /// Corrections of the joints with intervals: tilts, and shifts of those that turn.
-pub(super) fn corrections(file: &CalibrationFile) -> Vec<String> {
+pub(super) fn corrections(file: &CalibrationFile) -> Vec<Markup> {
     let row = |label: &str, value: f64, sigma: Option<f64>| RangeRow {
         label: label.to_owned(),
         line: sigma.map(|sigma| [(value - INTERVAL * sigma).max(0.0), value + INTERVAL * sigma]),
@@ -79,7 +81,7 @@ pub(super) fn corrections(file: &CalibrationFile) -> Vec<String> {
             x: Axis::new(axis, Scale::Linear).including(&[0.0]),
             rows,
         };
-        plot.svg()
+        PreEscaped(plot.svg())
     };
     let tilts = file.corrections.iter().map(|it| row(&it.joint, it.tilt_deg, it.sigma_tilt_deg));
     let shifts =
@@ -94,7 +96,7 @@ pub(super) fn corrections(file: &CalibrationFile) -> Vec<String> {
 }
 
 /// What was sampled of each joint's range: those that turn, and those that slide.
-pub(super) fn coverage(file: &CalibrationFile) -> Vec<String> {
+pub(super) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
     let kinds = [
         (KindWord::Revolute, "Joints that turn", "degrees", 1f64.to_degrees()),
         (KindWord::Prismatic, "Joints that slide", "mm", 1e3),
@@ -117,13 +119,13 @@ pub(super) fn coverage(file: &CalibrationFile) -> Vec<String> {
             x: Axis::new(unit, Scale::Linear),
             rows,
         };
-        (!plot.rows.is_empty()).then(|| plot.svg())
+        (!plot.rows.is_empty()).then(|| PreEscaped(plot.svg()))
     });
     plots.collect()
 }
 
 /// How the fit went down.
-pub(super) fn convergence(file: &CalibrationFile) -> String {
+pub(super) fn convergence(file: &CalibrationFile) -> Markup {
     let points = file.solver.trace.iter().enumerate().map(|(step, &value)| [step as f64, value]);
     let plot = LinePlot {
         title: "How the fit converged".to_owned(),
@@ -135,5 +137,5 @@ pub(super) fn convergence(file: &CalibrationFile) -> String {
         lines: vec![Line { name: "fit".to_owned(), style: 0, points: points.collect() }],
         mark: None,
     };
-    plot.svg()
+    PreEscaped(plot.svg())
 }

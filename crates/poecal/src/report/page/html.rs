@@ -1,178 +1,150 @@
-//! The page as text: every name that comes from a file is escaped, and every figure names the key of `calibration.json` that it is.
+//! What the page is made of: figures, each with the key of `calibration.json` that it is, tables, pictures. maud escapes every text.
 
-use std::fmt::Write as _;
+use maud::{Markup, PreEscaped, Render, html};
 
-use crate::report::fixed::Fixed;
-use crate::report::plot::escape;
 use crate::report::table::number;
 
 /// A figure as people read it, with the place in `calibration.json` that it comes from.
-pub(super) fn figure(value: f64, key: &str) -> String {
+pub(super) fn figure(value: f64, key: impl Render) -> Markup {
     scaled(value, key, 1.0)
 }
 
 /// A figure that the file holds in another unit: what is shown is `factor` times what the file says.
-pub(super) fn scaled(value: f64, key: &str, factor: f64) -> String {
+pub(super) fn scaled(value: f64, key: impl Render, factor: f64) -> Markup {
     let shown = value * factor;
     let sign = if shown < 0.0 { "−" } else { "" };
-    let text = if shown.is_finite() { format!("{sign}{}", number(shown.abs())) } else { "–".to_owned() };
-    let scale = if factor == 1.0 { String::new() } else { format!(" data-factor=\"{factor}\"") };
-    format!("<span data-key=\"{}\"{scale}>{text}</span>", escape(key))
+    let scale = (factor != 1.0).then_some(factor);
+    html! {
+        span data-key=(key) data-factor=[scale] {
+            @if shown.is_finite() { (sign) (number(shown.abs())) } @else { "–" }
+        }
+    }
+}
+
+/// A figure, or these words where there is none.
+pub(super) fn figure_or(value: Option<f64>, key: impl Render, words: &str) -> Markup {
+    value.map_or_else(|| words.render(), |value| figure(value, key))
 }
 
 /// A whole number from `calibration.json`.
-pub(super) fn count(value: usize, key: &str) -> String {
-    format!("<span data-key=\"{}\">{value}</span>", escape(key))
+pub(super) fn count(value: usize, key: impl Render) -> Markup {
+    html! { span data-key=(key) { (value) } }
 }
 
 /// Text from `calibration.json`, as it stands there; words between backticks are code.
-pub(super) fn quoted(text: &str, key: &str) -> String {
-    let pieces = text.split('`').map(escape).enumerate();
-    let pieces: String =
-        pieces.map(|(k, piece)| if k % 2 == 1 { format!("<code>{piece}</code>") } else { piece }).collect();
-    format!("<span data-key=\"{}\">{pieces}</span>", escape(key))
+pub(super) fn quoted(text: &str, key: impl Render) -> Markup {
+    html! {
+        span data-key=(key) {
+            @for (k, piece) in text.split('`').enumerate() {
+                @if k % 2 == 1 { code { (piece) } } @else { (piece) }
+            }
+        }
+    }
 }
 
 /// A path from `calibration.json`, which may be broken after its folders.
-pub(super) fn path(text: &str, key: &str) -> String {
-    let pieces: Vec<String> = text.split_inclusive(['/', '\\']).map(escape).collect();
-    format!("<span data-key=\"{}\">{}</span>", escape(key), pieces.join("<wbr>"))
+pub(super) fn path(text: &str, key: impl Render) -> Markup {
+    let mut folders: Vec<&str> = text.split_inclusive(['/', '\\']).collect();
+    let name = folders.pop().unwrap_or_default();
+    html! { span data-key=(key) { @for folder in folders { (folder) wbr; } (name) } }
 }
 
 /// A value with decimals and a true minus; what rounds to zero has none.
 pub(super) fn decimal(value: f64, decimals: usize) -> String {
-    let text = Fixed(value, decimals).to_string();
+    let text = format!("{value:.decimals$}");
     if text.trim_matches(['-', '0', '.']).is_empty() {
         return text.trim_start_matches('-').to_owned();
     }
     text.replace('-', "−")
 }
 
-/// A table. Cells are HTML.
+/// A table.
 pub(super) struct Table {
-    pub(super) caption: String,
-    pub(super) head: Vec<String>,
-    pub(super) rows: Vec<Vec<String>>,
+    caption: String,
+    head: Markup,
+    rows: String,
     /// How many columns, from the left, hold words; the others hold numbers.
-    pub(super) words: usize,
+    words: usize,
 }
 
 impl Table {
     pub(super) fn new(caption: &str, words: usize, head: &[&str]) -> Self {
-        let head = head.iter().map(|name| escape(name)).collect();
-        Table { caption: escape(caption), head, rows: Vec::new(), words }
+        let mut table =
+            Table { caption: caption.to_owned(), head: Markup::default(), rows: String::new(), words };
+        table.head = html! { tr { @for (k, name) in head.iter().enumerate() { th scope="col" class=(table.class(k)) { (name) } } } };
+        table
     }
 
-    fn html(&self) -> String {
-        // The box scrolls on narrow screens, and is reached by the keyboard.
-        let caption = &self.caption;
-        let mut out = format!(
-            "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{caption}\"><table>\n<caption>{caption}</caption>\n<thead><tr>"
-        );
-        let class = |k: usize| if k < self.words { " class=\"word\"" } else { " class=\"number\"" };
-        // Writing to a String cannot fail.
-        for (k, name) in self.head.iter().enumerate() {
-            let _ = write!(out, "<th scope=\"col\"{}>{name}</th>", class(k));
-        }
-        out.push_str("</tr></thead>\n<tbody>\n");
-        for cells in &self.rows {
-            out.push_str("<tr>");
-            for (k, cell) in cells.iter().enumerate() {
-                let _ = match k {
-                    0 => write!(out, "<th scope=\"row\">{cell}</th>"),
-                    _ if cell.starts_with("<td") => write!(out, "{cell}"),
-                    _ => write!(out, "<td{}>{cell}</td>", class(k)),
-                };
+    fn class(&self, column: usize) -> &'static str {
+        if column < self.words { "word" } else { "number" }
+    }
+
+    /// A row of cells of several kinds.
+    pub(super) fn row(&mut self, cells: &[&dyn Render]) {
+        self.cells(cells);
+    }
+
+    /// A row of cells of one kind.
+    pub(super) fn cells(&mut self, cells: impl IntoIterator<Item = impl Render>) {
+        let row = html! {
+            tr {
+                @for (k, cell) in cells.into_iter().enumerate() {
+                    @if k == 0 { th scope="row" { (cell) } } @else { td class=(self.class(k)) { (cell) } }
+                }
             }
-            out.push_str("</tr>\n");
-        }
-        out.push_str("</tbody></table></div>\n");
-        out
+        };
+        self.marked(&row);
+    }
+
+    /// A row of cells that are marked up already.
+    pub(super) fn marked(&mut self, row: &Markup) {
+        row.render_to(&mut self.rows);
+        self.rows.push('\n');
     }
 }
 
-/// A page in the making.
-pub(super) struct Html {
-    out: String,
+impl Render for Table {
+    fn render(&self) -> Markup {
+        // The box scrolls on narrow screens, and is reached by the keyboard.
+        html! {
+            div.scroll tabindex="0" role="region" aria-label=(self.caption) {
+                table {
+                    caption { (self.caption) }
+                    thead { (self.head) }
+                    tbody { (PreEscaped(&self.rows)) }
+                }
+            }
+        }
+    }
 }
 
-impl Html {
-    pub(super) fn new() -> Self {
-        // Room for most pages without moving.
-        Html { out: String::with_capacity(100_000) }
-    }
+/// A section with its heading.
+pub(super) fn section(id: &str, title: &str, content: &Markup) -> Markup {
+    let title_id = format!("{id}-title");
+    html! { section id=(id) aria-labelledby=(title_id) { h2 id=(title_id) { (title) } (content) } "\n" }
+}
 
-    /// HTML as it stands.
-    pub(super) fn raw(&mut self, html: &str) {
-        self.out.push_str(html);
-        self.out.push('\n');
-    }
+/// A list; nothing if it has no items.
+pub(super) fn list(items: &[Markup]) -> Markup {
+    html! { @if !items.is_empty() { ul { @for item in items { li { (item) } } } } }
+}
 
-    /// Begins a section with its heading.
-    pub(super) fn section(&mut self, id: &str, title: &str) {
-        self.raw(&format!(
-            "<section id=\"{id}\" aria-labelledby=\"{id}-title\">\n<h2 id=\"{id}-title\">{title}</h2>"
-        ));
-    }
+/// Names with what they are.
+pub(super) fn facts(facts: &[(&str, Markup)]) -> Markup {
+    html! { dl.facts { @for (name, fact) in facts { div { dt { (name) } dd { (fact) } } } } }
+}
 
-    pub(super) fn end_section(&mut self) {
-        self.raw("</section>");
-    }
+/// A table that is opened on demand, and printed in any case.
+pub(super) fn folded(summary: &str, table: &Table) -> Markup {
+    html! { details { summary { (summary) } (table) } }
+}
 
-    pub(super) fn heading(&mut self, title: &str) {
-        self.raw(&format!("<h3>{title}</h3>"));
-    }
+/// Plots side by side, with a caption.
+pub(super) fn plots(plots: &[Markup], caption: impl Render) -> Markup {
+    html! { figure { div.plots { @for plot in plots { (plot) } } figcaption { (caption) } } }
+}
 
-    /// A paragraph of HTML.
-    pub(super) fn text(&mut self, html: &str) {
-        self.raw(&format!("<p>{html}</p>"));
-    }
-
-    pub(super) fn note(&mut self, html: &str) {
-        self.raw(&format!("<p class=\"note\">{html}</p>"));
-    }
-
-    /// A list of HTML items; nothing if there are none.
-    pub(super) fn list(&mut self, items: &[String]) {
-        if items.is_empty() {
-            return;
-        }
-        let items: Vec<String> = items.iter().map(|item| format!("<li>{item}</li>")).collect();
-        self.raw(&format!("<ul>\n{}\n</ul>", items.join("\n")));
-    }
-
-    /// Names with what they are.
-    pub(super) fn facts(&mut self, facts: &[(&str, String)]) {
-        let facts: Vec<String> =
-            facts.iter().map(|(name, html)| format!("<div><dt>{name}</dt><dd>{html}</dd></div>")).collect();
-        self.raw(&format!("<dl class=\"facts\">\n{}\n</dl>", facts.join("\n")));
-    }
-
-    pub(super) fn table(&mut self, table: &Table) {
-        self.out.push_str(&table.html());
-    }
-
-    /// A table that is opened on demand, and printed in any case.
-    pub(super) fn folded_table(&mut self, summary: &str, table: &Table) {
-        self.raw(&format!("<details>\n<summary>{}</summary>\n{}</details>", escape(summary), table.html()));
-    }
-
-    /// Plots side by side, with a caption.
-    pub(super) fn plots(&mut self, plots: &[String], caption: &str) {
-        let plots = plots.concat();
-        self.raw(&format!(
-            "<figure>\n<div class=\"plots\">\n{plots}</div>\n<figcaption>{caption}</figcaption>\n</figure>"
-        ));
-    }
-
-    /// A place that the script fills with a chart.
-    pub(super) fn chart(&mut self, name: &str, title: &str, caption: &str) {
-        self.raw(&format!(
-            "<figure class=\"chart\" data-chart=\"{name}\">\n<h3>{title}</h3>\n<div class=\"drawing\"></div>\n<figcaption>{caption}</figcaption>\n</figure>"
-        ));
-    }
-
-    pub(super) fn finish(self) -> String {
-        self.out
-    }
+/// A place that the script fills with a chart.
+pub(super) fn chart(name: &str, title: &str, caption: &str) -> Markup {
+    html! { figure.chart data-chart=(name) { h3 { (title) } div.drawing {} figcaption { (caption) } } }
 }

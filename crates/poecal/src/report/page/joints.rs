@@ -1,21 +1,16 @@
 //! The robot: its axes in three dimensions, and what was corrected at each joint.
 
-use super::figures;
-use super::html::{Html, Table, decimal, figure, quoted, scaled};
-use crate::io::calibration_file::{CalibrationFile, KindWord};
+use maud::{Markup, html};
 
-pub(super) fn sections(page: &mut Html, file: &CalibrationFile) {
-    view(page, file);
-    corrections(page, file);
+use super::figures;
+use super::html::{Table, decimal, figure, figure_or, folded, plots, quoted, section};
+use crate::io::calibration_file::{CalibrationFile, JointEntry, KindWord, ScrewEntry};
+
+pub(super) fn sections(file: &CalibrationFile) -> Markup {
+    html! { (view(file)) (corrections(file)) }
 }
 
-fn view(page: &mut Html, file: &CalibrationFile) {
-    page.section("view", "In 3D");
-    page.text(
-        "The arm as lines along its joints' axes: nominal in grey, calibrated in colour. Arrows go from where the calibrated model says \
-         that a target is to where it was measured.",
-    );
-    page.raw("<div id=\"arm\" class=\"arm\"></div>\n<noscript><p class=\"note\">The picture needs JavaScript. All figures are in the tables.</p></noscript>");
+fn view(file: &CalibrationFile) -> Markup {
     let head = ["joint", "kind", "model", "x", "y", "z", "through x, mm", "y, mm", "z, mm"];
     let mut table = Table::new(
         "Axes in the base frame with all joints at zero: direction, and the point nearest to the base",
@@ -23,27 +18,29 @@ fn view(page: &mut Html, file: &CalibrationFile) {
         &head,
     );
     for (k, joint) in file.joints.iter().enumerate() {
-        for (model, screw, key) in
-            [("nominal", &joint.nominal_screw, "nominal_screw"), ("calibrated", &joint.screw, "screw")]
-        {
-            let key = format!("joints.{k}.{key}");
-            let turns = joint.kind == KindWord::Revolute;
-            let (direction, part) = if turns { (screw.w, "w") } else { (screw.v_m, "v_m") };
-            let mut cells = vec![
-                quoted(&joint.name, &format!("joints.{k}.name")),
-                kind_words(joint.kind).to_owned(),
-                model.to_owned(),
-            ];
-            cells.extend((0..3).map(|i| figure(direction[i], &format!("{key}.{part}.{i}"))));
-            let point = turns.then(|| cross(screw.w, screw.v_m));
-            cells.extend(
-                (0..3).map(|i| point.map_or_else(|| "–".to_owned(), |point| decimal(1e3 * point[i], 3))),
-            );
-            table.rows.push(cells);
-        }
+        axis(&mut table, (k, joint), ("nominal", &joint.nominal_screw, "nominal_screw"));
+        axis(&mut table, (k, joint), ("calibrated", &joint.screw, "screw"));
     }
-    page.folded_table("The axes as numbers", &table);
-    page.end_section();
+    let content = html! {
+        p {
+            "The arm as lines along its joints' axes: nominal in grey, calibrated in colour. Arrows go from where the calibrated model says \
+             that a target is to where it was measured."
+        }
+        div #arm.arm {}
+        noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
+        (folded("The axes as numbers", &table))
+    };
+    section("view", "In 3D", &content)
+}
+
+/// A joint's axis in one of the models.
+fn axis(table: &mut Table, (k, joint): (usize, &JointEntry), (model, screw, key): (&str, &ScrewEntry, &str)) {
+    let turns = joint.kind == KindWord::Revolute;
+    let (direction, part) = if turns { (screw.w, "w") } else { (screw.v_m, "v_m") };
+    let [x, y, z] = [0, 1, 2].map(|i| figure(direction[i], format_args!("joints.{k}.{key}.{part}.{i}")));
+    let point = cross(screw.w, screw.v_m).map(|it| if turns { decimal(1e3 * it, 3) } else { "–".to_owned() });
+    let name = quoted(&joint.name, format_args!("joints.{k}.name"));
+    table.row(&[&name, &kind_words(joint.kind), &model, &x, &y, &z, &point[0], &point[1], &point[2]]);
 }
 
 fn kind_words(kind: KindWord) -> &'static str {
@@ -58,64 +55,66 @@ fn cross(w: [f64; 3], v: [f64; 3]) -> [f64; 3] {
     [w[1] * v[2] - w[2] * v[1], w[2] * v[0] - w[0] * v[2], w[0] * v[1] - w[1] * v[0]]
 }
 
-fn corrections(page: &mut Html, file: &CalibrationFile) {
-    page.section("joints", "Joints");
-    page.text(
-        "By how much each axis was found off its nominal place, how well that is known, and what it is worth: the error that would remain \
-         if this axis alone stayed nominal, tool and device found anew.",
-    );
-    page.plots(&figures::corrections(file), "Dots: what was found. Lines: two standard deviations to each side; none where the data do not tell it.");
+fn corrections(file: &CalibrationFile) -> Markup {
     let head = ["joint", "tilt, °", "± (1 σ)", "shift, mm", "± (1 σ)", "left nominal, mm (RMS)"];
     let mut table = Table::new("Corrections of the joints", 1, &head);
     for (k, found) in file.corrections.iter().enumerate() {
-        let key = |name: &str| format!("corrections.{k}.{name}");
         let slides =
             file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == KindWord::Prismatic);
-        let sigma = |value: Option<f64>, name: &str| {
-            value.map_or_else(|| "not told by the data".to_owned(), |value| figure(value, &key(name)))
+        let figure =
+            |value, name| figure_or(value, format_args!("corrections.{k}.{name}"), "not told by the data");
+        let shift = |value, name| {
+            if slides {
+                html! { "–" }
+            } else {
+                figure(value, name)
+            }
         };
-        let (shift, sigma_shift) = if slides {
-            ("–".to_owned(), "–".to_owned())
-        } else {
-            (figure(found.shift_mm, &key("shift_mm")), sigma(found.sigma_shift_mm, "sigma_shift_mm"))
-        };
-        table.rows.push(vec![
-            quoted(&found.joint, &key("joint")),
-            figure(found.tilt_deg, &key("tilt_deg")),
-            sigma(found.sigma_tilt_deg, "sigma_tilt_deg"),
-            shift,
-            sigma_shift,
-            figure(found.left_nominal_rms_mm, &key("left_nominal_rms_mm")),
+        table.row(&[
+            &quoted(&found.joint, format_args!("corrections.{k}.joint")),
+            &figure(Some(found.tilt_deg), "tilt_deg"),
+            &figure(found.sigma_tilt_deg, "sigma_tilt_deg"),
+            &shift(Some(found.shift_mm), "shift_mm"),
+            &shift(found.sigma_shift_mm, "sigma_shift_mm"),
+            &figure(Some(found.left_nominal_rms_mm), "left_nominal_rms_mm"),
         ]);
     }
-    page.table(&table);
-    for (k, found) in file.corrections.iter().enumerate() {
-        if let Some(words) = &found.suspicious {
-            let name = quoted(&found.joint, &format!("corrections.{k}.joint"));
-            let words = quoted(words, &format!("corrections.{k}.suspicious"));
-            page.text(&format!("<strong>Suspicious: {name}.</strong> {words}."));
+    let content = html! {
+        p {
+            "By how much each axis was found off its nominal place, how well that is known, and what it is worth: the error that would \
+             remain if this axis alone stayed nominal, tool and device found anew."
         }
-    }
-    offsets(page, file);
-    page.end_section();
+        (plots(&figures::corrections(file), "Dots: what was found. Lines: two standard deviations to each side; none where the data do not tell it."))
+        (table)
+        @for (k, found) in file.corrections.iter().enumerate() {
+            @if let Some(words) = &found.suspicious {
+                p {
+                    strong { "Suspicious: " (quoted(&found.joint, format_args!("corrections.{k}.joint"))) "." } " "
+                    (quoted(words, format_args!("corrections.{k}.suspicious"))) "."
+                }
+            }
+        }
+        (offsets(file))
+    };
+    section("joints", "Joints", &content)
 }
 
 /// Joint offsets, where the formulation has them.
-fn offsets(page: &mut Html, file: &CalibrationFile) {
-    let Some(offsets) = &file.solver.joint_offsets else { return };
+fn offsets(file: &CalibrationFile) -> Markup {
+    let Some(offsets) = &file.solver.joint_offsets else { return Markup::default() };
     let mut table = Table::new(
         "Joint offsets of this formulation; in the calibrated model they stand moved into the axes",
         1,
         &["joint", "offset"],
     );
     for (k, offset) in offsets.iter().enumerate() {
-        let key = |name: &str| format!("solver.joint_offsets.{k}.{name}");
+        let figure = |value, name| figure(value, format_args!("solver.joint_offsets.{k}.{name}"));
         let words = match (offset.offset_deg, offset.offset_mm) {
-            (Some(value), _) => format!("{}°", scaled(value, &key("offset_deg"), 1.0)),
-            (None, Some(value)) => format!("{} mm", scaled(value, &key("offset_mm"), 1.0)),
-            (None, None) => String::new(),
+            (Some(value), _) => html! { (figure(value, "offset_deg")) "°" },
+            (None, Some(value)) => html! { (figure(value, "offset_mm")) " mm" },
+            (None, None) => Markup::default(),
         };
-        table.rows.push(vec![quoted(&offset.joint, &key("joint")), words]);
+        table.row(&[&quoted(&offset.joint, format_args!("solver.joint_offsets.{k}.joint")), &words]);
     }
-    page.table(&table);
+    html! { (table) }
 }

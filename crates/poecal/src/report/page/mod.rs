@@ -9,14 +9,15 @@ mod method;
 mod rows;
 mod trust;
 
+use maud::{DOCTYPE, PreEscaped, html};
+
 use crate::calibration::Statistic;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::output::Page;
 use crate::io::residuals::Residuals;
-use crate::report::plot::escape;
 use crate::robot::JointKind;
-use html::Html;
+use crate::text::visible_markup;
 
 /// Style and script, built from `web/` by `npm run build`.
 const STYLE: &str = include_str!("assets/report.css");
@@ -48,26 +49,33 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result<Page> {
     check(file, residuals)?;
     let data = data::json(file, residuals)?;
-    let title = escape(&format!("Calibration of {}", file.robot.name));
-    let mut body = Html::new();
-    first::screen(&mut body, file, residuals);
-    joints::sections(&mut body, file);
-    rows::sections(&mut body, file, residuals);
-    trust::sections(&mut body, file);
-    method::sections(&mut body, file);
-    let head = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n\
-         <meta name=\"generator\" content=\"poecal {}\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <a class=\"skip\" href=\"#main\">Skip to the verdict</a>\n<main id=\"main\">\n",
-        escape(&file.poecal_version)
-    );
+    let head = html! {
+        (DOCTYPE) "\n" (PreEscaped("<html lang=\"en\">")) "\n"
+        head {
+            meta charset="utf-8";
+            meta http-equiv="Content-Security-Policy" content=(POLICY);
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            meta name="color-scheme" content="light dark";
+            meta name="generator" content={ "poecal " (file.poecal_version) };
+            title { "Calibration of " (file.robot.name) }
+            style { (PreEscaped(STYLE)) }
+        }
+        "\n" (PreEscaped("<body>")) "\n"
+    };
+    let body = html! {
+        a.skip href="#main" { "Skip to the verdict" }
+        main #main {
+            (first::screen(file, residuals))
+            (joints::sections(file))
+            (rows::sections(file, residuals))
+            (trust::sections(file))
+            (method::sections(file))
+        }
+    };
     Ok(vec![
-        head.into(),
-        body.finish().into(),
-        "</main>\n<script type=\"application/json\" id=\"report-data\">".into(),
+        visible_markup(head).into(),
+        visible_markup(body).into(),
+        "\n<script type=\"application/json\" id=\"report-data\">".into(),
         data.into(),
         "</script>\n<script>\n".into(),
         SCRIPT.into(),

@@ -16,7 +16,6 @@ pub use axis::{Axis, Scale};
 pub use dots::{DotPlot, Dots};
 pub use line::{Line, LinePlot};
 pub use ranges::{RangePlot, RangeRow};
-pub use svg::escape;
 
 /// A plot and the name of its file, without the extension.
 pub struct NamedPlot {

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use crate::report::fixed::Fixed;
-use crate::text::visible;
+use maud::Render;
+
+use crate::text::visible_markup;
 
 /// A series' colour (Okabe and Ito's, which colour-blind people tell apart), dash and marker.
 struct Style {
@@ -35,27 +36,6 @@ pub(super) enum Anchor {
     End,
 }
 
-/// Text for an element or an attribute: nothing in it is markup.
-pub fn escape(text: &str) -> String {
-    if text.bytes().all(|byte| matches!(byte, b' '..=b'~') && !br#"&<>"'"#.contains(&byte)) {
-        return text.to_owned();
-    }
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            '\n' | '\t' | '\r' => out.push(' '),
-            // XML has no place for control characters, not even escaped, and marks of direction would reorder what stands beside them.
-            c => out.push_str(&visible(c.encode_utf8(&mut [0; 4]))),
-        }
-    }
-    out
-}
-
 /// Width of text at 12 px, estimated from above for common sans-serif fonts.
 pub(super) fn text_width(text: &str) -> f64 {
     6.7 * text.chars().count() as f64
@@ -76,14 +56,9 @@ pub(super) fn wrapped(text: &str, width: f64) -> Vec<String> {
     lines
 }
 
-/// A coordinate.
-fn px(value: f64) -> Fixed {
-    Fixed(value, 2)
-}
-
 /// Points of a line.
 fn joined(points: &[[f64; 2]]) -> String {
-    let points: Vec<String> = points.iter().map(|&[x, y]| format!("{},{}", px(x), px(y))).collect();
+    let points: Vec<String> = points.iter().map(|&[x, y]| format!("{x:.2},{y:.2}")).collect();
     points.join(" ")
 }
 
@@ -122,9 +97,9 @@ impl Canvas {
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let (text, x, y) = (escape(text), px(x), px(y));
+        let text = text.render().into_string();
         self.put(format_args!(
-            r##"<text class="{class}" x="{x}" y="{y}" text-anchor="{anchor}" fill="#1f2933"{style}>{text}</text>"##
+            r##"<text class="{class}" x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" fill="#1f2933"{style}>{text}</text>"##
         ));
     }
 
@@ -148,9 +123,8 @@ impl Canvas {
         [to_x, to_y]: [f64; 2],
         dash: &str,
     ) {
-        let [x, y, to_x, to_y] = [x, y, to_x, to_y].map(px);
         self.put(format_args!(
-            r#"<line class="{class}" x1="{x}" y1="{y}" x2="{to_x}" y2="{to_y}" stroke="{colour}"{dash}/>"#
+            r#"<line class="{class}" x1="{x:.2}" y1="{y:.2}" x2="{to_x:.2}" y2="{to_y:.2}" stroke="{colour}"{dash}/>"#
         ));
     }
 
@@ -180,9 +154,8 @@ impl Canvas {
     /// A filled box from one corner to the other.
     pub(super) fn bar(&mut self, [left, top]: [f64; 2], [right, bottom]: [f64; 2]) {
         let (left, width, height) = (left.min(right), (right - left).abs().max(1.0), bottom - top);
-        let [left, top, width, height] = [left, top, width, height].map(px);
         self.put(format_args!(
-            r#"<rect x="{left}" y="{top}" width="{width}" height="{height}" stroke="none"/>"#
+            r#"<rect x="{left:.2}" y="{top:.2}" width="{width:.2}" height="{height:.2}" stroke="none"/>"#
         ));
     }
 
@@ -191,13 +164,12 @@ impl Canvas {
         let hollow = if filled { "" } else { r##" class="hollow" fill="#ffffff""## };
         match STYLES[style % STYLES.len()].marker {
             Marker::Circle => {
-                let [x, y, radius] = [x, y, radius].map(px);
-                self.put(format_args!(r#"<circle cx="{x}" cy="{y}" r="{radius}"{hollow}/>"#));
+                self.put(format_args!(r#"<circle cx="{x:.2}" cy="{y:.2}" r="{radius:.2}"{hollow}/>"#));
             }
             Marker::Square => {
-                let [left, top, side] = [x - 0.9 * radius, y - 0.9 * radius, 1.8 * radius].map(px);
+                let [left, top, side] = [x - 0.9 * radius, y - 0.9 * radius, 1.8 * radius];
                 self.put(format_args!(
-                    r#"<rect x="{left}" y="{top}" width="{side}" height="{side}"{hollow}/>"#
+                    r#"<rect x="{left:.2}" y="{top:.2}" width="{side:.2}" height="{side:.2}"{hollow}/>"#
                 ));
             }
             Marker::Triangle => {
@@ -222,15 +194,16 @@ impl Canvas {
 
     /// The whole picture of this size.
     pub(super) fn finish(self, width: f64, height: f64, title: &str, description: &str) -> String {
-        let (title, description, body) = (escape(title), escape(description), self.body);
-        format!(
+        let [title, description] = [title, description].map(|text| text.render().into_string());
+        let body = self.body;
+        visible_markup(format!(
             r##"<svg xmlns="http://www.w3.org/2000/svg" class="plot" role="img" viewBox="0 0 {width:.0} {height:.0}" width="{width:.0}" height="{height:.0}" font-family="system-ui, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif" font-size="12">
 <title>{title}</title>
 <desc>{description}</desc>
 <rect class="paper" width="{width:.0}" height="{height:.0}" fill="#ffffff"/>
 {body}</svg>
 "##
-        )
+        ))
     }
 }
 

@@ -63,17 +63,21 @@ pub fn unsaid(file: &CalibrationFile, detail: Detail) -> Vec<String> {
     rest.iter().filter(is_warning).map(|point| point.text.clone()).collect()
 }
 
-/// What the verdict says of the error, in plain words; nothing where no use is advised or nothing is known.
-pub(super) fn expected_words(file: &CalibrationFile, figure: impl Fn(f64, &str) -> String) -> Option<String> {
+/// The error that the verdict tells to expect, its key and where it holds; nothing where no use is advised or nothing is known.
+pub(super) fn expected(file: &CalibrationFile) -> Option<(f64, &'static str, &'static str)> {
     let level = file.verdict.as_ref()?.level;
     let expected = file.uncertainty.as_ref()?;
-    let (sigma, key, place) = match level {
-        Level::DoNotUse => return None,
-        Level::InsideSampledRange => (expected.measured.sigma_position_mm, "measured", "there"),
-        Level::Good => (expected.range.sigma_position_mm, "range", "anywhere within the limits"),
-    };
-    let key = format!("uncertainty.{key}.sigma_position_mm");
-    Some(format!("expected error {} mm (RMS) {place}", figure(sigma, &key)))
+    match level {
+        Level::DoNotUse => None,
+        Level::InsideSampledRange => {
+            Some((expected.measured.sigma_position_mm, "uncertainty.measured.sigma_position_mm", "there"))
+        }
+        Level::Good => Some((
+            expected.range.sigma_position_mm,
+            "uncertainty.range.sigma_position_mm",
+            "anywhere within the limits",
+        )),
+    }
 }
 
 fn verdict(out: &mut String, file: &CalibrationFile) {
@@ -83,9 +87,10 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
     };
     let level = verdict.level.words();
     let reason = reasons(file).into_iter().next();
-    match (expected_words(file, |sigma, _| number(sigma)), reason) {
-        (Some(expected), reason) => {
-            line(out, "verdict", &format!("{level}: {expected}"));
+    match (expected(file), reason) {
+        (Some((sigma, _, place)), reason) => {
+            let sigma = number(sigma);
+            line(out, "verdict", &format!("{level}: expected error {sigma} mm (RMS) {place}"));
             reason.into_iter().for_each(|reason| line(out, "", &reason));
         }
         (None, Some(reason)) => line(out, "verdict", &format!("{level}: {reason}")),
