@@ -1,7 +1,8 @@
 //! The steps of a calibration, each from what the ones before it found.
 
 use super::doubts::doubts;
-use super::fit::{self, Fitted, Task};
+use super::fit::{self, Task};
+use super::found::Fitted;
 use super::moves::{Doubtful, FramesApart, Looked, Moved, frames_apart, moved};
 use super::noise_doubts::noise_doubts;
 use super::result::{place_tip, stations};
