@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::Path;
 
 use poecal::io::model::Model;
 use poecal::simulate::{Kind, Simulation};
