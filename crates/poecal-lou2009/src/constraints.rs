@@ -78,21 +78,26 @@ impl LeastSquares for Watched<'_> {
         let (mut screws, mut miss) = (state.screws.clone(), state.miss);
         for (parameter, places) in self.0.layout().parameters() {
             let own: Vec<f64> = places.iter().map(|&(place, scale)| step[place] / scale).collect();
-            match (parameter, own.as_slice()) {
-                (Parameter::OtherScrew(free), &[vx, vy, vz, wx, wy, wz])
-                    if free.kind == JointKind::Revolute =>
-                {
-                    // In the axis frame: length and pitch are the same in every frame.
-                    let freed = Twist::new(Vector3::new(vx, vy, vz), Vector3::new(wx, wy, 1.0 + wz));
-                    miss = miss.or_larger(Miss::of(&freed));
+            match parameter {
+                Parameter::OtherScrew(free) => {
+                    if let (JointKind::Revolute, &[vx, vy, vz, wx, wy, wz]) = (free.kind, own.as_slice()) {
+                        // In the axis frame: length and pitch are the same in every frame.
+                        let freed = Twist::new(Vector3::new(vx, vy, vz), Vector3::new(wx, wy, 1.0 + wz));
+                        miss = miss.or_larger(Miss::of(&freed));
+                    }
                 }
-                (Parameter::ScrewAxis(axis), &[vx, vy, wx, wy]) => {
-                    let local = Twist::new(Vector3::new(vx, vy, 0.0), Vector3::new(wx, wy, 0.0));
-                    let eta = state.estimate.base_from_axis[axis.joint].transform(&local);
-                    screws[axis.joint] = Pose::exp(&eta).transform(&screws[axis.joint]);
-                    miss = miss.or_larger(Miss::of(&screws[axis.joint]));
+                Parameter::ScrewAxis(axis) => {
+                    if let &[vx, vy, wx, wy] = own.as_slice() {
+                        let local = Twist::new(Vector3::new(vx, vy, 0.0), Vector3::new(wx, wy, 0.0));
+                        let eta = state.estimate.base_from_axis[axis.joint].transform(&local);
+                        screws[axis.joint] = Pose::exp(&eta).transform(&screws[axis.joint]);
+                        miss = miss.or_larger(Miss::of(&screws[axis.joint]));
+                    }
                 }
-                _ => {}
+                Parameter::JointOffset(_)
+                | Parameter::TargetPlace(_)
+                | Parameter::TargetFrame(_)
+                | Parameter::DeviceFrame(_) => {}
             }
         }
         State { estimate: self.0.retract(&state.estimate, step), screws, miss }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use poecal::calibration::{CalibrationOptions, Stage, calibrate_with_progress, settle_sets};
 use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
-use poecal::measurement::{Dataset, Measurement};
+use poecal::measurement::Dataset;
 use poecal::robot::Tolerance;
 use poecal_lou2009::{Residual, formulated};
 use pyo3::prelude::*;
@@ -152,7 +152,7 @@ fn rows<'a>(
 }
 
 fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: Residual) -> PyResult<()> {
-    let poses = data.observations.iter().any(|row| matches!(row.measurement, Measurement::Pose(_)));
+    let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
     if residual == Residual::default() || poses {
         return Ok(());
     }

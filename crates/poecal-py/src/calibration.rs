@@ -165,7 +165,9 @@ impl Calibration {
         let written = py.detach(|| {
             let page = match &report {
                 ReportPlace::Among(false) => None,
-                _ => Some(report::calibration_page(file, residuals)?),
+                ReportPlace::Among(true) | ReportPlace::File(_) => {
+                    Some(report::calibration_page(file, residuals)?)
+                }
             };
             let results = Results { file: file.clone(), residuals: Rows::AtHand(residuals), report: page };
             output::write_robot(place, elsewhere, model, &robot, results)

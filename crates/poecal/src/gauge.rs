@@ -6,7 +6,6 @@ use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 use crate::estimate::Estimate;
 use crate::lie::{Pose, Screw, Twist, hat, rotation};
 use crate::linalg;
-use crate::parameters::Parameter;
 use crate::problem::Layout;
 use crate::robot::{Joint, JointKind, Robot};
 
@@ -143,7 +142,7 @@ fn motions(estimate: &Estimate, layout: &Layout, step: Vec<f64>) -> (Vec<Vector6
     let mut motions = vec![Vector6::zeros(); estimate.base_from_axis.len()];
     let mut rest = step;
     for (parameter, places) in layout.parameters() {
-        let Parameter::ScrewAxis(axis) = parameter else { continue };
+        let Some(axis) = parameter.screw_axis() else { continue };
         let own: Vec<f64> = places.iter().map(|&(place, scale)| rest[place] / scale).collect();
         let local = match axis.kind {
             JointKind::Revolute => {

@@ -12,7 +12,7 @@ use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
 use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
 use poecal::io::residuals::{Residuals, Rows};
-use poecal::measurement::{Dataset, Measurement};
+use poecal::measurement::Dataset;
 use poecal::report::Detail;
 use poecal::{Error, ErrorKind, Result, report};
 use poecal_lou2009::{Formulation, Residual, formulated};
@@ -32,7 +32,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let (data, inputs) = read_measurements(arguments, &model, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments);
-    let poses = data.observations.iter().any(|row| matches!(row.measurement, Measurement::Pose(_)));
+    let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
     let residual = Residual::from(arguments.residual);
     if residual != Residual::default() && !poses {
         console.warning(format!(

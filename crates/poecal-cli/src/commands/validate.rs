@@ -16,9 +16,8 @@ use crate::{DONE, WORSE};
 pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
     let file = CalibrationFile::read(&arguments.calibration)?;
-    let in_file = |error: poecal::Error| match error.kind() {
-        ErrorKind::Model => error.in_file(&arguments.calibration),
-        _ => error,
+    let in_file = |error: poecal::Error| {
+        if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
     };
     let calibrated = file.robot().map_err(in_file)?;
     // Every row counts, whatever set the files say.

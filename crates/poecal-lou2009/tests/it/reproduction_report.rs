@@ -232,7 +232,10 @@ fn keys(value: &serde_json::Value, found: &mut Vec<String>) {
             object.values().for_each(|value| keys(value, found));
         }
         serde_json::Value::Array(values) => values.iter().for_each(|value| keys(value, found)),
-        _ => {}
+        serde_json::Value::Null
+        | serde_json::Value::Bool(_)
+        | serde_json::Value::Number(_)
+        | serde_json::Value::String(_) => {}
     }
 }
 

@@ -8,7 +8,7 @@ use super::excitation::{Excitation, Turning};
 use super::setup::Setup;
 use super::spectrum::Spectrum;
 use super::subspace;
-use crate::parameters::{Parameter, Unit};
+use crate::parameters::{Parameter, TargetFrame, TargetPlace, Unit};
 use crate::robot::JointKind;
 
 /// A joint that moved by less than this (20°; of a slide this share of the length that a radian counts) moved by little.
@@ -279,12 +279,13 @@ impl Rules<'_> {
         let tool = turn * direction - seen;
         let mut shift = vec![0.0; self.setup.layout.dim()];
         for (parameter, places) in self.setup.layout.parameters() {
-            let (frame, by) = match (target_of(parameter), joint_of(parameter)) {
-                (Some(target), _) => (estimate.base_from_target[target].rotation, tool),
-                (None, Some(joint)) if matches!(parameter, Parameter::ScrewAxis(_)) => {
-                    (estimate.base_from_axis[joint].rotation, -seen)
+            let (frame, by) = match parameter {
+                Parameter::TargetPlace(TargetPlace { target })
+                | Parameter::TargetFrame(TargetFrame { target }) => {
+                    (estimate.base_from_target[*target].rotation, tool)
                 }
-                _ => continue,
+                Parameter::ScrewAxis(axis) => (estimate.base_from_axis[axis.joint].rotation, -seen),
+                Parameter::OtherScrew(_) | Parameter::JointOffset(_) | Parameter::DeviceFrame(_) => continue,
             };
             let columns = parameter.model().columns().iter().zip(places);
             let shifting = columns.filter(|(column, _)| column.unit == Unit::Metre);
@@ -356,17 +357,6 @@ pub(super) fn joint_of(parameter: &Parameter) -> Option<usize> {
         Parameter::OtherScrew(screw) => Some(screw.joint),
         Parameter::JointOffset(offset) => Some(offset.joint),
         Parameter::TargetPlace(_) | Parameter::TargetFrame(_) | Parameter::DeviceFrame(_) => None,
-    }
-}
-
-fn target_of(parameter: &Parameter) -> Option<usize> {
-    match parameter {
-        Parameter::TargetPlace(place) => Some(place.target),
-        Parameter::TargetFrame(frame) => Some(frame.target),
-        Parameter::ScrewAxis(_)
-        | Parameter::OtherScrew(_)
-        | Parameter::JointOffset(_)
-        | Parameter::DeviceFrame(_) => None,
     }
 }
 

@@ -131,7 +131,7 @@ impl Excitation {
         let unknowns = setup.layout.dim();
         let step = |joint: usize| match setup.robot.joints.get(joint).map(|joint| joint.kind) {
             Some(JointKind::Prismatic) => STILL_M,
-            _ => STILL_RAD,
+            Some(JointKind::Revolute) | None => STILL_RAD,
         };
         let (mut all, mut of_targets) = (BTreeSet::new(), BTreeSet::new());
         for &row in setup.rows {

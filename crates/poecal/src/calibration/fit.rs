@@ -3,6 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::found::{Fitted, Found, SolverReport};
 use super::noise::stated;
 use super::{
     CalibrationOptions, DeviceFrameKnowledge, Formulation, Minimum, NoiseSource, delivered, estimate_noise,
@@ -18,7 +19,7 @@ use crate::parameters::{DeviceFrame, Parameter, screw_axes};
 use crate::problem::{Layout, Prior, Problem};
 use crate::robot::Robot;
 use crate::simulate::random;
-use crate::solve::{LeastSquares, Normal, Options, Summary, Termination};
+use crate::solve::{LeastSquares, Normal, Options, Summary};
 use crate::start::target_parameters;
 
 /// Rows of the sample on which a fit of many rows begins: at least, for each unknown, and for the root of the number of rows, so
@@ -39,61 +40,6 @@ const SUSPICIOUS: f64 = 3e-3;
 /// Most times that noise and the weight of the prior are found anew. Two or three will do, but for data without noise: there each lowers
 /// what the prior leaves.
 const RENEWALS: usize = 12;
-
-/// How the minimisation went.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SolverReport {
-    /// Iterations of the full fit, re-weighted rounds included.
-    pub iterations: usize,
-    /// Why it ended.
-    pub termination: Termination,
-    /// Further starts that were tried.
-    pub restarts: usize,
-    /// Mean square whitened residual by iteration.
-    pub trace: Vec<f64>,
-    /// Joint offsets (radians or metres): joint value minus reading, where the formulation has offsets. They are not
-    /// identifiable beside the screws (lou2009 Proposition 1); the calibrated robot has them in its screws.
-    pub joint_offsets: Option<Vec<f64>>,
-}
-
-/// A fit under way.
-pub(super) struct Found {
-    pub(super) estimate: Estimate,
-    pub(super) normal: Normal,
-    pub(super) report: SolverReport,
-}
-
-impl Found {
-    /// What one minimisation found.
-    pub(super) fn new((estimate, normal, summary): (Estimate, Normal, Summary)) -> Self {
-        let report = SolverReport {
-            iterations: summary.iterations,
-            termination: summary.termination,
-            restarts: 0,
-            trace: summary.trace,
-            joint_offsets: None,
-        };
-        Found { estimate, normal, report }
-    }
-
-    /// What one more minimisation made of it.
-    pub(super) fn follow(&mut self, (estimate, normal, summary): (Estimate, Normal, Summary)) {
-        (self.estimate, self.normal) = (estimate, normal);
-        self.report.iterations += summary.iterations;
-        self.report.termination = summary.termination;
-        self.report.trace.extend(summary.trace);
-    }
-}
-
-/// A finished fit.
-pub(super) struct Fitted {
-    pub(super) estimate: Estimate,
-    pub(super) normal: Normal,
-    pub(super) layout: Layout,
-    pub(super) noise: Noise,
-    pub(super) noise_source: NoiseSource,
-    pub(super) report: SolverReport,
-}
 
 /// All screws and targets, and the device's frame but at the first place where it stood: what a fit frees where that one frame is settled.
 pub(super) fn free_parameters(

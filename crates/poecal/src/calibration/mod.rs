@@ -5,6 +5,7 @@ mod doubts;
 mod expectation;
 mod fit;
 mod formulation;
+mod found;
 mod judge;
 mod moves;
 mod noise;
@@ -23,8 +24,9 @@ mod verdict;
 
 pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
 pub use expectation::{Kept, KeptPart, Promise};
-pub use fit::{SolverReport, fit_screws};
+pub use fit::fit_screws;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
+pub use found::SolverReport;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
 pub use options::{CalibrationOptions, DeviceFrameKnowledge};

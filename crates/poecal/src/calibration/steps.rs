@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::doubts::doubts;
-use super::fit::{self, Fitted, Task};
+use super::fit::{self, Task};
+use super::found::Fitted;
 use super::moves::{Doubtful, FramesApart, Looked, Moved, frames_apart, moved};
 use super::noise_doubts::noise_doubts;
 use super::result::{place_tip, stations};

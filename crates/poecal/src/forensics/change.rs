@@ -62,20 +62,35 @@ impl Change {
                 readings[*column] = own * readings[*column] + factor * readings[*other];
             }
             Change::Add(column, offset) => readings[*column] += offset,
-            _ => {}
+            Change::Shift(..)
+            | Change::Resize(_)
+            | Change::Quaternion(_)
+            | Change::Invert
+            | Change::Transpose
+            | Change::Turn(_)
+            | Change::Mirror(..) => {}
         }
     }
 
     fn measurement(&self, row: usize, seen: &Measurement) -> Measurement {
-        if !seen.sees_orientation() {
-            let position = seen.pose().translation;
-            return point(match self {
-                Change::Resize(factor) => position * *factor,
-                Change::Mirror(mirror, _) => mirror * position,
-                _ => position,
-            });
-        }
-        let Pose { rotation: turned, translation } = seen.pose();
+        let Pose { rotation: turned, translation } = match *seen {
+            Measurement::Point(PointMeasurement { position }) => {
+                return point(match self {
+                    Change::Resize(factor) => position * *factor,
+                    Change::Mirror(mirror, _) => mirror * position,
+                    Change::Scale(..)
+                    | Change::Exchange(..)
+                    | Change::Combine { .. }
+                    | Change::Add(..)
+                    | Change::Shift(..)
+                    | Change::Quaternion(_)
+                    | Change::Invert
+                    | Change::Transpose
+                    | Change::Turn(_) => position,
+                });
+            }
+            Measurement::Pose(PoseMeasurement { pose }) => pose,
+        };
         frame(match self {
             Change::Resize(factor) => Pose::new(turned, translation * *factor),
             Change::Quaternion(places) => {
@@ -92,7 +107,11 @@ impl Change {
                 let turned = if *turns { mirror * turned * mirror } else { turned };
                 Pose::new(turned, mirror * translation)
             }
-            _ => seen.pose(),
+            Change::Scale(..)
+            | Change::Exchange(..)
+            | Change::Combine { .. }
+            | Change::Add(..)
+            | Change::Shift(..) => seen.pose(),
         })
     }
 }

@@ -142,7 +142,11 @@ fn setting(value: &Spanned<DeValue>) -> Option<SettingValue> {
     match value.get_ref() {
         DeValue::Boolean(on) => Some(SettingValue::Switch(*on)),
         DeValue::Array(items) => items.iter().map(plain).collect::<Option<_>>().map(SettingValue::Many),
-        _ => plain(value).map(SettingValue::One),
+        DeValue::String(_)
+        | DeValue::Integer(_)
+        | DeValue::Float(_)
+        | DeValue::Datetime(_)
+        | DeValue::Table(_) => plain(value).map(SettingValue::One),
     }
 }
 
@@ -152,7 +156,11 @@ fn plain(value: &Spanned<DeValue>) -> Option<String> {
         DeValue::String(text) => Some(text.to_string()),
         DeValue::Integer(number) if number.radix() == 10 => Some(number.as_str().to_owned()),
         DeValue::Float(number) => Some(number.as_str().to_owned()),
-        _ => None,
+        DeValue::Integer(_)
+        | DeValue::Boolean(_)
+        | DeValue::Datetime(_)
+        | DeValue::Array(_)
+        | DeValue::Table(_) => None,
     }
 }
 

@@ -48,9 +48,12 @@ pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
         }
         disk.open(path)
     };
-    let mut rest = opened.map_err(|cause| match cause.kind() {
-        io::ErrorKind::NotFound => error(format!("found no such file, expected {expected}: check the path")),
-        _ => unreadable(path, &cause, expected),
+    let mut rest = opened.map_err(|cause| {
+        if cause.kind() == io::ErrorKind::NotFound {
+            error(format!("found no such file, expected {expected}: check the path"))
+        } else {
+            unreadable(path, &cause, expected)
+        }
     })?;
     let mut head = Vec::new();
     rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(|cause| unreadable(path, &cause, expected))?;

@@ -102,7 +102,9 @@ macro_rules! dispatch {
                 // SAFETY: `is_here` has found AVX-512F, AVX2 and FMA, which is all that the function asks for.
                 #[cfg(target_arch = "x86_64")]
                 Level::Avx512 => unsafe { avx512($($argument),*) },
-                _ => $module::$name::<Two>($($argument),*),
+                #[cfg(not(target_arch = "x86_64"))]
+                Level::Avx2 | Level::Avx2Wide | Level::Avx512 => $module::$name::<Two>($($argument),*),
+                Level::Baseline => $module::$name::<Two>($($argument),*),
             }
         }
     };

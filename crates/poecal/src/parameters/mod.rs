@@ -70,4 +70,16 @@ impl Parameter {
             Parameter::DeviceFrame(frame) => frame,
         }
     }
+
+    /// The axis that it moves, if it is one.
+    pub(crate) fn screw_axis(&self) -> Option<&ScrewAxis> {
+        match self {
+            Parameter::ScrewAxis(axis) => Some(axis),
+            Parameter::OtherScrew(_)
+            | Parameter::JointOffset(_)
+            | Parameter::TargetPlace(_)
+            | Parameter::TargetFrame(_)
+            | Parameter::DeviceFrame(_) => None,
+        }
+    }
 }

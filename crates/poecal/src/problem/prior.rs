@@ -6,7 +6,6 @@ use super::Layout;
 use crate::estimate::Estimate;
 use crate::lie::{Pose, Twist};
 use crate::linalg::{self, Factor6};
-use crate::parameters::Parameter;
 use crate::robot::{Robot, Tolerance};
 use crate::solve::Normal;
 
@@ -158,7 +157,7 @@ impl Prior {
         // What each unknown does to the base's equations.
         let mut shared: Vec<(usize, Vector6<f64>)> = Vec::with_capacity(n);
         for (parameter, places) in layout.parameters() {
-            let Parameter::ScrewAxis(axis) = parameter else { continue };
+            let Some(axis) = parameter.screw_axis() else { continue };
             let Some(deviation) = deviations.get(axis.joint) else { continue };
             let own = &deviation.own[4 - places.len()..];
             for (k, (&(place, scale), column)) in places.iter().zip(own).enumerate() {

@@ -9,7 +9,6 @@ use crate::analysis::{Foresight, JointCoverage, Session};
 use crate::io::calibration_file::IdentifiabilityEntry;
 use crate::io::model::Model;
 use crate::robot::JointKind;
-use crate::simulate::Kind;
 use crate::text::visible;
 
 /// What configurations would tell, for a person to look over or a machine to read.
@@ -67,7 +66,7 @@ impl Identify {
     #[must_use]
     pub fn new(model: &Model, files: &[String], session: &Session, found: &Foresight) -> Self {
         let sigma_rotation_deg =
-            (session.kind != Kind::Point).then(|| session.noise.rotation_rad.to_degrees());
+            session.kind.sees_orientation().then(|| session.noise.rotation_rad.to_degrees());
         Identify {
             model: model.path.display().to_string(),
             files: files.to_vec(),

@@ -43,6 +43,15 @@ impl Kind {
             Kind::Mixed => "mixed",
         }
     }
+
+    /// Whether the orientation of the tip is seen in some rows at least.
+    #[must_use]
+    pub fn sees_orientation(self) -> bool {
+        match self {
+            Kind::Pose | Kind::Mixed => true,
+            Kind::Point => false,
+        }
+    }
 }
 
 /// A simulated measurement session.

@@ -102,7 +102,10 @@ impl Uncertainty {
                     frame.target = target;
                     Parameter::TargetFrame(frame)
                 }),
-                other => Some(other),
+                other @ (Parameter::ScrewAxis(_)
+                | Parameter::OtherScrew(_)
+                | Parameter::JointOffset(_)
+                | Parameter::DeviceFrame(_)) => Some(other),
             };
             if let Some(parameter) = renumbered {
                 kept.push(parameter);

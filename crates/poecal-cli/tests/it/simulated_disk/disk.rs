@@ -95,7 +95,7 @@ pub(crate) fn whole(path: &Path) -> PathBuf {
         match part {
             Component::ParentDir => drop(out.pop()),
             Component::CurDir => {}
-            other => out.push(other),
+            other @ (Component::Prefix(_) | Component::RootDir | Component::Normal(_)) => out.push(other),
         }
     }
     out

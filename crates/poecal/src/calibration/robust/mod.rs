@@ -14,7 +14,8 @@ pub use loss::{Loss, Robust};
 pub(super) use rows::registrable;
 pub use rows::{Robustness, RowJudgement};
 
-use super::fit::{Fitted, Found, Task};
+use super::fit::Task;
+use super::found::{Fitted, Found};
 use super::noise::{NoiseSource, stated};
 use super::{CalibrationOptions, estimate_noise};
 use crate::error::Result;

@@ -3,7 +3,8 @@
 use super::alike::TAILS;
 use super::{Configurations, Loss, Parts, Scale, parts};
 use crate::analysis::influence;
-use crate::calibration::fit::{Fitted, Task};
+use crate::calibration::fit::Task;
+use crate::calibration::found::Fitted;
 use crate::calibration::{SetAccuracy, measurements_words};
 use crate::distributions;
 use crate::measurement::Dataset;

@@ -213,7 +213,7 @@ fn check_size(value: f64, row: &Row<'_>, input: &Input) -> Result<()> {
     let text = row.cells.get(column).map_or("", |cell| cell.raw);
     let si = match input.unit.quantity() {
         Quantity::Number => String::new(),
-        quantity => format!(" {}", quantity.si_unit().symbol()),
+        quantity @ (Quantity::Length | Quantity::Angle) => format!(" {}", quantity.si_unit().symbol()),
     };
     let message = format!(
         "found `{text}` in column `{}`, expected at most {LARGEST_NUMBER:e}{si}: correct the number or the column's unit, \

@@ -16,7 +16,7 @@ const ROWS_BETWEEN_VISITS: usize = 20;
 /// A measurement file without rows: the columns that this robot needs, and what to do with them as comments.
 pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
     let names = robot.reading_names();
-    let columns = header(&names, &reading_units(&names, robot)?, kind != Kind::Point)?;
+    let columns = header(&names, &reading_units(&names, robot)?, kind.sees_orientation())?;
     let mut text = "# Measurements: a row for each configuration, below the line of column names. Lines that begin with # are left alone.\n\
          # Units stand in brackets. If your numbers have others, change them there: [rad], [deg], [m], [mm], [um].\n\
          #\n\
@@ -43,7 +43,7 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
          #   set                  fit, or held_out for rows to judge by [default: a random 30 % of the configurations]\n\
          #   sigma_position[mm]   standard deviation of each of x, y, z, if the device states it [default: estimated]\n",
     );
-    if kind != Kind::Point {
+    if kind.sees_orientation() {
         text.push_str("#   sigma_rotation[deg]  standard deviation of the rotation about each axis [default: estimated]\n");
     }
     Ok(format!("{text}{columns}\n"))

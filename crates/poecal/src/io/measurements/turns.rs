@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::header::Header;
 use super::inputs::InputReader;
-use super::inputs::{Input, Source};
+use super::inputs::Source;
 use super::layout::Layout;
 use super::mapping::ColumnMap;
 use super::orientation::OrientationForm;
@@ -151,9 +151,9 @@ fn unread(header: &Header<'_>, layout: &Layout) -> Option<String> {
 
 /// Columns of a rotation vector in the order of turns about z, y, x.
 fn backwards(header: &Header<'_>, layout: &Layout, columns: &[usize]) -> Option<String> {
-    let place = |&input: &usize| match layout.inputs.get(input) {
-        Some(Input { source: Source::Column(column), .. }) => Some(*column),
-        _ => None,
+    let place = |&input: &usize| match layout.inputs.get(input)?.source {
+        Source::Column(column) => Some(column),
+        Source::Constant(_) => None,
     };
     let places: Vec<usize> = columns.iter().filter_map(place).collect();
     if !matches!(places.as_slice(), [x, y, z] if z < y && y < x) {

@@ -40,9 +40,10 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
 /// The units that readings are written in: degrees and millimetres.
 pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>> {
     let (deg, mm) = (Unit::parse("deg", Quantity::Angle)?, Unit::parse("mm", Quantity::Length)?);
-    let unit = |name: &String| match robot.joints.iter().find(|joint| joint.reading.name == *name) {
-        Some(joint) if joint.kind == JointKind::Prismatic => mm,
-        _ => deg,
+    let of = |name: &String| robot.joints.iter().find(|joint| joint.reading.name == *name);
+    let unit = |name: &String| match of(name).map(|joint| joint.kind) {
+        Some(JointKind::Prismatic) => mm,
+        Some(JointKind::Revolute) | None => deg,
     };
     Ok(names.iter().map(unit).collect())
 }

@@ -95,7 +95,9 @@ pub(super) fn give_back(
         let path = folder.join(name);
         match disk.look(&path)?.kind {
             FoundKind::File if name.to_str().is_some_and(is_own) => disk.remove_file(&path)?,
-            _ => disk.rename_new(&path, &target.join(name))?,
+            FoundKind::File | FoundKind::Folder | FoundKind::Link | FoundKind::Other => {
+                disk.rename_new(&path, &target.join(name))?
+            }
         }
     }
     match disk.remove_folder(folder) {

@@ -74,7 +74,7 @@ impl Project<'_> {
             Some(link) => format!(" --{} '{}'", key.replace('_', "-"), link.replace('\'', "'\\''")),
             None => String::new(),
         };
-        let orientation = if self.kind == Kind::Point { "" } else { ROTATION_NOISE };
+        let orientation = if self.kind.sees_orientation() { ROTATION_NOISE } else { "" };
         let name: String = self.model.robot.name.replace(char::is_control, "?");
         let replaced = [
             ("{model}", self.model_name().to_owned()),

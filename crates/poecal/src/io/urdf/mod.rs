@@ -127,15 +127,15 @@ impl UrdfDocument {
 fn xml_error(error: &roxmltree::Error, path: &Path) -> Error {
     let place = error.pos();
     let (line, column) = (place.row as usize, place.col as usize);
-    let message = match error {
-        roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => XACRO.to_owned(),
-        roxmltree::Error::DtdDetected => {
-            "found a document type definition, expected a URDF robot description without one".to_owned()
-        }
-        _ => {
-            let complaint = error.to_string().replace(&format!(" at {place}"), "");
-            format!("found broken XML ({complaint}), expected a URDF robot description")
-        }
+    let message = if let roxmltree::Error::UnknownNamespace(prefix, _) = error
+        && prefix == "xacro"
+    {
+        XACRO.to_owned()
+    } else if let roxmltree::Error::DtdDetected = error {
+        "found a document type definition, expected a URDF robot description without one".to_owned()
+    } else {
+        let complaint = error.to_string().replace(&format!(" at {place}"), "");
+        format!("found broken XML ({complaint}), expected a URDF robot description")
     };
     Error::new(ErrorKind::Syntax, message).at(path, line, column)
 }

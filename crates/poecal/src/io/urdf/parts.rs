@@ -58,7 +58,13 @@ fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_j
     let direction = base_from_joint.rotation * axis;
     let (kind, screw) = match joint.kind {
         JointType::Prismatic => (JointKind::Prismatic, Screw::prismatic(&direction)),
-        _ => (JointKind::Revolute, Screw::revolute(&direction, &base_from_joint.translation)),
+        JointType::Revolute
+        | JointType::Continuous
+        | JointType::Fixed
+        | JointType::Floating
+        | JointType::Planar => {
+            (JointKind::Revolute, Screw::revolute(&direction, &base_from_joint.translation))
+        }
     };
     Ok(Joint {
         name: joint.name.to_owned(),
