@@ -9,13 +9,12 @@ pub const MOST_THREADS: usize = 256;
 /// Items that one thread sorts or looks at as fast as several.
 const FEW: usize = 8192;
 
-/// Whether there are several threads, and so many items are worth waking them.
+/// Whether running in parallel pays for this many items.
 fn are_worth_it(items: usize) -> bool {
     items > FEW && rayon::current_num_threads() > 1
 }
 
-/// What each of so many parts comes to, in their order whatever the number of threads. One part alone, or one thread, is not worth
-/// waking anybody.
+/// Maps the numbers of `count` parts, results in their order whatever the number of threads. Runs serially with one part or one thread.
 pub(crate) fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     if count > 1 && rayon::current_num_threads() > 1 {
         // Whoever is done first takes the next part, one at a time: rayon would give out a quarter of them together.
@@ -25,7 +24,7 @@ pub(crate) fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync 
     }
 }
 
-/// The same of parts that each look at so many items: few of them are not worth waking anybody either.
+/// [`map_parts`], where each part looks at so many items. Runs serially for up to [`FEW`] items.
 pub(crate) fn map_parts_of<T: Send>(
     items: usize,
     count: usize,
@@ -34,7 +33,7 @@ pub(crate) fn map_parts_of<T: Send>(
     if items > FEW { map_parts(count, part) } else { (0..count).map(part).collect() }
 }
 
-/// What two pieces of work come to, which are done at the same time where there are several threads.
+/// Results of two pieces of work, done in parallel where there are several threads.
 pub(crate) fn both<A: Send, B: Send>(
     first: impl FnOnce() -> A + Send,
     second: impl FnOnce() -> B + Send,
@@ -42,9 +41,8 @@ pub(crate) fn both<A: Send, B: Send>(
     if rayon::current_num_threads() > 1 { rayon::join(first, second) } else { (first(), second()) }
 }
 
-/// Work on so many items, done by one of the threads that share its parts: where there are many, the others need not be waited for from
-/// outside, part after part.
-pub(crate) fn among_them<T: Send>(items: usize, work: impl FnOnce() -> T + Send) -> T {
+/// Runs `work` on a pool thread, if it is about many items, so that nested parallel calls do not block the caller.
+pub(crate) fn in_pool<T: Send>(items: usize, work: impl FnOnce() -> T + Send) -> T {
     if are_worth_it(items) { rayon::scope(|_| work()) } else { work() }
 }
 
@@ -57,7 +55,7 @@ pub(crate) fn sort_by<T: Send>(items: &mut [T], compare: impl Fn(&T, &T) -> Orde
     }
 }
 
-/// What each run of so many items comes to, in their order; `part` is told which run it is.
+/// Maps runs of so many items, results in their order; `part` gets the index of the run.
 pub(crate) fn map_chunks<S: Sync, T: Send>(
     items: &[S],
     size: usize,

@@ -3,7 +3,7 @@
 use crate::estimate::Estimate;
 use crate::lanes::{self, Wide};
 use crate::linalg;
-use crate::problem::{Abreast, Problem};
+use crate::problem::{Problem, RowBlock};
 use crate::solve::Normal;
 use crate::threads;
 
@@ -51,8 +51,8 @@ pub fn influence(
     threads::concat_chunks(rows, CHUNK, |part, rows| {
         let weights = weights.get(part * CHUNK..).unwrap_or_default();
         let mut found = vec![Influence { leverage: 0.0, studentized: 0.0 }; rows.len()];
-        problem.for_rows_abreast(estimate, rows, |places, abreast| {
-            let Abreast { jacobian, residual, numbers } = abreast;
+        problem.for_row_blocks(estimate, rows, |places, block| {
+            let RowBlock { jacobian, residual, numbers } = block;
             let mut weight = Wide::ZERO;
             for ((lane, &place), &numbers) in places.iter().enumerate().zip(&*numbers) {
                 weight.0[lane] = weights.get(place as usize).copied().unwrap_or(1.0);
@@ -186,13 +186,13 @@ mod tests {
             });
             for level in levels() {
                 let mut seen = 0;
-                problem.clone().with_level(level).for_rows_abreast(&estimate, &rows, |places, abreast| {
+                problem.clone().with_level(level).for_row_blocks(&estimate, &rows, |places, block| {
                     for (lane, &place) in places.iter().enumerate() {
                         let (jacobian, residual) = &expected[place as usize];
-                        assert_eq!(abreast.numbers[lane], residual.len());
-                        let own = |k: usize| abreast.jacobian.iter().map(move |column| column[k].0[lane]);
+                        assert_eq!(block.numbers[lane], residual.len());
+                        let own = |k: usize| block.jacobian.iter().map(move |column| column[k].0[lane]);
                         let own_jacobian: Vec<f64> = (0..residual.len()).flat_map(own).collect();
-                        let own_residual = abreast.residual.map(|wide| wide.0[lane]);
+                        let own_residual = block.residual.map(|wide| wide.0[lane]);
                         let apart = [
                             apart(&own_jacobian, jacobian),
                             apart(&own_residual[..residual.len()], residual),

@@ -97,13 +97,13 @@ pub fn calibrate_with_progress(
     progress: &mut dyn FnMut(Stage),
 ) -> Result<Calibration> {
     let (data, rows) = (&written(data, options.formulation.pose_residual), data.len());
-    let prepared = threads::among_them(rows, || Prepared::new(robot, data, options))?;
+    let prepared = threads::in_pool(rows, || Prepared::new(robot, data, options))?;
     progress(Stage::Registration);
-    let (registered, noise, source) = threads::among_them(rows, || prepared.register());
+    let (registered, noise, source) = threads::in_pool(rows, || prepared.register());
     progress(Stage::Fit);
-    let fit = threads::among_them(rows, || prepared.fit(&registered, noise, source))?;
+    let fit = threads::in_pool(rows, || prepared.fit(&registered, noise, source))?;
     progress(Stage::Analysis);
-    Ok(threads::among_them(rows, || prepared.assess(registered, fit)))
+    Ok(threads::in_pool(rows, || prepared.assess(registered, fit)))
 }
 
 /// The data with the errors of measured frames written in this way.

@@ -124,7 +124,7 @@ impl Calibration {
     /// their full weight. It is what solvers are compared by.
     #[must_use]
     pub fn solve_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
-        threads::among_them(data.len(), || self.solved_again(data, options))
+        threads::in_pool(data.len(), || self.solved_again(data, options))
     }
 
     fn solved_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {

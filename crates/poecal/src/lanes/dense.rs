@@ -20,7 +20,7 @@ impl Factor {
         self.rows.get(block..).unwrap_or_default().iter().step_by(stride).map(move |wide| wide.0[lane])
     }
 
-    /// The least that remained of a diagonal element when those before it were eliminated.
+    /// Smallest pivot of the factorisation.
     pub(crate) fn smallest_pivot(&self) -> f64 {
         self.inverses.iter().fold(0.0, |most: f64, &inverse| most.max(inverse)).powi(-2)
     }

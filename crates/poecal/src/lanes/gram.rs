@@ -5,7 +5,7 @@ use super::vector::{Vector, WIDTH, Wide};
 /// Columns a side of a tile: nine sums in registers hide the latency of their additions, and six loads feed nine products.
 pub(super) const TILE: usize = 3;
 
-/// Numbers that the sums of all tiles of so many columns take, in wide ones, for `L` lanes.
+/// Length, in `Wide`s, of the accumulators of all tiles of so many columns, for vectors of so many lanes.
 pub(super) fn sums_len(columns: usize, lanes: usize) -> usize {
     let tiles = columns / TILE;
     (tiles * (tiles + 1) / 2 * TILE * TILE * lanes).div_ceil(WIDTH)

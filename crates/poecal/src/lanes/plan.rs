@@ -23,8 +23,8 @@ pub(crate) struct JointPlan {
     pub(crate) columns: Option<(usize, usize)>,
 }
 
-/// How the unknowns of one kind of row are arranged. *Shifts* move the target by a direction (times the row's weight); a *turn* turns
-/// about the direction of one of the shifts, `w = v / L`, and those before `tilts` move the target besides.
+/// Columns of one group of rows: *shifts* are translation columns (a direction times the row's weight); *turns* are rotation columns
+/// about the direction of one of the shifts, `w = v / L`, of which the first `tilts` also translate.
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub(crate) joints: Vec<JointPlan>,

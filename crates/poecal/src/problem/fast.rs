@@ -1,12 +1,11 @@
 //! The hot path: rows grouped by place of the device, target and kind, packed side by side, and summed by [`crate::lanes`].
 //!
-//! What it serves, [`Problem::is_served`] says; everything else takes the row-by-row path (`row_by_row.rs`), which is also what this one is tested
-//! against.
+//! [`Problem::is_served`] says what it serves; everything else takes the row-by-row path (`row_by_row.rs`), against which this one is tested.
 
 use super::Problem;
-use super::alike::{Alike, Whitening};
-use super::arrangement::Arrangement;
-use super::scatter::Scatter;
+use super::column_map::ColumnMap;
+use super::row_group::{RowGroup, Whitening};
+use super::scatter::GramScatter;
 use crate::estimate::{Estimate, Linkage};
 use crate::lanes::{self, Arm, Level, Plan, RowData, Rows, Step, Totals, WIDTH};
 use crate::measurement::{Measurement, PoseMeasurement};
@@ -18,8 +17,7 @@ use std::cell::RefCell;
 const CHUNK: usize = 1024;
 /// Partial sums that exist at a time: memory beside the data stays bounded.
 const TOGETHER: usize = 64;
-/// Most rows that stay packed; more are packed anew in each pass, chunk by chunk, which costs a tenth of it, and less than memory that
-/// has not been used before.
+/// Most rows that stay packed. Larger problems are repacked in every pass: 10 % of its time, cheaper than page faults on new memory.
 const KEPT: usize = 2048;
 
 thread_local! {
@@ -27,41 +25,41 @@ thread_local! {
     pub(super) static ROWS: RefCell<Rows> = const { RefCell::new(Rows::EMPTY) };
 }
 
-/// What is summed over rows.
+/// Sums over rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Sums {
+pub(super) enum Accumulate {
     /// Cost, gradient and `JᵀJ`.
     All,
-    /// The same, `JᵀJ` but for the curvature of the logarithm where that spares time.
-    Nearly,
+    /// The same; `JᵀJ` may lack the curvature of the logarithm, where that saves time.
+    GaussNewton,
     /// Cost and gradient.
     Gradient,
 }
 
-/// Groups of rows that are computed alike.
+/// Groups of rows that are computed group.
 #[derive(Clone, Debug)]
 pub(super) struct Fast {
-    groups: Vec<(Group, Scatter)>,
+    groups: Vec<(Group, GramScatter)>,
     level: Level,
 }
 
 #[derive(Clone, Debug)]
 struct Group {
-    arranged: Arrangement,
+    arranged: ColumnMap,
     rows: Vec<u32>,
     /// Chunks of the rows side by side, if they are kept.
     packed: Vec<Rows>,
 }
 
 impl Fast {
-    /// Arranges the rows of a problem; `None` as [`Arrangement::new`] has it.
+    /// Arranges the rows of a problem; `None` as [`ColumnMap::new`] has it.
     pub(super) fn new(problem: &Problem<'_>, level: Level) -> Option<Self> {
         let mut groups = Vec::new();
-        for alike in Alike::sorted(problem) {
-            let mut arranged = Arrangement::new(problem, alike.sight, alike.framed)?;
-            arranged.plan.ratio = alike.ratio;
-            let scatter = Scatter::new(&arranged, problem.layout.dim());
-            groups.push((Group { arranged, rows: alike.rows, packed: Vec::new() }, scatter));
+        for group in RowGroup::of_problem(problem) {
+            let mut arranged = ColumnMap::new(problem, group.sight, group.framed)?;
+            arranged.plan.ratio = group.ratio;
+            let scatter = GramScatter::new(&arranged, problem.layout.dim());
+            groups.push((Group { arranged, rows: group.rows, packed: Vec::new() }, scatter));
         }
         let mut fast = Fast { groups, level };
         fast.pack(problem);
@@ -83,26 +81,26 @@ impl Fast {
     }
 
     /// Normal information of all rows; a `JᵀJ` that is not asked for is left empty.
-    pub(super) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Sums) -> Normal {
+    pub(super) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Accumulate) -> Normal {
         let linkage = Linkage::new(state);
         let mut steps: Vec<Step> = linkage.steps().iter().map(Step::from).collect();
         let first = steps.first().copied();
         let mut normal = match sums {
-            Sums::Gradient => Normal::new(0),
-            Sums::All | Sums::Nearly => Normal::new(problem.layout.dim()),
+            Accumulate::Gradient => Normal::new(0),
+            Accumulate::All | Accumulate::GaussNewton => Normal::new(problem.layout.dim()),
         };
         normal.gradient.resize(problem.layout.dim(), 0.0);
         for (group, scatter) in &self.groups {
-            let Arrangement { sight, plan, .. } = &group.arranged;
+            let ColumnMap { sight, plan, .. } = &group.arranged;
             let end = Step::from(linkage.end(sight.target));
             let own = linkage.first_step_from(sight.station).map(Step::from).or(first);
             if let Some((step, own)) = steps.first_mut().zip(own) {
                 *step = own;
             }
-            let arm = Arm { plan, steps: &steps, end: &end, nearly: sums == Sums::Nearly };
+            let arm = Arm { plan, steps: &steps, end: &end, nearly: sums == Accumulate::GaussNewton };
             let totals = group.sum(problem, self.level, &arm, sums);
             group.put(&totals, &mut normal);
-            if sums != Sums::Gradient {
+            if sums != Accumulate::Gradient {
                 scatter.add(&totals, &mut normal.gram);
             }
         }
@@ -111,9 +109,9 @@ impl Fast {
 }
 
 impl Group {
-    /// Sums over all rows of the group, in the order of its chunks whatever the number of threads.
-    fn sum(&self, problem: &Problem<'_>, level: Level, arm: &Arm<'_>, sums: Sums) -> Totals {
-        let sum = if sums == Sums::Gradient { lanes::sum_gradient } else { lanes::sum_products };
+    /// Accumulate over all rows of the group, in the order of its chunks whatever the number of threads.
+    fn sum(&self, problem: &Problem<'_>, level: Level, arm: &Arm<'_>, sums: Accumulate) -> Totals {
+        let sum = if sums == Accumulate::Gradient { lanes::sum_gradient } else { lanes::sum_products };
         let size = chunk_size(self.rows.len());
         let chunk = |index: usize| match self.packed.get(index) {
             Some(rows) => sum(level, arm, &rows.blocks),

@@ -1,26 +1,26 @@
 //! Rows × columns: measurements and parameters meet here and nowhere else. Assembly only, no algorithms.
 
-mod abreast;
-mod alike;
-mod arrangement;
+mod column_map;
 mod fast;
 mod layout;
 mod prior;
 mod refit;
+mod row_block;
 mod row_by_row;
+mod row_group;
 mod scatter;
 
 pub use crate::lanes::{Level, levels};
-pub(crate) use abreast::Abreast;
 pub use layout::Layout;
 pub use prior::Prior;
 pub use refit::Refit;
+pub(crate) use row_block::RowBlock;
 
 use crate::estimate::{Estimate, Packed};
 use crate::measurement::{Dataset, Measurement, Noise, Written};
 use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
-use fast::{Fast, Sums};
+use fast::{Accumulate, Fast};
 use std::mem::discriminant;
 use std::sync::OnceLock;
 
@@ -34,7 +34,8 @@ const SEEN: usize = 500;
 /// (theory.md §6 (27) and (28)).
 ///
 /// ```
-/// # /// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot, JointKind}, measurement::*};
+/// # use nalgebra::Vector3;
+/// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot, JointKind}, measurement::*};
 /// use poecal::{estimate::{Estimate, Packed}, parameters::*, problem::Problem, solve::{minimize, Options}};
 /// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
 /// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
@@ -209,7 +210,7 @@ impl Problem<'_> {
         let fast = match self.fast.get() {
             Some(fast) => fast,
             None => {
-                // Made before the cell is touched: threads work together here, and one that waits for the others might come by again.
+                // Built outside `get_or_init`: a rayon thread that waits may re-enter this function.
                 let made = Fast::new(self, self.level);
                 self.fast.get_or_init(|| made)
             }
@@ -227,20 +228,20 @@ impl LeastSquares for Problem<'_> {
 
     fn normal(&self, state: &Estimate) -> Normal {
         match self.fast(state) {
-            Some(fast) => self.believing(state, fast.normal(self, state, Sums::All)),
+            Some(fast) => self.believing(state, fast.normal(self, state, Accumulate::All)),
             None => self.normal_row_by_row(state),
         }
     }
 
     fn nearly_normal(&self, state: &Estimate) -> Normal {
         match self.fast(state) {
-            Some(fast) => self.believing(state, fast.normal(self, state, Sums::Nearly)),
+            Some(fast) => self.believing(state, fast.normal(self, state, Accumulate::GaussNewton)),
             None => self.normal_row_by_row(state),
         }
     }
 
     fn gradient(&self, state: &Estimate) -> Option<Normal> {
-        self.fast(state).map(|fast| self.believing(state, fast.normal(self, state, Sums::Gradient)))
+        self.fast(state).map(|fast| self.believing(state, fast.normal(self, state, Accumulate::Gradient)))
     }
 
     fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {

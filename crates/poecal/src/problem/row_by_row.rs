@@ -123,7 +123,7 @@ impl Problem<'_> {
         (total.residuals == self.rows.len()).then_some(total.gram)
     }
 
-    /// Sums what `add` makes of each fixed chunk of rows, in the order of the rows whatever the number of threads.
+    /// Accumulate what `add` makes of each fixed chunk of rows, in the order of the rows whatever the number of threads.
     fn sum_chunks(&self, add: impl Fn(&[u32]) -> Normal + Sync + Send) -> Normal {
         if self.rows.len() <= CHUNK {
             return add(&self.rows);

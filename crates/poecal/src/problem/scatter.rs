@@ -1,11 +1,11 @@
 //! Where the sums of the hot path belong in the problem's normal information.
 
-use super::arrangement::Arrangement;
+use super::column_map::ColumnMap;
 use crate::lanes::{Tiles, Totals};
 
 /// Places of a group's products, found once for all passes.
 #[derive(Clone, Debug)]
-pub(super) struct Scatter {
+pub(super) struct GramScatter {
     /// Of position columns: index among the sums, and in the Gram matrix.
     seen: Vec<(usize, usize)>,
     /// Of turns: index of the product of their shifts, of what rotation adds, and in the Gram matrix.
@@ -14,10 +14,10 @@ pub(super) struct Scatter {
     shared: Option<f64>,
 }
 
-impl Scatter {
+impl GramScatter {
     /// For rows so arranged, in a step of `n` unknowns.
-    pub(super) fn new(arranged: &Arrangement, n: usize) -> Self {
-        let Arrangement { plan, turn_places, .. } = arranged;
+    pub(super) fn new(arranged: &ColumnMap, n: usize) -> Self {
+        let ColumnMap { plan, turn_places, .. } = arranged;
         let upper = |a: usize, b: usize| a.min(b) * n + a.max(b);
         let columns = plan.columns();
         let places: Vec<usize> = arranged.places().take(columns).collect();
@@ -36,7 +36,7 @@ impl Scatter {
                 turned.push((of_shifts, own.left[a] + own.right[b], upper(place, other)));
             }
         }
-        Scatter { seen, turned, shared: plan.ratio.map(|ratio| (ratio / plan.length_m).powi(2)) }
+        GramScatter { seen, turned, shared: plan.ratio.map(|ratio| (ratio / plan.length_m).powi(2)) }
     }
 
     /// Adds sums to the upper triangle of a Gram matrix.

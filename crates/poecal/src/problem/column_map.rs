@@ -1,13 +1,13 @@
-//! How the unknowns of a problem are arranged for the kernels, for rows of one target, place of the device, and kind.
+//! Columns of one group of rows: the unknowns that move its target, in the order of the kernels.
 
 use super::{Layout, Problem};
 use crate::estimate::Sight;
 use crate::lanes::{JointPlan, NUMBERS, Plan};
 use crate::parameters::Parameter;
 
-/// Rows of one target seen from one place, with or without orientation: what the kernels are told of the unknowns, and where these stand in a step.
+/// Columns of one group of rows: their order in the kernels, and their places in a step.
 #[derive(Clone, Debug)]
-pub(super) struct Arrangement {
+pub(super) struct ColumnMap {
     pub(super) sight: Sight,
     pub(super) plan: Plan,
     /// Places of the plan's shifts and turns in a step.
@@ -15,10 +15,10 @@ pub(super) struct Arrangement {
     pub(super) turn_places: Vec<usize>,
 }
 
-impl Arrangement {
+impl ColumnMap {
     /// For a problem of the kinds that kernels serve ([`Problem::is_served`]); `None` if its unknowns contradict each other.
     pub(super) fn new(problem: &Problem<'_>, sight: Sight, framed: bool) -> Option<Self> {
-        let mut made = Arrangement {
+        let mut made = ColumnMap {
             sight,
             plan: plan_without_unknowns(problem, framed),
             shift_places: Vec::new(),

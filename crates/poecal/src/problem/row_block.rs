@@ -1,15 +1,15 @@
 //! Jacobian and residuals of several rows side by side.
 
 use super::Problem;
-use super::alike::Alike;
-use super::arrangement::Arrangement;
+use super::column_map::ColumnMap;
 use super::fast::{ROWS, pack};
+use super::row_group::RowGroup;
 use crate::estimate::{Estimate, Linkage};
 use crate::lanes::{self, Arm, NUMBERS, Step, WIDTH, Wide};
 
 /// Whitened Jacobian of the prediction and residuals of up to [`WIDTH`] rows, one a lane: three numbers of the position, three of the
 /// rotation. What a row does not have is zero.
-pub(crate) struct Abreast {
+pub(crate) struct RowBlock {
     /// Column after column.
     pub(crate) jacobian: Vec<[Wide; NUMBERS]>,
     pub(crate) residual: [Wide; NUMBERS],
@@ -17,9 +17,9 @@ pub(crate) struct Abreast {
     pub(crate) numbers: [usize; WIDTH],
 }
 
-impl Abreast {
+impl RowBlock {
     fn new(n: usize) -> Self {
-        Abreast {
+        RowBlock {
             jacobian: vec![[Wide::ZERO; NUMBERS]; n],
             residual: [Wide::ZERO; NUMBERS],
             numbers: [0; WIDTH],
@@ -34,39 +34,39 @@ impl Abreast {
 }
 
 impl Problem<'_> {
-    /// Gives [`WIDTH`] of some rows of the data after the other, by their places among these, in any order; what is given may be used
-    /// up.
-    pub(crate) fn for_rows_abreast(
+    /// Calls `each` with the Jacobian and residuals of up to [`WIDTH`] rows, which it may overwrite, and their positions in `rows`. The
+    /// order of the blocks is that of the groups, not of `rows`.
+    pub(crate) fn for_row_blocks(
         &self,
         state: &Estimate,
         rows: &[u32],
-        mut each: impl FnMut(&[u32], &mut Abreast),
+        mut each: impl FnMut(&[u32], &mut RowBlock),
     ) {
-        let mut abreast = Abreast::new(self.layout().dim());
+        let mut block = RowBlock::new(self.layout().dim());
         match self.arranged(state, rows) {
             Some(groups) => {
-                groups.iter().for_each(|group| self.by_kernel(state, rows, group, &mut abreast, &mut each));
+                groups.iter().for_each(|group| self.by_kernel(state, rows, group, &mut block, &mut each));
             }
-            None => self.one_by_one(state, rows, &mut abreast, &mut each),
+            None => self.one_by_one(state, rows, &mut block, &mut each),
         }
     }
 
-    /// Places of rows that are computed alike, if the kernels serve them.
-    fn arranged(&self, state: &Estimate, rows: &[u32]) -> Option<Vec<(Arrangement, Vec<u32>)>> {
+    /// Column maps and positions of the groups of `rows`, if the kernels serve them.
+    fn arranged(&self, state: &Estimate, rows: &[u32]) -> Option<Vec<(ColumnMap, Vec<u32>)>> {
         if !self.is_served(state) {
             return None;
         }
-        let alike = Alike::of(self, rows, |place, _| place).into_iter();
-        alike.map(|it| Some((Arrangement::new(self, it.sight, it.framed)?, it.rows))).collect()
+        let groups = RowGroup::of(self, rows, |position, _| position).into_iter();
+        groups.map(|it| Some((ColumnMap::new(self, it.sight, it.framed)?, it.rows))).collect()
     }
 
     fn by_kernel(
         &self,
         state: &Estimate,
         rows: &[u32],
-        (arranged, places): &(Arrangement, Vec<u32>),
-        abreast: &mut Abreast,
-        each: &mut impl FnMut(&[u32], &mut Abreast),
+        (arranged, places): &(ColumnMap, Vec<u32>),
+        block: &mut RowBlock,
+        each: &mut impl FnMut(&[u32], &mut RowBlock),
     ) {
         let linkage = Linkage::new(state);
         let mut steps: Vec<Step> = linkage.steps().iter().map(Step::from).collect();
@@ -80,12 +80,12 @@ impl Problem<'_> {
         let own: Vec<u32> = places.iter().map(|&place| rows[place as usize]).collect();
         let mut packed = ROWS.take();
         pack(self, plan, &own, &mut packed);
-        for (places, block) in places.chunks(WIDTH).zip(packed.blocks.chunks_exact(plan.block_len())) {
-            abreast.clear();
-            abreast.numbers[..places.len()].fill(arranged.numbers());
-            let Abreast { jacobian, residual, .. } = abreast;
-            lanes::whitened_columns(self.level, &arm, block, &columns, jacobian, residual);
-            each(places, abreast);
+        for (places, packed) in places.chunks(WIDTH).zip(packed.blocks.chunks_exact(plan.block_len())) {
+            block.clear();
+            block.numbers[..places.len()].fill(arranged.numbers());
+            let RowBlock { jacobian, residual, numbers: _ } = &mut *block;
+            lanes::whitened_columns(self.level, &arm, packed, &columns, jacobian, residual);
+            each(places, block);
         }
         ROWS.set(packed);
     }
@@ -94,30 +94,30 @@ impl Problem<'_> {
         &self,
         state: &Estimate,
         rows: &[u32],
-        abreast: &mut Abreast,
-        each: &mut impl FnMut(&[u32], &mut Abreast),
+        block: &mut RowBlock,
+        each: &mut impl FnMut(&[u32], &mut RowBlock),
     ) {
         let n = self.layout().dim();
         let mut places: Vec<u32> = Vec::with_capacity(WIDTH);
-        let mut next = 0..;
+        let mut positions = 0..;
         self.for_rows(state, rows, |_, jacobian, residual| {
             let lane = places.len();
             for (k, value) in residual.iter().enumerate() {
-                abreast.residual[k].0[lane] = *value;
-                for (column, value) in abreast.jacobian.iter_mut().zip(&jacobian[k * n..]) {
+                block.residual[k].0[lane] = *value;
+                for (column, value) in block.jacobian.iter_mut().zip(&jacobian[k * n..]) {
                     column[k].0[lane] = *value;
                 }
             }
-            abreast.numbers[lane] = residual.len();
-            places.extend(next.next());
+            block.numbers[lane] = residual.len();
+            places.extend(positions.next());
             if places.len() == WIDTH {
-                each(&places, abreast);
-                abreast.clear();
+                each(&places, block);
+                block.clear();
                 places.clear();
             }
         });
         if !places.is_empty() {
-            each(&places, abreast);
+            each(&places, block);
         }
     }
 }
