@@ -19,7 +19,7 @@ use crate::lie::Pose;
 
 /// One measurement of a target in the measuring device's frame.
 ///
-/// A new type is one file with a [`Residual`] and one variant here; the compiler lists the arms, all in this file.
+/// A new type is one file with a [`Residual`] and one variant here; the compiler lists the places that have to decide.
 ///
 /// ```
 /// use nalgebra::Vector3;

@@ -18,7 +18,8 @@ pub use target_place::TargetPlace;
 
 use crate::robot::JointKind;
 
-/// A group of unknowns. In a list of parameters the order is that of the chain: device frame, joints from base to tip, targets. A new one is one file with [`Columns`] and one variant here; the compiler lists the arms, all in this file.
+/// A group of unknowns. In a list of parameters the order is that of the chain: device frame, joints from base to tip, targets. A new
+/// one is one file with [`Columns`] and one variant here; the compiler lists the places that have to decide.
 ///
 /// ```
 /// use poecal::parameters::{Parameter, TargetPlace};
