@@ -7,6 +7,7 @@ use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, Session};
 use poecal::simulate::{self as simulated, Kind, Simulated};
+use poecal::text::visible;
 use pyo3::prelude::*;
 
 use crate::arrays::pose_array;
@@ -145,7 +146,7 @@ pub(crate) fn simulate(
         "poecal.simulate({}, kind=\"{}\", count={count}, seed={seed}, error_position_mm={error_position_mm:?}, \
          error_rotation_deg={error_rotation_deg:?}, noise_position_mm={noise_position_mm:?}, noise_rotation_deg={noise_rotation_deg:?}, \
          frame=\"{frame}\", held_out_count={held_out_count})",
-        robot.model.path.display().to_string().replace(char::is_control, "?"),
+        visible(&robot.model.path.display().to_string()),
         kind.word()
     );
     Ok(Simulation { nominal: robot.same(), simulation, kind, made, held_out, command })

@@ -4,6 +4,7 @@ use poecal::Result;
 use poecal::io::model::Model;
 use poecal::io::output::{self, Contents, Existing, FolderPlace, Session};
 use poecal::simulate::{Kind, Simulation};
+use poecal::text::visible;
 
 use crate::args::{Chain, Frame, Simulate};
 use crate::console::Console;
@@ -66,5 +67,5 @@ fn command(arguments: &Simulate, kind: Kind) -> String {
         words.push(format!("--held-out-count {}", arguments.held_out_count));
     }
     // The command becomes a line of a file.
-    words.join(" ").replace(char::is_control, "?")
+    visible(&words.join(" ")).into_owned()
 }

@@ -40,13 +40,22 @@ pub enum Cause {
 impl Cause {
     /// Whether other combinations of the same joint values would have told it.
     pub(super) fn is_combination(self) -> bool {
-        matches!(
-            self,
+        match self {
             Cause::OneOrientation
-                | Cause::OneTurningDirection
-                | Cause::MovedTogether
-                | Cause::DependentMotion
-        )
+            | Cause::OneTurningDirection
+            | Cause::MovedTogether
+            | Cause::DependentMotion => true,
+            Cause::OwnAxis
+            | Cause::BaseFrame
+            | Cause::JointOffsets
+            | Cause::NoOrientation
+            | Cause::StoodStill
+            | Cause::TooFew
+            | Cause::PointOnAxis
+            | Cause::SmallMotion
+            | Cause::SeenOnce
+            | Cause::Other => false,
+        }
     }
 }
 

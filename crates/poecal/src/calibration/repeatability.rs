@@ -5,12 +5,9 @@ use nalgebra::Vector3;
 use super::{Calibration, RowError, row_errors};
 use crate::estimate::{Estimate, turn_to_first};
 use crate::measurement::Dataset;
-use crate::threads;
 
 /// Rows of one configuration from which on its scatter is stated; ISO 9283 asks for 30.
 const ROWS: usize = 3;
-/// Rows that one thread looks at together.
-const CHUNK: usize = 4096;
 /// Readings (radians, metres) that differ by no more are of one configuration: what encoders of a robot that came back differ by.
 const SAME: f64 = 1e-4;
 /// Standard deviations that are added to the mean distance, as in ISO 9283.
@@ -69,43 +66,7 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
 
 /// Rows of one target whose readings are those of the group's first row, at least [`ROWS`] each.
 fn groups(data: &Dataset) -> Vec<Vec<u32>> {
-    let target = |row: u32| data.observations[row as usize].target;
-    let readings = |row: u32| data.readings(row as usize);
-    // Rows of equal readings lie together by any sum of their readings; by this one, others seldom do.
-    let weight = |k: usize| 1.0 + 0.618_033_988_749_895 * (k as f64).sqrt();
-    let key = |row: u32| readings(row).iter().enumerate().map(|(k, value)| weight(k) * value).sum::<f64>();
-    let window = SAME * (0..data.reading_names().len()).map(weight).sum::<f64>();
-    let mut order: Vec<(usize, f64, u32)> =
-        data.all_rows().into_iter().map(|row| (target(row), key(row), row)).collect();
-    threads::sort_by(&mut order, |a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
-    let same = |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= SAME);
-    // Places of the rows like that at `first`, from there on.
-    let like = |first: usize| {
-        let (target, key, row) = order[first];
-        let near = order[first..].iter().take_while(move |it| it.0 == target && it.1 - key <= window);
-        (first..).zip(near).filter(move |(_, it)| same(row, it.2)).map(|(place, _)| place)
-    };
-    // Hardly any row has enough of them, unless robots were sent back on purpose.
-    let firsts = threads::map_parts(order.len().div_ceil(CHUNK), |chunk| {
-        let places = chunk * CHUNK..order.len().min((chunk + 1) * CHUNK);
-        places.filter(|&first| like(first).nth(ROWS - 1).is_some()).collect::<Vec<_>>()
-    });
-    let mut taken = vec![false; order.len()];
-    let mut groups = Vec::new();
-    for first in firsts.into_iter().flatten() {
-        if taken[first] {
-            continue;
-        }
-        let members: Vec<usize> = like(first).filter(|&place| !taken[place]).collect();
-        if members.len() >= ROWS {
-            members.iter().for_each(|&place| taken[place] = true);
-            let mut rows: Vec<u32> = members.iter().map(|&place| order[place].2).collect();
-            rows.sort_unstable();
-            groups.push(rows);
-        }
-    }
-    groups.sort_by_key(|group| group.first().copied());
-    groups
+    data.alike(&data.all_rows(), SAME, ROWS, |row| data.observations[row as usize].target)
 }
 
 /// The mean of the errors.

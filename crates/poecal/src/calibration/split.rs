@@ -60,7 +60,7 @@ fn refuse_copies(data: &Dataset, held_out: &[bool], kept_back: usize) -> Result<
             && (a.rotation - b.rotation).amax() < SAME
     };
     let mut copies: Vec<(u32, u32)> = Vec::new();
-    for group in data.alike(&data.all_rows(), SAME) {
+    for group in data.alike(&data.all_rows(), SAME, 2, |_| 0) {
         let (judging, fitted): (Vec<u32>, Vec<u32>) = group.into_iter().partition(is_held_out);
         copies.extend(
             judging

@@ -49,3 +49,13 @@ pub(super) fn turned<V: Vector>([x, y, z, origin]: [V; 4], step: &Step) -> [V; 4
     let origin = x.times_plus(V::splat(p), y.times_plus(V::splat(q), z.times_plus(V::splat(r), origin)));
     [along(a), along(b), along(c), origin]
 }
+
+/// A row of a frame after a joint's own motion, a turn about z by `(cos θ, sin θ)` or a slide along it by `(θ, 0)`.
+#[inline(always)]
+pub(super) fn moved<V: Vector>([x, y, z, origin]: [V; 4], turns: bool, cosine: V, sine: V) -> [V; 4] {
+    if turns {
+        [x.times_plus(cosine, y * sine), x.times_from(sine, y * cosine), z, origin]
+    } else {
+        [x, y, z, z.times_plus(cosine, origin)]
+    }
+}

@@ -2,7 +2,7 @@
 //!
 //! One source for every width of vector: as many rows as a vector has lanes are computed at a time, in blocks of [`WIDTH`].
 
-use super::frame::{Frame, turned};
+use super::frame::{Frame, moved, turned};
 use super::gram::{TILE, add_products};
 use super::plan::{Arm, Plan, Step};
 use super::totals::Totals;
@@ -181,22 +181,22 @@ impl Batch<'_> {
         per_length: V,
     ) -> Frame<V> {
         let part = self.part;
-        let mut moved = Frame([[V::splat(0.0); 4]; 3]);
+        let mut link = Frame([[V::splat(0.0); 4]; 3]);
         let joints = self.plan.joints.iter().zip(steps).zip(values).zip(&mut *self.axes);
         for (index, (((joint, step), [cosine, sine]), axis)) in joints.enumerate() {
             if index == 0 {
-                moved = Frame::fixed(step);
+                link = Frame::fixed(step);
             }
             let (cosine, sine) = (V::load(cosine, part), V::load(sine, part));
             let (slide, own_sine) = (weight * cosine * per_length, weight * sine);
             let versine = weight - weight * cosine;
-            for (k, row) in moved.0.iter_mut().enumerate() {
-                let [x, y, z, origin] = if index == 0 { *row } else { turned(*row, step) };
+            for (k, row) in link.0.iter_mut().enumerate() {
+                let still = if index == 0 { *row } else { turned(*row, step) };
+                let [x, y, _, origin] = still;
+                *row = moved(still, joint.turns, cosine, sine);
                 let (a, b) = if joint.turns {
-                    *row = [x.times_plus(cosine, y * sine), x.times_from(sine, y * cosine), z, origin];
                     (y.times_from(own_sine, x * versine), x.times_plus(own_sine, y * versine))
                 } else {
-                    *row = [x, y, z, z.times_plus(cosine, origin)];
                     (-(y * slide), x * slide)
                 };
                 a.store(&mut axis.shifts[0][k], part);
@@ -204,7 +204,7 @@ impl Batch<'_> {
                 origin.store(&mut axis.origin[k], part);
             }
         }
-        moved
+        link
     }
 
     /// Columns of the device's frame: theory.md §5 (25).

@@ -1,6 +1,6 @@
 //! The chain alone: where the last link is in several rows.
 
-use super::frame::{Frame, turned};
+use super::frame::{Frame, moved, turned};
 use super::plan::Step;
 use super::vector::{Vector, WIDTH, Wide};
 
@@ -9,22 +9,17 @@ use super::vector::{Vector, WIDTH, Wide};
 #[inline(always)]
 pub(super) fn last_links<V: Vector>(joints: &[(bool, Step)], values: &[[Wide; 2]], out: &mut [[Wide; 4]; 3]) {
     for part in 0..WIDTH / V::LANES {
-        let mut moved = Frame([[V::splat(0.0); 4]; 3]);
+        let mut link = Frame([[V::splat(0.0); 4]; 3]);
         for (index, ((turns, step), [cosine, sine])) in joints.iter().zip(values).enumerate() {
             if index == 0 {
-                moved = Frame::fixed(step);
+                link = Frame::fixed(step);
             }
             let (cosine, sine) = (V::load(cosine, part), V::load(sine, part));
-            for row in &mut moved.0 {
-                let [x, y, z, origin] = if index == 0 { *row } else { turned(*row, step) };
-                *row = if *turns {
-                    [x.times_plus(cosine, y * sine), x.times_from(sine, y * cosine), z, origin]
-                } else {
-                    [x, y, z, z.times_plus(cosine, origin)]
-                };
+            for row in &mut link.0 {
+                *row = moved(if index == 0 { *row } else { turned(*row, step) }, *turns, cosine, sine);
             }
         }
-        for (row, out) in moved.0.iter().zip(&mut *out) {
+        for (row, out) in link.0.iter().zip(&mut *out) {
             row.iter().zip(out).for_each(|(number, out)| number.store(out, part));
         }
     }

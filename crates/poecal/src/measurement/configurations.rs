@@ -11,12 +11,14 @@ const MIXER: u64 = 0x9e37_79b9_7f4a_7c15;
 const SAME: f64 = 1e-3;
 /// Rows above which only readings that are the same to the last bit are of one configuration.
 pub(crate) const MANY: usize = 100_000;
+/// Rows that one thread looks at together.
+const CHUNK: usize = 4096;
 
 impl Dataset {
     /// Configurations of two rows or more among these, each group and its rows in the order of their numbers: readings that differ by
     /// no more than 0.001 rad or 1 mm are of one.
     pub(crate) fn grouped(&self, rows: &[u32]) -> Vec<Vec<u32>> {
-        if rows.len() > MANY { self.repeated(rows) } else { self.alike(rows, SAME) }
+        if rows.len() > MANY { self.repeated(rows) } else { self.alike(rows, SAME, 2, |_| 0) }
     }
 
     /// These rows by configuration, as [`Dataset::grouped`], those of one row too. For some hundred thousand rows at most.
@@ -29,36 +31,47 @@ impl Dataset {
         groups
     }
 
-    /// Groups of two rows or more among these whose readings are those of the group's first row but for `same`.
-    pub(crate) fn alike(&self, rows: &[u32], same: f64) -> Vec<Vec<u32>> {
+    /// Groups of `least` rows or more of one class among these whose readings are those of the group's first row but for `same`.
+    pub(crate) fn alike(
+        &self,
+        rows: &[u32],
+        same: f64,
+        least: usize,
+        class: impl Fn(u32) -> usize,
+    ) -> Vec<Vec<u32>> {
         let readings = |row: u32| self.readings(row as usize);
         // Rows of equal readings lie together by any sum of their readings; by this one, others seldom do.
         let weight = |k: usize| 1.0 + 0.618_033_988_749_895 * (k as f64).sqrt();
         let key =
             |row: u32| readings(row).iter().enumerate().map(|(k, value)| weight(k) * value).sum::<f64>();
         let window = same * (0..self.reading_names().len()).map(weight).sum::<f64>();
-        let mut order: Vec<(f64, u32)> = rows.iter().map(|&row| (key(row), row)).collect();
-        threads::sort_by(&mut order, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut order: Vec<(usize, f64, u32)> = rows.iter().map(|&row| (class(row), key(row), row)).collect();
+        threads::sort_by(&mut order, |a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         let is_same =
             |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= same);
+        // Places of the rows like that at `first`, from there on.
+        let like = |first: usize| {
+            let (class, key, row) = order[first];
+            let near = order[first..].iter().take_while(move |it| it.0 == class && it.1 - key <= window);
+            (first..).zip(near).filter(move |(_, it)| is_same(row, it.2)).map(|(place, _)| place)
+        };
+        // Hardly any row has enough of them, unless robots were sent back on purpose.
+        let firsts = threads::map_parts(order.len().div_ceil(CHUNK), |chunk| {
+            let places = chunk * CHUNK..order.len().min((chunk + 1) * CHUNK);
+            places.filter(|&first| like(first).nth(least - 1).is_some()).collect::<Vec<_>>()
+        });
         let mut taken = vec![false; order.len()];
         let mut groups = Vec::new();
-        for first in 0..order.len() {
+        for first in firsts.into_iter().flatten() {
             if taken[first] {
                 continue;
             }
-            let (start, row) = order[first];
-            let near = (first + 1..order.len()).take_while(|&k| order[k].0 - start <= window);
-            let mut group = vec![row];
-            for k in near {
-                if !taken[k] && is_same(row, order[k].1) {
-                    taken[k] = true;
-                    group.push(order[k].1);
-                }
-            }
-            if group.len() > 1 {
-                group.sort_unstable();
-                groups.push(group);
+            let members: Vec<usize> = like(first).filter(|&place| !taken[place]).collect();
+            if members.len() >= least {
+                members.iter().for_each(|&place| taken[place] = true);
+                let mut rows: Vec<u32> = members.iter().map(|&place| order[place].2).collect();
+                rows.sort_unstable();
+                groups.push(rows);
             }
         }
         groups.sort_unstable();

@@ -74,6 +74,12 @@ impl Observation {
             rotation_rad: self.sigma_rotation_rad.unwrap_or(usual.rotation_rad),
         }
     }
+
+    /// Squares of a residual's position and rotation (m², rad²) in units of the row's variances, of `usual` noise if it states none.
+    pub(crate) fn whitened(&self, [position, rotation]: [f64; 2], usual: Noise) -> [f64; 2] {
+        let Noise { position_m, rotation_rad } = self.noise_or(usual);
+        [position / (position_m * position_m), rotation / (rotation_rad * rotation_rad)]
+    }
 }
 
 /// Measurements with the configurations they were taken in. Readings are stored flat, one after the other.

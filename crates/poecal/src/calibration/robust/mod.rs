@@ -122,11 +122,11 @@ impl RobustFit {
         };
         let bound = Bounds::new(task.rows.len(), 1.0);
         leave_clusters_out(&view, &weights, |row, error| {
-            let usual = task.data.observations[row as usize].noise_or(noise);
-            let position = error.position_m.norm_squared() / usual.position_m.powi(2);
-            let rotation = error.rotation_rad.map(|turn| turn.norm_squared() / usual.rotation_rad.powi(2));
-            let components = if rotation.is_some() { 6 } else { 3 };
-            let ratio = (position + rotation.unwrap_or(0.0)) / bound.of(components).powi(2);
+            let squares =
+                [error.position_m, error.rotation_rad.unwrap_or_default()].map(|it| it.norm_squared());
+            let [position, rotation] = task.data.observations[row as usize].whitened(squares, noise);
+            let components = if error.rotation_rad.is_some() { 6 } else { 3 };
+            let ratio = (position + rotation) / bound.of(components).powi(2);
             1.0 - (1.0 - ratio.min(1.0)).powi(3)
         })
     }

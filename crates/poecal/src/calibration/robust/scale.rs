@@ -27,13 +27,13 @@ pub(super) fn parts(
     noise: Noise,
 ) -> Vec<Parts> {
     map_squares(data, packed, rows, estimate, |observation, squares| {
-        let Noise { position_m, rotation_rad } = observation.noise_or(noise);
+        let whitened = observation.whitened(squares.map(|(squares, _)| squares), noise);
         let stated = [observation.sigma_position_m, observation.sigma_rotation_rad];
-        let part = |side: usize, sigma: f64| {
-            let (squares, components) = squares[side];
-            Part { squares: squares / (sigma * sigma), components, stated: stated[side].is_some() }
-        };
-        [part(0, position_m), part(1, rotation_rad)]
+        [0, 1].map(|side| Part {
+            squares: whitened[side],
+            components: squares[side].1,
+            stated: stated[side].is_some(),
+        })
     })
 }
 

@@ -9,6 +9,7 @@ use crate::io::model::{Model, ModelSource};
 use crate::io::source_text;
 use crate::io::urdf::ChainSelection;
 use crate::simulate::Kind;
+use crate::text::visible;
 
 const SETTINGS: &str = include_str!("project/poecal.toml");
 const README: &str = include_str!("project/README.md");
@@ -75,7 +76,7 @@ impl Project<'_> {
             None => String::new(),
         };
         let orientation = if self.kind.sees_orientation() { ROTATION_NOISE } else { "" };
-        let name: String = self.model.robot.name.replace(char::is_control, "?");
+        let name = visible(&self.model.robot.name).into_owned();
         let replaced = [
             ("{model}", self.model_name().to_owned()),
             ("{chain}\n", links.iter().map(line).collect()),
