@@ -197,11 +197,10 @@ fn note(formulation: Formulation, method: Method) -> Option<&'static str> {
             Some("screws are normalised after each step, so with noise this is not the least squares")
         }
         (Formulation::ScrewOffsets, Method::GaussNewton) => Some(
-            "screws are normalised after each step, so with noise this is not the least squares; joint offsets cannot be told from \
-             screws, and stand moved into them",
+            "screws are normalised after each step, so with noise this is not the least squares; joint offsets cannot be separated from screws, and are part of them",
         ),
         (Formulation::ScrewOffsets | Formulation::AdjointOffsets, _) => {
-            Some("joint offsets cannot be told from screws, and stand moved into them")
+            Some("joint offsets cannot be separated from screws, and are part of them")
         }
     }
 }

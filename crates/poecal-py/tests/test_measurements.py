@@ -108,10 +108,10 @@ def test_data_frames_have_the_columns_of_files(library):
     columns |= {"target": ["ball, left"] * 50, "set": ["fit"] * 40 + ["held_out"] * 10, "run": list(range(50)), "id": [f"p{i}" for i in range(50)]}
     columns["sigma_position[mm]"] = [0.05] * 49 + [None]
     frame = library.DataFrame(columns)
-    with pytest.warns(poecal.PoecalWarning, match="left alone the columns `run`"):
+    with pytest.warns(poecal.PoecalWarning, match="ignored the columns `run`"):
         seen = poecal.Measurements.from_dataframe(frame, elbow())
     assert set(seen.targets) == {"ball, left"} and seen.sets.count("held_out") == 10 and seen.ids[7] == "p7"
-    assert seen.warnings == ["dataframe: left alone the columns `run`"]
+    assert seen.warnings == ["dataframe: ignored the columns `run`"]
     by_run = poecal.Measurements.from_dataframe(frame, elbow(), fit_where="run=1,2,3")
     assert by_run.sets.count("fit") == 3
     assert set(poecal.Measurements.from_dataframe(frame, elbow(), ignore_sets=True).sets) == {None}

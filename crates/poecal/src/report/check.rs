@@ -283,7 +283,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
         row(&visible(&column.name), &column_words(column), &unit_words(column), &range_words(column));
     }
     if !file.ignored.is_empty() {
-        line(out, "left alone", &first_few(&file.ignored));
+        line(out, "ignored", &first_few(&file.ignored));
     }
 }
 

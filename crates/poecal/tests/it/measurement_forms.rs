@@ -229,7 +229,7 @@ fn other_columns_are_listed_and_left_alone() {
     assert_eq!(file.warnings.len(), 1);
     assert!(
         file.warnings[0].ends_with(
-            "points.csv: left alone the columns `temperature[degC]`, \
+            "points.csv: ignored the columns `temperature[degC]`, \
              `sigma_postion` (did you mean `sigma_position`?), `Target` (did you mean `target`?)"
         ),
         "{}",

@@ -17,7 +17,7 @@ const ROWS_BETWEEN_VISITS: usize = 20;
 pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
     let names = robot.reading_names();
     let columns = header(&names, &reading_units(&names, robot)?, kind.sees_orientation())?;
-    let mut text = "# Measurements: a row for each configuration, below the line of column names. Lines that begin with # are left alone.\n\
+    let mut text = "# Measurements: a row for each configuration, below the line of column names. Lines that begin with # are ignored.\n\
          # Units stand in brackets. If your numbers have others, change them there: [rad], [deg], [m], [mm], [um].\n\
          #\n\
          # Joints      what the controller shows while the robot stands still, not what it was told to do.\n\
@@ -58,7 +58,7 @@ pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<Stri
         "# {count} configurations to measure, random within the limits of the joints (180 deg, 500 mm to either side where a joint has none).\n\
          # NOBODY HAS LOOKED WHETHER THE ROBOT COLLIDES in them or on the way, or whether the device sees the target there: go through\n\
          # them slowly or in simulation first, and replace or leave out what does not work. Every twentieth is the first again, which\n\
-         # shows how well the robot repeats and whether anything drifts. What they would tell: poecal identify\n\
+         # shows how well the robot repeats and whether anything drifts. What they would determine: poecal identify\n\
          {}\n",
         reading_header(&names, &units)
     );
