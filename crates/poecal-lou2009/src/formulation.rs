@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::{FreeScrew, Spatial, gauss_newton};
 
-/// How the errors of the joints are written as unknowns (lou2009, sections II and III). All describe the same robots; they differ
+/// Parameterisation of joint errors (lou2009, sections II and III). All describe the same robots; they differ
 /// in the number of unknowns, in what becomes of constraints, and in what can be identified.
 ///
 /// ```

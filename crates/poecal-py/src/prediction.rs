@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::pose_arrays;
 
-/// Predicted poses of m configurations, and the error to expect of each.
+/// Predicted poses of m configurations, and the expected error of each.
 #[pyclass(frozen, module = "poecal", name = "Prediction")]
 pub(crate) struct Prediction {
     poses: Vec<Pose>,

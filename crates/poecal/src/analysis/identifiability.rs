@@ -35,7 +35,7 @@ pub struct Identifiability {
     pub condition: f64,
     /// What these configurations leave open.
     pub unidentifiable: Vec<Direction>,
-    /// What they tell, but hardly better than a drawing does.
+    /// Directions that they determine weakly, hardly better than the nominal model.
     pub weak: Vec<Direction>,
     /// What no measurement of this kind could tell: it is a choice, is not among the parameters, and changes no prediction.
     pub structural: Vec<Direction>,

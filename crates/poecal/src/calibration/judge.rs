@@ -48,7 +48,7 @@ const TIMES: f64 = 2.0;
 pub struct Subject<'a> {
     /// The calibrated robot with its named targets.
     pub calibrated: &'a Robot,
-    /// The robot as delivered.
+    /// The nominal robot.
     pub nominal: &'a Robot,
     /// Where the calibration found the measuring device.
     pub base_from_device: Pose,

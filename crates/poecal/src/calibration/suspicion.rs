@@ -17,7 +17,7 @@ pub struct JointCorrection {
     pub sigma_shift_m: Option<f64>,
     /// Root mean square position error if this screw alone stayed nominal, tool and device frame found anew, metres.
     pub left_nominal_rms_m: f64,
-    /// What speaks against the joint: a correction beyond those of the others, or errors left that follow its position.
+    /// What speaks against the joint: a correction beyond those of the others, or residuals that follow its position.
     pub suspicious: Option<String>,
 }
 
