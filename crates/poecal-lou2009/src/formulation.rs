@@ -122,7 +122,7 @@ impl Residual {
     }
 }
 
-/// By which steps to minimise.
+/// Method of the solver.
 ///
 /// ```
 /// use poecal_lou2009::{Formulation, Method};

@@ -34,8 +34,8 @@ use crate::words::{
 /// held_out : share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row
 /// seed : seed of that choice (default 1)
 /// robust : how to treat outliers: "auto", "off", "huber", "cauchy" or "tukey"
-/// formulation : how errors of the joints are written: "adjoint", "screw", "screw-offsets" or "adjoint-offsets"
-/// residual : how errors of measured frames are written: "tool" or "spatial"
+/// formulation : parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets"
+/// residual : residual of measured frames: "tool" or "spatial"
 /// method : "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws)
 /// validate : measurements to judge by: all other rows are fitted
 /// progress : called with what is done next, in words

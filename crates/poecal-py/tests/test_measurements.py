@@ -134,7 +134,7 @@ def test_lost_beams_are_left_out_or_refused(tmp_path):
     frame = pandas.DataFrame(table(session()))
     axes = ["x[mm]", "y[mm]", "z[mm]"]
     frame.loc[3, axes], frame.loc[5, axes] = np.nan, 0.0
-    words = "left out 2 measurements with an empty or zero position, as of a lost beam"
+    words = "skipped 2 measurements with an empty or zero position, as of a lost beam"
     with pytest.warns(poecal.PoecalWarning, match=words):
         seen = poecal.Measurements.from_dataframe(frame, elbow())
     assert len(seen) == len(frame) - 2 and seen.warnings[0].endswith("; strict refuses them")

@@ -80,7 +80,7 @@ impl From<RobustWord> for Robust {
     }
 }
 
-/// By which steps to minimise.
+/// Method of the solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MethodWord {
     /// Damped steps, taken only if they reduce the cost

@@ -41,7 +41,7 @@ fn named_targets_are_predicted_by_name() {
         ),
         (
             "poses.csv",
-            "found orientations of target `smr1`, expected positions alone, since the calibration knows it as a point: leave the orientation columns out, or refit the targets with --refit-tool",
+            "found orientations of target `smr1`, expected positions alone, since it is a point in the calibration: leave the orientation columns out, or refit the targets with --refit-tool",
         ),
     ];
     write_measurements(&folder, "other.csv", Kind::Point, "smr2", &simulation);

@@ -26,13 +26,13 @@ pub(super) fn doubts(
         };
         doubts.push(format!(
             "with nominal screws the position error is {error_mm:.1} mm (RMS), {:.0} % of the measurements' spread: \
-             look for a wrong unit, exchanged or misnamed joint columns, mirrored coordinates{base}, or another robot",
+             check for a wrong unit, exchanged or misnamed joint columns, mirrored coordinates{base}, or another robot",
             100.0 * error_mm / spread_mm
         ));
     }
     if let Some(rotation) = registered.rotation_deg.filter(|rotation| rotation.rms > TURNED_DEG) {
         doubts.push(format!(
-            "with nominal screws the orientation error is {:.0} deg (RMS): look for the quaternion's order (x, y, z, w), \
+            "with nominal screws the orientation error is {:.0} deg (RMS): check the quaternion's order (x, y, z, w), \
              inverted poses, or another Euler convention",
             rotation.rms
         ));

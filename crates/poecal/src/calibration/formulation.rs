@@ -37,11 +37,11 @@ pub struct Formulation {
 /// What a fit says of its formulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FormulationWords {
-    /// How the errors of the joints are written.
+    /// Parameterisation of joint errors.
     pub formulation: &'static str,
     /// How the errors of measured frames are written.
     pub pose_residual: &'static str,
-    /// By which steps the fit goes.
+    /// Method of the solver.
     pub method: &'static str,
     /// What that does to the result.
     pub note: Option<&'static str>,

@@ -58,7 +58,7 @@ fn of_part(what: &str, part: &Part, unit: f64, name: &str) -> Option<NoiseDoubt>
         Ordering::Equal => None,
         Ordering::Greater => {
             let advice = if ratio > MORE {
-                ": look for a wrong unit of the noise, a device that was moved, or mistakes in the rows"
+                ": check the unit of the noise, whether the device was moved, and the rows"
             } else {
                 "; the excess counts as robot error"
             };
@@ -73,7 +73,7 @@ fn of_part(what: &str, part: &Part, unit: f64, name: &str) -> Option<NoiseDoubt>
         Ordering::Less => (ratio < 1.0 / LESS).then(|| NoiseDoubt {
             statement: format!(
                 "the {what} residuals ({left} {name} per component) are {:.0} times smaller than the stated noise \
-                 ({stated} {name}): look for a wrong unit of the noise; the bounds do not use it",
+                 ({stated} {name}): check the unit of the noise; the bounds do not use it",
                 1.0 / ratio
             ),
             is_absurd: true,

@@ -122,13 +122,13 @@ impl Inputs {
 /// The minimisation: steps, end, convergence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolverEntry {
-    /// How the errors of the joints were written as unknowns: `adjoint`, or a formulation for comparison.
+    /// Parameterisation of joint errors: `adjoint`, or a formulation for comparison.
     #[serde(default = "usual_formulation")]
     pub formulation: String,
     /// How the errors of measured frames were written: `tool`, at the target, or a way for comparison.
     #[serde(default = "usual_pose_residual")]
     pub pose_residual: String,
-    /// By which steps the fit went: `levenberg-marquardt`, or others for comparison.
+    /// Method of the solver: `levenberg-marquardt`, or others for comparison.
     #[serde(default = "usual_method")]
     pub method: String,
     /// What the formulation does to the result, if it is not the usual one.
