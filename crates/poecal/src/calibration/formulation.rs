@@ -28,7 +28,7 @@ pub struct Formulation {
     pub words: FormulationWords,
     /// The unknowns of joints of some kinds, in the order of the chain.
     pub joint_parameters: fn(&[JointKind]) -> Vec<Parameter>,
-    /// How the errors of measured frames are written, if not at the target.
+    /// Residual of measured frames, if not at the target.
     pub pose_residual: Option<&'static dyn PoseResidual>,
     /// Minimises a problem from a start.
     pub minimize: Minimize,
@@ -39,7 +39,7 @@ pub struct Formulation {
 pub struct FormulationWords {
     /// Parameterisation of joint errors.
     pub formulation: &'static str,
-    /// How the errors of measured frames are written.
+    /// Residual of measured frames.
     pub pose_residual: &'static str,
     /// Method of the solver.
     pub method: &'static str,

@@ -164,7 +164,7 @@ fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     let tool: usize = if subject.refit_tool { targets.sum() } else { 0 };
     if tool > MOST_UNKNOWNS {
         let message = format!(
-            "found {tool} unknowns of {} targets to be refitted, expected at most {MOST_UNKNOWNS}, the most for one fit: \
+            "found {tool} unknowns of {} targets to be refitted, expected at most {MOST_UNKNOWNS} in one fit: \
              leave --refit-tool out, or judge fewer targets",
             data.targets.len()
         );

@@ -50,8 +50,10 @@ fn range_words(judgement: &Judgement) -> String {
     let share = 100.0 * some.promised.position_mm.inside_bound95;
     let rms = number(some.calibrated.position_mm.rms);
     format!(
-        "{} of {} configurations lie inside it: position error {rms} mm (RMS), {share:.1} % inside the bounds",
-        some.count, judgement.count
+        "{} of {} configurations {} inside it: position error {rms} mm (RMS), {share:.1} % inside the bounds",
+        some.count,
+        judgement.count,
+        if some.count == 1 { "lies" } else { "lie" }
     )
 }
 

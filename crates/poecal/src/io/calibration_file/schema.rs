@@ -125,7 +125,7 @@ pub struct SolverEntry {
     /// Parameterisation of joint errors: `adjoint`, or a formulation for comparison.
     #[serde(default = "usual_formulation")]
     pub formulation: String,
-    /// How the errors of measured frames were written: `tool`, at the target, or a way for comparison.
+    /// Residual of measured frames: `tool`, at the target, or another for comparison.
     #[serde(default = "usual_pose_residual")]
     pub pose_residual: String,
     /// Method of the solver: `levenberg-marquardt`, or others for comparison.
@@ -145,8 +145,8 @@ pub struct SolverEntry {
     /// Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit starts again.
     #[serde(default)]
     pub trace: Vec<f64>,
-    /// Joint offsets found: joint value minus reading, where the formulation has them. Data cannot tell them
-    /// from screws; in `joints` they stand moved into the screws, and the readings need no correction.
+    /// Joint offsets found: joint value minus reading, where the formulation has them. Data cannot separate them
+    /// from screws; in `joints` they are part of the screws, and the readings need no correction.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub joint_offsets: Option<Vec<OffsetEntry>>,
 }

@@ -32,7 +32,7 @@ pub struct LeftOutEntry {
 pub struct CrossValidationEntry {
     /// Random folds, all together.
     pub random: LeftOutEntry,
-    /// The ends of each joint's range, files, and groups of equal `id`, left out in turn.
+    /// The ends of each joint's range, files, and groups of equal `id`, each predicted by a fit without it.
     pub blocked: Vec<LeftOutEntry>,
 }
 
@@ -50,9 +50,9 @@ pub struct ExpectedEntry {
 /// The spread of predictions at the measured configurations over bootstrap samples of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BootstrapEntry {
-    /// How often neighbourhoods of rows were drawn with replacement.
+    /// Number of samples: neighbourhoods of rows, with replacement.
     pub drawings: usize,
-    /// Root mean square distance as the drawings show it, millimetres.
+    /// Root mean square distance over these samples, millimetres.
     pub sigma_position_mm: f64,
     /// The same if residuals are white noise, by the covariance, millimetres.
     pub formal_sigma_position_mm: f64,
