@@ -1,21 +1,21 @@
-"""An elbow with known errors, found again from poses.
+"""An elbow with known errors, calibrated from poses.
 
-A device that stands anywhere sees the pose of the tool of a six-axis arm in m = 50 random configurations. The arm is not quite as
-drawn: every axis, and the tool, is turned by 1° and shifted by 2 mm.
+A device at an unknown place measures the pose of the tool of a six-axis arm in m = 50 random configurations. The
+arm differs from nominal: every axis, and the tool, is turned by 1° and shifted by 2 mm.
 
-============== ======================================== =============
-symbol         what                                     known
-============== ======================================== =============
-θ_k            joint values of row k, radians           read
-ξ_1 … ξ_6      screws of the joints, base frame         drawn; found
-M              pose of the tool in the base at zero     drawn; found
-D              pose of the base in the device           found
-Y_k            pose of the tool in the device           measured
-============== ======================================== =============
+========= ==================================== ===============
+symbol    what                                 known
+========= ==================================== ===============
+θ_k       joint values of row k, radians       read
+ξ_1 … ξ_6 screws of the joints, base frame     nominal; fitted
+M         pose of the tool in the base at zero nominal; fitted
+D         pose of the base in the device       fitted
+Y_k       pose of the tool in the device       measured
+========= ==================================== ===============
 
-State: 4 unknowns an axis, 6 of the tool; D has 6 more, which the screws take in (docs/theory.md §8): 30 in all.
+State: 4 unknowns an axis, 6 of the tool; D has 6 more, which the screws absorb (docs/theory.md §8): 30 in all.
 Measurement equation: Y_k = D exp(ξ_1 θ_1k) … exp(ξ_6 θ_6k) M, and noise.
-Noise: white, 0.05 mm in each component of position and 0.01° in each of rotation. It is not told to the fit.
+Noise: white, 0.05 mm in each component of position and 0.01° in each of rotation. It is not given to the fit.
 
 Its twin in Rust prints the same: crates/poecal/examples/01_simulate_and_calibrate.rs.
 """
@@ -42,4 +42,4 @@ assert calibration.verdict is not None
 print(f"verdict      {calibration.verdict.level}")
 for found in calibration.corrections:
     tilt, sigma_tilt, shift, sigma_shift = (found[key] for key in ["tilt_deg", "sigma_tilt_deg", "shift_mm", "sigma_shift_mm"])
-    print(f"{found['joint']:<12} {tilt:.4f} deg (± {sigma_tilt:.4f}) and {shift:.4f} mm (± {sigma_shift:.4f}) from the drawing")
+    print(f"{found['joint']:<12} {tilt:.4f} deg (± {sigma_tilt:.4f}) and {shift:.4f} mm (± {sigma_shift:.4f}) from nominal")

@@ -1,19 +1,19 @@
-"""The error to expect of each prediction, against the true one.
+"""The expected error of each prediction, against the true one.
 
-A calibrated model says where the tool is, and how well it knows that. Here the truth is known: the predictions of 1,000 further
+A calibrated model predicts the pose of the tool, with its uncertainty. Here the truth is known: the predictions of 1,000 further
 configurations are compared with it.
 
-======== ============================================= ==================================
-symbol   what                                          known
-======== ============================================= ==================================
-θ_k      joint values, radians                         read
-f(θ)     pose of the tool by the calibrated screws     found
-f*(θ)    pose of the tool of the robot that is there   known to the simulation alone
-C        covariance of all unknowns                    found with them
-J(θ)     how the unknowns move the tool                from the screws
-======== ============================================= ==================================
+====== ========================================= =============================
+symbol what                                      known
+====== ========================================= =============================
+θ_k    joint values, radians                     read
+f(θ)   pose of the tool by the calibrated screws fitted
+f*(θ)  pose of the tool of the actual robot      known to the simulation alone
+C      covariance of all unknowns                fitted with them
+J(θ)   motion of the tool by the unknowns        from the screws
+====== ========================================= =============================
 
-State: 30 unknowns, of six axes and the tool, from 35 poses of 50 (the others are held out); the device stands anywhere.
+State: 30 unknowns, of six axes and the tool, from 35 poses of 50 (the others are held out); the device's place is unknown.
 Measurement equation: Y_k = D f*(θ_k), and noise.
 Noise: white, 0.05 mm and 0.01° in each component. Prediction: cov f(θ) = J(θ) C J(θ)ᵀ (docs/theory.md §9).
 

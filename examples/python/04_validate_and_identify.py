@@ -1,18 +1,18 @@
 """Which configurations to measure, and a calibration judged by other rows.
 
-Before anything is measured, identify tells what some configurations would tell. 8 and 40 are compared; the 40 are measured, every
-row is fitted, and the calibration is judged by 200 rows that it did not see.
+Before anything is measured, identify shows which unknowns given configurations would determine. 8 and
+40 are compared; the 40 are measured, every row is fitted, and the calibration is judged by 200 held-out rows.
 
-======== ========================================================== =============
-symbol   what                                                       known
-======== ========================================================== =============
-θ_k      joint values of row k, radians                             chosen
-x        screws of the axes and the point of the mirror, 27 numbers drawn; found
-H_k      how x moves the mirror of row k                            from the drawing
-y_k      position of the mirror in the tracker                      measured
-======== ========================================================== =============
+====== ============================================================= ===============
+symbol what                                                          known
+====== ============================================================= ===============
+θ_k    joint values of row k, radians                                chosen
+x      screws of the axes and the point of the reflector, 27 numbers nominal; fitted
+H_k    motion of the reflector of row k by x                         nominal
+y_k    position of the reflector in the tracker                      measured
+====== ============================================================= ===============
 
-State: x; the tracker stands anywhere.
+State: x; the tracker's place is unknown.
 Measurement equation: y_k = D f(θ_k; x), and noise; of errors of x, δy_k = H_k δx.
 Noise: white, σ = 0.05 mm in each component. Information: Σ H_kᵀ H_k / σ², of which rank and covariance follow.
 
@@ -33,12 +33,12 @@ assert others is not None
 for count in [8, 40]:
     found = poecal.identify(nominal, made.measurements.joints[:count], kind="point")
     told, mean_mm = found["identifiability"], found["expected_error"]["position_mean_mm"]
-    expected = "nothing told" if mean_mm is None else f"{mean_mm:.4f} mm to expect"
+    expected = "no prediction" if mean_mm is None else f"{mean_mm:.4f} mm expected error"
     print(f"{count} points would determine {told['rank']} of {told['parameters']} unknowns: {expected}")
 
 calibration = poecal.calibrate(nominal, made.measurements, held_out=0)
 judgement = calibration.validate(others)
 error = judgement["calibrated"]["position_mm"]
-print(f"{judgement['count']} other points are missed by {error['rms']:.4f} mm (RMS), {error['max']:.4f} mm at most")
+print(f"{judgement['count']} other points: error {error['rms']:.4f} mm (RMS), {error['max']:.4f} mm at most")
 kept = judgement["promised"]["position_mm"]
-print(f"promised were {kept['expected_rms']:.4f} mm with noise; {100 * kept['inside_bound95']:.1f} % lie inside their 95 % bounds")
+print(f"expected {kept['expected_rms']:.4f} mm with noise; {100 * kept['inside_bound95']:.1f} % are inside their 95 % bounds")

@@ -116,7 +116,7 @@ def test_a_narrow_terminal_is_survived(session, command):
     shown, code = on_terminal(session, *command.split(), width=60)
     assert code in (0, 1, 2) and "panicked" not in shown
     # Tables keep their columns; sentences keep to the width.
-    sentences = [line for line in lines(shown) if re.match(r"warning:|error:|noise |solver |verdict |look at |known | {14}\S", line)]
+    sentences = [line for line in lines(shown) if re.match(r"warning:|error:|noise |solver |verdict |look at |determined | {14}\S", line)]
     assert all(len(line) <= 60 or re.search(r"\S {2,}\S", line[14:]) for line in sentences), sentences
 
 

@@ -220,7 +220,7 @@ function stateText(view) {
     const [calibrated, nominal] = [of("screw"), of("nominal_screw")];
     const apart = Math.hypot(...calibrated.map((value, k) => value - nominal[k]));
     text.dataset.tip = calibrated.join(",");
-    text.textContent = `Tip at ${calibrated.map((value) => shown(1e3 * value, 5)).join(", ")} mm in the base; the nominal model says ${shown(1e3 * apart)} mm elsewhere.`;
+    text.textContent = `Tip at ${calibrated.map((value) => shown(1e3 * value, 5)).join(", ")} mm in the base; the tip of the nominal model is ${shown(1e3 * apart)} mm away.`;
   });
   return text;
 }

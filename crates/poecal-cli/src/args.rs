@@ -32,7 +32,7 @@ const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 the
                           worse than --require asks for, or they could not be printed; 2 refused: wrong input or usage, nothing was \
                           written; 3 no result at all";
 
-/// Finds the robot that is really there: kinematic calibration by the product of exponentials.
+/// Kinematic calibration of serial robots by the product of exponentials.
 #[derive(Debug, Parser)]
 #[command(name = "poecal", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {
@@ -68,9 +68,9 @@ pub(crate) enum Command {
     Convert(Convert),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
-    /// Repeat the experiment of a paper and check its claims, or show what gross errors do
+    /// Repeat the experiment of a paper and check its claims, or show the effect of gross errors
     Reproduce(Reproduce),
-    /// Tell what measuring in some configurations would tell, before anything is measured
+    /// Show what measurements in given configurations would determine, before anything is measured
     Identify(Identify),
     /// Print the JSON Schema of calibration.json
     Schema,
@@ -90,13 +90,13 @@ pub(crate) struct Validate {
     pub(crate) strictness: Strictness,
     #[command(flatten)]
     pub(crate) frames: DeviceFrames,
-    /// Find the measuring device's frame anew from these measurements
+    /// Refit the measuring device's frame to these measurements
     #[arg(long)]
     pub(crate) refit_frame: bool,
-    /// Find the targets anew from these measurements
+    /// Refit the targets to these measurements
     #[arg(long)]
     pub(crate) refit_tool: bool,
-    /// End with code 1 unless the measurements bear this out: `good` if 80 % of all errors are inside their own 95 % bounds and the error
+    /// End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
     #[arg(long, value_enum, value_name = "VERDICT")]
     pub(crate) require: Option<RequiredLevel>,
@@ -128,7 +128,7 @@ impl From<PredictIn> for PredictionFrame {
 pub(crate) struct Predict {
     /// Robot model: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
-    /// Joint readings (CSV); other columns than the joints' and `id` are left alone
+    /// Joint readings (CSV); other columns than the joints' and `id` are ignored
     pub(crate) joints: PathBuf,
     #[command(flatten)]
     pub(crate) chain: Chain,
@@ -137,7 +137,7 @@ pub(crate) struct Predict {
     /// The frame of the poses
     #[arg(long, value_enum, default_value = "base")]
     pub(crate) frame: PredictIn,
-    /// Add the error to expect of each prediction, and whether it lies in the sampled range (of a calibration.json)
+    /// Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json)
     #[arg(long)]
     pub(crate) with_uncertainty: bool,
     /// Predict this target of the model instead of the tip

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::{FreeScrew, Spatial, gauss_newton};
 
-/// How the errors of the joints are written as unknowns (lou2009, sections II and III). All describe the same robots; they differ
+/// Parameterisation of joint errors (lou2009, sections II and III). All describe the same robots; they differ
 /// in the number of unknowns, in what becomes of constraints, and in what can be identified.
 ///
 /// ```
@@ -122,7 +122,7 @@ impl Residual {
     }
 }
 
-/// By which steps to minimise.
+/// Method of the solver.
 ///
 /// ```
 /// use poecal_lou2009::{Formulation, Method};
@@ -197,11 +197,10 @@ fn note(formulation: Formulation, method: Method) -> Option<&'static str> {
             Some("screws are normalised after each step, so with noise this is not the least squares")
         }
         (Formulation::ScrewOffsets, Method::GaussNewton) => Some(
-            "screws are normalised after each step, so with noise this is not the least squares; joint offsets cannot be told from \
-             screws, and stand moved into them",
+            "screws are normalised after each step, so with noise this is not the least squares; joint offsets cannot be separated from screws, and are part of them",
         ),
         (Formulation::ScrewOffsets | Formulation::AdjointOffsets, _) => {
-            Some("joint offsets cannot be told from screws, and stand moved into them")
+            Some("joint offsets cannot be separated from screws, and are part of them")
         }
     }
 }

@@ -65,7 +65,7 @@ impl From<calibration::ModelAccuracy> for ModelAccuracy {
 pub(crate) struct SetAccuracy {
     /// Number of measurements.
     count: usize,
-    /// The model as delivered; only an unknown device frame is fitted.
+    /// The nominal model; only an unknown device frame is fitted.
     nominal: ModelAccuracy,
     /// Device frame and targets fitted, screws nominal.
     registered: ModelAccuracy,

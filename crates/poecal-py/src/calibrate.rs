@@ -25,17 +25,17 @@ use crate::words::{
 ///
 /// Parameters
 /// ----------
-/// robot : the robot as delivered
+/// robot : the nominal robot
 /// measurements : what was measured of it
 /// frame : the measuring device's frame: "unknown" (it stands anywhere) or "base"
 /// sigma_position_mm, sigma_rotation_deg : standard deviation of each measured component, default estimated from the data
-/// tolerance_deg_mm : how far each axis may stand off the drawing, standard deviations of angle and place (default 0.5 deg and 5 mm), or
-///     None: a belief that decides what the measurements do not tell
+/// tolerance_deg_mm : prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or
+///     None; it decides where the measurements determine nothing
 /// held_out : share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row
 /// seed : seed of that choice (default 1)
-/// robust : what to do about grossly wrong rows: "auto", "off", "huber", "cauchy" or "tukey"
-/// formulation : how errors of the joints are written: "adjoint", "screw", "screw-offsets" or "adjoint-offsets"
-/// residual : how errors of measured frames are written: "tool" or "spatial"
+/// robust : how to treat outliers: "auto", "off", "huber", "cauchy" or "tukey"
+/// formulation : parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets"
+/// residual : residual of measured frames: "tool" or "spatial"
 /// method : "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws)
 /// validate : measurements to judge by: all other rows are fitted
 /// progress : called with what is done next, in words

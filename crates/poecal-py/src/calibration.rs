@@ -62,7 +62,7 @@ impl Calibration {
         Ok(self.calibrated()?.same())
     }
 
-    /// The robot as delivered.
+    /// The nominal robot.
     #[getter]
     fn nominal(&self) -> Robot {
         self.nominal.same()
@@ -112,13 +112,13 @@ impl Calibration {
         part(py, &self.file().corrections)
     }
 
-    /// Errors to expect of predictions: `uncertainty` of calibration.json; None if there are no more residuals than unknowns.
+    /// Expected errors of predictions: `uncertainty` of calibration.json; None if there are no more residuals than unknowns.
     #[getter]
     fn uncertainty<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, &self.file().uncertainty)
     }
 
-    /// What the measurements can tell: `identifiability` of calibration.json.
+    /// Which unknowns the measurements determine: `identifiability` of calibration.json.
     #[getter]
     fn identifiability<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, &self.file().identifiability)
@@ -134,7 +134,7 @@ impl Calibration {
         self.file().to_text().map_err(raise)
     }
 
-    /// The text of residuals.csv: what each row leaves.
+    /// The text of residuals.csv: residuals of each row.
     fn residuals_csv(&self) -> PyResult<String> {
         Ok(self.residuals()?.text())
     }
@@ -189,7 +189,7 @@ impl Calibration {
     /// Where the calibrated tip, or a target, stands.
     ///
     /// `joints` is of shape (m, n), radians and metres, or (n,) for one configuration. Gives poses of shape (m, 4, 4), or (4, 4), in
-    /// the `frame` "base" or "device"; with `with_uncertainty` a `Prediction`, with the error to expect of each.
+    /// the `frame` "base" or "device"; with `with_uncertainty` a `Prediction`, with the expected error of each.
     #[pyo3(signature = (joints, *, with_uncertainty=false, frame="base", target=None))]
     fn predict<'py>(
         &self,
@@ -214,7 +214,7 @@ impl Calibration {
 
     /// Judges the calibration by measurements that it did not see; every row counts.
     ///
-    /// `refit_frame` finds the device's frame anew from them, `refit_tool` the targets.
+    /// `refit_frame` refits the device's frame to them, `refit_tool` the targets.
     #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false))]
     fn validate(
         &self,
@@ -235,7 +235,7 @@ impl Calibration {
         Findings::new(text, &judgement, doubts)
     }
 
-    /// What measuring the calibrated robot in these configurations would tell; see `identify`.
+    /// Which unknowns measurements of the calibrated robot in these configurations would determine; see `identify`.
     #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown"))]
     fn identify(
         &self,

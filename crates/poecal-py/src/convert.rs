@@ -85,7 +85,7 @@ pub(crate) fn schema() -> String {
     CalibrationFile::json_schema()
 }
 
-/// Joint readings of a file, shape (m, n), radians and metres, in the order of `robot.reading_names`. Other columns are left alone.
+/// Joint readings of a file, shape (m, n), radians and metres, in the order of `robot.reading_names`. Other columns are ignored.
 ///
 /// `columns` is a mapping file that says what the columns of other people's files mean.
 #[pyfunction]

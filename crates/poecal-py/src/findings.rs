@@ -109,7 +109,7 @@ pub(crate) fn check(
     Findings::new(check.text(), &check, file.map_or_else(Vec::new, |file| file.warnings.clone()))
 }
 
-/// What measuring in some configurations would tell, before anything is measured.
+/// Which unknowns measurements in given configurations would determine, before anything is measured.
 ///
 /// Parameters
 /// ----------
@@ -156,7 +156,7 @@ pub(crate) enum RobotOrCalibration<'py> {
 /// The joint offsets that explain best how a robot differs from its model, and what they leave.
 ///
 /// `actual` is a robot or a calibration. `base` and `tip` say whether these frames are the same in both ("kept") or found with the
-/// offsets ("free"); by default what a calibration found anew is free.
+/// offsets ("free"); by default what a calibration fitted is free.
 #[pyfunction]
 #[pyo3(signature = (nominal, actual, *, base=None, tip=None))]
 pub(crate) fn offsets(

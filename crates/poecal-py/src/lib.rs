@@ -78,7 +78,7 @@ mod _poecal {
         rayon::ThreadPoolBuilder::new().num_threads(count).build_global().map_err(|_| {
             crate::errors::argument(
                 "count",
-                "found threads at work already, expected to be asked before anything is computed",
+                "found threads at work already, expected a call before anything is computed",
             )
         })
     }

@@ -138,7 +138,7 @@ impl Measurements {
     /// fit_where : "COLUMN=VALUE[,VALUE]"
     ///     Fit only rows whose column has one of these values, and hold out all others.
     /// ignore_sets : whether the files' column `set` means nothing, as for rows that judge a calibration
-    /// strict : whether lost beams, empty or zero positions, are an error instead of being left out with a warning
+    /// strict : whether lost beams, empty or zero positions, are an error instead of being skipped with a warning
     /// frames : "common" or "per-file"
     ///     Which rows share a frame of the measuring device: all (or those of one name in the column `instrument`), or those of a file.
     #[staticmethod]

@@ -1,4 +1,4 @@
-//! Predictions with what to expect of them.
+//! Predictions with their expected errors.
 
 use numpy::{PyArray1, PyArray3};
 use poecal::lie::Pose;
@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::pose_arrays;
 
-/// Predicted poses of m configurations, and the error to expect of each.
+/// Predicted poses of m configurations, and the expected error of each.
 #[pyclass(frozen, module = "poecal", name = "Prediction")]
 pub(crate) struct Prediction {
     poses: Vec<Pose>,
@@ -32,13 +32,13 @@ impl Prediction {
         pose_arrays(py, &self.poses)
     }
 
-    /// Root mean square distance to expect, shape (m,), metres.
+    /// Expected root mean square distance, shape (m,), metres.
     #[getter]
     fn sigma_position_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.array(py, PredictedError::sigma_position_m)
     }
 
-    /// Root mean square angle to expect, shape (m,), radians.
+    /// Expected root mean square angle, shape (m,), radians.
     #[getter]
     fn sigma_rotation_rad<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.array(py, PredictedError::sigma_rotation_rad)

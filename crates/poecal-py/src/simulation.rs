@@ -20,7 +20,7 @@ use crate::words::{frame as frame_word, from_deg, from_mm, kind as kind_word, si
 /// Most rows of a simulation, as of the program.
 const MOST: usize = 10_000_000;
 
-/// A simulated session: the robot as drawn, the one that is really there, and what a device measured of it.
+/// A simulated session: the nominal robot, the actual one, and what a device measured of it.
 #[pyclass(frozen, module = "poecal", name = "Simulation")]
 pub(crate) struct Simulation {
     nominal: Robot,
@@ -33,7 +33,7 @@ pub(crate) struct Simulation {
 
 #[pymethods]
 impl Simulation {
-    /// The robot as drawn.
+    /// The nominal robot.
     #[getter]
     fn nominal(&self) -> Robot {
         self.nominal.same()

@@ -108,10 +108,10 @@ def test_data_frames_have_the_columns_of_files(library):
     columns |= {"target": ["ball, left"] * 50, "set": ["fit"] * 40 + ["held_out"] * 10, "run": list(range(50)), "id": [f"p{i}" for i in range(50)]}
     columns["sigma_position[mm]"] = [0.05] * 49 + [None]
     frame = library.DataFrame(columns)
-    with pytest.warns(poecal.PoecalWarning, match="left alone the columns `run`"):
+    with pytest.warns(poecal.PoecalWarning, match="ignored the columns `run`"):
         seen = poecal.Measurements.from_dataframe(frame, elbow())
     assert set(seen.targets) == {"ball, left"} and seen.sets.count("held_out") == 10 and seen.ids[7] == "p7"
-    assert seen.warnings == ["dataframe: left alone the columns `run`"]
+    assert seen.warnings == ["dataframe: ignored the columns `run`"]
     by_run = poecal.Measurements.from_dataframe(frame, elbow(), fit_where="run=1,2,3")
     assert by_run.sets.count("fit") == 3
     assert set(poecal.Measurements.from_dataframe(frame, elbow(), ignore_sets=True).sets) == {None}
@@ -134,7 +134,7 @@ def test_lost_beams_are_left_out_or_refused(tmp_path):
     frame = pandas.DataFrame(table(session()))
     axes = ["x[mm]", "y[mm]", "z[mm]"]
     frame.loc[3, axes], frame.loc[5, axes] = np.nan, 0.0
-    words = "left out 2 measurements with an empty or zero position, as of a lost beam"
+    words = "skipped 2 measurements with an empty or zero position, as of a lost beam"
     with pytest.warns(poecal.PoecalWarning, match=words):
         seen = poecal.Measurements.from_dataframe(frame, elbow())
     assert len(seen) == len(frame) - 2 and seen.warnings[0].endswith("; strict refuses them")

@@ -1,19 +1,19 @@
-//! An elbow with known errors, found again from poses.
+//! An elbow with known errors, calibrated from poses.
 //!
-//! A device that stands anywhere sees the pose of the tool of a six-axis arm in m = 50 random configurations. The arm is not quite as
-//! drawn: every axis, and the tool, is turned by 1° and shifted by 2 mm.
+//! A device at an unknown place measures the pose of the tool of a six-axis arm in m = 50 random configurations. The
+//! arm differs from nominal: every axis, and the tool, is turned by 1° and shifted by 2 mm.
 //!
 //! | symbol | what | known |
 //! |---|---|---|
 //! | `θ_k` | joint values of row k, radians | read |
-//! | `ξ_1 … ξ_6` | screws of the joints, base frame | drawn; found |
-//! | `M` | pose of the tool in the base at zero | drawn; found |
-//! | `D` | pose of the base in the device | found |
+//! | `ξ_1 … ξ_6` | screws of the joints, base frame | nominal; fitted |
+//! | `M` | pose of the tool in the base at zero | nominal; fitted |
+//! | `D` | pose of the base in the device | fitted |
 //! | `Y_k` | pose of the tool in the device | measured |
 //!
-//! State: 4 unknowns an axis, 6 of the tool; `D` has 6 more, which the screws take in (docs/theory.md §8): 30 in all.
+//! State: 4 unknowns an axis, 6 of the tool; `D` has 6 more, which the screws absorb (docs/theory.md §8): 30 in all.
 //! Measurement equation: `Y_k = D exp(ξ_1 θ_1k) … exp(ξ_6 θ_6k) M`, and noise.
-//! Noise: white, 0.05 mm in each component of position and 0.01° in each of rotation. It is not told to the fit.
+//! Noise: white, 0.05 mm in each component of position and 0.01° in each of rotation. It is not given to the fit.
 //!
 //! Its twin in Python prints the same: `examples/python/01_simulate_and_calibrate.py`.
 
@@ -45,12 +45,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     println!("verdict      {}", calibration.verdict.level.word());
     for (joint, found) in made.nominal.joints.iter().zip(&calibration.trust.joints) {
-        let sigma_tilt_rad = found.sigma_tilt_rad.ok_or("the data tell every axis")?;
-        let sigma_shift_m = found.sigma_shift_m.ok_or("the data tell every axis")?;
+        let sigma_tilt_rad = found.sigma_tilt_rad.ok_or("every axis is determined")?;
+        let sigma_shift_m = found.sigma_shift_m.ok_or("every axis is determined")?;
         let (tilt, shift) = (found.tilt_rad.to_degrees(), 1e3 * found.shift_m);
         let (sigma_tilt, sigma_shift) = (sigma_tilt_rad.to_degrees(), 1e3 * sigma_shift_m);
         println!(
-            "{:<12} {tilt:.4} deg (± {sigma_tilt:.4}) and {shift:.4} mm (± {sigma_shift:.4}) from the drawing",
+            "{:<12} {tilt:.4} deg (± {sigma_tilt:.4}) and {shift:.4} mm (± {sigma_shift:.4}) from nominal",
             joint.name
         );
     }

@@ -1,19 +1,19 @@
-//! A laser tracker anywhere, and a mirror somewhere on the tool.
+//! A laser tracker at an unknown place, and a reflector at an unknown place on the tool.
 //!
-//! The tracker sees positions alone, of one mirror, in m = 100 configurations. Neither where it stands nor where the mirror sits on the
-//! tool is known.
+//! The tracker measures positions alone, of one reflector, in m = 100 configurations. Its place, and that of the
+//! reflector on the tool, are unknown.
 //!
 //! | symbol | what | known |
 //! |---|---|---|
 //! | `θ_k` | joint values of row k, radians | read |
-//! | `ξ_1 … ξ_6` | screws of the joints, base frame | drawn; found |
-//! | `p` | the mirror in the base at zero | roughly drawn; found |
-//! | `D` | pose of the base in the tracker | found |
-//! | `y_k` | position of the mirror in the tracker | measured |
+//! | `ξ_1 … ξ_6` | screws of the joints, base frame | nominal; fitted |
+//! | `p` | the reflector in the base at zero | rough nominal; fitted |
+//! | `D` | pose of the base in the tracker | fitted |
+//! | `y_k` | position of the reflector in the tracker | measured |
 //!
-//! State: 4 unknowns an axis and 3 of the mirror; `D` has 6 more, which the screws take in (docs/theory.md §8): 27 in all.
+//! State: 4 unknowns an axis and 3 of the reflector; `D` has 6 more, which the screws absorb (docs/theory.md §8): 27 in all.
 //! Measurement equation: `y_k = D exp(ξ_1 θ_1k) … exp(ξ_6 θ_6k) p`, and noise.
-//! Noise: white, 0.05 mm in each component. It is not told to the fit.
+//! Noise: white, 0.05 mm in each component. It is not given to the fit.
 //!
 //! The rows are those of `examples/elbow/points.csv`. Its twin in Python prints the same:
 //! `examples/python/02_points_with_unknown_tool_and_device.py`.
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("the tracker stands at ({x:.3}, {y:.3}, {z:.3}) mm in the base");
     let [x, y, z]: [f64; 3] = (calibration.robot.home.translation * 1e3).into();
     let [a, b, c]: [f64; 3] = (model.robot.home.translation * 1e3).into();
-    println!("the mirror sits at ({x:.3}, {y:.3}, {z:.3}) mm at zero, drawn at ({a:.3}, {b:.3}, {c:.3}) mm");
+    println!("the reflector is at ({x:.3}, {y:.3}, {z:.3}) mm at zero, nominal ({a:.3}, {b:.3}, {c:.3}) mm");
     let held_out = calibration.accuracy.held_out.ok_or("no rows were held out")?;
     for (name, model) in [
         ("nominal", held_out.nominal),

@@ -1,16 +1,16 @@
 //! Which configurations to measure, and a calibration judged by other rows.
 //!
-//! Before anything is measured, `identify` tells what some configurations would tell. 8 and 40 are compared; the 40 are measured, every
-//! row is fitted, and the calibration is judged by 200 rows that it did not see.
+//! Before anything is measured, `identify` shows which unknowns given configurations would determine. 8 and
+//! 40 are compared; the 40 are measured, every row is fitted, and the calibration is judged by 200 held-out rows.
 //!
 //! | symbol | what | known |
 //! |---|---|---|
 //! | `θ_k` | joint values of row k, radians | chosen |
-//! | `x` | screws of the axes and the point of the mirror, 27 numbers | drawn; found |
-//! | `H_k` | how `x` moves the mirror of row k | from the drawing |
-//! | `y_k` | position of the mirror in the tracker | measured |
+//! | `x` | screws of the axes and the point of the reflector, 27 numbers | nominal; fitted |
+//! | `H_k` | motion of the reflector of row k by `x` | nominal |
+//! | `y_k` | position of the reflector in the tracker | measured |
 //!
-//! State: `x`; the tracker stands anywhere.
+//! State: `x`; the tracker's place is unknown.
 //! Measurement equation: `y_k = D f(θ_k; x)`, and noise; of errors of `x`, `δy_k = H_k δx`.
 //! Noise: white, σ = 0.05 mm in each component. Information: `Σ H_kᵀ H_k / σ²`, of which rank and covariance follow.
 //!
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let expected = found
             .expected
             .mean_m
-            .map_or("nothing told".to_owned(), |mean| format!("{:.4} mm to expect", 1e3 * mean));
+            .map_or("no prediction".to_owned(), |mean| format!("{:.4} mm expected error", 1e3 * mean));
         println!(
             "{count} points would determine {} of {} unknowns: {expected}",
             found.identifiability.rank, found.identifiability.parameters
@@ -50,12 +50,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         CalibrationFile::new(&calibration, &made.data, Inputs::default()).judge(&others, false, false)?;
     let error = judgement.calibrated.position_mm;
     println!(
-        "{} other points are missed by {:.4} mm (RMS), {:.4} mm at most",
+        "{} other points: error {:.4} mm (RMS), {:.4} mm at most",
         judgement.count, error.rms, error.max
     );
-    let kept = judgement.promised.ok_or("a calibration promises something")?.position_mm;
+    let kept = judgement.promised.ok_or("a calibration has bounds")?.position_mm;
     println!(
-        "promised were {:.4} mm with noise; {:.1} % lie inside their 95 % bounds",
+        "expected {:.4} mm with noise; {:.1} % are inside their 95 % bounds",
         kept.expected_rms,
         100.0 * kept.inside_bound95
     );

@@ -11,7 +11,7 @@ use super::report::ReportPlace;
 use super::shared::{Chain, Frame, Reading};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 
-/// How errors of the joints are written as unknowns.
+/// How errors of the joints are parameterised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum FormulationWord {
     /// Axes move as rigid bodies, without offsets: minimal, unconstrained
@@ -35,7 +35,7 @@ impl From<FormulationWord> for Formulation {
     }
 }
 
-/// How errors of measured frames are written.
+/// Residuals of measured frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ResidualWord {
     /// Position and rotation at the target
@@ -53,18 +53,18 @@ impl From<ResidualWord> for Residual {
     }
 }
 
-/// What to do about grossly wrong rows.
+/// How to treat outliers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RobustWord {
     /// Least squares, unless outliers are evident: then the tukey loss, and a warning
     Auto,
     /// Least squares: every row counts in full
     Off,
-    /// Far rows pull no more than near ones
+    /// The influence of a residual is bounded
     Huber,
-    /// Far rows pull less the farther they are
+    /// The influence of a large residual decreases with its size
     Cauchy,
-    /// Far rows do not pull
+    /// Large residuals have no influence
     Tukey,
 }
 
@@ -80,10 +80,10 @@ impl From<RobustWord> for Robust {
     }
 }
 
-/// By which steps to minimise.
+/// Method of the solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MethodWord {
-    /// Damped steps, taken only if they help
+    /// Damped steps, taken only if they reduce the cost
     LevenbergMarquardt,
     /// Full steps, taken as they are
     GaussNewton,
@@ -105,7 +105,7 @@ pub(crate) struct Calibrate {
     pub(crate) model: Option<PathBuf>,
     /// Measurement files (CSV), joined [default: what the settings name]
     pub(crate) measurements: Vec<PathBuf>,
-    /// Settings (TOML) for all that is not typed [default: poecal.toml in this folder, if no model is named]
+    /// Settings (TOML) for options that are not given here [default: poecal.toml in this folder, if no model is named]
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
     #[command(flatten)]
@@ -121,8 +121,8 @@ pub(crate) struct Calibrate {
     /// Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data]
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
     pub(crate) sigma_rotation: Option<f64>,
-    /// How far each axis may stand off the drawing, as standard deviations, or none: a belief that decides what the measurements do not
-    /// tell. A joint of a TOML model may state its own
+    /// Prior: deviation of each axis from nominal, as standard deviations, or none. It decides where the measurements determine
+    /// nothing. A joint of a TOML model may state its own
     #[arg(long, value_name = "ANGLE,LENGTH|none", default_value = "0.5deg,5mm")]
     pub(crate) tolerance: BelievedTolerance,
     /// Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3]
@@ -131,16 +131,16 @@ pub(crate) struct Calibrate {
     /// Seed of that choice [default: 1]
     #[arg(long, value_parser = whole::<u64>)]
     pub(crate) seed: Option<u64>,
-    /// What to do about grossly wrong rows: auto fits by least squares, and by the tukey loss where that shows outliers
+    /// How to treat outliers: auto fits by least squares, and by the tukey loss where that shows outliers
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) robust: RobustWord,
-    /// How errors of the joints are written; all but the default are for comparison
+    /// Parameterisation of joint errors; all but the default are for comparison
     #[arg(long, value_enum, default_value = "adjoint", help_heading = "Comparison")]
     pub(crate) formulation: FormulationWord,
-    /// How errors of measured frames are written; the paper's is for comparison. Points have one residual only
+    /// Residual of measured frames; the paper's is for comparison. Points have one residual only
     #[arg(long, value_enum, default_value = "tool", help_heading = "Comparison")]
     pub(crate) residual: ResidualWord,
-    /// By which steps to minimise; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else
+    /// Steps of the solver; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else
     /// levenberg-marquardt]
     #[arg(long, value_enum, help_heading = "Comparison")]
     pub(crate) method: Option<MethodWord>,
@@ -153,7 +153,7 @@ pub(crate) struct Calibrate {
     /// Overwrite results in an existing folder, and a report that exists
     #[arg(long)]
     pub(crate) force: bool,
-    /// Overwrite them where poecal wrote them: what `force` in the settings comes to
+    /// Overwrite them where poecal wrote them: the meaning of `force` in the settings
     #[arg(long, hide = true)]
     pub(crate) force_own: bool,
     /// File for the report, or `none` [default: report.html among the results]

@@ -13,7 +13,7 @@ use crate::quantity::{sigma_m, sigma_rad};
 pub(crate) struct Identify {
     /// Robot model: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
-    /// Joint readings (CSV), joined; other columns than the joints' and `id` are left alone
+    /// Joint readings (CSV), joined; other columns than the joints' and `id` are ignored
     #[arg(required = true)]
     pub(crate) joints: Vec<PathBuf>,
     #[command(flatten)]

@@ -10,7 +10,7 @@ use super::shared::{Chain, OutFile};
 /// Whether a frame is the same in both models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum End {
-    /// It is found with the offsets
+    /// It is fitted with the offsets
     Free,
     /// It is the same in both
     Kept,
@@ -28,9 +28,9 @@ impl From<End> for offsets::End {
 /// Arguments of `poecal offsets`.
 #[derive(Args, Debug)]
 pub(crate) struct Offsets {
-    /// Robot model as delivered: URDF, TOML or calibration.json
+    /// Nominal robot model: URDF, TOML or calibration.json
     pub(crate) nominal: PathBuf,
-    /// The robot that is there, with the same joints: URDF, TOML or calibration.json
+    /// Model of the actual robot, with the same joints: URDF, TOML or calibration.json
     pub(crate) actual: PathBuf,
     #[command(flatten)]
     pub(crate) chain: Chain,

@@ -53,7 +53,7 @@ impl Columns {
 /// How to treat lost beams.
 #[derive(Args, Debug)]
 pub(crate) struct Strictness {
-    /// Refuse lost beams (empty or zero positions) instead of leaving them out with a warning
+    /// Refuse lost beams (empty or zero positions) instead of skipping them with a warning
     #[arg(long)]
     pub(crate) strict: bool,
 }

@@ -304,7 +304,7 @@ fn what_is_odd_but_usable_gets_a_warning() {
     assert_eq!(
         run.err.lines().next(),
         Some(
-            "warning: extra.csv: left alone the columns `colour`, `sigma_positon` (did you mean `sigma_position`?)"
+            "warning: extra.csv: ignored the columns `colour`, `sigma_positon` (did you mean `sigma_position`?)"
         )
     );
 }

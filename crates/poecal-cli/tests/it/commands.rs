@@ -16,7 +16,7 @@ fn calibrate_writes_its_folder_and_tells_three_models() {
         "training (42)",
         "held out (18)",
         "60 rows: 42 fitted, 18 held out",
-        "known         30 of 30 unknowns, from 42 of 60 rows",
+        "determined    30 of 30 unknowns, from 42 of 60 rows",
     ] {
         assert!(out.contains(words), "`{words}` is not in\n{out}");
     }
@@ -216,10 +216,10 @@ fn check_says_what_it_understood() {
         "joint1    joint1[deg]    deg, header   -90 to 90 deg",
         "joint2    joint2         rad, SI       14.324 to 28.648 deg",
         "y         y[mm]          mm, header    0 to 10 mm",
-        "left alone    note",
+        "ignored       note",
         "sets          1 to fit, 1 held out, 60 not stated (fitted)",
-        "warnings      measurements.csv: left alone the columns `stage`",
-        "ids.csv: left alone the columns `note`",
+        "warnings      measurements.csv: ignored the columns `stage`",
+        "ids.csv: ignored the columns `note`",
     ] {
         assert!(out.contains(words), "`{words}` is not in\n{out}");
     }

@@ -106,7 +106,7 @@ fn rows_that_stand_twice_are_named_by_their_lines() {
     let run = folder.run("calibrate robot.urdf measurements.csv");
     println!("{}", run.out);
     let expected = "look at 1 row repeats another to the last digit, readings and measurement \
-                    (measurements.csv:62 as measurements.csv:4): leave out what was copied, since it counts twice";
+                    (measurements.csv:62 as measurements.csv:4): remove the copies, since they count twice";
     assert!(run.out.split_whitespace().collect::<Vec<_>>().join(" ").contains(expected));
     assert_eq!(calibration(&folder, "poecal-out").diagnosis[0].rows, [60]);
 }
@@ -140,5 +140,5 @@ fn targets_without_names_are_told_to_be_named() {
     let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("add a column `target` that names which one each row saw"), "{}", run.out);
     assert!(words.starts_with("verdict do not use: ") && run.code == 1, "{}", run.out);
-    assert!(!words.contains("look which is right"), "{}", run.out);
+    assert!(!words.contains("check which is right"), "{}", run.out);
 }

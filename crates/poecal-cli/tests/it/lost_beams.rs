@@ -20,7 +20,7 @@ fn lost_beams_are_told_or_refused() {
     let out = folder.done("check robot.urdf lost.csv");
     let words = "2 measurements with an empty or zero position, as of a lost beam (lines 6, 9)";
     let told = out.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(told.contains(&format!("left out {words} form separator: comma (line 1)")), "{out}");
+    assert!(told.contains(&format!("skipped {words} form separator: comma (line 1)")), "{out}");
     let json: serde_json::Value =
         serde_json::from_str(&folder.done("check robot.urdf lost.csv --json")).unwrap();
     assert_eq!(json["files"][0]["lost"], serde_json::json!({ "count": 2, "first_lines": [6, 9] }));
@@ -33,7 +33,7 @@ fn lost_beams_are_told_or_refused() {
     }
     let run = folder.run("calibrate robot.urdf lost.csv");
     assert!(
-        run.err.contains(&format!("warning: lost.csv: left out {words}; --strict refuses them")),
+        run.err.contains(&format!("warning: lost.csv: skipped {words}; --strict refuses them")),
         "{}",
         run.err
     );

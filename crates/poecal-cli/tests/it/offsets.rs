@@ -89,8 +89,8 @@ fn a_calibration_has_a_base_and_a_tip_of_its_own() {
     assert_eq!(
         ends("anywhere/calibration.json"),
         [
-            "free: the calibration's device stood anywhere, so its base frame is a choice",
-            "free: the calibration found the tool anew"
+            "free: the calibration did not know the device's place, so its base frame is a matter of choice",
+            "free: the calibration fitted the tool"
         ]
     );
     assert_eq!(

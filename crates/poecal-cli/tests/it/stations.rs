@@ -101,17 +101,17 @@ fn validation_takes_the_frame_of_each_instrument() {
     refused(
         "monday.csv",
         "found measurements without an instrument's name, expected one of left, right as in the calibration: add a column \
-         `instrument`, or find the frames anew with --refit-frame",
+         `instrument`, or refit the frames with --refit-frame",
     );
     refused(
         "monday.csv --frames per-file",
-        "found measurements of instrument `monday.csv`, whose frame the calibration does not know, expected one of left, right: rename \
-         it, or find the frames anew with --refit-frame",
+        "found measurements of instrument `monday.csv`, whose frame is not in the calibration, expected one of left, right: rename \
+         it, or refit the frames with --refit-frame",
     );
     folder.done("calibrate robot.urdf monday.csv --out one");
     let run = folder.run("validate one/calibration.json both.csv");
-    let sentence = "found measurements of 2 instruments, expected those of one, since the calibration knows one device frame: judge each \
-                    by itself, or find the frames anew with --refit-frame";
+    let sentence = "found measurements of 2 instruments, expected those of one, since the calibration has one device frame: judge each \
+                    by itself, or refit the frames with --refit-frame";
     assert!(run.code == 2 && run.err.ends_with(&format!("error: {sentence}\n")), "{}", run.err);
 }
 

@@ -33,15 +33,15 @@ fn named_targets_are_predicted_by_name() {
     let refusals = [
         (
             "measurements.csv",
-            "found measurements without a target's name, expected one of smr1 as in the calibration: add a column `target`, or find the targets anew with --refit-tool",
+            "found measurements without a target's name, expected one of smr1 as in the calibration: add a column `target`, or refit the targets with --refit-tool",
         ),
         (
             "other.csv",
-            "found measurements of target `smr2`, expected one of smr1 as in the calibration (nearest: `smr1`): rename it, or find the targets anew with --refit-tool",
+            "found measurements of target `smr2`, expected one of smr1 as in the calibration (nearest: `smr1`): rename it, or refit the targets with --refit-tool",
         ),
         (
             "poses.csv",
-            "found orientations of target `smr1`, expected positions alone, since the calibration knows it as a point: leave the orientation columns out, or find the targets anew with --refit-tool",
+            "found orientations of target `smr1`, expected positions alone, since it is a point in the calibration: leave the orientation columns out, or refit the targets with --refit-tool",
         ),
     ];
     write_measurements(&folder, "other.csv", Kind::Point, "smr2", &simulation);
@@ -86,7 +86,7 @@ fn validation_judges_other_sessions() {
     write_measurements(&folder, "moved.csv", Kind::Pose, "", &Simulation { device_anywhere: false, ..more });
     let run = folder.run("validate poecal-out/calibration.json moved.csv");
     assert_eq!(run.code, 0);
-    assert!(run.err.contains("find its frame anew with --refit-frame"), "{}", run.err);
+    assert!(run.err.contains("refit its frame with --refit-frame"), "{}", run.err);
     let found = json("moved.csv --refit-frame");
     println!("moved.csv, frame refitted: {} mm", rms(&found["calibrated"]));
     assert!(rms(&found["calibrated"]) < 1.5 * own_rms);
@@ -104,7 +104,7 @@ fn validation_judges_other_sessions() {
     assert_eq!(run.code, 2);
     assert_eq!(
         run.err,
-        "error: found 1 measurement with 6 measured numbers, expected more than the 6 unknowns to be found anew (6 of the device frame, 0 of the targets): measure more configurations, or refit less\n"
+        "error: found 1 measurement with 6 measured numbers, expected more than the 6 unknowns to be refitted (6 of the device frame, 0 of the targets): measure more configurations, or refit less\n"
     );
 }
 

@@ -57,7 +57,7 @@ fn a_promise_is_required_of_all_rows_or_of_those_inside() {
         assert_eq!((run.code, run.err.as_str()), (0, ""), "{}", run.out);
         let run = judge(&format!("other.csv --require {required}"));
         assert_eq!(run.code, 1, "{}{}", run.out, run.err);
-        assert!(run.err.contains("position errors") && run.err.contains("80 % are asked for"), "{}", run.err);
+        assert!(run.err.contains("position errors") && run.err.contains("80 % are required"), "{}", run.err);
         let json = judge(&format!("other.csv --require {required} --json"));
         assert_eq!(json.code, 1);
         let found: serde_json::Value = serde_json::from_str(&json.out).unwrap();
@@ -93,8 +93,8 @@ fn what_lies_outside_the_sampled_range_is_not_blamed_on_the_robot() {
     folder.write("both.csv", both);
     let run = judge("both.csv");
     println!("{}{}", run.out, run.err);
-    assert!(run.err.contains("rows inside the sampled range are as promised; outside it"), "{}", run.err);
+    assert!(run.err.contains("rows inside the sampled range are as expected; outside it"), "{}", run.err);
     assert_eq!(judge("both.csv --require inside_sampled_range").code, 0);
     assert_eq!(judge("both.csv --require good").code, 1);
-    assert!(judge("other.csv").err.contains("if the measuring device was moved, find its frame anew"));
+    assert!(judge("other.csv").err.contains("if the measuring device was moved, refit its frame"));
 }

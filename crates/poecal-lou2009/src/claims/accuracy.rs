@@ -35,9 +35,9 @@ pub(super) fn normalisation(evidence: &Evidence<'_>) -> Result<Claim> {
         "Even without noise it misses the truth."
     };
     let with = if worse {
-        "With noise it comes to rest beside the least-squares optimum"
+        "With noise it converges beside the least-squares optimum"
     } else {
-        "With noise, these trials do not show that it comes to rest beside the least-squares optimum"
+        "With noise, these trials do not show that it converges beside the least-squares optimum"
     };
     Ok(said(
         "Normalising screws after each iteration is plausible but not rigorous.",

@@ -64,7 +64,7 @@ fn with_noise(found: &Reproduction) -> Option<String> {
         } else if adjoint.exceeds(screw) {
             "`screw` is better"
         } else {
-            "there are too few trials to tell"
+            "there are too few trials to decide"
         };
         told.push(format!(
             "From {}, {verdict}: {} times the Cramér-Rao bound, `adjoint` {} times.",
@@ -121,7 +121,7 @@ fn from_afar(found: &Reproduction) -> Option<String> {
     } else if adjoint.exceeds(screw) {
         "the original is worse"
     } else {
-        "these starts tell no difference"
+        "these starts show no difference"
     };
     Some(format!(
         "From afar {verdict}: from {} deg and {} mm, with points, plain Gauss-Newton reaches the truth from {} of the starts with `screw` \

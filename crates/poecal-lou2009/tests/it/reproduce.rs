@@ -213,7 +213,7 @@ fn too_few_trials_tell_nothing() {
     let found = lou2009(&Options { trials: 1, starts: 4, seed: 5 }).unwrap();
     let files = poecal_lou2009::report::reproduction_files(&found).unwrap();
     let (_, text) = files.iter().find(|(name, _)| name == "report.md").unwrap();
-    assert!(text.contains("there are too few trials to tell"));
+    assert!(text.contains("there are too few trials to decide"));
     let claim = found.claims.iter().find(|claim| claim.claim.starts_with("Normalising")).unwrap();
     assert!(!claim.holds && claim.measured.contains("do not show"), "{}", claim.measured);
 }

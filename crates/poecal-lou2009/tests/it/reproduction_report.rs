@@ -278,10 +278,10 @@ fn words_follow_the_numbers() {
     // Made-up iterations grow by one from formulation to formulation, and shares of starts fall.
     let before = verdicts(&found);
     assert!(
-        before.contains("(`screw`) are as good") && before.contains("these starts tell no difference"),
+        before.contains("(`screw`) are as good") && before.contains("these starts show no difference"),
         "{before}"
     );
-    assert!(before.contains("From poses, there are too few trials to tell"), "{before}");
+    assert!(before.contains("From poses, there are too few trials to decide"), "{before}");
     for row in &mut found.efficiency {
         row.ratio_sigma = 1e-4;
     }

@@ -69,4 +69,4 @@ class SolverError(Error):
 
 
 class PoecalWarning(UserWarning):
-    """What the user should know of a file or a result: what the program tells on standard error."""
+    """What the user should know of a file or a result: what the program writes to standard error."""

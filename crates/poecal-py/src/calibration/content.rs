@@ -20,7 +20,7 @@ use crate::robot::{Robot, RobotState};
 /// is not converted.
 #[pyclass(frozen, module = "poecal", name = "Calibration")]
 pub(crate) struct Calibration {
-    /// The robot as delivered, after whose file models are written.
+    /// The nominal robot, after whose file models are written.
     pub(super) nominal: Robot,
     found: Found,
     calibrated: OnceLock<Robot>,
@@ -130,7 +130,7 @@ impl Calibration {
         }
     }
 
-    /// What each row leaves.
+    /// The residuals of each row.
     pub(super) fn residuals(&self) -> PyResult<&Residuals> {
         match &self.found {
             Found::Fit(fit) => {

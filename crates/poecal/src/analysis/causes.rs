@@ -132,7 +132,7 @@ impl Rules<'_> {
             (false, _) => angle,
             (true, true) => format!("{length} or {angle}"),
         };
-        format!("{verb} known to {known} only")
+        format!("{verb} determined to {known} only")
     }
 
     /// Whether directions have a part in metres, and in radians.
@@ -170,7 +170,7 @@ impl Rules<'_> {
         let what = if jittered { "stood still but for the jitter of readings" } else { "never moved" };
         let several = joints.len() > 1;
         let (subject, open) =
-            if several { ("their screws", "are unknown") } else { ("its screw", "is unknown") };
+            if several { ("their screws", "are undetermined") } else { ("its screw", "is undetermined") };
         let part = if directions < all { "part of " } else { "" };
         let words = self.degree_words(open, several, &self.screws(&joints));
         let description = format!("{} {what}: {part}{subject} {words}", self.names(&joints));
@@ -213,12 +213,14 @@ impl Rules<'_> {
         let directions = taken.iter().map(|(_, directions, _)| directions).sum();
         let tilts: Vec<Vec<f64>> = taken.into_iter().flat_map(|(_, _, tilts)| tilts).collect();
         let away_m = joints.iter().filter_map(|&joint| self.excitation.on_axis_m[joint]).fold(0.0, f64::max);
-        let words = self.degree_words("is not seen", false, &tilts);
+        let several_axes = joints.len() > 1;
+        let open = if several_axes { "are not determined" } else { "is not determined" };
+        let words = self.degree_words(open, several_axes, &tilts);
         let several = self.setup.data.targets.len() > 1;
         let subject = if several { "all points measured lie" } else { "the point measured lies" };
         let axes = if joints.len() > 1 { "the axes" } else { "the axis" };
         let (it, points) =
-            if joints.len() > 1 { ("how they tilt", "about it") } else { ("its tilt", "about the point") };
+            if joints.len() > 1 { ("their tilts", "about it") } else { ("its tilt", "about the point") };
         let description = format!(
             "{}: {subject} on {axes} (within {} mm): {it} {points} {words}",
             self.names(&joints),
@@ -251,7 +253,7 @@ impl Rules<'_> {
         if taken == 0 {
             return;
         }
-        let words = self.degree_words("cannot be told apart", true, &directions);
+        let words = self.degree_words("cannot be separated", true, &directions);
         let (cause, description) = if self.excitation.turning == Turning::Not {
             let tool = "the tool kept one orientation: its place on the last link and where the axes stand";
             (Cause::OneOrientation, format!("{tool} {words}"))
@@ -308,13 +310,13 @@ impl Rules<'_> {
             }
             let kinds = || group.iter().map(|&joint| self.setup.robot.joints[joint].kind);
             let (what, subject) = if kinds().all(|kind| kind == JointKind::Prismatic) {
-                ("moved only together", "only their common motion is seen, their own directions")
+                ("moved only together", "only their common motion is observed, their own directions")
             } else if self.excitation.are_parallel(group) {
                 ("parallel axes, moved only together", "their places")
             } else {
                 ("moved only in a fixed relation", "their screws")
             };
-            let open = if subject.starts_with("only") { "are not" } else { "can trade" };
+            let open = if subject.starts_with("only") { "are not determined" } else { "cannot be separated" };
             let words = self.degree_words(open, true, &screws);
             let description = format!("{}: {what}: {subject} {words}", self.names(group));
             self.tell(Cause::MovedTogether, group, directions, description);

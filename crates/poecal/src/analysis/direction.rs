@@ -2,15 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Why something is not told. The words stand in `calibration.json` and do not change.
+/// Why something is not determined. The words stand in `calibration.json` and do not change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
     /// Structure: along and about its own axis a joint may be moved without effect.
     OwnAxis,
-    /// Structure: the device's frame is unknown, so the base frame is a choice.
+    /// Structure: the device's frame is unknown, so the base frame is a matter of choice.
     BaseFrame,
-    /// Structure: zeros of joints cannot be told from screws.
+    /// Structure: joint offsets cannot be separated from screws.
     JointOffsets,
     /// Structure: only positions were measured.
     NoOrientation,
@@ -30,7 +30,7 @@ pub enum Cause {
     SmallMotion,
     /// Joints moved in combinations that hide something, though no simpler cause is seen.
     DependentMotion,
-    /// A target was seen once, so that nothing checks it.
+    /// A target was measured once, so that nothing checks it.
     SeenOnce,
     /// None of these.
     #[default]
@@ -59,7 +59,7 @@ impl Cause {
     }
 }
 
-/// Something that the measurements do not tell, or hardly.
+/// Unknowns that the measurements do not determine, or only weakly.
 ///
 /// ```
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};

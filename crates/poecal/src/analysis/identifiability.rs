@@ -35,7 +35,7 @@ pub struct Identifiability {
     pub condition: f64,
     /// What these configurations leave open.
     pub unidentifiable: Vec<Direction>,
-    /// What they tell, but hardly better than a drawing does.
+    /// Directions that they determine weakly, hardly better than the nominal model.
     pub weak: Vec<Direction>,
     /// What no measurement of this kind could tell: it is a choice, is not among the parameters, and changes no prediction.
     pub structural: Vec<Direction>,
@@ -109,10 +109,12 @@ fn structural(setup: &Setup<'_>) -> Vec<Direction> {
         }
     };
     let own = match (turning, sliding) {
-        (_, 0) => "turning and shifting a joint along its own axis does nothing: left out",
-        (0, _) => "shifting a slide, and turning it about its own direction, does nothing: left out",
+        (_, 0) => "turning or shifting a revolute joint along its own axis has no effect: not an unknown",
+        (0, _) => {
+            "shifting a prismatic joint, or turning it about its own direction, has no effect: not an unknown"
+        }
         _ => {
-            "turning and shifting a joint along its own axis does nothing, nor does shifting a slide anywhere: left out"
+            "turning or shifting a revolute joint along its own axis has no effect, nor has shifting a prismatic joint: not an unknown"
         }
     };
     add(Cause::OwnAxis, 2 * turning + 4 * sliding, &names, own);
@@ -121,7 +123,7 @@ fn structural(setup: &Setup<'_>) -> Vec<Direction> {
             "base frame: moving it under all axes is the same as moving the device: kept as in the model";
         add(Cause::BaseFrame, 6, &[], base);
     }
-    let zeros = "zeros of the joints: what they do, later axes and the tool can do as well: kept as read";
+    let zeros = "joint offsets: later axes and the tool have the same effect: kept as read";
     add(Cause::JointOffsets, joints.len(), &names, zeros);
     let points = setup.layout.parameters().filter(|(it, _)| matches!(it, Parameter::TargetPlace(_))).count();
     let no_orientation = "orientation of the tool: no orientation was measured";

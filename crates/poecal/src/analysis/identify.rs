@@ -106,7 +106,7 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Fo
     let unknowns = 4 * robot.joints.len() + 6;
     if unknowns > MOST_UNKNOWNS {
         let message = format!(
-            "found about {unknowns} unknowns of {} joints, expected at most {MOST_UNKNOWNS}, which one fit can bear: identify a \
+            "found about {unknowns} unknowns of {} joints, expected at most {MOST_UNKNOWNS} in one fit: identify a \
              shorter chain",
             robot.joints.len()
         );

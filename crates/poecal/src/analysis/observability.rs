@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Observability {
-    /// `(s₁ s₂ … sₙ)^(1/n) / √m`, 1/m (metre): the volume that measurements fill, by the number m of configurations.
+    /// `(s₁ s₂ … sₙ)^(1/n) / √m`, 1/m (metre): the geometric mean of the singular values, by the number m of configurations.
     pub o1: Option<f64>,
     /// `sₙ / s₁`: the inverse of the condition number.
     pub o2: Option<f64>,
-    /// `sₙ`, 1/m (metre): the inverse of the standard deviation of what is known least.
+    /// `sₙ`, 1/m (metre): the inverse of the largest standard deviation.
     pub o3: Option<f64>,
     /// `sₙ² / s₁`, 1/m (metre): how noise is amplified.
     pub o4: Option<f64>,

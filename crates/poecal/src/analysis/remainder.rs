@@ -25,8 +25,11 @@ impl Rules<'_> {
         }
         let joints = self.joints_left();
         let several = joints.len() > 1;
-        let (open, subject) =
-            if several { ("cannot be told apart", "their screws") } else { ("cannot be told", "its screw") };
+        let (open, subject) = if several {
+            ("cannot be separated", "their screws")
+        } else {
+            ("cannot be determined", "its screw")
+        };
         let words = self.degree_words(open, several, &self.screws(&joints));
         let directions = self.take(&self.places(|_| true));
         let description = format!(
@@ -88,7 +91,7 @@ impl Rules<'_> {
             let (joints, parts) = self.parts(&direction);
             let (open, plural) = match (parts.len(), self.degree) {
                 (1, _) => ("is not determined by these measurements", false),
-                (_, Degree::Open) => ("can change together unseen by these measurements", true),
+                (_, Degree::Open) => ("can change together without effect on these measurements", true),
                 (_, Degree::Weak(_)) => ("", true),
             };
             let subject =
@@ -133,7 +136,7 @@ impl Rules<'_> {
                     }
                 }
                 Parameter::OtherScrew(screw) => format!("the screw of {}", name(screw.joint)),
-                Parameter::JointOffset(offset) => format!("the zero of {}", name(offset.joint)),
+                Parameter::JointOffset(offset) => format!("the offset of {}", name(offset.joint)),
                 Parameter::TargetPlace(it) => format!("the place of {}", target_name(self.setup, it.target)),
                 Parameter::TargetFrame(it) => format!("the frame of {}", target_name(self.setup, it.target)),
                 Parameter::DeviceFrame(it) if self.setup.data.station_count() > 1 => {

@@ -88,7 +88,7 @@ pub struct ModelAccuracy {
 pub struct SetAccuracy {
     /// Number of measurements.
     pub count: usize,
-    /// The model as delivered; only an unknown device frame is fitted.
+    /// The nominal model; only an unknown device frame is fitted.
     pub nominal: ModelAccuracy,
     /// Device frame and targets fitted, screws nominal.
     pub registered: ModelAccuracy,

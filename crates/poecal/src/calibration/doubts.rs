@@ -25,14 +25,14 @@ pub(super) fn doubts(
             DeviceFrameKnowledge::Unknown => "",
         };
         doubts.push(format!(
-            "with nominal screws the measurements are missed by {error_mm:.1} mm (RMS), {:.0} % of their spread: \
-             look for a wrong unit, exchanged or misnamed joint columns, mirrored coordinates{base}, or another robot",
+            "with nominal screws the position error is {error_mm:.1} mm (RMS), {:.0} % of the measurements' spread: \
+             check for a wrong unit, exchanged or misnamed joint columns, mirrored coordinates{base}, or another robot",
             100.0 * error_mm / spread_mm
         ));
     }
     if let Some(rotation) = registered.rotation_deg.filter(|rotation| rotation.rms > TURNED_DEG) {
         doubts.push(format!(
-            "with nominal screws the orientations are missed by {:.0} deg (RMS): look for the quaternion's order (x, y, z, w), \
+            "with nominal screws the orientation error is {:.0} deg (RMS): check the quaternion's order (x, y, z, w), \
              inverted poses, or another Euler convention",
             rotation.rms
         ));

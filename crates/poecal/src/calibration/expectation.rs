@@ -51,7 +51,7 @@ pub struct Kept {
 /// How errors of one sort compare with what was promised.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct KeptPart {
-    /// Root mean square error to expect between measured and predicted, noise of measuring included.
+    /// Expected root mean square error between measured and predicted, noise of measuring included.
     pub expected_rms: f64,
     /// Share of the errors within their own 95 % bound.
     pub inside_bound95: f64,

@@ -28,7 +28,7 @@ pub struct Formulation {
     pub words: FormulationWords,
     /// The unknowns of joints of some kinds, in the order of the chain.
     pub joint_parameters: fn(&[JointKind]) -> Vec<Parameter>,
-    /// How the errors of measured frames are written, if not at the target.
+    /// Residual of measured frames, if not at the target.
     pub pose_residual: Option<&'static dyn PoseResidual>,
     /// Minimises a problem from a start.
     pub minimize: Minimize,
@@ -37,11 +37,11 @@ pub struct Formulation {
 /// What a fit says of its formulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FormulationWords {
-    /// How the errors of the joints are written.
+    /// Parameterisation of joint errors.
     pub formulation: &'static str,
-    /// How the errors of measured frames are written.
+    /// Residual of measured frames.
     pub pose_residual: &'static str,
-    /// By which steps the fit goes.
+    /// Method of the solver.
     pub method: &'static str,
     /// What that does to the result.
     pub note: Option<&'static str>,

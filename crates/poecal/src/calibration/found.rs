@@ -6,7 +6,7 @@ use crate::measurement::Noise;
 use crate::problem::Layout;
 use crate::solve::{Normal, Summary, Termination};
 
-/// How the minimisation went.
+/// The minimisation: steps, end, convergence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverReport {
     /// Iterations of the full fit, re-weighted rounds included.

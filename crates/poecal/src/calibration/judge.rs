@@ -48,7 +48,7 @@ const TIMES: f64 = 2.0;
 pub struct Subject<'a> {
     /// The calibrated robot with its named targets.
     pub calibrated: &'a Robot,
-    /// The robot as delivered.
+    /// The nominal robot.
     pub nominal: &'a Robot,
     /// Where the calibration found the measuring device.
     pub base_from_device: Pose,
@@ -106,7 +106,7 @@ pub struct Judgement {
 /// the tool is found anew.
 ///
 /// # Errors
-/// [`ErrorKind::Problem`] if there are fewer measured numbers than unknowns to be found anew, or none at all.
+/// [`ErrorKind::Problem`] if there are fewer measured numbers than unknowns to be refitted, or none at all.
 pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     check_count(subject, data)?;
     let mut refitted = Vec::new();
@@ -164,7 +164,7 @@ fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     let tool: usize = if subject.refit_tool { targets.sum() } else { 0 };
     if tool > MOST_UNKNOWNS {
         let message = format!(
-            "found {tool} unknowns of {} targets to be found anew, expected at most {MOST_UNKNOWNS}, which one fit can bear: \
+            "found {tool} unknowns of {} targets to be refitted, expected at most {MOST_UNKNOWNS} in one fit: \
              leave --refit-tool out, or judge fewer targets",
             data.targets.len()
         );
@@ -177,7 +177,7 @@ fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     Err(Error::new(
         ErrorKind::Problem,
         format!(
-            "found {} with {given} measured numbers, expected more than the {} unknowns to be found anew \
+            "found {} with {given} measured numbers, expected more than the {} unknowns to be refitted \
              ({frame} of the device frame, {tool} of the targets): measure more configurations, or refit less",
             measurements_words(data.len()),
             frame + tool
@@ -201,7 +201,7 @@ impl Judgement {
         };
         let Some((errors, kept)) = found else {
             return Some(match self.promised {
-                None => "the calibration promises nothing that these rows could keep".to_owned(),
+                None => "the calibration has no uncertainty, so there are no bounds to test".to_owned(),
                 Some(_) => "no row lies inside the sampled range".to_owned(),
             });
         };
@@ -217,7 +217,7 @@ impl Judgement {
                 None
             } else if inside_bound95 < INSIDE {
                 Some(format!(
-                    "{:.0} % of the {what} errors {which} are inside their 95 % bounds, {:.0} % are asked for",
+                    "{:.0} % of the {what} errors {which} are inside their 95 % bounds, {:.0} % are required",
                     100.0 * inside_bound95,
                     100.0 * INSIDE
                 ))

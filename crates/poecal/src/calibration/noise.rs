@@ -16,7 +16,7 @@ pub enum NoiseSource {
     Rows,
     /// It was estimated from the residuals of the fit.
     Estimated,
-    /// Nothing is left but rounding: the measurements are exact, and the noise is only what weighted them.
+    /// The residual is rounding error: the measurements are exact, and the noise is only what weighted them.
     Exact,
 }
 

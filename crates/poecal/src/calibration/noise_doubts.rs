@@ -32,8 +32,8 @@ pub(super) fn noise_doubts(remainder: &Remainder, lag_one: Option<f64>) -> Vec<N
     if let Some(correlation) = lag_one.filter(|correlation| *correlation > IN_TIME) {
         doubts.push(NoiseDoubt {
             statement: format!(
-                "what the fit leaves hangs together from row to row (correlation {correlation:.2}): a slow drift, noise that is not \
-                 independent, or errors of the robot along its way; expected errors allow for it"
+                "residuals of consecutive rows are correlated (correlation {correlation:.2}): a slow drift, noise that is not \
+                 independent, or robot errors along the path; expected errors allow for it"
             ),
             is_absurd: false,
         });
@@ -58,13 +58,13 @@ fn of_part(what: &str, part: &Part, unit: f64, name: &str) -> Option<NoiseDoubt>
         Ordering::Equal => None,
         Ordering::Greater => {
             let advice = if ratio > MORE {
-                ": look for a wrong unit of the noise, a device that was moved, or mistakes in the rows"
+                ": check the unit of the noise, whether the device was moved, and the rows"
             } else {
-                ", and what it does not explain counts as error of the robot"
+                "; the excess counts as robot error"
             };
             Some(NoiseDoubt {
                 statement: format!(
-                    "the {what} errors that the fit leaves ({left} {name} a component) are {ratio:.1} times the noise that is stated ({stated} \
+                    "the {what} residuals ({left} {name} per component) are {ratio:.1} times the stated noise ({stated} \
                      {name}){advice}"
                 ),
                 is_absurd: ratio > MORE,
@@ -72,8 +72,8 @@ fn of_part(what: &str, part: &Part, unit: f64, name: &str) -> Option<NoiseDoubt>
         }
         Ordering::Less => (ratio < 1.0 / LESS).then(|| NoiseDoubt {
             statement: format!(
-                "the {what} errors that the fit leaves ({left} {name} a component) are {:.0} times less than the noise that is stated \
-                 ({stated} {name}): look for a wrong unit of the noise; bounds do not rest on it",
+                "the {what} residuals ({left} {name} per component) are {:.0} times smaller than the stated noise \
+                 ({stated} {name}): check the unit of the noise; the bounds do not use it",
                 1.0 / ratio
             ),
             is_absurd: true,

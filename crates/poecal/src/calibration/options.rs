@@ -40,18 +40,18 @@ pub struct CalibrationOptions {
     pub held_out: f64,
     /// Seed of that choice and of restarts.
     pub seed: u64,
-    /// How the fit is written and minimised. All but the default are for comparison.
+    /// Parameterisation, residual and method of the fit. All but the default are for comparison.
     pub formulation: Formulation,
-    /// How far the axes may stand off the drawing: a belief that counts beside the measurements where these say little, and for a joint
-    /// whose model states its own tolerance that one. `None` believes nothing. It has no part in other formulations than the default.
+    /// Prior: the standard deviations of the axes from nominal, for a joint whose model states its own tolerance that one. It decides
+    /// where the measurements determine little. `None` is no prior. Other formulations than the default have none.
     pub tolerance: Option<Tolerance>,
-    /// What to do about grossly wrong rows.
+    /// How to treat outliers.
     pub robust: Robust,
     /// Options of the solver.
     pub solver: solve::Options,
     /// Whether mistakes in the input are looked for where the fit leaves room for them; that can take some tenths of a second.
     pub diagnose: bool,
-    /// Further starts tried when the fit looks as if it ended beside the optimum.
+    /// Most further starts if the fit seems to have converged to a local minimum.
     pub restarts: usize,
 }
 

@@ -59,7 +59,7 @@ pub struct CalibratedStation {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// The robot as delivered.
+    /// The nominal robot.
     pub nominal: Robot,
     /// The calibrated robot. The single unnamed target is its tip.
     pub robot: Robot,
@@ -79,7 +79,7 @@ pub struct Calibration {
     pub accuracy: Accuracy,
     /// The minimisation.
     pub solver: SolverReport,
-    /// What the measurements can tell.
+    /// Which unknowns the measurements determine.
     pub identifiability: Identifiability,
     /// How far the result can be trusted.
     pub trust: Trust,

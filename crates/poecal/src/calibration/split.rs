@@ -72,7 +72,7 @@ fn refuse_copies(data: &Dataset, held_out: &[bool], kept_back: usize) -> Result<
     Err(Error::new(
         ErrorKind::Problem,
         format!(
-            "found {} of {kept_back} held-out rows to be fitted rows over again ({} as {}), expected rows that were not fitted: judge by \
+            "found {} of {kept_back} held-out rows that repeat fitted rows ({} as {}), expected rows that were not fitted: judge by \
              others, or fit all rows and let a share be held out (--held-out)",
             copies.len(),
             data.place(row),

@@ -371,8 +371,7 @@ fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
         return Err(Error::new(
             ErrorKind::Problem,
             format!(
-                "found {needed} unknowns ({screws} of the screws, {targets} of {} targets{}), expected at most {MOST_UNKNOWNS}, \
-                 which one fit can bear: calibrate with fewer targets, or a shorter chain",
+                "found {needed} unknowns ({screws} of the screws, {targets} of {} targets{}), expected at most {MOST_UNKNOWNS} in one fit: calibrate with fewer targets, or a shorter chain",
                 data.targets.len(),
                 of_devices(devices)
             ),

@@ -17,7 +17,7 @@ pub struct JointCorrection {
     pub sigma_shift_m: Option<f64>,
     /// Root mean square position error if this screw alone stayed nominal, tool and device frame found anew, metres.
     pub left_nominal_rms_m: f64,
-    /// What speaks against the joint: a correction beyond those of the others, or errors left that follow its position.
+    /// What speaks against the joint: a correction beyond those of the others, or residuals that follow its position.
     pub suspicious: Option<String>,
 }
 
@@ -71,7 +71,7 @@ fn stands_out(correction: &JointCorrection, others: &[&JointCorrection]) -> Vec<
         LEAST_TILT_RAD,
         tilt,
         format!(
-            "its axis is tilted by {:.3} deg from the drawing, the median of the others by {:.3}",
+            "its axis is tilted by {:.3} deg from nominal, the median of the others by {:.3}",
             correction.tilt_rad.to_degrees(),
             tilt.unwrap_or_default().to_degrees()
         ),
@@ -83,7 +83,7 @@ fn stands_out(correction: &JointCorrection, others: &[&JointCorrection]) -> Vec<
         LEAST_SHIFT_M,
         shift,
         format!(
-            "its axis is {:.2} mm beside the drawing, the median of the others {:.2}",
+            "its axis is shifted by {:.2} mm from nominal, the median of the others by {:.2}",
             1e3 * correction.shift_m,
             1e3 * shift.unwrap_or_default()
         ),
@@ -97,7 +97,7 @@ fn pattern_words(pattern: &Pattern, kind: JointKind) -> String {
         JointKind::Prismatic => (format!("{:.3} mm", 1e3 * pattern.rms), "scale, spindle or guide"),
     };
     format!(
-        "{:.0} % of the squared position errors left follow its position, as an error of {size} (RMS) of the joint: {parts}",
+        "{:.0} % of the squared position residuals follow its position, like a joint error of {size} (RMS): {parts}",
         100.0 * pattern.share
     )
 }

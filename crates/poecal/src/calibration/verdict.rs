@@ -122,7 +122,7 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
     let unknowns = grounds.identifiability.parameters;
     if (grounds.numbers as f64) < REDUNDANCY * unknowns as f64 {
         reasons.push(format!(
-            "{} numbers measured in different configurations for {unknowns} unknowns leave too little to judge the fit by",
+            "{} numbers measured in different configurations for {unknowns} unknowns are too few to judge the fit",
             grounds.numbers
         ));
     }
@@ -140,7 +140,7 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
     }
     if calibrated > 1e3 * TOO_LARGE * grounds.reach_m {
         reasons.push(format!(
-            "the calibrated model still misses {name} rows by {calibrated:.1} mm, more than 1 % of the robot's reach"
+            "the position error of the calibrated model on {name} rows is {calibrated:.1} mm (RMS), more than 1 % of the robot's reach"
         ));
     }
     if reasons.is_empty() {
@@ -159,8 +159,8 @@ fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
         .filter(|(_, it)| it.shift_m > ANOTHER_SHARE * grounds.reach_m || it.tilt_rad > ANOTHER_RAD)
         .map(|(joint, it)| {
             format!(
-                "the axis of {} ended {:.0} mm and {:.1} deg from the drawing: look whether the model is that of this robot, and its columns \
-                 those of its joints",
+                "the axis of {} ended {:.0} mm and {:.1} deg from nominal: check whether the model is that of this robot, \
+                 and the columns those of its joints",
                 joint.name,
                 1e3 * it.shift_m,
                 it.tilt_rad.to_degrees()
@@ -192,14 +192,15 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     let suspects = grounds.robustness.suspects().count();
     if suspects as f64 > SUSPECTED * grounds.robustness.rows.len() as f64 {
         reasons.push(format!(
-            "{suspects} of {} rows are suspected to be grossly wrong",
-            grounds.robustness.rows.len()
+            "{suspects} of {} rows {}",
+            grounds.robustness.rows.len(),
+            if suspects == 1 { "is a suspected outlier" } else { "are suspected outliers" }
         ));
     }
     let unknowns = grounds.identifiability.parameters;
     if trust.cross_validation.is_none() || (grounds.numbers as f64) < TESTED * unknowns as f64 {
         reasons.push(format!(
-            "{} rows with {} measured numbers for {unknowns} unknowns are too few to test it",
+            "{} rows with {} measured numbers for {unknowns} unknowns are too few to test the fit",
             grounds.rows, grounds.numbers
         ));
     }
@@ -214,13 +215,14 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     }
     let open = open_directions(grounds);
     if open > 0 {
-        reasons.push(format!("these configurations do not tell {open} of {unknowns} unknowns"));
+        let is = if open == 1 { "is" } else { "are" };
+        reasons.push(format!("{open} of {unknowns} unknowns {is} not determined by these configurations"));
     }
     if let Some((found, worst)) = trust.cross_validation.as_ref().and_then(|it| Some((it, it.worst()?)))
         && worst.position_rms_m > BLOCKS * found.random.position_rms_m
     {
         reasons.push(format!(
-            "cross-validation: {} is missed by {:.3} mm, {:.1} times as much as random rows",
+            "cross-validation: the error of {} is {:.3} mm, {:.1} times that of random rows",
             worst.name,
             1e3 * worst.position_rms_m,
             worst.position_rms_m / found.random.position_rms_m
@@ -230,7 +232,7 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
         && range.sigma_m > RANGE * measured.sigma_m
     {
         reasons.push(format!(
-            "the expected error anywhere within the limits is {:.3} mm, {:.1} times that where it was measured",
+            "the expected error anywhere within the limits is {:.3} mm, {:.1} times that at the measured configurations",
             1e3 * range.sigma_m,
             range.sigma_m / measured.sigma_m
         ));
@@ -242,7 +244,5 @@ fn in_favour(grounds: &Grounds<'_>) -> String {
     let expected = grounds.trust.range.map_or(String::new(), |range| {
         format!(", and the expected error anywhere within the limits is {:.3} mm (RMS)", 1e3 * range.sigma_m)
     });
-    format!(
-        "the measurements tell all unknowns, every joint was moved through half of its range or more{expected}"
-    )
+    format!("all unknowns are determined, every joint was moved through half of its range or more{expected}")
 }

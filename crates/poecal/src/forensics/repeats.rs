@@ -63,7 +63,7 @@ fn repetition(data: &Dataset, repeated: &[Pair]) -> Option<Diagnosis> {
     Some(Diagnosis {
         kind: DiagnosisKind::DuplicateRows,
         statement: format!(
-            "{what} to the last digit, readings and measurement ({}): leave out what was copied, since it counts twice",
+            "{what} to the last digit, readings and measurement ({}): remove the copies, since they count twice",
             pairs(data, repeated, "as")
         ),
         rows: repeated.iter().map(|pair| pair.1).collect(),
@@ -84,8 +84,7 @@ fn contradiction(data: &Dataset, contradicting: &[Pair], furthest_mm: f64) -> Op
     Some(Diagnosis {
         kind: DiagnosisKind::DuplicateRows,
         statement: format!(
-            "{what} the readings of another and contradicts it, by up to {} mm ({}): look which is right, and leave the \
-             other out",
+            "{what} the readings of another and contradicts it, by up to {} mm ({}): check which is right, and remove the other",
             short(furthest_mm),
             pairs(data, contradicting, "against")
         ),

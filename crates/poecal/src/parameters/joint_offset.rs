@@ -1,4 +1,4 @@
-//! What a joint's value is more than its reading says.
+//! Joint offset: joint value minus reading.
 
 use nalgebra::Vector3;
 

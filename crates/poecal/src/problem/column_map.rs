@@ -75,7 +75,7 @@ impl ColumnMap {
             let axis = match parameter {
                 Parameter::ScrewAxis(axis) => axis,
                 Parameter::OtherScrew(_) | Parameter::JointOffset(_) => {
-                    return contradiction("kernels do not know these unknowns");
+                    return contradiction("kernels do not have these unknowns");
                 }
                 Parameter::DeviceFrame(_) | Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => continue,
             };

@@ -255,7 +255,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
     line(out, "file", &file.path.display().to_string());
     line(out, "rows", &format!("{}: {}", file.rows, kinds_words(file.poses, file.points)));
     if let Some(lost) = file.lost.words() {
-        line(out, "left out", &lost);
+        line(out, "skipped", &lost);
     }
     let stated = file.separator_line.map_or_else(String::new, |line| format!(" (line {line})"));
     let units = file.units_line.map_or_else(String::new, |line| format!("; units: line {line}"));
@@ -283,7 +283,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
         row(&visible(&column.name), &column_words(column), &unit_words(column), &range_words(column));
     }
     if !file.ignored.is_empty() {
-        line(out, "left alone", &first_few(&file.ignored));
+        line(out, "ignored", &first_few(&file.ignored));
     }
 }
 

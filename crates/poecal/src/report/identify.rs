@@ -1,4 +1,4 @@
-//! What configurations would tell.
+//! What configurations would determine.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::io::model::Model;
 use crate::robot::JointKind;
 use crate::text::visible;
 
-/// What configurations would tell, for a person to look over or a machine to read.
+/// What configurations would determine, for a person to look over or a machine to read.
 ///
 /// ```
 /// use poecal::analysis::{Session, identify};
@@ -23,7 +23,7 @@ use crate::text::visible;
 /// let found = identify(&robot, &readings, &Session::default())?;
 /// let model = Model { robot, source: ModelSource::Toml, path: "scara.toml".into() };
 /// let report = Identify::new(&model, &["joints.csv".to_owned()], &Session::default(), &found);
-/// assert!(report.text().contains("open: joint3 never moved: its screw is unknown"), "{}", report.text());
+/// assert!(report.text().contains("undetermined: joint3 never moved: its screw is undetermined"), "{}", report.text());
 /// # Ok::<(), poecal::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -107,7 +107,7 @@ impl Identify {
         line(&mut out, "observability", &self.observability_words());
         line(&mut out, "expected", &self.expected_words());
         // Writing to a String cannot fail.
-        let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "coverage", "sampled", "limits", "share");
+        let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "joint", "sampled", "limits", "share");
         for (joint, &kind) in self.coverage.iter().zip(&self.kinds) {
             let _ = writeln!(out, "{}", coverage_row(joint, kind));
         }
@@ -123,7 +123,7 @@ impl Identify {
             .filter_map(|(k, index)| index.map(|index| format!("O{} {index:.3e}", k + 1)))
             .collect();
         if words.is_empty() {
-            "O1 to O5 zero: a direction is not seen at all".to_owned()
+            "O1 to O5 are zero: a direction is not observed at all".to_owned()
         } else {
             words.join(", ")
         }
@@ -132,16 +132,16 @@ impl Identify {
     fn expected_words(&self) -> String {
         let expected = self.expected_error;
         let (Some(mean), Some(worst)) = (expected.position_mean_mm, expected.position_worst_mm) else {
-            return "no prediction is told: every one moves with what is open".to_owned();
+            return "no prediction is determined: all depend on undetermined unknowns".to_owned();
         };
         let rest = expected.configurations - expected.told;
-        let open = if rest > 0 {
-            format!("; {rest} others move with what is open, and are not told")
-        } else {
-            String::new()
+        let open = match rest {
+            0 => String::new(),
+            1 => "; 1 other depends on undetermined unknowns".to_owned(),
+            _ => format!("; {rest} others depend on undetermined unknowns"),
         };
         format!(
-            "predicted tip to {} mm (worst {} mm), as far as noise goes, in {} random configurations within the limits{open}",
+            "tip predicted to {} mm (worst {} mm), noise only, in {} random configurations within the limits{open}",
             number(mean),
             number(worst),
             expected.told

@@ -32,17 +32,17 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
 
 fn promise(out: &mut String, what: &str, kept: &KeptPart, unit: &str, found: f64) {
     let words = format!(
-        "{what}: {:.1} % of the errors are inside their 95 % bounds; {} {unit} (RMS), expected {} with the noise of measuring",
+        "{what}: {:.1} % of the errors are inside their 95 % bounds; {} {unit} (RMS), expected {} with measurement noise",
         100.0 * kept.inside_bound95,
         number(found),
         number(kept.expected_rms)
     );
-    line(out, "promised", &words);
+    line(out, "coverage", &words);
 }
 
 fn range_words(judgement: &Judgement) -> String {
     let Some(some) = &judgement.in_sampled_range else {
-        return "none of the configurations lies inside it, so nothing here tells of it".to_owned();
+        return "none of the configurations lies inside it, so these rows do not test it".to_owned();
     };
     if some.count == judgement.count {
         return "all configurations lie inside it".to_owned();
@@ -50,8 +50,10 @@ fn range_words(judgement: &Judgement) -> String {
     let share = 100.0 * some.promised.position_mm.inside_bound95;
     let rms = number(some.calibrated.position_mm.rms);
     format!(
-        "{} of {} configurations lie inside it: position error {rms} mm (RMS), {share:.1} % inside the bounds",
-        some.count, judgement.count
+        "{} of {} configurations {} inside it: position error {rms} mm (RMS), {share:.1} % inside the bounds",
+        some.count,
+        judgement.count,
+        if some.count == 1 { "lies" } else { "lie" }
     )
 }
 

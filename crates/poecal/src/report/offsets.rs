@@ -99,12 +99,13 @@ pub fn offset_ends(base: Option<End>, tip: Option<End>, actual: &Model) -> [(End
     let (usual_base, usual_tip) = match &actual.source {
         ModelSource::Calibration(file) => {
             let base = match file.frame() {
-                DeviceFrameKnowledge::Unknown => {
-                    (End::Free, "the calibration's device stood anywhere, so its base frame is a choice")
-                }
+                DeviceFrameKnowledge::Unknown => (
+                    End::Free,
+                    "the calibration did not know the device's place, so its base frame is a matter of choice",
+                ),
                 DeviceFrameKnowledge::Base => (End::Kept, "the calibration was measured in it"),
             };
-            (base, (End::Free, "the calibration found the tool anew"))
+            (base, (End::Free, "the calibration fitted the tool"))
         }
         ModelSource::Urdf(_) | ModelSource::Toml => (both, both),
     };
@@ -164,7 +165,8 @@ impl Offsets {
         line(&mut out, "base", &self.base.words());
         line(&mut out, "tip", &self.tip.words());
         // Writing to a String cannot fail.
-        let _ = writeln!(out, "\n{:<21}{:>14}{:>22}{:>15}", "add to joint", "offset", "left: tilt", "shift");
+        let _ =
+            writeln!(out, "\n{:<21}{:>14}{:>22}{:>15}", "add to joint", "offset", "remaining: tilt", "shift");
         for joint in &self.joints {
             let _ = writeln!(out, "{}", joint.row());
         }
@@ -176,11 +178,10 @@ impl Offsets {
         line(&mut out, "predictions", &self.predictions.words());
         if !self.undetermined.is_empty() {
             let words = format!(
-                "* {}: this comparison cannot tell these offsets, alone or from each other; shown are the smallest that \
-                 explain as much",
+                "* {}: this comparison does not determine these offsets, or not each by itself; the smallest that explain as much are shown",
                 self.undetermined.join(", ")
             );
-            line(&mut out, "open", &words);
+            line(&mut out, "undetermined", &words);
         }
         out
     }
@@ -235,7 +236,7 @@ impl Predictions {
     fn words(&self) -> String {
         let (before, after) = (&self.without_offsets, &self.with_offsets);
         format!(
-            "on {} random configurations, offsets alone take the tip's error from {} mm to {} mm (RMS; largest {} to {} mm), \
+            "on {} random configurations, offsets alone change the tip's error from {} mm to {} mm (RMS; largest {} to {} mm), \
              and from {} deg to {} deg (largest {} to {} deg)",
             self.configurations,
             number(before.position_rms_mm),

@@ -21,7 +21,7 @@ pub(super) const STATISTICS: [StatisticRow; 4] =
 /// Directions of a kind that the terminal names.
 const MOST_DIRECTIONS: usize = 6;
 
-/// What measurements determine, leave open, tell hardly, and could not tell.
+/// Which unknowns measurements determine, do not determine, determine weakly, and could not determine.
 pub(super) fn identifiability_lines(out: &mut String, found: &Identifiability) {
     let condition = if found.condition.is_finite() {
         format!(", condition {:.3e}", found.condition)
@@ -29,9 +29,13 @@ pub(super) fn identifiability_lines(out: &mut String, found: &Identifiability) {
         String::new()
     };
     line(out, "determined", &format!("{} of {} unknowns{condition}", found.rank, found.parameters));
-    for (label, directions) in [("open", &found.unidentifiable), ("weak", &found.weak)] {
+    for (label, directions) in [("undetermined", &found.unidentifiable), ("weakly determined", &found.weak)] {
         if found.rank == 0 && found.parameters > 0 {
-            line(out, "", "open: everything, since what the fit leaves is as large as what it describes");
+            line(
+                out,
+                "",
+                "undetermined: everything, since the residual is as large as the effect of the unknowns",
+            );
             break;
         }
         for (k, direction) in directions.iter().enumerate() {

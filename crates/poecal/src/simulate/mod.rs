@@ -108,7 +108,7 @@ impl Default for Simulation {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulated {
-    /// The robot as drawn.
+    /// The nominal robot.
     pub nominal: Robot,
     /// The robot that was measured.
     pub actual: Robot,

@@ -11,9 +11,9 @@
 #[non_exhaustive]
 pub enum Termination {
     /// The undamped step would lower the cost by less than [`super::Options::decrement`] times the mean squared residual: the
-    /// estimate is at the optimum, as far as the noise can tell.
+    /// estimate is at the optimum, within the noise.
     Optimum,
-    /// The undamped step is shorter than [`super::Options::step`]: nothing is left but rounding (noise-free data).
+    /// The undamped step is shorter than [`super::Options::step`]: the residual is rounding error (noise-free data).
     StepVanished,
     /// No step lowers the cost although one should: at rounding level.
     NoProgress,

@@ -38,13 +38,13 @@ pub struct Part {
     pub stated: Option<(f64, f64)>,
 }
 
-/// Whose what the fit leaves is.
+/// Whether the residuals count as the robot's or the instrument's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Attribution {
-    /// The robot's: nothing shows that it is noise of measuring.
+    /// The robot's: nothing shows that they are measurement noise.
     Robot,
-    /// The instrument's: stated noise explains it, and no structure is found in it.
+    /// The instrument's: stated noise explains them, and no structure is found in them.
     StatedNoise,
     /// The instrument's: measurements that were repeated in one configuration scatter as much as the others.
     Repeats,

@@ -184,7 +184,7 @@ fn a_thousand_targets_are_looked_through() {
     let error = calibrate(&session.robot, &data, &options).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "found 3024 unknowns (24 of the screws, 3000 of 1000 targets), expected at most 1000, which one fit can bear: \
+        "found 3024 unknowns (24 of the screws, 3000 of 1000 targets), expected at most 1000 in one fit: \
          calibrate with fewer targets, or a shorter chain"
     );
 }

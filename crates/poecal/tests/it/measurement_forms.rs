@@ -122,7 +122,7 @@ fn lost_beams_are_left_out_and_counted() {
     assert_eq!(
         file.warnings.iter().map(|warning| warning.split(": ").nth(1).unwrap()).collect::<Vec<_>>(),
         [
-            "left out 4 measurements with an empty or zero position, as of a lost beam (lines 3, 4, 5, 6); --strict refuses them"
+            "skipped 4 measurements with an empty or zero position, as of a lost beam (lines 3, 4, 5, 6); --strict refuses them"
         ]
     );
     let strict = ReadOptions { strict: true, ..ReadOptions::default() };
@@ -229,7 +229,7 @@ fn other_columns_are_listed_and_left_alone() {
     assert_eq!(file.warnings.len(), 1);
     assert!(
         file.warnings[0].ends_with(
-            "points.csv: left alone the columns `temperature[degC]`, \
+            "points.csv: ignored the columns `temperature[degC]`, \
              `sigma_postion` (did you mean `sigma_position`?), `Target` (did you mean `target`?)"
         ),
         "{}",

@@ -68,7 +68,7 @@ fn a_device_moved_late_is_named_and_not_called_gross_rows() {
             let words = format!("from row {} on the measurements lie ", from + 1);
             assert!(says(&found, &words), "{kind:?} {count}: {}", said(&found));
             assert!(says(&found, "instrument"), "{}", said(&found));
-            assert!(!says(&found, "grossly off"), "{}", said(&found));
+            assert!(!says(&found, "outlier"), "{}", said(&found));
             let far: f64 = found
                 .warnings
                 .iter()
@@ -122,7 +122,7 @@ fn files_with_two_device_frames_are_named() {
                 said(&found)
             );
             assert!(says(&found, "--frames per-file"), "{}", said(&found));
-            assert!(!says(&found, "wrong unit") && !says(&found, "grossly off"), "{}", said(&found));
+            assert!(!says(&found, "unit of the noise") && !says(&found, "outlier"), "{}", said(&found));
             assert!(found.diagnosis.is_empty(), "{}", said(&found));
             assert_eq!(found.verdict.level, Level::DoNotUse);
         }

@@ -91,7 +91,7 @@ fn another_robot_breaks_the_promise_after_a_refit_too() {
     println!("{:.1} % inside", 100.0 * share);
     assert!(share < 0.2);
     assert!(
-        judgement.falls_short(Level::Good).unwrap().contains("inside their 95 % bounds, 80 % are asked for")
+        judgement.falls_short(Level::Good).unwrap().contains("inside their 95 % bounds, 80 % are required")
     );
     let own = file.judge(&made.data, true, true).unwrap();
     assert_eq!(own.falls_short(Level::Good), None);

@@ -119,7 +119,7 @@ fn every_figure_is_that_of_the_calibration_file() {
     let gross = Gross { share: 0.05, ..Gross::default() }.spoil(&mut made.data);
     let session = Session::of(&elbow(), made.data);
     check_figures("elbow, wrong rows", &session);
-    assert!(session.page().contains("Rows that are suspected to be grossly wrong") && !gross.is_empty());
+    assert!(session.page().contains("Suspected outliers, the worst first") && !gross.is_empty());
     let mut data = Simulation::default().run(&elbow(), Kind::Point).unwrap().data;
     data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
     let session = Session::of(&elbow(), data);

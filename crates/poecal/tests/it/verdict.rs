@@ -200,7 +200,7 @@ fn copies_are_nothing_to_judge_by() {
     }
     let error = calibrate(&made.nominal, &data, &CalibrationOptions::default()).unwrap_err();
     println!("{error}");
-    assert!(error.to_string().contains("40 of 40 held-out rows to be fitted rows over again"));
+    assert!(error.to_string().contains("40 of 40 held-out rows that repeat fitted rows"));
 }
 
 /// The registered figures are the best that tool and frame do for positions, whatever the orientations are like.

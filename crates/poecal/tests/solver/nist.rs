@@ -4,7 +4,7 @@ use crate::nist_models::{MODELS, Model};
 use crate::plain::{Evaluation, Found, jacobian_error, solve};
 use std::path::Path;
 
-/// What NIST's own page asks of a good program is 4 or 5; this many digits of every parameter are asked for from every start.
+/// What NIST's own page asks of a good program is 4 or 5; this many digits of every parameter are required from every start.
 const DIGITS: f64 = 6.0;
 /// The same from the second start, which is closer.
 const DIGITS_CLOSE: f64 = 8.0;

@@ -251,7 +251,7 @@ fn whatever_fails_a_place_is_old_or_new_or_completed_by_the_next_run() {
 #[test]
 fn a_stop_before_every_single_operation() {
     let mut stops = 0;
-    // Before every one, or where few trials are asked for before one in so many.
+    // Before every one, or where few trials are required before one in so many.
     let apart = 1000_usize.div_ceil(trials(1000).count);
     for case in cases() {
         for mode in 0..2 {

@@ -108,7 +108,7 @@ impl Doubtful<'_> {
         }
         let left = self.better(own_m)?;
         let statement = format!(
-            "from {} on the measurements are in another device frame: with a frame for the rows before and one for these, {left}; the \
+            "from {} on the measurements are in another device frame: with one frame before and another from there on, {left}; the \
              measuring device seems to have been moved, by {:.0} mm as seen at the robot; give the rows from there on another name in a \
              column `instrument`, or calibrate each part by itself",
             self.data.place(self.rows[at]),
@@ -191,7 +191,7 @@ impl Doubtful<'_> {
     fn better(&self, own_m: f64) -> Option<String> {
         let is_better = BETTER * own_m <= self.left_m;
         is_better.then(|| {
-            format!("the fit leaves {:.3} mm (RMS) instead of {:.1} mm", 1e3 * own_m, 1e3 * self.left_m)
+            format!("the residual is {:.3} mm (RMS) instead of {:.1} mm", 1e3 * own_m, 1e3 * self.left_m)
         })
     }
 }

@@ -166,11 +166,11 @@ impl Looked<'_> {
             }
             Subject::Target(target) => match data.targets.get(target).and_then(Option::as_deref) {
                 Some(name) if data.targets.len() > 1 => format!(
-                    "from {place} on target `{name}` lies {far_mm:.2} mm beside where it was on the arm before, and no other target does: \
+                    "from {place} on target `{name}` is shifted by {far_mm:.2} mm on the arm, and no other target is: \
                      its nest seems to have been knocked; give it another name from there on, or leave these rows out"
                 ),
                 _ => format!(
-                    "from {place} on the target lies {far_mm:.2} mm beside where it was on the arm before: it seems to have been moved; \
+                    "from {place} on the target is shifted by {far_mm:.2} mm on the arm: it seems to have been moved; \
                      give it another name in a column `target` from there on, or calibrate each part by itself"
                 ),
             },
@@ -192,7 +192,7 @@ impl Looked<'_> {
             && data.station_count() == 1
         {
             return format!(
-                "from {place} on the measurements lie {far_mm:.2} mm beside those before: the files {before} and {after} do not share one \
+                "from {place} on the measurements are shifted by {far_mm:.2} mm: the files {before} and {after} do not share one \
                  device frame, the measuring device seems to have been moved between them; give each file its own with --frames per-file"
             );
         }
@@ -202,7 +202,7 @@ impl Looked<'_> {
             "calibrate each part by itself, or only one of them"
         };
         format!(
-            "from {place} on the measurements lie {far_mm:.2} mm beside those before: the measuring device or the target seems to have been \
+            "from {place} on the measurements are shifted by {far_mm:.2} mm: the measuring device or the target seems to have been \
              moved; {remedy}"
         )
     }

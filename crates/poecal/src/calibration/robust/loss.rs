@@ -15,11 +15,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Loss {
-    /// Linear beyond a bound: one optimum, and every row pulls a little.
+    /// Linear beyond a bound: one optimum, and every row has some influence.
     Huber,
-    /// Pulls less the farther a row is off, but never stops.
+    /// The influence of a row decreases with its residual, but never vanishes.
     Cauchy,
-    /// The bisquare: beyond its bound a row does not pull at all.
+    /// The bisquare: beyond its bound a row has no influence at all.
     Tukey,
 }
 

@@ -95,14 +95,18 @@ impl Robustness {
             return None;
         }
         let what = match self.loss {
-            Some(loss) => format!("they hardly count in the fit ({} loss, --robust)", loss.word()),
-            None if fitted == 0 => "they were not fitted".to_owned(),
-            None => "they count in full; fit robustly with --robust tukey".to_owned(),
+            Some(loss) => format!("the fit gives them almost no weight ({} loss, --robust)", loss.word()),
+            None if fitted == 0 => "none of them was fitted".to_owned(),
+            None => "the fit gives them full weight; use --robust tukey for a robust fit".to_owned(),
         };
         Some(format!(
-            "found {} grossly off ({fitted} of {} fitted, {held_out} of {} held out), too far for noise: {what}; \
+            "found {} ({fitted} of {} fitted rows, {held_out} of {} held out), too far off for noise: {what}; \
              `outliers` in calibration.json and residuals.csv name the rows",
-            measurements_words(fitted + held_out),
+            if fitted + held_out == 1 {
+                "1 outlier".to_owned()
+            } else {
+                format!("{} outliers", fitted + held_out)
+            },
             fit_rows.len(),
             held_out_rows.len()
         ))

@@ -49,14 +49,14 @@ impl CalibrationFile {
     /// [`ErrorKind::Problem`] if the calibration does not know one of them, [`ErrorKind::Model`] if the file has been changed into no
     /// calibration.
     pub fn devices_of(&self, data: &Dataset) -> Result<Vec<Pose>> {
-        const REFIT: &str = "or find the frames anew with --refit-frame";
+        const REFIT: &str = "or refit the frames with --refit-frame";
         let stations = data.station_count();
         if self.stations.is_empty() {
             if stations == 1 {
                 return Ok(vec![self.base_from_device()?]);
             }
             let message = format!(
-                "found measurements of {stations} instruments, expected those of one, since the calibration knows one device frame: judge \
+                "found measurements of {stations} instruments, expected those of one, since the calibration has one device frame: judge \
                  each by itself, {REFIT}"
             );
             return Err(Error::new(ErrorKind::Problem, message));
@@ -79,7 +79,7 @@ impl CalibrationFile {
                          `instrument`, {REFIT}"
                     ),
                     Some(name) => format!(
-                        "found measurements of instrument `{name}`, whose frame the calibration does not know, expected one of {known}: \
+                        "found measurements of instrument `{name}`, whose frame is not in the calibration, expected one of {known}: \
                          rename it, {REFIT}"
                     ),
                 };
@@ -93,7 +93,7 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Problem`].
     pub fn check_targets(&self, data: &Dataset) -> Result<()> {
-        let refit = "or find the targets anew with --refit-tool";
+        let refit = "or refit the targets with --refit-tool";
         let names = || self.targets.keys().map(String::as_str);
         let frames = data.frames(&data.all_rows());
         let known = first_few(&names().collect::<Vec<_>>());
@@ -107,8 +107,7 @@ impl CalibrationFile {
                 Some(name) => match self.targets.get(name) {
                     Some(target) if target.quaternion_xyzw.is_none() && is_frame => {
                         format!(
-                            "found orientations of target `{name}`, expected positions alone, since the calibration knows \
-                         it as a point: leave the orientation columns out, {refit}"
+                            "found orientations of target `{name}`, expected positions alone, since it is a point in the calibration: leave the orientation columns out, {refit}"
                         )
                     }
                     Some(_) => continue,
@@ -122,8 +121,7 @@ impl CalibrationFile {
                              it, {refit}"
                         ),
                         None => format!(
-                            "found measurements of target `{name}`, expected no name, since the calibration knows the \
-                             tip alone: leave the names out, {refit}"
+                            "found measurements of target `{name}`, expected no name, since the calibration has the tip alone: leave the names out, {refit}"
                         ),
                     },
                 },

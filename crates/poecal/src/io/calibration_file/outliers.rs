@@ -24,7 +24,7 @@ pub struct RobustEntry {
     pub held_out_without_suspected: Option<SetAccuracy>,
 }
 
-/// A row that is suspected to be grossly wrong.
+/// A suspected outlier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OutlierEntry {
     /// The file that it came from, as named by the user.

@@ -33,9 +33,9 @@ pub struct CalibrationFile {
     pub inputs: Inputs,
     /// Errors of the nominal, registered and calibrated model on training and held-out rows.
     pub accuracy: Accuracy,
-    /// How the minimisation went.
+    /// The minimisation: steps, end, convergence.
     pub solver: SolverEntry,
-    /// What the measurements can tell.
+    /// Which unknowns the measurements determine.
     pub identifiability: IdentifiabilityEntry,
     /// Noise by which residuals were weighted.
     pub noise: NoiseEntry,
@@ -45,16 +45,16 @@ pub struct CalibrationFile {
     /// How much of each joint's range was sampled.
     #[serde(default)]
     pub coverage: Vec<JointCoverage>,
-    /// Rows left out in turn, and how the others predict them; null if there are too few.
+    /// Cross-validation: errors of rows that are predicted by a fit of the others; null if there are too few.
     #[serde(default)]
     pub cross_validation: Option<CrossValidationEntry>,
     /// Each joint's correction.
     #[serde(default)]
     pub corrections: Vec<CorrectionEntry>,
-    /// Errors to expect of predictions; null if there are no more residuals than unknowns.
+    /// Expected errors of predictions; null if there are no more residuals than unknowns.
     #[serde(default)]
     pub uncertainty: Option<UncertaintyEntry>,
-    /// What was done about grossly wrong rows.
+    /// How outliers were treated.
     #[serde(default)]
     pub robust: RobustEntry,
     /// The rows that are suspected, the worst first, at most 1,000; `robust` has their number.
@@ -119,16 +119,16 @@ impl Inputs {
     }
 }
 
-/// How the minimisation went.
+/// The minimisation: steps, end, convergence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolverEntry {
-    /// How the errors of the joints were written as unknowns: `adjoint`, or a formulation for comparison.
+    /// Parameterisation of joint errors: `adjoint`, or a formulation for comparison.
     #[serde(default = "usual_formulation")]
     pub formulation: String,
-    /// How the errors of measured frames were written: `tool`, at the target, or a way for comparison.
+    /// Residual of measured frames: `tool`, at the target, or another for comparison.
     #[serde(default = "usual_pose_residual")]
     pub pose_residual: String,
-    /// By which steps the fit went: `levenberg-marquardt`, or others for comparison.
+    /// Method of the solver: `levenberg-marquardt`, or others for comparison.
     #[serde(default = "usual_method")]
     pub method: String,
     /// What the formulation does to the result, if it is not the usual one.
@@ -140,13 +140,13 @@ pub struct SolverEntry {
     pub converged: bool,
     /// Why it ended.
     pub termination: Termination,
-    /// Further starts that were tried because the first fit looked as if it had ended beside the optimum.
+    /// Further starts because the first fit seemed to have converged to a local minimum.
     pub restarts: usize,
-    /// Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit begins anew.
+    /// Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit starts again.
     #[serde(default)]
     pub trace: Vec<f64>,
-    /// Joint offsets found: joint value minus reading, where the formulation has them. Data cannot tell them
-    /// from screws; in `joints` they stand moved into the screws, and the readings need no correction.
+    /// Joint offsets found: joint value minus reading, where the formulation has them. Data cannot separate them
+    /// from screws; in `joints` they are part of the screws, and the readings need no correction.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub joint_offsets: Option<Vec<OffsetEntry>>,
 }
@@ -176,27 +176,27 @@ pub struct OffsetEntry {
     pub offset_mm: Option<f64>,
 }
 
-/// What the measurements can tell.
+/// Which unknowns the measurements determine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct IdentifiabilityEntry {
     /// Unknowns in the minimal basis.
     pub parameters: usize,
     /// Directions that the data determine against the noise.
     pub rank: usize,
-    /// How many unknowns the measurements tell beside what is believed of the drawing: the sum of a share of each.
+    /// Effective number of unknowns that the measurements determine beside the prior: the sum of a share of each.
     #[serde(default)]
     pub told: Option<f64>,
     /// Condition number over those directions; null if there is none.
     pub condition: Option<f64>,
-    /// What the configurations leave open.
+    /// Directions that the configurations do not determine.
     pub unidentifiable: Vec<Direction>,
-    /// What they tell, but hardly better than a drawing does.
+    /// Directions that they determine weakly, hardly better than the nominal model.
     #[serde(default)]
     pub weak: Vec<Direction>,
-    /// What no measurement of this kind could tell. It is not among the parameters, and changes no prediction.
+    /// What is not observable: no measurement of this kind could determine it. It is not among the parameters, and changes no prediction.
     #[serde(default)]
     pub structural: Vec<Direction>,
-    /// The observability indices; null where a direction is not seen at all.
+    /// The observability indices; null where a direction is not observed at all.
     #[serde(default)]
     pub observability: Observability,
 }
@@ -258,7 +258,7 @@ pub struct RobotEntry {
     pub tip_link: String,
     /// Pose of the tip in the base with all joint values zero.
     pub base_from_tip_at_zero: PoseEntry,
-    /// The same of the model as delivered.
+    /// The same of the nominal model.
     pub nominal_base_from_tip_at_zero: PoseEntry,
 }
 
@@ -271,7 +271,7 @@ pub struct JointEntry {
     pub kind: KindWord,
     /// Calibrated screw in the base frame at zero.
     pub screw: ScrewEntry,
-    /// Screw of the model as delivered.
+    /// Screw of the nominal model.
     pub nominal_screw: ScrewEntry,
     /// Calibrated frame of the joint and of the link that it moves, at zero.
     pub base_from_joint: PoseEntry,
@@ -340,7 +340,7 @@ pub struct StationEntry {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FrameWord {
-    /// It was found.
+    /// It was fitted.
     Unknown,
     /// Measurements are in the base frame.
     Base,

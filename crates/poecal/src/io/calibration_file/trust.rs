@@ -14,7 +14,7 @@ use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::Layout;
 use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
 
-/// Rows left out together, and how the others predict them.
+/// Rows of one fold or block, and their errors by a fit of the others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LeftOutEntry {
     /// What they have in common.
@@ -30,13 +30,13 @@ pub struct LeftOutEntry {
 /// Cross-validation on the fitted rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CrossValidationEntry {
-    /// Random parts left out in turn, all together.
+    /// Random folds, all together.
     pub random: LeftOutEntry,
-    /// The ends of each joint's range, files, and groups of equal `id`, left out in turn.
+    /// The ends of each joint's range, files, and groups of equal `id`, each predicted by a fit without it.
     pub blocked: Vec<LeftOutEntry>,
 }
 
-/// Errors to expect of predicted positions, millimetres.
+/// Expected errors of predicted positions, millimetres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ExpectedEntry {
     /// Root mean square distance.
@@ -47,27 +47,27 @@ pub struct ExpectedEntry {
     pub worst_bound95_position_mm: f64,
 }
 
-/// The spread of predictions at the measured configurations, had other rows been measured.
+/// The spread of predictions at the measured configurations over bootstrap samples of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BootstrapEntry {
-    /// How often neighbourhoods of rows were drawn with replacement.
+    /// Number of samples: neighbourhoods of rows, with replacement.
     pub drawings: usize,
-    /// Root mean square distance as the drawings show it, millimetres.
+    /// Root mean square distance over these samples, millimetres.
     pub sigma_position_mm: f64,
     /// The same if residuals are white noise, by the covariance, millimetres.
     pub formal_sigma_position_mm: f64,
 }
 
-/// Errors of one kind on held-out rows beside what is promised of them.
+/// Errors of one kind on held-out rows beside their predicted uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct KeptEntry {
-    /// Root mean square error to expect between measured and predicted, millimetres or degrees.
+    /// Expected root mean square error between measured and predicted, millimetres or degrees.
     pub expected_rms: f64,
     /// Share of the errors within their own 95 % bound, 0 to 1.
     pub inside_bound95: f64,
 }
 
-/// How the errors of held-out rows compare with what is promised.
+/// How the errors of held-out rows compare with their predicted uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HeldOutEntry {
     /// Of positions, millimetres.
@@ -86,7 +86,7 @@ impl HeldOutEntry {
     }
 }
 
-/// A part of a joint's range with the error to expect there.
+/// A part of a joint's range with the expected error there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RangeEntry {
     /// The joint.
@@ -99,7 +99,7 @@ pub struct RangeEntry {
     pub sigma_position_mm: f64,
 }
 
-/// A joint's correction, its uncertainty, and its worth.
+/// A joint's correction, its uncertainty, and its effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CorrectionEntry {
     /// The joint.
@@ -108,18 +108,18 @@ pub struct CorrectionEntry {
     pub tilt_deg: f64,
     /// Distance of the calibrated axis from the nominal joint's origin, millimetres.
     pub shift_mm: f64,
-    /// Error to expect of the direction, degrees (root mean square); null where the data do not tell it.
+    /// Standard deviation of the direction, degrees (root mean square); null where it is not determined.
     pub sigma_tilt_deg: Option<f64>,
-    /// Error to expect of the axis' place at the joint, millimetres; null where the data do not tell it.
+    /// Standard deviation of the axis' place at the joint, millimetres; null where it is not determined.
     pub sigma_shift_mm: Option<f64>,
     /// Root mean square position error if this screw alone stayed nominal, millimetres.
     pub left_nominal_rms_mm: f64,
-    /// What speaks against the joint, in words: a correction beyond those of the others, or errors left that follow its position.
+    /// What speaks against the joint, in words: a correction beyond those of the others, or residuals that follow its position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub suspicious: Option<String>,
 }
 
-/// What predictions need to state their error, and what is to be expected.
+/// The covariance by which predictions state their error, and expected errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct UncertaintyEntry {
     /// By how much the covariance is larger than independent residuals would make it.
@@ -127,23 +127,23 @@ pub struct UncertaintyEntry {
     /// The same outside the sampled range; as inside if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolation: Option<f64>,
-    /// What the model does not describe: standard deviation of each position component, millimetres.
+    /// Model error: standard deviation of each position component, millimetres.
     pub discrepancy_position_mm: f64,
     /// Of each rotation component, degrees.
     pub discrepancy_rotation_deg: f64,
-    /// What of the residuals is noise of measuring: standard deviation of each position component, millimetres.
+    /// Measurement noise in the residuals: standard deviation of each position component, millimetres.
     #[serde(default)]
     pub noise_position_mm: f64,
     /// Of each rotation component, degrees.
     #[serde(default)]
     pub noise_rotation_deg: f64,
-    /// Whose the residuals of position are.
+    /// Whether the residuals of position count as the robot's or the instrument's.
     #[serde(default = "robot")]
     pub residuals_position: Attribution,
-    /// Whose the residuals of rotation are.
+    /// The same of rotation.
     #[serde(default = "robot")]
     pub residuals_rotation: Attribution,
-    /// Degrees of freedom by which the residuals of position are known; null where their noise is stated.
+    /// Degrees of freedom of the residuals' variance, of position; null where their noise is stated.
     #[serde(default)]
     pub freedom_position: Option<f64>,
     /// The same of rotations.
@@ -156,10 +156,10 @@ pub struct UncertaintyEntry {
     pub measured: ExpectedEntry,
     /// In configurations anywhere within the limits.
     pub range: ExpectedEntry,
-    /// How the errors of held-out rows compare with what is promised; null if none were held out.
+    /// How the errors of held-out rows compare with their predicted uncertainty; null if none were held out.
     #[serde(default)]
     pub held_out: Option<HeldOutEntry>,
-    /// The spread of predictions where it was measured, by drawing rows anew; null if they are too few.
+    /// The spread of predictions where it was measured, by resampling rows; null if they are too few.
     #[serde(default)]
     pub bootstrap: Option<BootstrapEntry>,
     /// By parts of each joint's range.

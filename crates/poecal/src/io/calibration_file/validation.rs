@@ -62,7 +62,7 @@ impl CalibrationFile {
         let is_far = rms_mm > MOVED_DEVICE * own_mm;
         if mostly && is_far {
             return Some(format!(
-                "most errors are as promised, the largest is {:.2} mm: some measurements are grossly wrong",
+                "most errors are inside their 95 % bounds, the largest is {:.2} mm: some measurements are gross errors",
                 judgement.calibrated.position_mm.max
             ));
         }
@@ -82,9 +82,9 @@ impl CalibrationFile {
         };
         if some.promised.least_inside() >= BROKEN {
             return Some(format!(
-                "the {} rows inside the sampled range are as promised; outside it the calibration does not hold ({exceeding} in all exceed \
-                 their 95 % bound)",
-                some.count
+                "the errors of the {} inside the sampled range are as expected; outside it the calibration does not hold \
+                 ({exceeding} in all exceed their 95 % bound)",
+                if some.count == 1 { "1 row".to_owned() } else { format!("{} rows", some.count) }
             ));
         }
         if !refit_frame && is_far {
@@ -109,6 +109,6 @@ fn exceeding(kept: &Kept) -> String {
 fn moved_words(times: f64, rms_mm: f64, own_mm: f64) -> String {
     format!(
         "the position error is {times:.0} times that of the calibration itself ({rms_mm:.2e} mm, {own_mm:.2e} mm): \
-         if the measuring device was moved, find its frame anew with --refit-frame"
+         if the measuring device was moved, refit its frame with --refit-frame"
     )
 }

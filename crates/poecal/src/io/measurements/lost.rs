@@ -106,7 +106,7 @@ impl LostBeams {
 
     /// The warning of a file.
     pub(super) fn warning(&self, path: &Path) -> Option<String> {
-        Some(format!("{}: left out {}; --strict refuses them", path.display(), self.words()?))
+        Some(format!("{}: skipped {}; --strict refuses them", path.display(), self.words()?))
     }
 }
 

@@ -199,7 +199,7 @@ impl<'a> Reader<'a> {
             more => format!(" and {more} more"),
         };
         let columns = columns.join(", ");
-        self.warnings.push(format!("{}: left alone the columns {columns}{more}", path.display()));
+        self.warnings.push(format!("{}: ignored the columns {columns}{more}", path.display()));
     }
 
     fn row(&mut self, row: &Row<'_>, layout: &Layout, inputs: &InputReader<'_>) -> Result<()> {

@@ -17,7 +17,7 @@ const ROWS_BETWEEN_VISITS: usize = 20;
 pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
     let names = robot.reading_names();
     let columns = header(&names, &reading_units(&names, robot)?, kind.sees_orientation())?;
-    let mut text = "# Measurements: a row for each configuration, below the line of column names. Lines that begin with # are left alone.\n\
+    let mut text = "# Measurements: a row for each configuration, below the line of column names. Lines that begin with # are ignored.\n\
          # Units stand in brackets. If your numbers have others, change them there: [rad], [deg], [m], [mm], [um].\n\
          #\n\
          # Joints      what the controller shows while the robot stands still, not what it was told to do.\n\
@@ -38,8 +38,8 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
         "#\n\
          # Columns to add if you have them, in any place:\n\
          #   id                   name of the row, kept in the results\n\
-         #   target               name of the tool point that was seen; several in one configuration are several rows. Without this\n\
-         #                        column, the point that was seen becomes the tip of the calibrated model\n\
+         #   target               name of the measured tool point; several in one configuration are several rows. Without this\n\
+         #                        column, the measured point becomes the tip of the calibrated model\n\
          #   set                  fit, or held_out for rows to judge by [default: a random 30 % of the configurations]\n\
          #   sigma_position[mm]   standard deviation of each of x, y, z, if the device states it [default: estimated]\n",
     );
@@ -56,9 +56,9 @@ pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<Stri
     let units = reading_units(&names, robot)?;
     let mut text = format!(
         "# {count} configurations to measure, random within the limits of the joints (180 deg, 500 mm to either side where a joint has none).\n\
-         # NOBODY HAS LOOKED WHETHER THE ROBOT COLLIDES in them or on the way, or whether the device sees the target there: go through\n\
+         # COLLISIONS ARE NOT CHECKED, in them or on the way, nor whether the device sees the target there: go through\n\
          # them slowly or in simulation first, and replace or leave out what does not work. Every twentieth is the first again, which\n\
-         # shows how well the robot repeats and whether anything drifts. What they would tell: poecal identify\n\
+         # shows how well the robot repeats and whether anything drifts. What they would determine: poecal identify\n\
          {}\n",
         reading_header(&names, &units)
     );

@@ -143,7 +143,7 @@ fn unread(header: &Header<'_>, layout: &Layout) -> Option<String> {
     let unit = if stated { "" } else { ", unit = \"deg\"" };
     let columns: Vec<&str> = cells.iter().map(|cell| cell.name.as_str()).collect();
     Some(format!(
-        "the columns {} look like {words}; left alone, they leave points: a mapping (--columns) with {} has them read as poses",
+        "the columns {} look like {words}; they are ignored and the rows read as points: a mapping (--columns) with {} reads them as poses",
         columns.join(", "),
         mapped(form, &columns, unit)
     ))
@@ -225,8 +225,7 @@ mod tests {
         };
         assert_eq!(
             told("A,B,C", "10,20,30"),
-            "t.csv: the columns A, B, C look like KUKA's A, B, C (turns about z, then the new y, then the new x); left alone, they leave \
-             points: a mapping (--columns) with `orientation = { form = \"intrinsic_zyx\", columns = [\"A\", \"B\", \"C\"], unit = \"deg\" }` \
+            "t.csv: the columns A, B, C look like KUKA's A, B, C (turns about z, then the new y, then the new x); they are ignored and the rows read as points: a mapping (--columns) with `orientation = { form = \"intrinsic_zyx\", columns = [\"A\", \"B\", \"C\"], unit = \"deg\" }` \
              has them read as poses"
         );
         assert!(

@@ -40,8 +40,7 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             model.rotation_deg
         })
     };
-    let caption =
-        html! { (count(set.count, key)) " " (of) ". Nominal: the model as delivered, registered: as drawn." };
+    let caption = html! { (count(set.count, key)) " " (of) ". Nominal: the model before calibration. Registered: tool and device fitted to it." };
     html! {
         header {
             h1 { "Calibration of " (quoted(&file.robot.name, "robot.name")) }
@@ -61,7 +60,7 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                     }
                 }
                 p.note {
-                    b { "As drawn" } ": axes of the model, tool and measuring device fitted. " b { "Calibrated" }
+                    b { "Nominal" } ": axes of the model; tool and measuring device are fitted. " b { "Calibrated" }
                     ": the axes fitted too. The gain of the calibration is the difference."
                 }
                 (facts(&the_facts(file, residuals)))
@@ -95,12 +94,12 @@ fn lead_table(
             file.robust.suspected_fit,
         ),
     };
-    let drawn = match file.measurement_frame.known {
-        FrameWord::Unknown => "as drawn, tool and device fitted",
-        FrameWord::Base => "as drawn, tool fitted",
+    let nominal = match file.measurement_frame.known {
+        FrameWord::Unknown => "nominal, tool and device fitted",
+        FrameWord::Base => "nominal, tool fitted",
     };
     let mut rows = vec![
-        (drawn.to_owned(), &set.registered, format!("{key}.registered")),
+        (nominal.to_owned(), &set.registered, format!("{key}.registered")),
         ("calibrated".to_owned(), &set.calibrated, format!("{key}.calibrated")),
     ];
     if let Some(rest) = rest {
@@ -252,8 +251,8 @@ fn noise(file: &CalibrationFile) -> Markup {
     let noise = &file.noise;
     let source = match noise.source {
         NoiseSource::Rows => return html! { "as each row states it" },
-        NoiseSource::Exact => return html! { "none: the fit leaves nothing but rounding" },
-        NoiseSource::Given => "as given",
+        NoiseSource::Exact => return html! { "none: the residual is rounding error only" },
+        NoiseSource::Given => "as stated",
         NoiseSource::Estimated => "estimated from the fit",
     };
     html! {
@@ -271,8 +270,7 @@ fn contents(file: &CalibrationFile) -> Markup {
         ("errors", "Errors of the rows"),
         ("suspects", "Suspected rows"),
     ];
-    let rest =
-        [("trust", "How far to trust it"), ("told", "What the data tell"), ("method", "Method and inputs")];
+    let rest = [("trust", "How far to trust it"), ("told", "Unknowns"), ("method", "Method and inputs")];
     html! {
         nav aria-label="Contents" {
             @for (id, title) in sections.into_iter().chain(repeated).chain(rest) { a href={ "#" (id) } { (title) } " " }

@@ -23,8 +23,8 @@ fn view(file: &CalibrationFile) -> Markup {
     }
     let content = html! {
         p {
-            "The arm as lines along its joints' axes: nominal in grey, calibrated in colour. Arrows go from where the calibrated model says \
-             that a target is to where it was measured."
+            "The arm as lines along its joints' axes: nominal in grey, calibrated in colour. Arrows go from the place \
+             of a target by the calibrated model to its measured place."
         }
         div #arm.arm {}
         noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
@@ -61,8 +61,7 @@ fn corrections(file: &CalibrationFile) -> Markup {
     for (k, found) in file.corrections.iter().enumerate() {
         let slides =
             file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == KindWord::Prismatic);
-        let figure =
-            |value, name| figure_or(value, format_args!("corrections.{k}.{name}"), "not told by the data");
+        let figure = |value, name| figure_or(value, format_args!("corrections.{k}.{name}"), "not determined");
         let shift = |value, name| {
             if slides {
                 html! { "–" }
@@ -81,10 +80,10 @@ fn corrections(file: &CalibrationFile) -> Markup {
     }
     let content = html! {
         p {
-            "By how much each axis was found off its nominal place, how well that is known, and what it is worth: the error that would \
-             remain if this axis alone stayed nominal, tool and device found anew."
+            "Correction of each axis from nominal, its standard deviation, and its effect: the error that would remain if this axis alone \
+             stayed nominal, with tool and device refitted."
         }
-        (plots(&figures::corrections(file), "Dots: what was found. Lines: two standard deviations to each side; none where the data do not tell it."))
+        (plots(&figures::corrections(file), "Dots: corrections. Lines: two standard deviations to each side; none where a correction is not determined."))
         (table)
         @for (k, found) in file.corrections.iter().enumerate() {
             @if let Some(words) = &found.suspicious {
@@ -103,7 +102,7 @@ fn corrections(file: &CalibrationFile) -> Markup {
 fn offsets(file: &CalibrationFile) -> Markup {
     let Some(offsets) = &file.solver.joint_offsets else { return Markup::default() };
     let mut table = Table::new(
-        "Joint offsets of this formulation; in the calibrated model they stand moved into the axes",
+        "Joint offsets of this formulation; in the calibrated model they are part of the axes",
         1,
         &["joint", "offset"],
     );

@@ -13,10 +13,10 @@ const LISTED: usize = 60;
 pub(super) fn sections(file: &CalibrationFile) -> Markup {
     let content = html! {
         p {
-            "The joints' axes are screws in the product of exponentials; each is moved as a rigid body, by four numbers of a joint that turns \
-             and two of one that slides, without a singularity and without a first guess. The tool is fitted with them, and where the \
-             measuring device stands, unless that was known. What the figures mean is said in " code { "docs/report.md" }
-            ", how they are computed in " code { "docs/theory.md" } ", both with the program."
+            "The joints' axes are screws in the product of exponentials. Each is corrected as a rigid body, by four numbers for a revolute \
+             joint and two for a prismatic one; this parameterisation has no singularity and needs no initial guess. The tool is fitted \
+             too, and the device frame unless it was known. " code { "docs/report.md" } " explains the figures, "
+            code { "docs/theory.md" } " has the formulas; both come with the program."
         }
         (solver(file))
         @if !file.solver.trace.is_empty() { (convergence(file)) }
@@ -28,14 +28,14 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
 fn solver(file: &CalibrationFile) -> Markup {
     let solver = &file.solver;
     let end = match solver.termination {
-        Termination::Optimum | Termination::StepVanished | Termination::NoProgress => "ended at the optimum",
+        Termination::Optimum | Termination::StepVanished | Termination::NoProgress => "converged",
         Termination::IterationLimit => "did not converge: the limit of iterations was reached",
         Termination::NotFinite => "did not converge: residuals are not finite",
     };
     let names = file.stations.iter().enumerate().filter_map(|(k, it)| Some((k, it.instrument.as_deref()?)));
     let device = match file.measurement_frame.known {
         FrameWord::Unknown => html! {
-            "found with the robot"
+            "fitted with the robot"
             @if file.stations.len() > 1 {
                 ", one for each of the instruments "
                 @for (n, (k, name)) in names.enumerate() {
@@ -51,7 +51,7 @@ fn solver(file: &CalibrationFile) -> Markup {
     };
     let steps = html! {
         (solver.method) ", " (count(solver.iterations, "solver.iterations")) " iterations, " (end)
-        @if solver.restarts > 0 { ", " (count(solver.restarts, "solver.restarts")) " further starts tried" }
+        @if solver.restarts > 0 { ", " (count(solver.restarts, "solver.restarts")) " further starts" }
     };
     let version = html! {
         "poecal " (quoted(&file.poecal_version, "poecal_version")) ", form " (quoted(&file.schema, "schema"))
@@ -75,7 +75,7 @@ fn convergence(file: &CalibrationFile) -> Markup {
     let words =
         if trace.len() > LISTED { "The first iterations as numbers" } else { "The iterations as numbers" };
     html! {
-        (plots(&[figures::convergence(file)], "At 1 the residuals are as large as the noise that they are weighted by. A step up is a round that begins anew, with other weights or on more rows."))
+        (plots(&[figures::convergence(file)], "At 1 the residuals are as large as the noise that they are weighted by. A step up is the start of a new round, with other weights or more rows."))
         (folded(words, &table))
     }
 }
@@ -99,10 +99,10 @@ fn inputs(file: &CalibrationFile) -> Markup {
     html! {
         h3 { "Inputs" }
         (table)
-        h3 { "To make it again" }
+        h3 { "Reproduce" }
         @if let Some(command) = &inputs.command {
             pre tabindex="0" { code { (quoted(command, "inputs.command")) } }
-            p.note { "In the folder where it was run, with the files of these checksums and this version, it gives the same bytes." }
+            p.note { "Run in the same folder, with the files of these checksums and this version, the command gives the same bytes." }
         } @else {
             p.note { "The calibration was not made by the program, or by an earlier version, so no command is recorded." }
         }

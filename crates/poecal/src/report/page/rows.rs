@@ -25,21 +25,21 @@ pub(super) fn sections(file: &CalibrationFile, residuals: &Residuals) -> Markup 
 fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let (shown, all) = (drawn(residuals).len(), residuals.rows.len());
     let content = html! {
-        p { "What the calibrated model leaves of each measurement: measured less predicted, in the axes of the measuring device." }
+        p { "Residual of each measurement: measured minus predicted by the calibrated model, in the axes of the measuring device." }
         @if shown < all {
             p.note {
-                "Charts draw " (shown) " of " (all) " rows: the suspected ones, those furthest off, and others at equal distances, "
+                "Charts draw " (shown) " of " (all) " rows: the suspected ones, those of the largest errors, and others at equal distances, "
                 (MOST_ROWS) " at most. Histogram, normal plot and smoothed curves are of the evenly chosen ones alone. Tables count every row."
             }
         }
-        (chart("rows", "By row", "A dot for each row in the order read. A drift or a step here is a session that changed: a tool knocked, a device moved."))
-        (chart("components", "By component", "Residuals along the device's axes. A mean away from zero in held-out rows is a frame that moved."))
+        (chart("rows", "By row", "A dot for each row in the order read. A drift or a step shows a change during the session: a tool knocked, a device moved."))
+        (chart("components", "By component", "Residuals along the device's axes. A mean away from zero in held-out rows shows a frame that moved."))
         (folded("The components as numbers", &component_table(residuals)))
         (chart(
             "joints",
             "By joint",
-            "Residuals over each joint's value, with a smoothed curve. A curve that swings, once or twice a turn or as a gear repeats, is an error of a gear or an \
-             encoder that the model does not describe; one that bends with the load is a link that gives.",
+            "Residuals over each joint's value, with a smoothed curve. A periodic curve (once or twice a turn, or with the period of a gear) is an error of a \
+             gear or an encoder that is not modelled; a curve that follows the load is a flexible link.",
         ))
         (folded("Errors by parts of each joint's values", &joint_table(residuals)))
         div.pair {
@@ -48,22 +48,22 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                 "normal",
                 "Normal plot of the components",
                 "Components of position, ordered, against where those of a normal distribution would be. On the line they are noise; ends that \
-                 bend away are wrong rows or errors that the model does not describe.",
+                 bend away are gross errors or errors that the model does not describe.",
             ))
         }
         h3 { "Fitted against held-out rows" }
         div.pair {
             (plots(
                 &[figures::sets(residuals)],
-                "Fitted rows are always predicted a little better than others; only held-out ones are a promise.",
+                "Fitted rows are always predicted a little better than others; only held-out rows measure the error of predictions.",
             ))
             (set_tables(file))
         }
         (chart(
             "leverage",
             "Leverage",
-            "To the right: rows that pull the fit to themselves. Above: rows that are far off, in units of their own standard deviation. \
-             A row that is both decides the result alone.",
+            "To the right: rows of high leverage. Above: rows of large residuals, in units of their own standard deviation. \
+             A row with both decides much of the result, unless it is suspected and has almost no weight.",
         ))
         @if let Some(table) = leverage_table(residuals) { (folded("The rows of largest leverage", &table)) }
     };
@@ -195,20 +195,20 @@ fn suspects(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let robust = &file.robust;
     let fit = html! {
         @match robust.loss {
-            Some(loss) => { "The fit was made by the " (loss.word()) " loss, which keeps such rows from spoiling it." }
+            Some(loss) => { "The fit was made by the " (loss.word()) " loss, which limits the influence of outliers." }
             None => { "The fit was made by least squares." }
         }
     };
     let content = html! {
         @if robust.suspected_fit + robust.suspected_held_out == 0 {
-            p { "No row is suspected to be grossly wrong. " (fit) }
+            p { "No row is a suspected outlier. " (fit) }
         } @else {
             p {
                 (count(robust.suspected_fit, "robust.suspected_fit")) " fitted and "
                 (count(robust.suspected_held_out, "robust.suspected_held_out"))
-                " held-out rows are too far off to be noise. " (fit) " " b { "Studentised" }
+                " held-out rows have residuals too large for noise. " (fit) " " b { "Studentised" }
                 " is the length of the residual in units of its own standard deviation, " b { "weight" }
-                " what the row counted in the fit (or would have). Look whether a mirror was knocked, or a target mistaken."
+                " is that of the row in the fit (or what it would be). Check whether a reflector was knocked, or two were confused."
             }
             (suspect_table(file, residuals))
             @if file.outliers.len() > LISTED {
@@ -226,7 +226,7 @@ fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> Table {
     let mut head = vec!["row", "set", "off by, mm"];
     head.extend(turned.then_some("off by, °"));
     head.extend(["studentised", "weight"]);
-    let mut table = Table::new("Rows that are suspected to be grossly wrong, the worst first", 2, &head);
+    let mut table = Table::new("Suspected outliers, the worst first", 2, &head);
     for (k, found) in file.outliers.iter().take(LISTED).enumerate() {
         let figure = |value, name| figure_or(value, format_args!("outliers.{k}.{name}"), "–");
         let set = match found.set {
@@ -271,7 +271,7 @@ fn repeatability(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             (count(found.rows, "repeatability.rows")) " rows). In the manner of ISO 9283, " b { "accuracy" }
             " is the distance from where a model says to the mean of the measured positions, and " b { "repeatability" }
             " the mean distance of these from their mean, and three standard deviations of it. ISO 9283 asks for 30 rows a pose, each \
-             approached anew; rows of a robot that stood still tell of the device alone."
+             approached again; rows of a robot that stood still show the device's repeatability only."
         }
         (table)
         p.note {

@@ -1,4 +1,4 @@
-//! How far the result can be trusted, and what the data tell.
+//! How far the result can be trusted, and which unknowns the data determine.
 
 use maud::{Markup, html};
 
@@ -30,7 +30,7 @@ fn expected(found: &UncertaintyEntry) -> Markup {
     let head = ["configurations", "RMS", "95 % bound, mean", "95 % bound, worst"];
     let mut table = Table::new("Expected errors of predicted positions, mm", 1, &head);
     for (words, set, key) in
-        [("as measured", &found.measured, "measured"), ("anywhere within the limits", &found.range, "range")]
+        [("measured", &found.measured, "measured"), ("anywhere within the limits", &found.range, "range")]
     {
         let figure = |value, name| figure(value, format_args!("uncertainty.{key}.{name}"));
         table.row(&[
@@ -46,24 +46,24 @@ fn expected(found: &UncertaintyEntry) -> Markup {
             @match found.residuals_position {
                 Attribution::Robot => {
                     (figure(found.discrepancy_position_mm, "uncertainty.discrepancy_position_mm"))
-                    " mm a component of what the fit leaves count as errors of the robot in the figures above: nothing shows that they are \
-                     noise of measuring. A stated noise (--sigma-position) that explains them, or repeated measurements, would."
+                    " mm per component of the residuals count as robot error in the figures above: nothing shows that they are \
+                     measurement noise. A stated noise (--sigma-position) that explains them, or repeated measurements, would."
                 }
                 Attribution::StatedNoise => {
-                    "The stated noise explains what the fit leaves, so predictions are better than any single measurement."
+                    "The stated noise explains the residuals, so predictions are better than any single measurement."
                 }
                 Attribution::Repeats => {
-                    "What the fit leaves is no more than what repeated measurements scatter by, so predictions are better than any single \
+                    "The residuals are no larger than the scatter of repeated measurements, so predictions are better than any single \
                      measurement."
                 }
             }
         }
         @if let Some(drawn) = &found.bootstrap {
             p {
-                "Drawing neighbourhoods of rows anew " (count(drawn.drawings, "uncertainty.bootstrap.drawings"))
-                " times spreads the predictions there by "
+                "Block bootstrap, " (count(drawn.drawings, "uncertainty.bootstrap.drawings"))
+                " samples: predictions scatter by "
                 (figure(drawn.sigma_position_mm, "uncertainty.bootstrap.sigma_position_mm"))
-                " mm (RMS); if rows err independently and alike it is "
+                " mm (RMS). The covariance, for independent and equally noisy rows, gives "
                 (figure(drawn.formal_sigma_position_mm, "uncertainty.bootstrap.formal_sigma_position_mm")) " mm."
             }
         }
@@ -72,9 +72,9 @@ fn expected(found: &UncertaintyEntry) -> Markup {
 
 fn cross_validation(found: &CrossValidationEntry) -> Markup {
     let turned = found.random.rotation_rms_deg.is_some();
-    let mut head = vec!["left out", "rows", "position, mm (RMS)"];
+    let mut head = vec!["rows predicted", "rows", "position, mm (RMS)"];
     head.extend(turned.then_some("rotation, ° (RMS)"));
-    let mut table = Table::new("Fitted rows left out in turn, and how the others predict them", 1, &head);
+    let mut table = Table::new("Fitted rows, predicted by fits of the others", 1, &head);
     let mut add = |entry: &LeftOutEntry, key: &str| {
         let mut cells = vec![
             quoted(&entry.left_out, format_args!("{key}.left_out")),
@@ -91,8 +91,8 @@ fn cross_validation(found: &CrossValidationEntry) -> Markup {
         add(entry, &format!("cross_validation.blocked.{k}"));
     }
     html! {
-        h3 { "Left out" }
-        p { "Blocks that are missed by far more than random rows are parts of the range for which the fit does not speak." }
+        h3 { "Cross-validation" }
+        p { "Where the error of a block is much larger than that of random rows, the model should not be trusted in that part of the joint range." }
         (table)
     }
 }
@@ -118,7 +118,7 @@ fn coverage(file: &CalibrationFile) -> Markup {
         ]);
     }
     html! {
-        h3 { "What was sampled of each joint's range" }
+        h3 { "Sampled part of each joint's range" }
         (plots(&figures::coverage(file), "Bars: sampled by the fitted rows. Thin lines: the limits of the model."))
         (table)
     }
@@ -146,7 +146,7 @@ fn parts(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
         });
     }
     html! {
-        h3 { "Where errors are to be expected" }
+        h3 { "Expected error over the joint ranges" }
         p {
             "Expected errors of position, mm (RMS), by parts of each joint's range, with the other joints anywhere in theirs. The darker a \
              cell, the larger the error: the palest is the least of the table, the darkest the largest."
@@ -170,13 +170,9 @@ fn map_cell(k: usize, part: &RangeEntry, (least, worst): (f64, f64), (factor, un
 fn told(file: &CalibrationFile) -> Markup {
     let found = &file.identifiability;
     let groups = [
-        ("Left open by these configurations", "unidentifiable", &found.unidentifiable),
-        ("Told, but hardly better than a drawing does", "weak", &found.weak),
-        (
-            "What no measurement of this kind could tell (it changes no prediction)",
-            "structural",
-            &found.structural,
-        ),
+        ("Undetermined by these configurations", "unidentifiable", &found.unidentifiable),
+        ("Weakly determined", "weak", &found.weak),
+        ("Not observable (no effect on predictions)", "structural", &found.structural),
     ];
     let items = |directions: &[Direction], key: &str| {
         let item = |(k, direction)| direction_words(direction, &format!("identifiability.{key}.{k}"));
@@ -195,7 +191,7 @@ fn told(file: &CalibrationFile) -> Markup {
         }
         (observability(file))
     };
-    section("told", "What the data tell", &content)
+    section("told", "Unknowns that the data determine", &content)
 }
 
 /// A direction with the keys of its words.
@@ -211,20 +207,26 @@ pub(super) fn direction_words(direction: &Direction, key: &str) -> Markup {
 fn observability(file: &CalibrationFile) -> Markup {
     let found = &file.identifiability.observability;
     let indices = [
-        ("O1", "the volume that the rows fill, by their number", "1/m", found.o1, "o1"),
-        ("O2", "the inverse of the condition number", "", found.o2, "o2"),
-        ("O3", "what is known least", "1/m", found.o3, "o3"),
-        ("O4", "how noise is amplified", "1/m", found.o4, "o4"),
-        ("O5", "the inverse of the sum of what is left unknown", "1/m", found.o5, "o5"),
+        (
+            "O1",
+            "geometric mean of the singular values, over the root of the number of rows",
+            "1/m",
+            found.o1,
+            "o1",
+        ),
+        ("O2", "inverse of the condition number", "", found.o2, "o2"),
+        ("O3", "smallest singular value", "1/m", found.o3, "o3"),
+        ("O4", "noise amplification", "1/m", found.o4, "o4"),
+        ("O5", "inverse of the sum of the inverse singular values", "1/m", found.o5, "o5"),
     ];
     let mut table = Table::new(
         "Observability indices; larger is better, for comparing sets of configurations of one robot",
         2,
-        &["index", "what it is", "value", "unit"],
+        &["index", "meaning", "value", "unit"],
     );
     for (name, words, unit, value, key) in indices {
         let key = format_args!("identifiability.observability.{key}");
-        table.row(&[&name, &words, &figure_or(value, key, "not seen in every direction"), &unit]);
+        table.row(&[&name, &words, &figure_or(value, key, "zero: a direction is not observed"), &unit]);
     }
     html! { h3 { "Observability" } (table) }
 }

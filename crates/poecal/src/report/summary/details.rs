@@ -29,7 +29,7 @@ pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
         line(out, "formulation", &words);
     }
     if let Some(condition) = file.identifiability.condition {
-        line(out, "condition", &format!("{condition:.3e} over what is known"));
+        line(out, "condition", &format!("{condition:.3e} over the determined unknowns"));
     }
     trust(out, file);
     coverage(out, file);
@@ -58,8 +58,8 @@ fn rows_words(file: &CalibrationFile) -> String {
 fn noise_words(file: &CalibrationFile) -> String {
     let source = match file.noise.source {
         NoiseSource::Rows => return "as each row states it".to_owned(),
-        NoiseSource::Exact => return "none: the fit leaves nothing but rounding".to_owned(),
-        NoiseSource::Given => "as given",
+        NoiseSource::Exact => return "none: the residual is rounding error only".to_owned(),
+        NoiseSource::Given => "as stated",
         NoiseSource::Estimated => "estimated from the fit",
     };
     let rotation = file.noise.sigma_rotation_deg;
@@ -70,14 +70,14 @@ fn noise_words(file: &CalibrationFile) -> String {
 fn solver_words(file: &CalibrationFile) -> String {
     let solver = &file.solver;
     let end = match solver.termination {
-        Termination::Optimum | Termination::StepVanished | Termination::NoProgress => "at the optimum",
+        Termination::Optimum | Termination::StepVanished | Termination::NoProgress => "converged",
         Termination::IterationLimit => "NOT converged: the limit of iterations was reached",
         Termination::NotFinite => "NOT converged: residuals are not finite",
     };
     let restarts = match solver.restarts {
         0 => String::new(),
-        1 => ", 1 further start tried".to_owned(),
-        count => format!(", {count} further starts tried"),
+        1 => ", 1 further start".to_owned(),
+        count => format!(", {count} further starts"),
     };
     format!("{} iterations, {end}{restarts}", solver.iterations)
 }
@@ -117,14 +117,18 @@ fn trust(out: &mut String, file: &CalibrationFile) {
             format!("; worst block: {}, {} mm", worst.left_out, number(worst.position_rms_mm))
         });
         let words = format!("{} mm (RMS) on random rows{worst}", number(found.random.position_rms_mm));
-        line(out, "not fitted", &format!("cross-validation: {words}"));
+        line(out, "predicted", &format!("in cross-validation {words}"));
     }
     let mut joints: Vec<_> = file.corrections.iter().collect();
     joints.sort_by(|a, b| b.left_nominal_rms_mm.total_cmp(&a.left_nominal_rms_mm));
     let joints: Vec<String> =
         joints.iter().map(|it| format!("{} {} mm", it.joint, number(it.left_nominal_rms_mm))).collect();
     if !joints.is_empty() {
-        line(out, "per joint", &format!("errors (RMS) with one joint left nominal: {}", joints.join(", ")));
+        line(
+            out,
+            "per joint",
+            &format!("error (RMS) with this axis alone left nominal: {}", joints.join(", ")),
+        );
     }
 }
 
@@ -133,7 +137,7 @@ fn coverage(out: &mut String, file: &CalibrationFile) {
         return;
     }
     // Writing to a String cannot fail.
-    let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "coverage", "sampled", "limits", "share");
+    let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "joint", "sampled", "limits", "share");
     for (joint, entry) in file.coverage.iter().zip(&file.joints) {
         let _ = writeln!(out, "{}", coverage_row(joint, entry.kind.into()));
     }

@@ -21,13 +21,13 @@ pub(super) fn table(out: &mut String, file: &CalibrationFile) {
         ),
     };
     let name = if held_out.is_some() { "held out" } else { "fitted" };
-    let drawn = match file.measurement_frame.known {
-        FrameWord::Unknown => "as drawn, tool and device fitted",
-        FrameWord::Base => "as drawn, tool fitted",
+    let nominal = match file.measurement_frame.known {
+        FrameWord::Unknown => "nominal, tool and device fitted",
+        FrameWord::Base => "nominal, tool fitted",
     };
     let without = format!("calibrated, without {suspected} suspected");
     let mut rows: Vec<(&str, &ModelAccuracy)> =
-        vec![(drawn, &set.registered), ("calibrated", &set.calibrated)];
+        vec![(nominal, &set.registered), ("calibrated", &set.calibrated)];
     rows.extend(rest.map(|rest| (without.as_str(), &rest.calibrated)));
     let mut block = |title: &str, of: fn(&ModelAccuracy) -> Option<Statistic>| {
         head(out, &format!("{name} ({}), {title}", set.count));

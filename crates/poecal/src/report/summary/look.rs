@@ -10,8 +10,8 @@ use crate::io::calibration_file::{CalibrationFile, OutlierEntry};
 const WORST: usize = 3;
 /// Characters of a direction's description that are told as they stand.
 const SHORT: usize = 160;
-/// Words of the warning that is about suspected rows, which are told by their figures instead.
-const SUSPECTS: &str = "grossly off";
+/// Words of the warning that is about suspected rows, which are given by their figures instead.
+const SUSPECTS: &str = "`outliers` in calibration.json";
 
 /// Where in `calibration.json` a point comes from, with its index there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,13 +72,13 @@ pub(in crate::report) fn look_at(file: &CalibrationFile) -> Vec<Point> {
     let known = &file.identifiability;
     if known.rank > 0 || known.parameters == 0 {
         let open = known.unidentifiable.iter().enumerate();
-        points.extend(open.map(|(k, it)| point(Place::Open(k), &direction_words("unknown", it))));
+        points.extend(open.map(|(k, it)| point(Place::Open(k), &direction_words("undetermined", it))));
         // What is open for a reason is also weak beside it for the same one.
         let is_told = |weak: &Direction| {
             known.unidentifiable.iter().any(|open| (open.cause, &open.joints) == (weak.cause, &weak.joints))
         };
         let weak = known.weak.iter().enumerate().filter(|(_, it)| !is_told(it));
-        points.extend(weak.map(|(k, it)| point(Place::Weak(k), &direction_words("weak", it))));
+        points.extend(weak.map(|(k, it)| point(Place::Weak(k), &direction_words("weakly determined", it))));
     }
     points
 }
@@ -116,24 +116,19 @@ fn suspects_words(file: &CalibrationFile) -> String {
     let robust = &file.robust;
     let all = file.accuracy.training.count + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
     let count = robust.suspected_fit + robust.suspected_held_out;
-    let rows = if all == 1 {
-        "row is"
-    } else if count == 1 {
-        "rows is"
-    } else {
-        "rows are"
-    };
+    let rows = if all == 1 { "row" } else { "rows" };
+    let are = if count == 1 { "is an outlier" } else { "are outliers" };
     let counted = match robust.loss {
         _ if robust.suspected_fit == 0 => "",
-        Some(Loss::Tukey) => ", hardly counted",
-        Some(Loss::Huber | Loss::Cauchy) => ", counted less",
-        None => ", counted in full: see --robust",
+        Some(Loss::Tukey) => " with almost no weight",
+        Some(Loss::Huber | Loss::Cauchy) => " with less weight",
+        None => " with full weight, see --robust",
     };
-    let sets = format!("{} fitted{counted}; {} held out", robust.suspected_fit, robust.suspected_held_out);
+    let sets = format!("{} fitted{counted}, {} held out", robust.suspected_fit, robust.suspected_held_out);
     let worst: Vec<String> =
         file.outliers.iter().take(WORST).scan("", |last, outlier| Some(named(outlier, last))).collect();
     let worst = if worst.is_empty() { String::new() } else { format!("; worst {}", worst.join(", ")) };
-    format!("{count} of {all} {rows} grossly off ({sets}){worst}")
+    format!("{count} of {all} {rows} {are} ({sets}){worst}")
 }
 
 /// A row by file and line, the file only where it is another one than before.
@@ -147,7 +142,7 @@ fn named<'a>(outlier: &'a OutlierEntry, last: &mut &'a str) -> String {
     format!("{place} by {} mm", number(outlier.residual_mm))
 }
 
-/// What of the robot is open or hardly told; in few words where there are many joints to name.
+/// What of the robot is undetermined or weakly determined; in few words where there are many joints to name.
 fn direction_words(degree: &str, direction: &Direction) -> String {
     let times = if direction.directions > 1 {
         format!(" ({} directions)", direction.directions)
@@ -164,9 +159,9 @@ fn direction_words(degree: &str, direction: &Direction) -> String {
 
 fn cause_words(cause: Cause) -> &'static str {
     match cause {
-        Cause::OwnAxis => "nothing shows a motion along or about their own axes",
-        Cause::BaseFrame => "where the base stands is a choice",
-        Cause::JointOffsets => "their zeros cannot be told from their axes",
+        Cause::OwnAxis => "no measurement depends on a motion along or about their own axes",
+        Cause::BaseFrame => "the base frame is a matter of choice",
+        Cause::JointOffsets => "their offsets cannot be separated from their axes",
         Cause::NoOrientation => "no orientation was measured",
         Cause::StoodStill => "did not move",
         Cause::TooFew => "too few measurements",
@@ -176,7 +171,7 @@ fn cause_words(cause: Cause) -> &'static str {
         Cause::MovedTogether => "moved in a fixed relation only",
         Cause::SmallMotion => "moved by little",
         Cause::DependentMotion => "moved in combinations that hide their axes",
-        Cause::SeenOnce => "a target was seen once",
-        Cause::Other => "these configurations hardly show their axes",
+        Cause::SeenOnce => "a target was measured once",
+        Cause::Other => "these configurations hardly determine their axes",
     }
 }

@@ -1,4 +1,4 @@
-//! The table of a calibration in 80 columns: the verdict, what to look at, the errors, what is known. All else on demand.
+//! The table of a calibration in 80 columns: the verdict, what to look at, the errors, the unknowns. All else on demand.
 
 mod details;
 mod errors;
@@ -25,7 +25,7 @@ pub enum Detail {
     Full,
 }
 
-/// What a calibration comes to, as text of lines up to 80 characters: the verdict first.
+/// The result of a calibration, as text of lines up to 80 characters: the verdict first.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate};
@@ -63,7 +63,7 @@ pub fn unsaid(file: &CalibrationFile, detail: Detail) -> Vec<String> {
     rest.iter().filter(is_warning).map(|point| point.text.clone()).collect()
 }
 
-/// The error that the verdict tells to expect, its key and where it holds; nothing where no use is advised or nothing is known.
+/// The expected error that the verdict states, its key and where it holds; nothing where no use is advised or nothing is known.
 pub(super) fn expected(file: &CalibrationFile) -> Option<(f64, &'static str, &'static str)> {
     let level = file.verdict.as_ref()?.level;
     let expected = file.uncertainty.as_ref()?;
@@ -126,7 +126,7 @@ fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
     parts
 }
 
-/// What the rows tell, and what they do not.
+/// Which unknowns the rows determine, and which they do not.
 fn known(out: &mut String, file: &CalibrationFile) {
     let found = &file.identifiability;
     let count = |directions: &[Direction]| directions.iter().map(|it| it.directions).sum::<usize>();
@@ -134,16 +134,16 @@ fn known(out: &mut String, file: &CalibrationFile) {
     let all = fitted + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
     let weak = match count(&found.weak) {
         0 => String::new(),
-        weak => format!(", {weak} of them weakly"),
+        weak => format!(" ({weak} weakly)"),
     };
     line(
         out,
-        "known",
-        &format!("{} of {} unknowns, from {fitted} of {all} rows{weak}", found.rank, found.parameters),
+        "determined",
+        &format!("{} of {} unknowns{weak}, from {fitted} of {all} rows", found.rank, found.parameters),
     );
-    let mut label = "not known";
+    let mut label = "undetermined";
     if found.rank == 0 && found.parameters > 0 {
-        line(out, label, "everything: what the fit leaves is as large as what it describes");
+        line(out, label, "everything: the residual is as large as the effect of the unknowns");
         label = "";
     } else if found.rank < found.parameters {
         let mut joints: Vec<&str> = Vec::new();

@@ -120,43 +120,43 @@ pub(crate) const CASES: &[Case] = &[
         name: "jitter, poses", robot: elbow, kind: Kind::Pose, count: 60,
         motion: jitter,
         words: "26 of 30\n\
-                open 4: joint3 stood still but for the jitter of readings: its screw is unknown",
+                open 4: joint3 stood still but for the jitter of readings: its screw is undetermined",
     },
     Case {
         name: "jitter, points", robot: bent_tool, kind: Kind::Point, count: 60,
         motion: jitter,
         words: "23 of 27\n\
-                open 4: joint3 stood still but for the jitter of readings: its screw is unknown",
+                open 4: joint3 stood still but for the jitter of readings: its screw is undetermined",
     },
     Case {
         name: "never moved from zero", robot: elbow, kind: Kind::Pose, count: 60,
         motion: |_, q, _| q[2] = 0.0,
         words: "26 of 30\n\
-                open 4: joint3 never moved: its screw is unknown",
+                open 4: joint3 never moved: its screw is undetermined",
     },
     Case {
         name: "first joint still", robot: elbow, kind: Kind::Pose, count: 60,
         motion: |_, q, _| q[0] = 0.7,
         words: "26 of 30\n\
-                open 4: joint1 never moved: its screw is unknown",
+                open 4: joint1 never moved: its screw is undetermined",
     },
     Case {
         name: "last joint still, points", robot: bent_tool, kind: Kind::Point, count: 60,
         motion: |_, q, _| q[5] = 0.7,
         words: "23 of 27\n\
-                open 4: joint6 never moved: its screw is unknown",
+                open 4: joint6 never moved: its screw is undetermined",
     },
     Case {
         name: "wrist frozen, poses", robot: elbow, kind: Kind::Pose, count: 60,
         motion: |_, q, _| q[3..].copy_from_slice(&[0.3, 0.4, 0.5]),
         words: "18 of 30\n\
-                open 12: joint4, joint5 and joint6 never moved: their screws are unknown",
+                open 12: joint4, joint5 and joint6 never moved: their screws are undetermined",
     },
     Case {
         name: "wrist frozen, points", robot: bent_tool, kind: Kind::Point, count: 60,
         motion: |_, q, _| q[3..].copy_from_slice(&[0.3, 0.4, 0.5]),
         words: "15 of 27\n\
-                open 12: joint4, joint5 and joint6 never moved: their screws are unknown",
+                open 12: joint4, joint5 and joint6 never moved: their screws are undetermined",
     },
     Case {
         name: "SCARA points", robot: scara, kind: Kind::Point, count: 60,
@@ -167,37 +167,37 @@ pub(crate) const CASES: &[Case] = &[
         name: "SCARA, point on the spindle", robot: scara_spindle, kind: Kind::Point, count: 60,
         motion: FREE,
         words: "15 of 17\n\
-                open 2: joint4: the point measured lies on the axis (within 0.0 mm): its tilt about the point is not seen",
+                open 2: joint4: the point measured lies on the axis (within 0.0 mm): its tilt about the point is not determined",
     },
     Case {
         name: "SCARA without its slide", robot: scara, kind: Kind::Pose, count: 60,
         motion: |_, q, _| q[2] = 0.1,
         words: "18 of 20\n\
-                open 2: joint3 never moved: its screw is unknown",
+                open 2: joint3 never moved: its screw is undetermined",
     },
     Case {
         name: "point on the last axis", robot: elbow, kind: Kind::Point, count: 60,
         motion: FREE,
         words: "25 of 27\n\
-                open 2: joint6: the point measured lies on the axis (within 0.0 mm): its tilt about the point is not seen",
+                open 2: joint6: the point measured lies on the axis (within 0.0 mm): its tilt about the point is not determined",
     },
     Case {
         name: "point where the wrist's axes meet", robot: wrist_point, kind: Kind::Point, count: 60,
         motion: FREE,
         words: "21 of 27\n\
-                open 6: joint4, joint5 and joint6: the point measured lies on the axes (within 0.0 mm): how they tilt about it is not seen",
+                open 6: joint4, joint5 and joint6: the point measured lies on the axes (within 0.0 mm): their tilts about it are not determined",
     },
     Case {
         name: "parallel axes together", robot: elbow, kind: Kind::Pose, count: 60,
         motion: |_, q, _| q[2] = q[1] + 0.3,
         words: "28 of 30\n\
-                open 2: joint2 and joint3: parallel axes, moved only together: their places can trade",
+                open 2: joint2 and joint3: parallel axes, moved only together: their places cannot be separated",
     },
     Case {
         name: "parallel axes together, points", robot: bent_tool, kind: Kind::Point, count: 60,
         motion: |_, q, _| q[2] = q[1] + 0.3,
         words: "25 of 27\n\
-                open 2: joint2 and joint3: parallel axes, moved only together: their places can trade",
+                open 2: joint2 and joint3: parallel axes, moved only together: their places cannot be separated",
     },
     Case {
         name: "parallel axes in another ratio", robot: elbow, kind: Kind::Pose, count: 60,
@@ -208,20 +208,20 @@ pub(crate) const CASES: &[Case] = &[
         name: "5 degrees, points", robot: bent_tool, kind: Kind::Point, count: 60,
         motion: |_, q, g| q[4] = 1.0 + 5.0 * DEG * random::uniform(g),
         words: "27 of 27\n\
-                weak 1: joint5 moved by 4.8 deg only: part of its screw is known to 1.3 mm or 0.14 deg only",
+                weak 1: joint5 moved by 4.8 deg only: part of its screw is determined to 1.3 mm or 0.14 deg only",
     },
     Case {
         name: "1 degree, poses", robot: elbow, kind: Kind::Pose, count: 60,
         motion: |_, q, g| q[4] = 1.0 + DEG * random::uniform(g),
         words: "30 of 30\n\
-                weak 4: joint5 moved by 1.0 deg only: its screw is known to 2.4 mm or 0.27 deg only",
+                weak 4: joint5 moved by 1.0 deg only: its screw is determined to 2.4 mm or 0.27 deg only",
     },
     Case {
         name: "0.3 degrees, points", robot: bent_tool, kind: Kind::Point, count: 60,
         motion: |_, q, g| q[4] = 1.0 + 0.3 * DEG * random::uniform(g),
         words: "25 of 27\n\
                 open 2: joint5 moved by 0.3 deg only: part of its screw is lost in the noise\n\
-                weak 2: joint5 moved by 0.3 deg only: part of its screw is known to 4.9 mm or 0.52 deg only",
+                weak 2: joint5 moved by 0.3 deg only: part of its screw is determined to 4.9 mm or 0.52 deg only",
     },
     Case {
         name: "every joint by 5 degrees, points", robot: bent_tool, kind: Kind::Point, count: 60,
@@ -229,36 +229,36 @@ pub(crate) const CASES: &[Case] = &[
         words: "23 of 27\n\
                 open 2: joint5 moved by 4.8 deg only: part of its screw is lost in the noise\n\
                 open 2: joint6 moved by 4.8 deg only: part of its screw is lost in the noise\n\
-                weak 1: joint1 moved by 4.8 deg only: part of its screw is known to 4.0 mm or 0.43 deg only\n\
-                weak 1: joint5 moved by 4.8 deg only: part of its screw is known to 3.0 mm or 0.32 deg only\n\
-                weak 1: joint6 moved by 4.8 deg only: part of its screw is known to 1.2 mm or 0.13 deg only",
+                weak 1: joint1 moved by 4.8 deg only: part of its screw is determined to 4.0 mm or 0.43 deg only\n\
+                weak 1: joint5 moved by 4.8 deg only: part of its screw is determined to 3.0 mm or 0.32 deg only\n\
+                weak 1: joint6 moved by 4.8 deg only: part of its screw is determined to 1.2 mm or 0.13 deg only",
     },
     Case {
         name: "SCARA poses of one orientation", robot: scara, kind: Kind::Pose, count: 60,
         motion: |_, q, _| q[3] = -q[0] - q[1],
         words: "18 of 20\n\
-                open 2: the tool kept one orientation: its place on the last link and where the axes stand cannot be told apart",
+                open 2: the tool kept one orientation: its place on the last link and where the axes stand cannot be separated",
     },
     Case {
         name: "elbow poses of one orientation", robot: elbow, kind: Kind::Pose, count: 60,
         motion: one_orientation,
         words: "27 of 30\n\
-                open 3: the tool kept one orientation: its place on the last link and where the axes stand cannot be told apart",
+                open 3: the tool kept one orientation: its place on the last link and where the axes stand cannot be separated",
     },
     Case {
         name: "elbow points of one orientation", robot: bent_tool, kind: Kind::Point, count: 60,
         motion: one_orientation,
         words: "23 of 27\n\
-                open 4: the tool kept one orientation: its place on the last link and where the axes stand cannot be told apart\n\
-                weak 6: joint1, joint2, joint3, joint4, joint5 and joint6 moved far enough, but not independently of the others: their screws are known to 9.0 mm or 0.95 deg only",
+                open 4: the tool kept one orientation: its place on the last link and where the axes stand cannot be separated\n\
+                weak 6: joint1, joint2, joint3, joint4, joint5 and joint6 moved far enough, but not independently of the others: their screws are determined to 9.0 mm or 0.95 deg only",
     },
     Case {
         name: "upright tool", robot: elbow, kind: Kind::Pose, count: 60,
         motion: upright,
         words: "24 of 30\n\
-                open 4: joint4 never moved: its screw is unknown\n\
-                open 1: the tool turned about one direction only: along it, its place on the last link and where the axes stand cannot be told apart\n\
-                open 1: joint2, joint3 and joint5: parallel axes, moved only together: their places can trade",
+                open 4: joint4 never moved: its screw is undetermined\n\
+                open 1: the tool turned about one direction only: along it, its place on the last link and where the axes stand cannot be separated\n\
+                open 1: joint2, joint3 and joint5: parallel axes, moved only together: their places cannot be separated",
     },
     Case {
         name: "too few rows", robot: elbow, kind: Kind::Pose, count: 4,
@@ -282,25 +282,25 @@ pub(crate) const CASES: &[Case] = &[
         name: "gantry with a frozen slide", robot: gantry, kind: Kind::Pose, count: 60,
         motion: |_, q, _| q[1] = 0.1,
         words: "22 of 24\n\
-                open 2: joint2 never moved: its screw is unknown",
+                open 2: joint2 never moved: its screw is undetermined",
     },
     Case {
         name: "gantry with a frozen wrist, points", robot: gantry, kind: Kind::Point, count: 60,
         motion: |_, q, _| q[3..].copy_from_slice(&[0.3, 0.4, 0.5]),
         words: "9 of 21\n\
-                open 12: joint4, joint5 and joint6 never moved: their screws are unknown",
+                open 12: joint4, joint5 and joint6 never moved: their screws are undetermined",
     },
     Case {
         name: "slides moved together", robot: gantry, kind: Kind::Pose, count: 60,
         motion: |_, q, _| q[1] = 0.5 * q[0] + 0.1,
         words: "23 of 24\n\
-                open 1: joint1 and joint2: moved only together: only their common motion is seen, their own directions are not",
+                open 1: joint1 and joint2: moved only together: only their common motion is observed, their own directions are not determined",
     },
     Case {
         name: "a stage that follows", robot: column, kind: Kind::Pose, count: 60,
         motion: FREE,
         words: "16 of 18\n\
-                open 2: lift and stage: moved only together: only their common motion is seen, their own directions are not",
+                open 2: lift and stage: moved only together: only their common motion is observed, their own directions are not determined",
     },
     Case {
         name: "positioner", robot: positioner, kind: Kind::Pose, count: 60,
@@ -311,19 +311,19 @@ pub(crate) const CASES: &[Case] = &[
         name: "positioner, table never turned", robot: positioner, kind: Kind::Point, count: 60,
         motion: |_, q, _| q[1] = 0.0,
         words: "7 of 11\n\
-                open 4: turntable never moved: its screw is unknown",
+                open 4: turntable never moved: its screw is undetermined",
     },
     Case {
         name: "7 axes, elbow frozen straight", robot: seven_axis, kind: Kind::Pose, count: 60,
         motion: |_, q, _| q[3] = 0.0,
         words: "30 of 34\n\
-                open 4: joint4 never moved: its screw is unknown",
+                open 4: joint4 never moved: its screw is undetermined",
     },
     Case {
         name: "7 axes, elbow frozen, two together", robot: seven_axis, kind: Kind::Pose, count: 60,
         motion: |_, q, _| { q[3] = 0.0; q[4] = -q[2]; },
         words: "26 of 34\n\
-                open 4: joint4 never moved: its screw is unknown\n\
-                open 4: joint3 and joint5: parallel axes, moved only together: their places can trade",
+                open 4: joint4 never moved: its screw is undetermined\n\
+                open 4: joint3 and joint5: parallel axes, moved only together: their places cannot be separated",
     },
 ];
