@@ -67,7 +67,6 @@ impl Session {
     /// What the device says of these poses.
     pub(super) fn data(&self, residual: Residual, measured: &[Pose]) -> Result<Dataset> {
         let mut data = Dataset::new(self.nominal.reading_names());
-        data.pose_residual = residual.model();
         for (readings, &pose) in self.readings.chunks_exact(self.nominal.joints.len()).zip(measured) {
             let measurement = match self.seen {
                 Seen::Poses => Measurement::Pose(PoseMeasurement { pose }),
@@ -75,6 +74,7 @@ impl Session {
             };
             data.push(readings, None, measurement)?;
         }
+        data.write_poses_by(residual.model());
         Ok(data)
     }
 

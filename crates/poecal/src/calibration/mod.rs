@@ -112,7 +112,7 @@ fn written<'a>(data: &'a Dataset, pose_residual: Option<&'static dyn PoseResidua
         return Cow::Borrowed(data);
     }
     let mut written = data.clone();
-    written.pose_residual = pose_residual;
+    written.write_poses_by(pose_residual);
     Cow::Owned(written)
 }
 

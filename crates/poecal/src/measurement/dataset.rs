@@ -245,6 +245,12 @@ impl Dataset {
         data
     }
 
+    /// Writes the errors of measured frames in this way; without measured frames nothing changes.
+    pub fn write_poses_by(&mut self, pose_residual: Option<&'static dyn PoseResidual>) {
+        let has_frames = self.observations.iter().any(|row| row.measurement.sees_orientation());
+        self.pose_residual = pose_residual.filter(|_| has_frames);
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
