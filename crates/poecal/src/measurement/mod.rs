@@ -1,4 +1,5 @@
-//! What an outside device saw. A measurement knows the pose of the target it saw and nothing of joints or parameters.
+//! Measurements by an external device. The residual of a measurement depends on the predicted pose of its target alone, not on joints or
+//! parameters.
 
 mod configurations;
 mod dataset;
@@ -19,7 +20,7 @@ use crate::lie::Pose;
 
 /// One measurement of a target in the measuring device's frame.
 ///
-/// A new type is one file with a [`Residual`] and one variant here; the compiler lists the arms, all in this file.
+/// A new type is one file with a [`Residual`] and one variant here; the compiler lists the match arms, all in this file.
 ///
 /// ```
 /// use nalgebra::Vector3;
