@@ -9,13 +9,13 @@ use crate::linalg;
 use crate::problem::Layout;
 use crate::robot::{Joint, JointKind, Robot};
 
-/// Weight of a target's deviation beside that of the screws: it decides only what the screws leave open.
+/// Weight of a target's deviation beside that of the screws: it decides only directions that the screws leave undetermined.
 const TARGET_WEIGHT: f64 = 1e-3;
 /// Share of the largest eigenvalue below which a direction is exactly null: rounding of normal equations.
 const NULL: f64 = 1e-13;
 
 /// The base motion that brings an estimate's screws nearest to the nominal robot's, rotations counted with `length_m`; apply it
-/// with [`Estimate::rebased`]. `nominal_targets` settle what the screws leave open: theory.md §8 (38).
+/// with [`Estimate::rebased`]. `nominal_targets` decide directions that the screws leave undetermined: theory.md §8 (38).
 #[must_use]
 pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose], length_m: f64) -> Pose {
     let mut motion = Pose::identity();
@@ -53,8 +53,8 @@ pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose],
     motion
 }
 
-/// How far a screw is from nominal: tilt (an arc at `length_m`) and shift as seen from the nominal joint's origin (an axis only),
-/// each with its derivative by a spatial motion of the screw.
+/// Deviation of a screw from nominal: tilt (an arc at `length_m`) and shift as seen from the nominal joint's origin (an axis only), each
+/// with its derivative by a spatial motion of the screw (theory.md §8 (38)).
 fn deviations(screw: &Screw, nominal: &Joint, length_m: f64) -> [(Vector3<f64>, Matrix3x6<f64>); 2] {
     let direction = screw.direction();
     let tilt = (direction - nominal.screw.direction()) * length_m;
@@ -94,7 +94,7 @@ pub fn null_step(
     base_free: bool,
 ) -> Option<Vec<f64>> {
     let n = layout.dim();
-    // Positive definite even with more than that taken off: nothing is null, and no eigenvalue need be known.
+    // Positive definite even when shifted by more than that: there is no null space, and no eigenvalue is needed.
     let trace: f64 = (0..n).map(|k| gram[k * n + k]).sum();
     if linalg::cholesky(gram, n, -2.0 * NULL * trace).is_some() {
         return None;
@@ -171,7 +171,7 @@ fn least_squares(columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
     Some(linalg::cholesky_solve(&factor, &gradient))
 }
 
-/// How far a screw is from nominal, and how that changes with the unknowns.
+/// Deviation of a screw from nominal, with its derivatives by the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviation {
     /// Angle between the directions, radians.

@@ -3,11 +3,11 @@
 //! repeated columns.
 
 pub(crate) use crate::lanes::Factor;
-use crate::lanes::{self, Level};
+use crate::lanes::{self, SimdLevel};
 use nalgebra::{Cholesky, DMatrix, Matrix4, Matrix6, U6, Vector3, Vector4};
 
-/// Adds `Σ rows rᵀ r` to the upper triangle of a row-major `n × n` Gram matrix. `rows` holds rows of `n` numbers, of which those
-/// before `start` are zero and are skipped.
+/// Adds `Σ rᵀ r` over rows r to the upper triangle of a row-major `n × n` Gram matrix (theory.md §6 (28)). `rows` holds rows of `n`
+/// numbers, of which those before `start` are zero and are skipped.
 pub(crate) fn add_gram(gram: &mut [f64], n: usize, rows: &[f64], start: usize) {
     if n == 0 {
         return;
@@ -36,7 +36,7 @@ pub(crate) fn add_gram(gram: &mut [f64], n: usize, rows: &[f64], start: usize) {
     }
 }
 
-/// Adds `Σ rows rᵀ e` to a gradient, one residual `e` a row.
+/// Adds `Σ rᵀ e` over rows r to a gradient, one residual `e` a row (theory.md §6 (28)).
 pub(crate) fn add_gradient(gradient: &mut [f64], rows: &[f64], residuals: &[f64]) {
     let n = gradient.len();
     if n == 0 {
@@ -52,10 +52,10 @@ pub(crate) fn add_gradient(gradient: &mut [f64], rows: &[f64], residuals: &[f64]
 /// Cholesky factor of the symmetric matrix given by its upper triangle plus `damping` on the diagonal; `None` if that is not positive
 /// definite.
 pub(crate) fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
-    lanes::cholesky(Level::best(), upper, n, damping)
+    lanes::cholesky(SimdLevel::best(), upper, n, damping)
 }
 
-/// Factor of the information of a motion.
+/// Cholesky factor of the information of a rigid motion.
 pub(crate) type Factor6 = Cholesky<f64, U6>;
 
 /// Cholesky factor of six rows; `None` if the matrix is not positive definite.
@@ -66,7 +66,7 @@ pub(crate) fn cholesky_6(matrix: Matrix6<f64>) -> Option<Factor6> {
 /// Solves `L Lᵀ x = b`.
 pub(crate) fn cholesky_solve(factor: &Factor, b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
-    lanes::solve(Level::best(), factor, &mut x);
+    lanes::solve(SimdLevel::best(), factor, &mut x);
     x
 }
 
@@ -82,7 +82,7 @@ pub(crate) fn trace_of_quotient(factor: &Factor, part: &[f64], n: usize) -> f64 
 
 /// The inverse (row-major) of the matrix that was factorised.
 pub(crate) fn inverse(factor: &Factor) -> Vec<f64> {
-    lanes::inverse(Level::best(), factor)
+    lanes::inverse(SimdLevel::best(), factor)
 }
 
 /// `aᵀb`.
@@ -141,10 +141,10 @@ mod tests {
         assert!(solution.iter().zip(&truth).all(|(a, b)| (a - b).abs() < 1e-12), "{solution:?}");
     }
 
-    /// At every level and for every filling of the lanes, column by column what solving gives.
+    /// At every level and for every filling of the lanes the inverse has the columns that solving gives.
     #[test]
     fn the_inverse_is_that_of_solutions() {
-        for level in lanes::levels() {
+        for level in lanes::simd_levels() {
             for n in 0..20 {
                 let rows: Vec<f64> =
                     (0..n * (n + 3)).map(|k| ((k * k * 7 + 3 * k) % 17) as f64 - 8.0).collect();

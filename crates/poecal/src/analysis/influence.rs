@@ -77,7 +77,7 @@ pub fn influence(
 mod tests {
     use super::*;
     use crate::estimate::Packed;
-    use crate::lanes::levels;
+    use crate::lanes::simd_levels;
     use crate::lie::{Pose, rotation};
     use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement};
     use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
@@ -135,7 +135,7 @@ mod tests {
             let scaled: Vec<f64> = residual.iter().enumerate().map(|(k, e)| e / scale(row, k)).collect();
             expected.push(by_the_book(&factor, jacobian, &scaled, weights[row as usize]));
         });
-        for level in levels() {
+        for level in simd_levels() {
             let problem = problem.clone().with_level(level);
             let found = influence(&problem, &estimate, &normal, &rows, &weights, scale);
             assert_eq!(found.len(), expected.len());
@@ -184,7 +184,7 @@ mod tests {
             problem.for_rows(&estimate, &rows, |_, jacobian, residual| {
                 expected.push((jacobian.to_vec(), residual.to_vec()));
             });
-            for level in levels() {
+            for level in simd_levels() {
                 let mut seen = 0;
                 problem.clone().with_level(level).for_row_blocks(&estimate, &rows, |places, block| {
                     for (lane, &place) in places.iter().enumerate() {

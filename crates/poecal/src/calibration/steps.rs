@@ -27,7 +27,7 @@ use crate::parameters::Parameter;
 use crate::problem::{MOST_UNKNOWNS, Prior};
 use crate::robot::{JointKind, Robot};
 use crate::start::{Registration, register, register_again};
-use crate::uncertainty::{Belief, Remainder, View, remainder};
+use crate::uncertainty::{PriorInformation, Remainder, View, remainder};
 
 /// By how much the noise of rotations is taken larger than it is where tool and frame are to be the best for positions.
 const POSITIONS_FIRST: f64 = 100.0;
@@ -238,7 +238,7 @@ impl<'a> Prepared<'a> {
             device_free: self.device_free(),
         };
         let found = identifiability(&setup, &fitted.normal.gram, remainder.variance);
-        Identifiability { told: remainder.told, ..found }
+        Identifiability { told: remainder.effective_unknowns, ..found }
     }
 
     /// Whatever the unknowns and the loss of the fit were: what is delivered is judged in the minimal basis, by the rows that it believes.
@@ -248,7 +248,7 @@ impl<'a> Prepared<'a> {
         } else {
             fit::minimal(self.data, &self.packed, kept, &models.calibrated, fitted.noise, self.length_m)
         };
-        let belief = Belief::new(self.prior.as_ref(), &models.calibrated, &layout, self.length_m);
+        let prior = PriorInformation::new(self.prior.as_ref(), &models.calibrated, &layout, self.length_m);
         let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();
         let mut view = View {
             robot: self.robot,
@@ -258,7 +258,7 @@ impl<'a> Prepared<'a> {
             free: &free,
             noise: fitted.noise,
             noise_is_stated: noise::is_stated(self.data, self.options),
-            belief: &belief,
+            prior: &prior,
             variance: 1.0,
             length_m: self.length_m,
             estimate: &models.calibrated,

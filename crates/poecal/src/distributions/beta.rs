@@ -1,7 +1,7 @@
 //! The F distribution, by the incomplete beta function (abramowitz1964 26.5 and 26.6).
 
-/// What a ratio of two mean squares of `first` and `second` degrees of freedom exceeds with this probability; these need not be whole
-/// numbers. Of 0 to 0.5; infinite degrees make it χ² over its degrees.
+/// Upper quantile of the F distribution: a ratio of two mean squares of `first` and `second` degrees of freedom, which need not be whole,
+/// exceeds it with this probability of 0 to 0.5. For large `second` it tends to χ² over its degrees of freedom.
 pub(crate) fn f_quantile(probability: f64, first: f64, second: f64) -> f64 {
     let upper = |x: f64| incomplete_beta(1.0 - x, 0.5 * second, 0.5 * first);
     // x = first F / (first F + second) by halving: monotonic, and as fine as rounding after 60 rounds.

@@ -10,7 +10,7 @@ pub(crate) fn median(freedom: usize) -> f64 {
     MEDIANS[freedom.clamp(1, 6) - 1]
 }
 
-/// What is exceeded with a probability of at most 0.1, by Newton's steps on the logarithm of the tail.
+/// Upper quantile: exceeded with a probability of at most 0.1, by Newton's method on the logarithm of the tail.
 pub(crate) fn upper_quantile(probability: f64, freedom: usize) -> f64 {
     let mut x = freedom as f64;
     for _ in 0..60 {
@@ -24,10 +24,10 @@ pub(crate) fn upper_quantile(probability: f64, freedom: usize) -> f64 {
     x
 }
 
-/// Normal quantile of the band that a mean square of so many degrees of freedom leaves in one of a hundred cases.
+/// Normal quantile of the 99 % band of a mean square.
 const BAND: f64 = 2.575_829;
 
-/// Whether a mean square of variables of variance 1 is within the band that holds 99 of 100 such (wilson1931): below, inside, above.
+/// Position of a mean square of variables of variance 1 relative to its 99 % band (wilson1931): below, inside, above.
 pub(crate) fn is_within_band(mean_square: f64, freedom: f64) -> std::cmp::Ordering {
     let spread = 2.0 / (9.0 * freedom);
     let deviation = (mean_square.cbrt() - (1.0 - spread)) / spread.sqrt();
@@ -41,7 +41,7 @@ pub(crate) fn is_within_band(mean_square: f64, freedom: f64) -> std::cmp::Orderi
 }
 
 /// Probability to exceed `x ≥ 1`, and the density there: `Q(x; ν + 2) = Q(x; ν) + (x/2)^(ν/2) e^(-x/2) / Γ(ν/2 + 1)` from ν = 1 or 2
-/// on, where what is added is twice the density for ν + 2.
+/// on, where the added term is twice the density for ν + 2.
 fn upper_tail(x: f64, freedom: usize) -> (f64, f64) {
     let half = 0.5 * x;
     let (mut sum, mut twice, mut dof) = if freedom % 2 == 1 {

@@ -3,12 +3,12 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Estimate, Packed, Sight};
-use crate::lanes::Step;
+use crate::lanes::FixedMotion;
 use crate::lie::Pose;
 use crate::robot::JointKind;
 
-/// An estimate as frames relative to the frame before, so that a row is a product of one fixed pose and one elementary motion a joint:
-/// the prediction `X T_n M Z` of theory.md §4 (13).
+/// An estimate as frames relative to the frame before. A row's prediction `X T_n M Z` of theory.md §4 (13) is then a product of one fixed
+/// pose and one elementary motion for each joint.
 ///
 /// ```
 /// # use nalgebra::Vector3;
@@ -27,9 +27,9 @@ pub struct Linkage {
     kinds: Vec<JointKind>,
     /// `device_from_axis_1`, then `axis_(i-1)_from_axis_i`.
     steps: Vec<Pose>,
-    /// `device_from_axis_1` of each further place that the device stood at.
+    /// `device_from_axis_1` of each further station.
     further_first: Vec<Pose>,
-    /// The first place's device frame in that of each further one.
+    /// Device frame of the first station in that of each further one.
     further_from_first: Vec<Pose>,
     /// `axis_n_from_target`.
     ends: Vec<Pose>,
@@ -38,7 +38,7 @@ pub struct Linkage {
 }
 
 impl Linkage {
-    /// The relative frames of an estimate.
+    /// The relative frames of an estimate: the factors of theory.md §4 (13) between two joints' motions, at zero joint values.
     #[must_use]
     pub fn new(estimate: &Estimate) -> Self {
         let Estimate {
@@ -73,12 +73,12 @@ impl Linkage {
         &self.steps
     }
 
-    /// `device_from_axis_1` of a further place that the device stood at; none for the first.
+    /// `device_from_axis_1` of a further station; none for the first.
     pub(crate) fn first_step_from(&self, station: usize) -> Option<&Pose> {
         self.further_first.get(station.checked_sub(1)?)
     }
 
-    /// The first place's device frame in that of a further one; none for the first.
+    /// Device frame of the first station in that of a further one; none for the first.
     pub(super) fn station_from_first(&self, station: usize) -> Option<&Pose> {
         self.further_from_first.get(station.checked_sub(1)?)
     }
@@ -88,13 +88,13 @@ impl Linkage {
         &self.ends[target]
     }
 
-    /// Whether each joint turns, and its step.
-    pub(super) fn turning_steps(&self) -> impl Iterator<Item = (bool, Step)> {
+    /// Of each joint, whether it is revolute, and its relative frame.
+    pub(super) fn turning_steps(&self) -> impl Iterator<Item = (bool, FixedMotion)> {
         let steps = self.kinds.iter().zip(&self.steps);
-        steps.map(|(&kind, pose)| (kind == JointKind::Revolute, Step::from(pose)))
+        steps.map(|(&kind, pose)| (kind == JointKind::Revolute, FixedMotion::from(pose)))
     }
 
-    /// `(θ, cos θ or θ, sin θ or 0)` of a joint with its offset put in.
+    /// `(θ, cos θ or θ, sin θ or 0)` of a joint, offset included: `θ ← θ + δ` of theory.md §5 (26).
     pub(super) fn joint_value(&self, joint: usize, value: f64, packed: (f64, f64)) -> (f64, f64, f64) {
         let Some(&(offset, cosine, sine)) = self.offsets.get(joint) else {
             return (value, packed.0, packed.1);
@@ -109,8 +109,7 @@ impl Linkage {
     }
 }
 
-/// One joint in the device's axes, before its own motion: the axis frame's directions and origin, and the change that the motion makes
-/// (theory.md §5 (19)).
+/// One joint in the device's axes, before its own motion: the axis frame's directions and origin (theory.md §5 (19)), and the joint value.
 #[derive(Clone, Copy, Debug)]
 pub struct JointView {
     /// Revolute or prismatic.
@@ -140,7 +139,7 @@ pub struct Chain {
     pub last: Pose,
     /// Predicted `device_from_target`.
     pub target: Pose,
-    /// Which of the places that the device stood at all this is seen from.
+    /// Station of the device, in whose axes all vectors are.
     pub station: usize,
 }
 
@@ -151,8 +150,8 @@ impl Default for Chain {
 }
 
 impl Chain {
-    /// Evaluates the chain for a row and what is seen there: an observation, or a target alone, which is seen from the first place that
-    /// the device stood at.
+    /// Evaluates the chain of a row in the device's axes, metres and radians: `X T_{i-1} A_i` of each joint (theory.md §5 (19)) and the
+    /// prediction of theory.md §4 (13). `seen` is an observation, or a target alone, as measured from the first station.
     pub fn evaluate(&mut self, linkage: &Linkage, packed: &Packed, row: usize, seen: impl Into<Sight>) {
         let Sight { station, target } = seen.into();
         self.joints.clear();

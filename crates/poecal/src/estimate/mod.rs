@@ -1,4 +1,4 @@
-//! What the estimation moves: axis frames, targets and the device's frame; and what a row of data sees of them.
+//! The state of an estimation (axis frames, targets and device frames), and its prediction of each row.
 //!
 //! The state is the full set of screws, each carried by a frame on its axis: `A_i = base_from_axis` at zero configuration, z along
 //! the screw. A local step `A_i ← A_i exp(ε)` is the adjoint update `ξ_i ← Ad_exp(η) ξ_i` with `η = Ad_A_i ε` (theory.md §5 (18)).
@@ -46,14 +46,15 @@ pub struct Estimate {
     pub joint_offset: Vec<f64>,
     /// `base_from_target` of each target with all joint values zero (lou2009: M, or the point P_c0).
     pub base_from_target: Vec<Pose>,
-    /// The base in the measuring device's frame; in that of the first, if it stood at several places.
+    /// The base in the device frame; in that of the first of several stations.
     pub device_from_base: Pose,
-    /// The base in the device's frame at each further place ([`Dataset::stations`]).
+    /// The base in the device frame of each further station ([`Dataset::stations`]).
     pub further_devices: Vec<Pose>,
 }
 
 impl Estimate {
-    /// The estimate that a robot's screws, targets at zero configuration and a device frame make.
+    /// The estimate of a robot's screws, targets at zero configuration and a device frame. Axis frames have z along the screw, as in
+    /// theory.md §5 (18).
     #[must_use]
     pub fn new(robot: &Robot, base_from_target: Vec<Pose>, device_from_base: Pose) -> Self {
         Estimate {
@@ -70,13 +71,13 @@ impl Estimate {
         }
     }
 
-    /// `device_from_base` at one of the places that the device stood at. A single frame is that of all.
+    /// `device_from_base` of a station. A single frame is that of all stations.
     #[must_use]
     pub fn device(&self, station: usize) -> &Pose {
         station.checked_sub(1).and_then(|at| self.further_devices.get(at)).unwrap_or(&self.device_from_base)
     }
 
-    /// [`Estimate::device`], to be changed.
+    /// [`Estimate::device`], mutable.
     pub(crate) fn device_mut(&mut self, station: usize) -> &mut Pose {
         match station.checked_sub(1).and_then(|at| self.further_devices.get_mut(at)) {
             Some(device) => device,
@@ -84,14 +85,14 @@ impl Estimate {
         }
     }
 
-    /// The same estimate with the device's frame at one place only.
+    /// The same estimate with the device frame of one station only.
     #[must_use]
     pub(crate) fn seen_from(&self, station: usize) -> Self {
         let device_from_base = *self.device(station);
         Estimate { device_from_base, further_devices: Vec::new(), ..self.clone() }
     }
 
-    /// The joint screws in the base frame.
+    /// The joint screws in the base frame, theory.md §2 (5).
     #[must_use]
     pub fn screws(&self) -> Vec<Screw> {
         self.kinds
@@ -107,7 +108,8 @@ impl Estimate {
             .collect()
     }
 
-    /// The same estimate with its screws replaced (one a joint); frames keep their place along each axis.
+    /// The same estimate with other screws in the base frame, one for each joint. Frames keep their place along each axis
+    /// (theory.md §5 (18)).
     #[must_use]
     pub fn with_screws(&self, screws: &[Screw]) -> Self {
         let mut estimate = self.clone();
@@ -117,8 +119,8 @@ impl Estimate {
         estimate
     }
 
-    /// The same physical robot seen from a base frame moved by `G`: screws and targets move by `Ad_G`, the device's frame by
-    /// `G⁻¹`, predictions in the device's frame do not change (theory.md §8 (37)).
+    /// The same physical robot in a base frame moved by `G`: screws and targets move by `Ad_G`, device frames by `G⁻¹`. Predictions in
+    /// the device frame do not change (theory.md §8 (37)).
     #[must_use]
     pub fn rebased(&self, motion: &Pose) -> Self {
         Estimate {
@@ -137,9 +139,9 @@ impl Estimate {
         self.joint_offset.iter().any(|&offset| offset != 0.0)
     }
 
-    /// Whether the kernels of a fit take this state: all of it but joint offsets, which they do not know.
+    /// Whether the kernels serve this state: they have no joint offsets.
     pub(crate) fn is_for_kernels(&self) -> bool {
-        // What an estimate holds besides has to be looked at here first.
+        // A new field does not compile here until it is decided whether the kernels serve it.
         let Estimate {
             kinds: _,
             base_from_axis: _,
@@ -151,8 +153,8 @@ impl Estimate {
         !self.has_offsets()
     }
 
-    /// The same robot without joint offsets: what follows a joint is moved by its offset, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for all j > i, and
-    /// the targets likewise. Exact, and no prediction changes (lou2009 equations 11 to 15, docs/theory.md §3 (9)).
+    /// The same robot without joint offsets: the offset of joint i moves all later screws, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for j > i, and the
+    /// targets. Exact; no prediction changes (lou2009 equations 11 to 15, theory.md §3 (9a)).
     #[must_use]
     pub fn without_offsets(&self) -> Self {
         if !self.has_offsets() {
@@ -174,8 +176,8 @@ impl Estimate {
         moved
     }
 
-    /// Moves each axis frame's origin along its axis to where the data can be described with least leverage: nearest to the
-    /// targets' mean place as seen from that joint. Screws do not change.
+    /// Moves each axis frame's origin along its axis to the point nearest to the targets' mean place as seen from that joint, where a tilt
+    /// has the least leverage (theory.md §5, below (18)). Screws do not change.
     pub(crate) fn recentre(&mut self, data: &Dataset, packed: &Packed, rows: &[u32]) {
         let sample = sample_rows(rows, 200);
         let count = sample.len() as f64;
@@ -194,7 +196,7 @@ impl Estimate {
     }
 }
 
-/// How many metres a radian counts: a third of how far the arm and the strokes found in the data reach.
+/// Metres that a radian counts, L: a third of the reach of the arm with the strokes in the data (theory.md §6, *Physical scaling*).
 #[must_use]
 pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
     let strokes: f64 = (0..robot.joints.len())
@@ -209,7 +211,7 @@ pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
     (robot.arm_m() + strokes) / 3.0
 }
 
-/// The model as delivered: nominal screws, each target where the model has it or else at the tip, device at the base.
+/// The nominal estimate: nominal screws, each target at its place in the model or else at the tip, device frame at the base.
 #[must_use]
 pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
     let mut known: BTreeMap<&str, &Pose> = BTreeMap::new();

@@ -1,16 +1,16 @@
-//! Joint values of every row with their sines and cosines, computed once: no trigonometry inside the iterations.
+//! Joint values of every row with their sines and cosines, computed once and not in each iteration.
 
 use rayon::prelude::*;
 
-use crate::lanes::{self, Level};
+use crate::lanes::{self, SimdLevel};
 use crate::measurement::Dataset;
 use crate::robot::{JointKind, Robot};
 
 /// Rows that one thread takes at a time.
 const CHUNK: usize = 1024;
 
-/// Joint values of all rows, flat: `n` joints a row. For a revolute joint `(cos θ, sin θ)`, for a prismatic one `(θ, 0)`; and θ
-/// itself, which knows of whole turns.
+/// Joint values θ of all rows, flat: `n` joints a row, radians or metres. Beside θ, `(cos θ, sin θ)` of a revolute joint and `(θ, 0)` of a
+/// prismatic one.
 ///
 /// ```
 /// # use nalgebra::Vector3;
@@ -32,7 +32,8 @@ pub struct Packed {
 }
 
 impl Packed {
-    /// Packs readings (radians, metres), `width` a row in the order of [`Robot::reading_names`].
+    /// Packs the joint values `θ = m ρ + c` (theory.md §2 (7)) of readings (radians, metres), `width` a row in the order of
+    /// [`Robot::reading_names`].
     #[must_use]
     pub fn new(robot: &Robot, readings: &[f64], width: usize) -> Self {
         let (indices, width) = (robot.reading_indices(), width.max(1));
@@ -46,13 +47,13 @@ impl Packed {
         })
     }
 
-    /// Packs the readings of measurements.
+    /// Packs the joint values of a data set's rows, theory.md §2 (7).
     #[must_use]
     pub fn of(robot: &Robot, data: &Dataset) -> Self {
         Packed::new(robot, data.all_readings(), data.reading_names().len())
     }
 
-    /// Whether these are the joint values of measurements.
+    /// Whether these are the joint values of a data set's rows.
     pub(crate) fn is_of(&self, robot: &Robot, data: &Dataset) -> bool {
         let indices = robot.reading_indices();
         let is_row = |row| {
@@ -72,7 +73,7 @@ impl Packed {
         })
     }
 
-    /// Packs so many rows, whose joint values from a first row on are `put` where they belong.
+    /// Packs `rows` rows; `put` writes the joint values from a first row on.
     fn fill(robot: &Robot, rows: usize, put: impl Fn(usize, &mut [f64]) + Sync) -> Self {
         let joints = robot.joints.len();
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
@@ -80,7 +81,7 @@ impl Packed {
         let mut values = vec![(0.0, 0.0); rows * joints];
         let fill = |first: usize, angles: &mut [f64], values: &mut [(f64, f64)]| {
             put(first, angles);
-            lanes::cosines_and_sines(Level::best(), angles, values);
+            lanes::cosines_and_sines(SimdLevel::best(), angles, values);
             if kinds.contains(&JointKind::Prismatic) {
                 for (index, (packed, &value)) in values.iter_mut().zip(&*angles).enumerate() {
                     if kinds[index % joints] == JointKind::Prismatic {
@@ -100,7 +101,7 @@ impl Packed {
         Packed { joints, kinds, values, angles }
     }
 
-    /// Whether it turns, a joint.
+    /// Whether each joint is revolute.
     pub(crate) fn turns(&self) -> impl Iterator<Item = bool> {
         self.kinds.iter().map(|&kind| kind == JointKind::Revolute)
     }
@@ -130,8 +131,8 @@ impl Packed {
     }
 }
 
-/// At most about `count` of some rows, spread evenly but not periodically: data often repeat targets or grid lines in a fixed
-/// rhythm, which a fixed stride could fall in with. All of them if they are no more than `count`.
+/// A subsample of `count` rows, or all if there are no more. The rows are spread evenly but not periodically, since a fixed stride could
+/// fall in with a rhythm of targets or grid lines in the data (theory.md §6, *End*).
 ///
 /// ```
 /// let rows: Vec<u32> = (0..900).collect();
@@ -146,7 +147,7 @@ pub fn sample_rows(rows: &[u32], count: usize) -> Vec<u32> {
     if rows.len() <= count {
         return rows.to_vec();
     }
-    // One of each of `count` parts as equal as whole rows allow, at a place in it that the golden ratio spreads; so no row comes twice.
+    // One row of each of `count` nearly equal parts, at a position that multiples of the golden ratio spread; so no row comes twice.
     let golden = 0.618_033_988_749_894_9;
     (0..count)
         .filter_map(|k| {

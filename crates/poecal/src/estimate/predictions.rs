@@ -1,9 +1,9 @@
-//! How far measurements are from what an estimate predicts, several rows side by side.
+//! Errors of an estimate's predictions, several rows side by side.
 
 use nalgebra::Vector3;
 
 use super::{Estimate, Linkage, Packed, RowError};
-use crate::lanes::{self, Frames, Level, Step, WIDTH, Wide};
+use crate::lanes::{self, FixedMotion, Frames, SimdLevel, WIDTH, Wide};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise, Observation, Residual as _, Written};
 use crate::threads;
@@ -11,8 +11,8 @@ use crate::threads;
 /// Rows that one thread takes at a time.
 const CHUNK: usize = 1024;
 
-/// What `each` makes of a row: of what was seen in it, of its error in the device's axes, and of the predicted `device_from_target` if it
-/// asks for that (theory.md §4 (13), (16)).
+/// Maps each row by `each`, from its observation, its error in the device's axes (theory.md §4 (16), not whitened) and, on demand, the
+/// predicted `device_from_target` (theory.md §4 (13)).
 fn map_errors<T: Send>(
     data: &Dataset,
     packed: &Packed,
@@ -40,13 +40,15 @@ fn map_errors<T: Send>(
     })
 }
 
-/// Errors of an estimate, one a row.
+/// Errors of an estimate, one for each row: measured minus predicted, metres and radians, in the axes of the row's own device frame
+/// (theory.md §4 (15), (16), not whitened).
 #[must_use]
 pub fn row_errors(data: &Dataset, packed: &Packed, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
     map_errors(data, packed, rows, estimate, |_, error, _| error)
 }
 
-/// Turns errors of some rows from the axes of the place that each was seen from to those of the first, in which they can be compared.
+/// Rotates the errors of rows from the axes of their own station to those of the first, `e ← R_1 R_sᵀ e` with the rotations of the device
+/// frames `X_s` of theory.md §4 (13).
 pub(crate) fn turn_to_first(data: &Dataset, rows: &[u32], estimate: &Estimate, errors: &mut [RowError]) {
     if data.station_count() == 1 {
         return;
@@ -59,7 +61,8 @@ pub(crate) fn turn_to_first(data: &Dataset, rows: &[u32], estimate: &Estimate, e
     }
 }
 
-/// What `each` makes of a row and of its residual's two parts, position and rotation (m², rad²): the sum of squares, and of how many numbers.
+/// Maps each row by `each`, from its observation and the two parts of its residual, position and rotation: the sum of squares (m², rad²)
+/// and the count of numbers. Residuals are those of theory.md §4 (15), (16), or of the data set's own formulation (16a).
 pub(crate) fn map_squares<T: Send>(
     data: &Dataset,
     packed: &Packed,
@@ -85,14 +88,14 @@ pub(crate) fn map_squares<T: Send>(
     })
 }
 
-/// [`WIDTH`] rows side by side: joint values, the frames that they lead to, targets predicted there, and what was measured.
+/// [`WIDTH`] rows side by side: joint values, frames of the last link, targets in it, measurements and errors.
 struct SideBySide<'a> {
     linkage: &'a Linkage,
-    level: Level,
-    joints: Vec<(bool, Step)>,
+    level: SimdLevel,
+    joints: Vec<(bool, FixedMotion)>,
     values: Vec<[Wide; 2]>,
     last_links: [[Wide; 4]; 3],
-    /// The target of each row, and its place in the last link.
+    /// The target of each row, and its pose in the last link.
     targets: [Option<usize>; WIDTH],
     ends: Frames,
     measured: Frames,
@@ -101,10 +104,10 @@ struct SideBySide<'a> {
 
 impl<'a> SideBySide<'a> {
     fn new(linkage: &'a Linkage) -> Self {
-        let joints: Vec<(bool, Step)> = linkage.turning_steps().collect();
+        let joints: Vec<(bool, FixedMotion)> = linkage.turning_steps().collect();
         SideBySide {
             linkage,
-            level: Level::best(),
+            level: SimdLevel::best(),
             values: vec![[Wide::ZERO; 2]; joints.len()],
             joints,
             last_links: [[Wide::ZERO; 4]; 3],
@@ -115,7 +118,7 @@ impl<'a> SideBySide<'a> {
         }
     }
 
-    /// Finds `device_from_last_link` after all motions, of each of at most [`WIDTH`] rows.
+    /// Computes `device_from_last_link` after all motions, of each of at most [`WIDTH`] rows.
     fn predict(&mut self, packed: &Packed, rows: &[u32]) {
         for (lane, &row) in rows.iter().enumerate() {
             let values = packed.joint_values(row as usize).iter().zip(packed.row(row as usize));
@@ -128,13 +131,13 @@ impl<'a> SideBySide<'a> {
         lanes::last_links(self.level, &self.joints, &self.values, &mut self.last_links);
     }
 
-    /// Compares what was measured in the same rows with what is predicted.
+    /// Computes the errors of the same rows.
     fn compare(&mut self, data: &Dataset, rows: &[u32]) {
         let mut framed = false;
         for (lane, &row) in rows.iter().enumerate() {
             let Observation { target, measurement, station, .. } = &data.observations[row as usize];
             let seen = measurement.pose();
-            // What was seen from another place is compared as the first would see it.
+            // Measurements from further stations are compared in the device frame of the first.
             let from_first =
                 self.linkage.station_from_first(*station).map(|station| station.inverse() * seen);
             put(&mut self.measured, lane, &from_first.unwrap_or(seen));
@@ -162,7 +165,7 @@ impl<'a> SideBySide<'a> {
     }
 }
 
-/// Writes one row of several.
+/// Writes one lane.
 fn put(frames: &mut Frames, lane: usize, pose: &Pose) {
     let [rotation @ .., place] = frames;
     for (wide, column) in rotation.iter_mut().flatten().zip(pose.rotation.as_slice()) {
@@ -183,7 +186,7 @@ mod tests {
 
     const ROWS: u32 = 21;
 
-    /// Two robots, of which the first joint turns or slides.
+    /// Two robots, with a revolute and a prismatic first joint.
     fn robots() -> [Robot; 2] {
         let turning = |name: &str, axis: [f64; 3], point: [f64; 3]| {
             Joint::revolute(name, Screw::revolute(&Vector3::from(axis), &Vector3::from(point)))
@@ -202,8 +205,8 @@ mod tests {
         (0..4 * ROWS).map(|k| f64::from((k * k * 7 + 3 * k) % 31) / 9.0 - 1.7).collect()
     }
 
-    /// The last links of all rows, as the vector instructions of a level find them.
-    fn last_links(level: Level, linkage: &Linkage, packed: &Packed) -> Vec<Pose> {
+    /// The last links of all rows, by the instructions of a level.
+    fn last_links(level: SimdLevel, linkage: &Linkage, packed: &Packed) -> Vec<Pose> {
         let mut side_by_side = SideBySide { level, ..SideBySide::new(linkage) };
         let mut found = Vec::new();
         for rows in (0..ROWS).collect::<Vec<_>>().chunks(WIDTH) {
@@ -223,7 +226,7 @@ mod tests {
                 estimate.joint_offset = offsets.to_vec();
                 let linkage = Linkage::new(&estimate);
                 let mut chain = Chain::default();
-                for level in lanes::levels() {
+                for level in lanes::simd_levels() {
                     for (row, last) in last_links(level, &linkage, &packed).into_iter().enumerate() {
                         let values: Vec<f64> = packed
                             .joint_values(row)
@@ -286,7 +289,7 @@ mod tests {
                 .unwrap();
                 expected.push(error);
             }
-            for level in lanes::levels() {
+            for level in lanes::simd_levels() {
                 let mut side_by_side = SideBySide { level, ..SideBySide::new(&linkage) };
                 for rows in data.all_rows().chunks(WIDTH) {
                     side_by_side.predict(&packed, rows);

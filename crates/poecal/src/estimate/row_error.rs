@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-/// Error of one row: measured less predicted, device axes.
+/// Error of one row: measured minus predicted, in the device's axes; `y - p` and `log(Y Rᵀ)` of theory.md §4 (16).
 ///
 /// ```
 /// use nalgebra::Vector3;

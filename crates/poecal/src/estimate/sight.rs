@@ -1,8 +1,8 @@
-//! What a row of data sees, and from where.
+//! Target and station of a row.
 
 use crate::measurement::Observation;
 
-/// A target, seen from one of the places that the device stood at. A target alone is seen from the first.
+/// A target with the station from which it is measured. A target alone is measured from the first station.
 ///
 /// ```
 /// use poecal::estimate::Sight;

@@ -1,4 +1,4 @@
-//! Jacobian and residuals of some rows, where more is asked of them than sums.
+//! Jacobian and residuals of single rows, instead of sums over rows.
 
 use super::influence::NUMBERS;
 use super::kernel::add_rows;
@@ -6,9 +6,9 @@ use super::plan::Arm;
 use super::vector::{Vector, WIDTH, Wide};
 use super::work::WORK;
 
-/// The whitened columns of the rows of one block, each put at its place in `jacobian` (shifts first, then turns), and their whitened
-/// residuals: three numbers of the position, three of the rotation. What a column does not have is left as it is. The plan has no
-/// common ratio, so that the rotations' rows are there.
+/// Writes the whitened columns of the rows of one block to their places in `jacobian` (translation columns, then rotation columns), and
+/// their whitened residuals: three numbers of the position, three of the rotation. Numbers that a column does not have stay unchanged.
+/// The plan must have no common ratio, so that the rotation rows exist.
 #[inline(always)]
 pub(super) fn whitened_columns<V: Vector>(
     arm: &Arm<'_>,

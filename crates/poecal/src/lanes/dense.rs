@@ -1,8 +1,8 @@
-//! Cholesky factor of a small dense matrix and solutions with it. Rows are filled up to whole wide numbers, so that no loop has a rest.
+//! Cholesky factor of a small dense matrix and solutions with it. Rows are padded to whole wide numbers, so that no loop has a remainder.
 
 use super::vector::{Vector, WIDTH, Wide};
 
-/// The factor `R` of `RᵀR`: upper, row after row; its diagonal, and what is below it, means nothing.
+/// The factor `R` of `RᵀR`: upper, row after row. Elements on and below the diagonal are arbitrary.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Factor {
     pub(super) n: usize,
@@ -12,7 +12,7 @@ pub(crate) struct Factor {
 }
 
 impl Factor {
-    /// The elements of a column from the top; those above the diagonal mean something.
+    /// The elements of a column from the top, of which those above the diagonal are valid.
     #[inline(always)]
     pub(super) fn column(&self, column: usize) -> impl Iterator<Item = f64> {
         let (block, lane) = (column / WIDTH, column % WIDTH);
@@ -69,7 +69,7 @@ pub(super) fn cholesky<V: Vector>(upper: &[f64], n: usize, damping: f64) -> Opti
     Some(Factor { n, rows, inverses })
 }
 
-/// Takes from the rows of a panel, the first of which is row `i`, what the finished rows above have in common with them.
+/// Eliminates the finished rows `above` from the rows of a panel, the first of which is row `i`.
 #[inline(always)]
 fn subtract_all<V: Vector>(panel: &mut [Wide], above: &[Wide], stride: usize, i: usize) {
     let (first, lane) = (i / WIDTH, i % WIDTH);

@@ -1,4 +1,4 @@
-//! What was measured less what is predicted, of several rows.
+//! Errors of several rows: measured minus predicted.
 
 use super::frame::Frame;
 use super::turn::Turn;
@@ -7,8 +7,8 @@ use super::vector::{Vector, Vectors, WIDTH, Wide};
 /// Frames of several rows: columns of rotations, and origins.
 pub(crate) type Frames = [[Wide; 3]; 4];
 
-/// Writes position errors and, if any row is `framed`, rotation errors `log(Y Rᵀ)`: of the measured targets, and of those predicted at the
-/// `ends` of the last links (these as [`last_links`](super::last_links) writes them).
+/// Writes position errors and, if any row is `framed`, rotation errors `log(Y Rᵀ)` (theory.md §4 (16)), from the last links as
+/// [`last_links`](super::last_links) writes them, the targets in the last link, and the measured targets.
 #[inline(always)]
 pub(super) fn errors<V: Vector>(
     links: &[[Wide; 4]; 3],

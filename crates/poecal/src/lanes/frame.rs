@@ -1,16 +1,16 @@
 //! Frames of several rows.
 
-use super::plan::Step;
+use super::plan::FixedMotion;
 use super::vector::{Vector, Vectors};
 
-/// A frame in the device's axes: for each of these, its part of the directions x, y, z and of the origin. So ordered, a product needs
-/// few registers.
+/// A frame in the device's axes, by rows: a component of the directions x, y, z and of the origin. In this order a product needs few
+/// registers.
 #[derive(Clone, Copy)]
 pub(super) struct Frame<V>(pub(super) [[V; 4]; 3]);
 
 impl<V: Vector> Frame<V> {
     #[inline(always)]
-    pub(super) fn fixed(step: &Step) -> Self {
+    pub(super) fn fixed(step: &FixedMotion) -> Self {
         let [x, y, z] = &step.columns;
         let mut rows = [[V::splat(0.0); 4]; 3];
         for (k, row) in rows.iter_mut().enumerate() {
@@ -21,7 +21,7 @@ impl<V: Vector> Frame<V> {
 
     /// The frame after a fixed motion.
     #[inline(always)]
-    pub(super) fn then(mut self, step: &Step) -> Self {
+    pub(super) fn then(mut self, step: &FixedMotion) -> Self {
         for row in &mut self.0 {
             *row = turned(*row, step);
         }
@@ -42,7 +42,7 @@ impl<V: Vector> Frame<V> {
 
 /// A row of a frame after a fixed motion.
 #[inline(always)]
-pub(super) fn turned<V: Vector>([x, y, z, origin]: [V; 4], step: &Step) -> [V; 4] {
+pub(super) fn turned<V: Vector>([x, y, z, origin]: [V; 4], step: &FixedMotion) -> [V; 4] {
     let [a, b, c] = &step.columns;
     let along = |v: &[f64; 3]| x.times_plus(V::splat(v[0]), y.times_plus(V::splat(v[1]), z * V::splat(v[2])));
     let [p, q, r] = step.translation;

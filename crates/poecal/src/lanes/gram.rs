@@ -1,8 +1,8 @@
-//! Sums of products of columns in register tiles: where most of the time of a fit goes.
+//! Sums of products of columns in register tiles: most of the time of a fit.
 
 use super::vector::{Vector, WIDTH, Wide};
 
-/// Columns a side of a tile: nine sums in registers hide the latency of their additions, and six loads feed nine products.
+/// Columns of one side of a tile: nine sums in registers hide the latency of their additions, and six loads feed nine products.
 pub(super) const TILE: usize = 3;
 
 /// Length, in `Wide`s, of the accumulators of all tiles of so many columns, for vectors of so many lanes.

@@ -1,13 +1,13 @@
-//! What several rows mean to a fit: their blocks of the hat matrix, and their residuals when these are allowed for.
+//! Influence of several rows: their blocks of the hat matrix, and their studentised residuals (theory.md §6 (34d) and (34e)).
 
 use super::dense::Factor;
 use super::vector::{Vector, WIDTH, Wide};
 
-/// Numbers of a row's residual: three of a position, three of a rotation.
+/// Length of a row's residual: three numbers of a position, three of a rotation.
 pub(crate) const NUMBERS: usize = 6;
 
-/// For each of several rows the trace of `H = J N⁻¹ Jᵀ`, and `eᵀ ((1 + least) I - w H)⁻¹ (I + (1 - w) H)⁻¹ e`. The
-/// Jacobian's columns stand one after the other, and are used up; rotations do not see the first `shifts` of them.
+/// For each of several rows the trace of `H = J N⁻¹ Jᵀ`, and `eᵀ ((1 + least) I - w H)⁻¹ (I + (1 - w) H)⁻¹ e`: theory.md §6 (34d) and
+/// (34e). The Jacobian's columns follow one another and are overwritten; rotation rows of the first `shifts` of them are zero.
 #[inline(always)]
 pub(super) fn influences<V: Vector>(
     factor: &Factor,
@@ -68,8 +68,7 @@ fn squared<V: Vector>(columns: &[[Wide; NUMBERS]], part: usize) -> [[V; NUMBERS]
     sum
 }
 
-/// Solution of `(diagonal I + share H) x = b`; where rounding leaves a matrix that is not positive definite, that direction counts
-/// for nothing.
+/// Solution of `(diagonal I + share H) x = b`. A pivot that is not positive, by rounding, counts as infinite.
 #[inline(always)]
 fn solved<V: Vector>(
     hat: &[[V; NUMBERS]; NUMBERS],
@@ -77,7 +76,7 @@ fn solved<V: Vector>(
     diagonal: V,
     mut x: [V; NUMBERS],
 ) -> [V; NUMBERS] {
-    // No `map` of arrays: what it calls is not compiled for the vectors' instructions.
+    // No `map` of arrays: its closure would not be compiled for the vector instructions.
     let mut rows = *hat;
     for (k, row) in rows.iter_mut().enumerate() {
         for value in row.iter_mut() {

@@ -4,7 +4,7 @@
 
 use super::frame::{Frame, moved, turned};
 use super::gram::{TILE, add_products};
-use super::plan::{Arm, Plan, Step};
+use super::plan::{Arm, FixedMotion, Plan};
 use super::totals::Totals;
 use super::turn::Turn;
 use super::vector::{Vector, Vectors, WIDTH, Wide};
@@ -62,7 +62,7 @@ fn sum<V: Vector, const FULL: bool>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
     totals
 }
 
-/// The products of the columns that wait.
+/// Adds the products of the waiting columns.
 #[inline(always)]
 fn multiply<V: Vector>(plan: &Plan, work: &mut Work, filled: usize) {
     let columns = plan.columns().next_multiple_of(TILE);
@@ -106,14 +106,14 @@ struct Batch<'a> {
     turn_gradient: &'a mut [Wide],
 }
 
-/// What a row sees of the target.
+/// Weight of each row, and its whitened residual as a wrench on the target.
 #[derive(Clone, Copy)]
-struct Seen<V> {
+struct RowWrench<V> {
     weight: V,
     per_length: V,
     /// Whitened position error.
     force: Vectors<V>,
-    /// Whitened rotation error, as a turn's gradient needs it.
+    /// Whitened rotation error, in the units of a rotation column's gradient.
     torque: Vectors<V>,
 }
 
@@ -135,7 +135,7 @@ pub(super) fn add_rows<V: Vector, const FULL: bool>(
     let (measured, joints) = rest.split_at(if plan.framed { 9 } else { 0 });
     let (weight, per_length) = (V::load(&noise[0], part), V::splat(1.0 / plan.length_m));
     if !FULL && weight.are_below(f64::MIN_POSITIVE) {
-        // Nothing but rows that fill the block.
+        // All rows are padding of the block.
         return none;
     }
     // Empty without unknowns.
@@ -148,7 +148,7 @@ pub(super) fn add_rows<V: Vector, const FULL: bool>(
     let force = (Vectors::load(position, part) - target.origin()).scale(weight);
     let mut squares = force.dot(force);
     let mut residuals = [force, Vectors([V::splat(0.0); 3])];
-    let mut seen = Seen { weight, per_length, force, torque: residuals[1] };
+    let mut wrench = RowWrench { weight, per_length, force, torque: residuals[1] };
     let mut turn = None;
     if let [x, y, z] = measured.as_chunks::<3>().0 {
         let measured = [Vectors::load(x, part), Vectors::load(y, part), Vectors::load(z, part)];
@@ -157,13 +157,13 @@ pub(super) fn add_rows<V: Vector, const FULL: bool>(
         let whitened = found.r.scale(weight * ratio);
         squares = squares + whitened.dot(whitened);
         residuals[1] = whitened;
-        seen.torque = whitened.scale(ratio * per_length);
+        wrench.torque = whitened.scale(ratio * per_length);
         turn = Some((found, ratio * per_length));
     }
     squares.add_to(square, part);
-    batch.add_device::<V, FULL>(&target, &seen);
-    batch.add_axes::<V, FULL>(&target, &seen);
-    batch.add_place::<V, FULL>(&target, &seen);
+    batch.add_device::<V, FULL>(&target, &wrench);
+    batch.add_axes::<V, FULL>(&target, &wrench);
+    batch.add_place::<V, FULL>(&target, &wrench);
     if let (true, true, Some((turn, ratio))) = (FULL, rows > 0, turn) {
         batch.add_turned(&turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
     }
@@ -175,7 +175,7 @@ impl Batch<'_> {
     #[inline(always)]
     fn chain<V: Vector>(
         &mut self,
-        steps: &[Step],
+        steps: &[FixedMotion],
         values: &[[Wide; 2]],
         weight: V,
         per_length: V,
@@ -209,16 +209,16 @@ impl Batch<'_> {
 
     /// Columns of the device's frame: theory.md §5 (25).
     #[inline(always)]
-    fn add_device<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+    fn add_device<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, wrench: &RowWrench<V>) {
         let Some(about) = &self.plan.device else { return };
         let part = self.part;
-        let arm = (target.origin() - Vectors::splat(about)).scale(seen.per_length);
-        let moment = arm.cross(seen.force) + seen.torque;
+        let arm = (target.origin() - Vectors::splat(about)).scale(wrench.per_length);
+        let moment = arm.cross(wrench.force) + wrench.torque;
         for k in 0..3 {
             let mut axis = Vectors([V::splat(0.0); 3]);
-            axis.0[k] = seen.weight;
-            (seen.weight * seen.force.0[k]).add_to(&mut self.shift_gradient[k], part);
-            (seen.weight * moment.0[k]).add_to(&mut self.turn_gradient[k], part);
+            axis.0[k] = wrench.weight;
+            (wrench.weight * wrench.force.0[k]).add_to(&mut self.shift_gradient[k], part);
+            (wrench.weight * moment.0[k]).add_to(&mut self.turn_gradient[k], part);
             if FULL {
                 axis.store(&mut self.columns[k * self.stride], part);
                 axis.cross(arm).store(&mut self.columns[(self.plan.shifts + k) * self.stride], part);
@@ -228,13 +228,13 @@ impl Batch<'_> {
 
     /// Columns of the axes' tilts, theory.md §5 (21), and the gradient of all their unknowns.
     #[inline(always)]
-    fn add_axes<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+    fn add_axes<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, wrench: &RowWrench<V>) {
         let (part, stride) = (self.part, self.stride);
         for (joint, axis) in self.plan.joints.iter().zip(&mut *self.axes) {
             let Some((shift, tilt)) = joint.columns else { continue };
             let (a, b) = (Vectors::load(&axis.shifts[0], part), Vectors::load(&axis.shifts[1], part));
-            a.dot(seen.force).add_to(&mut axis.gradient[0], part);
-            b.dot(seen.force).add_to(&mut axis.gradient[1], part);
+            a.dot(wrench.force).add_to(&mut axis.gradient[0], part);
+            b.dot(wrench.force).add_to(&mut axis.gradient[1], part);
             if FULL {
                 a.store(&mut self.columns[shift * stride], part);
                 b.store(&mut self.columns[(shift + 1) * stride], part);
@@ -242,8 +242,8 @@ impl Batch<'_> {
             if !joint.turns {
                 continue;
             }
-            let arm = (target.origin() - Vectors::load(&axis.origin, part)).scale(seen.per_length);
-            let moment = arm.cross(seen.force) + seen.torque;
+            let arm = (target.origin() - Vectors::load(&axis.origin, part)).scale(wrench.per_length);
+            let moment = arm.cross(wrench.force) + wrench.torque;
             a.dot(moment).add_to(&mut axis.gradient[2], part);
             b.dot(moment).add_to(&mut axis.gradient[3], part);
             if FULL {
@@ -256,14 +256,14 @@ impl Batch<'_> {
 
     /// Columns of the target's place and frame: theory.md §5 (23) and (24).
     #[inline(always)]
-    fn add_place<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, seen: &Seen<V>) {
+    fn add_place<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, wrench: &RowWrench<V>) {
         let Some(place) = self.plan.place else { return };
         let part = self.part;
         for k in 0..3 {
-            let axis = target.column(k).scale(seen.weight);
-            axis.dot(seen.force).add_to(&mut self.shift_gradient[place + k], part);
+            let axis = target.column(k).scale(wrench.weight);
+            axis.dot(wrench.force).add_to(&mut self.shift_gradient[place + k], part);
             if let Some(frame) = self.plan.frame {
-                axis.dot(seen.torque).add_to(&mut self.turn_gradient[frame + k], part);
+                axis.dot(wrench.torque).add_to(&mut self.turn_gradient[frame + k], part);
             }
             if FULL {
                 axis.store(&mut self.columns[(place + k) * self.stride], part);
@@ -271,7 +271,7 @@ impl Batch<'_> {
         }
     }
 
-    /// Rows of what rotation adds to the products of turns; `ratio` is that of one turn to its shift.
+    /// Rows that rotation adds to the products of rotation columns; `ratio` is that of a rotation column to its translation column.
     #[inline(always)]
     fn add_turned<V: Vector>(&self, turn: &Turn<V>, ratio: V, out: &mut [Wide], rows: usize) {
         let columns = self.plan.turns.iter().map(|&shift| &self.columns[shift * self.stride]);

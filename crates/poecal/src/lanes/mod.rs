@@ -22,9 +22,9 @@ mod x86;
 pub(crate) use dense::Factor;
 pub(crate) use errors::Frames;
 pub(crate) use influence::NUMBERS;
-pub(crate) use plan::{Arm, JointPlan, Plan, RowData, Rows, Step};
+pub(crate) use plan::{Arm, FixedMotion, JointPlan, PackedRows, Plan, RowData};
 pub(crate) use poses::Exponential;
-pub use simd::{Level, levels};
+pub use simd::{SimdLevel, simd_levels};
 pub(crate) use simd::{
     cholesky, cosines_and_sines, errors, influences, inverse, last_links, product_of_exponentials, solve,
     sum_gradient, sum_products, whitened_columns,

@@ -7,7 +7,7 @@ use super::vector::{Vector, Wide};
 /// Whether instructions that every machine of the target has multiply and add at once.
 const FUSED: bool = cfg!(target_arch = "aarch64");
 
-/// Two numbers, of which the compiler makes what it can.
+/// Two numbers, vectorised by the compiler where it can.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Two([f64; 2]);
 

@@ -1,22 +1,22 @@
-//! What the kernels are told: an arm's frames, its unknowns, and rows side by side.
+//! Input of the kernels: an arm's frames, its columns, and rows side by side.
 
 use super::vector::{WIDTH, Wide};
 use crate::lie::Pose;
 
 /// A fixed motion: three columns of a rotation, and a translation in metres.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Step {
+pub(crate) struct FixedMotion {
     pub(crate) columns: [[f64; 3]; 3],
     pub(crate) translation: [f64; 3],
 }
 
-impl From<&Pose> for Step {
+impl From<&Pose> for FixedMotion {
     fn from(pose: &Pose) -> Self {
-        Step { columns: pose.rotation.data.0, translation: pose.translation.into() }
+        FixedMotion { columns: pose.rotation.data.0, translation: pose.translation.into() }
     }
 }
 
-/// A joint: whether it turns, and its first shift column and turn, if its axis is unknown.
+/// A joint: whether it is revolute, and its first translation and rotation column, if its axis is unknown.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointPlan {
     pub(crate) turns: bool,
@@ -28,21 +28,22 @@ pub(crate) struct JointPlan {
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub(crate) joints: Vec<JointPlan>,
-    /// The point about which the device's frame is turned, if that is unknown: three shifts and three turns, the first ones.
+    /// The point about which the device frame rotates, if that is unknown: the first three translation and rotation columns.
     pub(crate) device: Option<[f64; 3]>,
-    /// First shift of the target's place, if that is unknown.
+    /// First translation column of the target's place, if that is unknown.
     pub(crate) place: Option<usize>,
-    /// First turn of the target's frame, if that is unknown.
+    /// First rotation column of the target's frame, if that is unknown.
     pub(crate) frame: Option<usize>,
     pub(crate) shifts: usize,
     pub(crate) tilts: usize,
-    /// The shift of each turn.
+    /// The translation column of each rotation column.
     pub(crate) turns: Vec<usize>,
-    /// How many metres a radian counts.
+    /// Metres that a radian counts.
     pub(crate) length_m: f64,
     /// Whether orientation was measured.
     pub(crate) framed: bool,
-    /// Position over rotation noise in m/rad, if it is the same in all rows: rotation products then follow from those of shifts.
+    /// Position over rotation noise in m/rad, if it is the same in all rows: rotation products then follow from those of the translation
+    /// columns (theory.md §6 (28a)).
     pub(crate) ratio: Option<f64>,
 }
 
@@ -52,7 +53,8 @@ impl Plan {
         self.shifts + self.tilts
     }
 
-    /// Rows of what rotation adds to the products of turns; none if it is the curvature of the logarithm alone, and that may be left out.
+    /// Rows that rotation adds to the products of rotation columns: two of the curvature of the logarithm, which may be left out, or all
+    /// three where the ratio of noises differs between rows (theory.md §6 (28a)).
     pub(super) fn turned_rows(&self, nearly: bool) -> usize {
         match (self.framed, self.ratio) {
             (false, _) => 0,
@@ -67,17 +69,17 @@ impl Plan {
         }
     }
 
-    /// Wide numbers of a block of [`WIDTH`] rows: the weight `1/σ` and the ratio of noises, the measured position, where orientation
-    /// was measured its columns; and `(cos θ, sin θ)` or `(θ, 0)` a joint.
+    /// Wide numbers of a block of [`WIDTH`] rows: the weight `1/σ` and the ratio of noises, the measured position, the columns of a
+    /// measured orientation, and `(cos θ, sin θ)` or `(θ, 0)` of each joint.
     pub(crate) fn block_len(&self) -> usize {
         let seen = if self.framed { 12 } else { 3 };
         2 + seen + 2 * self.joints.len()
     }
 }
 
-/// Rows side by side, in blocks of [`WIDTH`]; the last is filled up with rows of no weight.
+/// Rows side by side, in blocks of [`WIDTH`]; the last is padded with rows of weight zero.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Rows {
+pub(crate) struct PackedRows {
     pub(crate) blocks: Vec<Wide>,
 }
 
@@ -92,10 +94,10 @@ pub(crate) struct RowData<'a> {
     pub(crate) weight: f64,
 }
 
-impl Rows {
-    pub(crate) const EMPTY: Rows = Rows { blocks: Vec::new() };
+impl PackedRows {
+    pub(crate) const EMPTY: PackedRows = PackedRows { blocks: Vec::new() };
 
-    /// Packs rows, whatever was packed before.
+    /// Packs rows in place of those packed before.
     #[inline(always)]
     pub(crate) fn pack<'a>(&mut self, plan: &Plan, count: usize, row: impl Fn(usize) -> RowData<'a>) {
         let len = plan.block_len();
@@ -103,7 +105,7 @@ impl Rows {
         self.blocks.resize(blocks * len, Wide::ZERO);
         for (index, block) in self.blocks.chunks_exact_mut(len).enumerate() {
             let first = index * WIDTH;
-            // What fills up the last block is its last row, without weight.
+            // The last block is padded with its last row, at weight zero.
             let rows: [RowData<'a>; WIDTH] = std::array::from_fn(|lane| row((first + lane).min(count - 1)));
             put(block, &rows);
             if let Some(weights) = block.first_mut() {
@@ -113,7 +115,7 @@ impl Rows {
     }
 }
 
-/// Writes a block, a number of all rows after the other.
+/// Writes a block, number after number, each of all rows.
 #[inline(always)]
 fn put(block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
     let Some((noise, rest)) = block.split_first_chunk_mut::<2>() else { return };
@@ -142,12 +144,12 @@ fn put(block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
     }
 }
 
-/// An arm as it stands: what is unknown of it, its frames at zero, and the way from the last one to the target.
+/// An arm at an estimate: its columns, its relative frames at zero joint values, and the target in the last one.
 #[derive(Clone, Copy)]
 pub(crate) struct Arm<'a> {
     pub(crate) plan: &'a Plan,
-    pub(crate) steps: &'a [Step],
-    pub(crate) end: &'a Step,
-    /// Whether the curvature of the logarithm may be left out of the products where that spares time (theory.md §6 (28a)).
+    pub(crate) steps: &'a [FixedMotion],
+    pub(crate) end: &'a FixedMotion,
+    /// Whether the products may omit the curvature of the logarithm, to save time (theory.md §6 (28a)).
     pub(crate) nearly: bool,
 }

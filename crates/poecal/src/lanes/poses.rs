@@ -5,7 +5,8 @@ use std::ops::{Add, Mul};
 
 use super::vector::{Vector, WIDTH, Wide};
 
-/// The motion of a joint, `I + f F + g G` with two numbers f and g that depend on its value: three directions and a translation, by rows.
+/// The motion of a joint, `I + f F + g G` with two functions f and g of its value (theory.md §1 (2a)): three directions and a translation,
+/// by rows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exponential {
     pub(crate) first: [[f64; 4]; 3],
@@ -32,7 +33,7 @@ impl Exponential {
     }
 }
 
-/// The product of the motions of all joints, each with its f and g: three directions and a translation, by rows.
+/// The product of the motions of all joints, each with its f and g (theory.md §2 (6)): three directions and a translation, by rows.
 #[inline(always)]
 pub(super) fn product_of_exponentials<V: Vector>(
     joints: &[Exponential],
@@ -54,7 +55,7 @@ pub(super) fn product_of_exponentials<V: Vector>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{levels, product_of_exponentials};
+    use super::super::{product_of_exponentials, simd_levels};
     use super::*;
 
     #[test]
@@ -66,7 +67,7 @@ mod tests {
         let factors: Vec<[Wide; 2]> = (0..7)
             .map(|k| [5, 31].map(|seed| Wide(std::array::from_fn(|lane| number(seed * k + lane)))))
             .collect();
-        let found = levels().into_iter().map(|level| product_of_exponentials(level, &joints, &factors));
+        let found = simd_levels().into_iter().map(|level| product_of_exponentials(level, &joints, &factors));
         let found: Vec<_> =
             found.map(|rows| rows.map(|row| row.map(|wide| wide.0.map(f64::to_bits)))).collect();
         assert!(found.iter().all(|bits| bits == &found[0]));

@@ -8,7 +8,7 @@ use super::kernel;
 #[cfg(target_arch = "x86_64")]
 use super::plain::Pair;
 use super::plain::Two;
-use super::plan::{Arm, Step};
+use super::plan::{Arm, FixedMotion};
 use super::poses::{self, Exponential};
 use super::sincos;
 use super::tip;
@@ -17,33 +17,33 @@ use super::vector::Wide;
 #[cfg(target_arch = "x86_64")]
 use super::x86::{Eight, Four};
 
-/// By which instructions the kernels run.
+/// Instruction set of the kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// Those that every machine of the target has: two numbers at a time.
+pub enum SimdLevel {
+    /// Instructions of every machine of the target: two numbers at a time.
     Baseline,
     /// AVX2 with FMA: four numbers at a time.
     Avx2,
-    /// AVX2 with FMA, written for eight numbers at a time: slower, and there so that this width can be tested without AVX-512.
+    /// AVX2 with FMA, written for eight numbers at a time: slower, for tests of this width without AVX-512.
     Avx2Wide,
     /// AVX-512: eight numbers at a time.
     Avx512,
 }
 
-impl Level {
+impl SimdLevel {
     /// The best level of this machine.
     #[must_use]
     pub fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
-            if Level::Avx512.is_here() {
-                return Level::Avx512;
+            if SimdLevel::Avx512.is_here() {
+                return SimdLevel::Avx512;
             }
-            if Level::Avx2.is_here() {
-                return Level::Avx2;
+            if SimdLevel::Avx2.is_here() {
+                return SimdLevel::Avx2;
             }
         }
-        Level::Baseline
+        SimdLevel::Baseline
     }
 
     /// Whether this machine has the instructions.
@@ -52,31 +52,31 @@ impl Level {
         {
             let avx2 = || is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
             match self {
-                Level::Baseline => true,
-                Level::Avx2 | Level::Avx2Wide => avx2(),
-                Level::Avx512 => is_x86_feature_detected!("avx512f") && avx2(),
+                SimdLevel::Baseline => true,
+                SimdLevel::Avx2 | SimdLevel::Avx2Wide => avx2(),
+                SimdLevel::Avx512 => is_x86_feature_detected!("avx512f") && avx2(),
             }
         }
         #[cfg(not(target_arch = "x86_64"))]
         {
-            self == Level::Baseline
+            self == SimdLevel::Baseline
         }
     }
 }
 
 /// Levels that this machine has, the best first.
 #[must_use]
-pub fn levels() -> Vec<Level> {
-    let all = [Level::Avx512, Level::Avx2, Level::Avx2Wide, Level::Baseline];
+pub fn simd_levels() -> Vec<SimdLevel> {
+    let all = [SimdLevel::Avx512, SimdLevel::Avx2, SimdLevel::Avx2Wide, SimdLevel::Baseline];
     all.into_iter().filter(|level| level.is_here()).collect()
 }
 
-/// A function that calls what is written for any vector, compiled for the instructions of a level.
+/// Defines a function that calls a generic kernel, compiled for the instructions of a level.
 macro_rules! dispatch {
     ($(#[$doc:meta])* $module:ident :: $name:ident ($($argument:ident: $type:ty),*) $(-> $result:ty)?) => {
         $(#[$doc])*
         #[allow(unsafe_code, reason = "functions compiled for further instructions may only be called where the machine has them")]
-        pub(crate) fn $name(level: Level, $($argument: $type),*) $(-> $result)? {
+        pub(crate) fn $name(level: SimdLevel, $($argument: $type),*) $(-> $result)? {
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx2,fma")]
             fn avx2($($argument: $type),*) $(-> $result)? {
@@ -92,19 +92,19 @@ macro_rules! dispatch {
             fn avx512($($argument: $type),*) $(-> $result)? {
                 $module::$name::<Eight>($($argument),*)
             }
-            match if level.is_here() { level } else { Level::Baseline } {
+            match if level.is_here() { level } else { SimdLevel::Baseline } {
                 // SAFETY: `is_here` has found AVX2 and FMA, which is all that the function asks for.
                 #[cfg(target_arch = "x86_64")]
-                Level::Avx2 => unsafe { avx2($($argument),*) },
+                SimdLevel::Avx2 => unsafe { avx2($($argument),*) },
                 // SAFETY: as above.
                 #[cfg(target_arch = "x86_64")]
-                Level::Avx2Wide => unsafe { avx2_wide($($argument),*) },
+                SimdLevel::Avx2Wide => unsafe { avx2_wide($($argument),*) },
                 // SAFETY: `is_here` has found AVX-512F, AVX2 and FMA, which is all that the function asks for.
                 #[cfg(target_arch = "x86_64")]
-                Level::Avx512 => unsafe { avx512($($argument),*) },
+                SimdLevel::Avx512 => unsafe { avx512($($argument),*) },
                 #[cfg(not(target_arch = "x86_64"))]
-                Level::Avx2 | Level::Avx2Wide | Level::Avx512 => $module::$name::<Two>($($argument),*),
-                Level::Baseline => $module::$name::<Two>($($argument),*),
+                SimdLevel::Avx2 | SimdLevel::Avx2Wide | SimdLevel::Avx512 => $module::$name::<Two>($($argument),*),
+                SimdLevel::Baseline => $module::$name::<Two>($($argument),*),
             }
         }
     };
@@ -130,7 +130,7 @@ dispatch!(
 );
 dispatch!(
     /// Writes the frames of the last link.
-    tip::last_links(joints: &[(bool, Step)], values: &[[Wide; 2]], out: &mut [[Wide; 4]; 3])
+    tip::last_links(joints: &[(bool, FixedMotion)], values: &[[Wide; 2]], out: &mut [[Wide; 4]; 3])
 );
 dispatch!(
     /// Writes errors of position and rotation.
@@ -164,7 +164,7 @@ dispatch!(
     dense::inverse(factor: &Factor) -> Vec<f64>
 );
 dispatch!(
-    /// Trace of each row's block of the hat matrix, and square of its residual in units of its own deviation.
+    /// Trace of each row's block of the hat matrix, and square of its studentised residual (theory.md §6 (34d) and (34e)).
     influence::influences(
         factor: &Factor,
         shifts: usize,

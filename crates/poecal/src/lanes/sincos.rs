@@ -1,5 +1,5 @@
-//! Sines and cosines of many angles: one loop without branches, of which the compiler makes vectors. No product is fused with a sum, so
-//! that the bits are the same by all instructions.
+//! Sines and cosines of many angles: one loop without branches, which the compiler vectorises. No product is fused with a sum, so that the
+//! bits are the same at every level.
 
 use super::vector::Vector;
 use std::f64::consts::FRAC_2_PI;
@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_2_PI;
 const QUARTER: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 /// Adding and subtracting it rounds to a whole number, which then stands in the lowest bits.
 const ROUND: f64 = 1.5 * (1_u64 << 52) as f64;
-/// Angle beyond which the parts of π/2 are too few: some 80,000 turns.
+/// Largest angle for three parts of π/2: some 80,000 turns.
 const LARGE: f64 = 5e5;
 
 /// Taylor-like coefficients of `(sin r - r) / r³` and `(cos r - 1 + r²/2) / r⁴` for `|r| ≤ π/4` (those of the FreeBSD library).
@@ -38,7 +38,7 @@ pub(super) fn cosines_and_sines<V: Vector>(angles: &[f64], out: &mut [(f64, f64)
     mend(angles, out);
 }
 
-/// Replaces what the loop cannot do.
+/// Replaces the results of angles that are too large for the loop.
 fn mend(angles: &[f64], out: &mut [(f64, f64)]) {
     for (out, &angle) in out.iter_mut().zip(angles) {
         if angle.abs() > LARGE {
@@ -70,7 +70,7 @@ fn polynomial(z: f64, c: &[f64; 6]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{cosines_and_sines, levels};
+    use super::super::{cosines_and_sines, simd_levels};
 
     #[test]
     fn sines_are_those_of_the_library() {
@@ -79,7 +79,7 @@ mod tests {
         angles.extend((0..4000).map(|k| 1e-9 * 1.01_f64.powi(k)).filter(|angle| *angle < 1e15));
         angles.extend([0.0, -0.0, 1e300]);
         let mut reference: Option<Vec<(f64, f64)>> = None;
-        for level in levels() {
+        for level in simd_levels() {
             let mut found = vec![(0.0, 0.0); angles.len()];
             cosines_and_sines(level, &angles, &mut found);
             let mut worst: f64 = 0.0;

@@ -1,13 +1,17 @@
-//! The chain alone: where the last link is in several rows.
+//! The chain alone: frames of the last link in several rows.
 
 use super::frame::{Frame, moved, turned};
-use super::plan::Step;
+use super::plan::FixedMotion;
 use super::vector::{Vector, WIDTH, Wide};
 
-/// Writes the frame of the last link after all motions, rows of `[x, y, z, origin]`: of each joint, whether it turns, its frame seen
-/// from the one before at zero, and `(cos θ, sin θ)` or `(θ, 0)`.
+/// Writes the frame of the last link after all motions, `X T_n` of theory.md §4 (13), as rows of `[x, y, z, origin]`. Of each joint are
+/// given whether it is revolute, its frame in the one before at zero joint values, and `(cos θ, sin θ)` or `(θ, 0)`.
 #[inline(always)]
-pub(super) fn last_links<V: Vector>(joints: &[(bool, Step)], values: &[[Wide; 2]], out: &mut [[Wide; 4]; 3]) {
+pub(super) fn last_links<V: Vector>(
+    joints: &[(bool, FixedMotion)],
+    values: &[[Wide; 2]],
+    out: &mut [[Wide; 4]; 3],
+) {
     for part in 0..WIDTH / V::LANES {
         let mut link = Frame([[V::splat(0.0); 4]; 3]);
         for (index, ((turns, step), [cosine, sine])) in joints.iter().zip(values).enumerate() {

@@ -1,4 +1,4 @@
-//! What a pass over rows gives.
+//! Sums of one pass over rows.
 
 use super::gram::TILE;
 
@@ -6,9 +6,9 @@ use super::gram::TILE;
 pub(crate) struct Totals {
     /// Products of position columns, tile after tile: see [`Tiles`].
     pub(crate) products: Vec<f64>,
-    /// What rotation rows add to products of turns, likewise.
+    /// Sums that rotation rows add to the products of rotation columns, likewise.
     pub(crate) turned: Vec<f64>,
-    /// `Jᵀe` of shifts, then of turns.
+    /// `Jᵀe` of translation columns, then of rotation columns.
     pub(crate) gradient: Vec<f64>,
     /// `½ Σ e²`.
     pub(crate) cost: f64,
@@ -29,7 +29,7 @@ impl Totals {
     }
 }
 
-/// Where the product of columns `a ≤ b` is in a sum of tiles: at `left[a] + right[b]`.
+/// Index of the product of columns `a ≤ b` in a sum of tiles: `left[a] + right[b]`.
 pub(crate) struct Tiles {
     pub(crate) left: Vec<usize>,
     pub(crate) right: Vec<usize>,
@@ -39,7 +39,7 @@ impl Tiles {
     /// For so many columns.
     pub(crate) fn new(columns: usize) -> Self {
         let tiles = columns.div_ceil(TILE);
-        // Before the tiles of row `r` stand those of the rows above, each one shorter; the first of its own is on the diagonal.
+        // The tiles of row `r` follow those of the rows above, each one shorter; the first of its own is on the diagonal.
         let before = |r: usize| r * tiles - r * (r + 1) / 2;
         Tiles {
             left: (0..columns).map(|a| before(a / TILE) * TILE * TILE + a % TILE * TILE).collect(),

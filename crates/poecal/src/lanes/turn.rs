@@ -1,4 +1,4 @@
-//! Rotations of several rows: the logarithm, and what its derivative adds to the products of columns.
+//! Residual rotations of several rows: the logarithm, and the rows that its derivative adds to the products of columns.
 
 use nalgebra::Matrix3;
 
@@ -27,7 +27,7 @@ impl<V: Vector> Turn<V> {
         }
         let sine = doubled.scale(V::splat(0.5));
         let sine_squared = sine.dot(sine);
-        // A trace above one is an angle below a right one.
+        // A trace above one means an angle below π/2.
         if !(sine_squared.are_below(SMALL) && (-trace).are_below(-1.0)) {
             return Self::large(measured, predicted);
         }

@@ -1,8 +1,8 @@
-//! Numbers of several rows side by side: what a kernel is written in, whatever the width of the machine's vectors.
+//! Numbers of several rows side by side: the vectors of the kernels, whatever the width of the machine's vectors.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// Rows that stand side by side in memory, whatever the width of the instructions.
+/// Rows side by side in memory, whatever the width of the instructions.
 pub(crate) const WIDTH: usize = 8;
 
 /// One number of [`WIDTH`] rows, on a cache line of its own.

@@ -1,4 +1,4 @@
-//! Room for one pass over rows: columns and sums under way.
+//! Buffers of one pass over rows: columns and sums.
 
 use std::cell::RefCell;
 
@@ -6,12 +6,13 @@ use super::gram::{TILE, sums_len};
 use super::plan::{Arm, Plan};
 use super::vector::Wide;
 
-/// Memory of columns that are waiting for their products, in wide numbers: with the sums it just fits the first cache.
+/// Memory of columns that wait for their products, in wide numbers: with the sums it just fits the first-level cache.
 const WAITING: usize = 570;
-/// Fewest and most blocks that wait: with few, the tiles' sums are loaded and stored too often, even if columns fill the second cache.
+/// Fewest and most blocks that wait: with fewer, the tiles' sums are loaded and stored too often, even if columns fill the second-level
+/// cache.
 const BLOCKS_WAITING: (usize, usize) = (6, 8);
 
-/// What is kept of a joint: its two shift columns and its origin in the rows under way, and the gradient of shifts and tilts.
+/// A joint's two translation columns and origin in the current rows, and its gradient: two shifts, two tilts.
 #[derive(Clone, Copy)]
 pub(super) struct Axis {
     pub(super) shifts: [[Wide; 3]; 2],
@@ -24,11 +25,11 @@ impl Axis {
         Axis { shifts: [[Wide::ZERO; 3]; 2], origin: [Wide::ZERO; 3], gradient: [Wide::ZERO; 4] };
 }
 
-/// Columns and sums under way.
+/// Columns and sums of the current pass.
 pub(super) struct Work {
     /// Position rows of each column, block after block.
     pub(super) jacobian: Vec<[Wide; 3]>,
-    /// What rotation adds for each turn, likewise: two or three rows a block.
+    /// Rows that rotation adds for each rotation column, likewise: two or three for each block.
     pub(super) turned: Vec<Wide>,
     pub(super) axes: Vec<Axis>,
     pub(super) products: Vec<Wide>,
@@ -38,7 +39,7 @@ pub(super) struct Work {
     pub(super) square: Wide,
     /// Blocks that wait at a time.
     pub(super) waiting: usize,
-    /// Rows a block of what rotation adds.
+    /// Rows that rotation adds for each block.
     pub(super) turned_rows: usize,
 }
 
@@ -62,7 +63,7 @@ impl Work {
         turned_rows: 0,
     };
 
-    /// Makes room for a plan's gradient, at zero, and its columns if these are wanted.
+    /// Prepares the buffers of a plan's gradient, at zero, and of its columns if these are wanted.
     pub(super) fn begin(&mut self, arm: &Arm<'_>, with_columns: bool) {
         let plan = arm.plan;
         restart(&mut self.shift_gradient, plan.shifts);
@@ -77,7 +78,7 @@ impl Work {
         if with_columns {
             let [columns, turns] = padded(plan);
             self.waiting = (WAITING / (3 * columns).max(1)).clamp(BLOCKS_WAITING.0, BLOCKS_WAITING.1);
-            // Columns are written before they are read, but for those that fill up the last tile.
+            // Columns are written before they are read, except for the padding of the last tile.
             self.jacobian.resize(self.waiting * columns, [Wide::ZERO; 3]);
             self.jacobian[self.waiting * plan.columns()..].fill([Wide::ZERO; 3]);
             let rows = self.turned_rows * self.waiting;
@@ -86,7 +87,7 @@ impl Work {
         }
     }
 
-    /// Makes room for sums of products of columns, at zero.
+    /// Prepares the sums of products of columns, at zero.
     pub(super) fn begin_products(&mut self, plan: &Plan, lanes: usize) {
         let [columns, turns] = padded(plan);
         restart(&mut self.products, sums_len(columns, lanes));
@@ -94,7 +95,7 @@ impl Work {
     }
 }
 
-/// Columns of position, and turns, whole tiles of them.
+/// Numbers of position columns and of rotation columns, padded to whole tiles.
 fn padded(plan: &Plan) -> [usize; 2] {
     [plan.columns(), plan.turns.len()].map(|count| count.next_multiple_of(TILE))
 }
@@ -105,6 +106,6 @@ fn restart(sums: &mut Vec<Wide>, len: usize) {
 }
 
 thread_local! {
-    /// Room for one pass, kept from one to the next.
+    /// Buffers of one pass, reused by the next.
     pub(super) static WORK: RefCell<Work> = const { RefCell::new(Work::EMPTY) };
 }

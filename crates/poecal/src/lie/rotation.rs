@@ -3,7 +3,7 @@
 use super::{hat, series};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-/// `exp(ω̂) = I + sinc ω̂ + cosc ω̂²`: the rotation by the vector ω (radians).
+/// `exp(ω̂) = I + sinc ω̂ + cosc ω̂²`: the rotation by the vector ω (radians), theory.md §1 (2a).
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -17,7 +17,7 @@ pub fn exp(w: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + hat_w * series::sinc(angle_squared) + hat_w * hat_w * series::cosc(angle_squared)
 }
 
-/// Rotation vector of a rotation matrix, `|log R| ≤ π`, accurate at 0 and up to π (through the quaternion).
+/// Rotation vector `log(R)^∨` of a rotation matrix (theory.md §1 (2a)), `|log R| ≤ π`, accurate at 0 and up to π (through the quaternion).
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -38,7 +38,7 @@ pub fn log(r: &Matrix3<f64>) -> Vector3<f64> {
     }
 }
 
-/// Unit quaternion `(x, y, z, w)` of a rotation matrix, `w ≥ 0` (Shepperd's method: the largest component first).
+/// Unit quaternion `(x, y, z, w)` of a rotation matrix, `w ≥ 0`, from its largest component (shepperd1978).
 #[must_use]
 pub fn to_quaternion_xyzw(r: &Matrix3<f64>) -> Vector4<f64> {
     let trace = r.trace();
@@ -58,7 +58,7 @@ pub fn to_quaternion_xyzw(r: &Matrix3<f64>) -> Vector4<f64> {
     if q.w < 0.0 { -q } else { q }
 }
 
-/// Rotation matrix of a quaternion `(x, y, z, w)`, which is normalised first.
+/// Rotation matrix of a quaternion `(x, y, z, w)`, which is normalised first (horn1987).
 ///
 /// ```
 /// use nalgebra::{Matrix3, Vector4};
@@ -116,8 +116,8 @@ pub fn to_rpy(r: &Matrix3<f64>) -> [f64; 3] {
     [roll, pitch, yaw]
 }
 
-/// The rotation by the smallest angle that takes unit vector `from` to unit vector `to`; for opposite vectors, half a turn
-/// about a direction perpendicular to both.
+/// The rotation by the smallest angle that takes unit vector `from` to unit vector `to`: `I + â + â²/(1 + cos φ)` with `a = from × to` and
+/// `sin φ = |a|`, which is theory.md §1 (2a) for `ω = φ a/|a|`. For opposite vectors, half a turn about a perpendicular direction.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -136,7 +136,7 @@ pub fn shortest_arc(from: &Vector3<f64>, to: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + hat_cross + hat_cross * hat_cross / (1.0 + dot)
 }
 
-/// A unit vector perpendicular to `a` (any length but zero), chosen continuously except where it must jump.
+/// A unit vector perpendicular to `a` (any length but zero): `a × e_k`, normalised, with the axis `e_k` of the smallest component of `a`.
 #[must_use]
 pub fn perpendicular(a: &Vector3<f64>) -> Vector3<f64> {
     let other = match a.iamin() {
@@ -147,7 +147,8 @@ pub fn perpendicular(a: &Vector3<f64>) -> Vector3<f64> {
     a.cross(&other).normalize()
 }
 
-/// The nearest rotation to a matrix that is one but for rounding (one Newton step of the polar decomposition).
+/// The nearest rotation to a matrix that is one but for rounding: `R (3I - RᵀR)/2`, one Newton-Schulz step of the polar decomposition
+/// (bjorck1971).
 #[must_use]
 pub fn orthonormalized(r: &Matrix3<f64>) -> Matrix3<f64> {
     r * (Matrix3::identity() * 1.5 - r.transpose() * r * 0.5)

@@ -1,4 +1,4 @@
-//! Rows that were taken in the same configuration.
+//! Rows measured in the same configuration.
 
 use super::Dataset;
 use crate::threads;
@@ -6,22 +6,22 @@ use crate::threads;
 /// An odd number whose bits look random: the golden ratio's.
 const MIXER: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Readings (radians, metres) that differ by no more are of one configuration: what a robot errs by is the same there, whatever its
-/// encoders jitter by.
+/// Largest difference of readings (radians, metres) of one configuration: the robot's error is the same there, in spite of the encoders'
+/// jitter.
 const SAME: f64 = 1e-3;
-/// Rows above which only readings that are the same to the last bit are of one configuration.
+/// Rows above which only identical readings are of one configuration.
 pub(crate) const MANY: usize = 100_000;
 /// Rows that one thread looks at together.
 const CHUNK: usize = 4096;
 
 impl Dataset {
-    /// Configurations of two rows or more among these, each group and its rows in the order of their numbers: readings that differ by
-    /// no more than 0.001 rad or 1 mm are of one.
+    /// Configurations of two rows or more among these, groups and their rows in the order of the data. Readings of one configuration differ
+    /// by no more than 0.001 rad or 1 mm.
     pub(crate) fn grouped(&self, rows: &[u32]) -> Vec<Vec<u32>> {
         if rows.len() > MANY { self.repeated(rows) } else { self.alike(rows, SAME, 2, |_| 0) }
     }
 
-    /// These rows by configuration, as [`Dataset::grouped`], those of one row too. For some hundred thousand rows at most.
+    /// These rows by configuration, as [`Dataset::grouped`], with configurations of one row. For some hundred thousand rows at most.
     pub(crate) fn configurations(&self, rows: &[u32]) -> Vec<Vec<u32>> {
         let mut groups = self.grouped(rows);
         let mut grouped: Vec<u32> = groups.iter().flatten().copied().collect();
@@ -31,7 +31,8 @@ impl Dataset {
         groups
     }
 
-    /// Groups of `least` rows or more of one class among these whose readings are those of the group's first row but for `same`.
+    /// Groups of `least` rows or more of one class among these whose readings differ from those of the group's first row by no more than
+    /// `same`.
     pub(crate) fn alike(
         &self,
         rows: &[u32],
@@ -40,7 +41,7 @@ impl Dataset {
         class: impl Fn(u32) -> usize,
     ) -> Vec<Vec<u32>> {
         let readings = |row: u32| self.readings(row as usize);
-        // Rows of equal readings lie together by any sum of their readings; by this one, others seldom do.
+        // Rows of equal readings are neighbours in the order of any weighted sum; with these weights other rows seldom are.
         let weight = |k: usize| 1.0 + 0.618_033_988_749_895 * (k as f64).sqrt();
         let key =
             |row: u32| readings(row).iter().enumerate().map(|(k, value)| weight(k) * value).sum::<f64>();
@@ -78,11 +79,10 @@ impl Dataset {
         groups
     }
 
-    /// The rows among these whose readings are the same to the last bit, each group and its rows in the order of their numbers;
-    /// configurations of one row are left out.
+    /// Groups of two rows or more among these with identical readings, groups and their rows in the order of the data.
     pub(crate) fn repeated(&self, rows: &[u32]) -> Vec<Vec<u32>> {
         let bits = |row: u32| self.readings(row as usize).iter().map(|value| value.to_bits());
-        // What is the same has the same mixture, and little else has: only rows that share one need be compared.
+        // A hash: only rows with equal hashes are compared.
         let mixed =
             |row: u32| bits(row).fold(0, |sum: u64, bits| (sum ^ bits).wrapping_mul(MIXER).rotate_left(29));
         let mut mixtures: Vec<(u64, u32)> = rows.iter().map(|&row| (mixed(row), row)).collect();

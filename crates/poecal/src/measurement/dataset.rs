@@ -1,4 +1,4 @@
-//! All measurements of a calibration: configurations, targets and what was seen.
+//! All measurements of a calibration, with their configurations and targets.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{Measurement, Noise, PoseResidual};
 use crate::error::{Error, ErrorKind, Result};
 
-/// What a row is for.
+/// Set of a row: training or held out.
 ///
 /// ```
 /// # use poecal::{Kind, Set, Simulation, simulate::elbow};
@@ -22,7 +22,7 @@ use crate::error::{Error, ErrorKind, Result};
 pub enum Set {
     /// Used to fit.
     Fit,
-    /// Kept back to judge the fit.
+    /// Held out to judge the fit.
     HeldOut,
 }
 
@@ -35,7 +35,7 @@ pub struct Source {
     pub line: u32,
 }
 
-/// One row: which target was seen how, and how well.
+/// One row: a measurement of a target, with its noise, set and source.
 ///
 /// ```
 /// # use poecal::{Dataset, Measurement, PointMeasurement};
@@ -53,20 +53,20 @@ pub struct Observation {
     /// Index into [`Dataset::stations`]; 0 where there is one device frame only.
     #[serde(default)]
     pub station: usize,
-    /// What was seen.
+    /// The measurement.
     pub measurement: Measurement,
     /// Standard deviation of each position component, metres, if the row states it.
     pub sigma_position_m: Option<f64>,
     /// Standard deviation of each rotation component, radians, if the row states it.
     pub sigma_rotation_rad: Option<f64>,
-    /// What the row is for, if it states it.
+    /// Set of the row, if it states it.
     pub set: Option<Set>,
-    /// Where it came from.
+    /// File and line.
     pub source: Source,
 }
 
 impl Observation {
-    /// The noise that the row states, and that of `usual` which it does not.
+    /// The noise that the row states; `usual` for a standard deviation that it does not state.
     #[must_use]
     pub fn noise_or(&self, usual: Noise) -> Noise {
         Noise {
@@ -99,7 +99,7 @@ pub struct Dataset {
     readings: Vec<f64>,
     /// Names of the targets; `None` is the single unnamed target, which is the tip itself.
     pub targets: Vec<Option<String>>,
-    /// Names of the places that the device stood at, each with a frame of its own; none is one without a name.
+    /// Names of the stations of the device, each with a frame of its own; empty for a single station without a name.
     #[serde(default)]
     pub stations: Vec<Option<String>>,
     /// The rows.
@@ -108,13 +108,13 @@ pub struct Dataset {
     pub ids: Vec<String>,
     /// Files that the rows came from.
     pub files: Vec<PathBuf>,
-    /// How the errors of measured frames are written, if not as their type does. No file has it.
+    /// Formulation of the residuals of measured frames, if not that of their type. Files do not contain it.
     #[serde(skip)]
     pub pose_residual: Option<&'static dyn PoseResidual>,
 }
 
 impl Dataset {
-    /// No rows yet; configurations will consist of these readings.
+    /// An empty data set whose configurations consist of these readings.
     #[must_use]
     pub fn new(reading_names: Vec<String>) -> Self {
         Dataset { reading_names, ..Dataset::default() }
@@ -146,7 +146,7 @@ impl Dataset {
         )
     }
 
-    /// Adds a row whose target index is known.
+    /// Adds a row by the index of its target.
     ///
     /// # Errors
     /// As [`Dataset::push`].
@@ -175,7 +175,7 @@ impl Dataset {
         Ok(())
     }
 
-    /// Refuses a data set that was put together from elsewhere, such as a serialised one, and does not fit together.
+    /// Checks the consistency of a data set of other origin, such as a serialised one.
     ///
     /// # Errors
     /// [`ErrorKind::Measurement`].
@@ -203,13 +203,13 @@ impl Dataset {
         self.targets.len() - 1
     }
 
-    /// How many places the device stood at.
+    /// Number of stations.
     #[must_use]
     pub fn station_count(&self) -> usize {
         self.stations.len().max(1)
     }
 
-    /// Index of a place that the device stood at, added if it is new.
+    /// Index of a station, added if it is new.
     pub fn station_index(&mut self, name: Option<&str>) -> usize {
         if self.stations.is_empty() && !self.is_empty() {
             self.stations.push(None);
@@ -221,7 +221,7 @@ impl Dataset {
         self.stations.len() - 1
     }
 
-    /// What to call a place that the device stood at.
+    /// Name of a station in messages.
     #[must_use]
     pub fn station_words(&self, station: usize) -> String {
         match self.stations.get(station).and_then(Option::as_deref) {
@@ -230,13 +230,13 @@ impl Dataset {
         }
     }
 
-    /// Those of some rows that were measured from one place, in their order.
+    /// Those of some rows that were measured from one station, in their order.
     #[must_use]
     pub fn seen_from(&self, station: usize, rows: &[u32]) -> Vec<u32> {
         rows.iter().copied().filter(|&row| self.observations[row as usize].station == station).collect()
     }
 
-    /// The same rows as if all had been measured from one place.
+    /// The same rows as if all had been measured from one station.
     #[must_use]
     pub(crate) fn without_stations(&self) -> Self {
         let mut data = self.clone();
@@ -269,7 +269,7 @@ impl Dataset {
         (0..u32::try_from(self.len()).unwrap_or(u32::MAX)).collect()
     }
 
-    /// A row as people find it: file and line, or its number from 1.
+    /// Place of a row in messages: file and line, or its number from 1.
     #[must_use]
     pub fn place(&self, row: u32) -> String {
         let source = self.observations.get(row as usize).map(|observation| observation.source);
@@ -367,7 +367,7 @@ impl Dataset {
         let first_file = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
         self.files.extend(other.files.iter().cloned());
         let mut readings = Vec::with_capacity(order.len());
-        // Looked up once a target: there may be very many.
+        // Looked up once for each target: there may be very many rows.
         let mut targets: Vec<Option<usize>> = vec![None; other.targets.len()];
         let stations: Vec<usize> = match (self.stations.as_slice(), other.stations.as_slice()) {
             ([], []) => Vec::new(),

@@ -1,4 +1,5 @@
-//! What an outside device saw. A measurement knows the pose of the target it saw and nothing of joints or parameters.
+//! Measurements by an external device. The residual of a measurement depends on the predicted pose of its target alone, not on joints or
+//! parameters.
 
 mod configurations;
 mod dataset;

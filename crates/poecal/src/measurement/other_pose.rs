@@ -1,4 +1,4 @@
-//! The error of a measured frame, written in another way than [`PoseMeasurement`](super::PoseMeasurement) does: given from outside.
+//! The residual of a measured frame in another formulation than [`PoseMeasurement`](super::PoseMeasurement), which is given from outside.
 
 use std::fmt::Debug;
 
@@ -7,8 +7,9 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Measurement, Noise, PoseMeasurement, Residual};
 use crate::lie::{Pose, TargetTwist};
 
-/// How the errors of measured frames are written as six numbers, those that see a target's shift first. It holds for all frames of a
-/// data set ([`Dataset::pose_residual`](super::Dataset::pose_residual)). The solver serves it row by row and without the full Hessian.
+/// Formulation of the residuals of measured frames as six numbers, first those that depend on the target's translation. It holds for all
+/// frames of a data set ([`Dataset::pose_residual`](super::Dataset::pose_residual)). Such a problem takes the row-by-row path, without the
+/// full Hessian.
 pub trait PoseResidual: Debug + Sync {
     /// Its name; residuals of one name are equal.
     fn name(&self) -> &'static str;
@@ -34,11 +35,11 @@ impl PartialEq for dyn PoseResidual {
     }
 }
 
-/// A measurement with its residual.
+/// A measurement with the formulation of its residual.
 pub(crate) enum Written<'a> {
-    /// As the type of the measurement has it.
+    /// The formulation of the measurement's type.
     Usual(&'a Measurement),
-    /// A frame's in another way.
+    /// Another formulation, of a frame.
     Other(OtherPose),
 }
 

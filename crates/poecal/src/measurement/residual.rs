@@ -18,8 +18,8 @@ pub struct Noise {
     pub rotation_rad: f64,
 }
 
-/// What a measurement type provides. `e = measured ⊖ predicted`, and the *prediction* moves by `S · twist` under a target twist
-/// (theory.md §4 (14) to (17)).
+/// Interface of a measurement type: residual `e = measured ⊖ predicted`, and sensitivity S of the *prediction*, which moves by `S · twist`
+/// under a target twist (theory.md §4 (14) to (17)).
 pub trait Residual {
     /// Number of residual rows.
     fn dim(&self) -> usize;
@@ -40,11 +40,11 @@ pub trait Residual {
     /// The whitened residual as force and torque on the target: `f` and `τ` such that `f·v + τ·ω` is the descent of `½ |e|²` along a
     /// target twist `(v; ω)`, to first order in the residual, and its second derivative is that of the target's place and turn
     /// (theory.md §6 (31a)).
-    /// `None` where that does not hold: the solver then goes without the full Hessian.
+    /// `None` where that does not hold: the solver then does not use the full Hessian.
     fn wrench(&self, predicted: &Pose, noise: &Noise) -> Option<(Vector3<f64>, Vector3<f64>)>;
 
-    /// First residual row that does not see the linear part of a target twist: those rows are zero in columns that only shift
-    /// the target, which the solver's accumulation then skips. `dim` if there is none.
+    /// First residual row that does not depend on the linear part of a target twist. From it on, rows are zero in columns that only
+    /// translate the target, and the accumulation skips them. `dim` if there is none.
     fn rotation_row(&self) -> usize;
 
     /// Measured position, metres, device frame.

@@ -12,7 +12,7 @@ use crate::robot::{Joint, JointKind, Robot};
 /// Share of the largest eigenvalue of the normal equations below which a direction is open: models are written with rounded angles
 /// (1.5708), which must not decide an offset.
 const OPEN: f64 = 1e-8;
-/// Least part of an open direction that a joint must have to be named, and that is more than rounding.
+/// Smallest share of a joint in an open direction for which it is named, well above rounding.
 const NAMED: f64 = 1e-3;
 
 /// Offsets (radians, metres) and the motion of the nominal robot in the base frame.
@@ -27,7 +27,7 @@ pub(super) struct Comparison<'a> {
     pub(super) nominal: &'a Robot,
     pub(super) actual: &'a Robot,
     pub(super) options: &'a Options,
-    /// What a radian counts, metres.
+    /// Metres that a radian counts.
     pub(super) length_m: f64,
     offsets_free: bool,
 }
@@ -48,7 +48,7 @@ impl Normal {
         self.values.last().copied().unwrap_or(0.0)
     }
 
-    /// How many directions are open; the first eigenvectors.
+    /// Number of open directions, which are the first eigenvectors.
     fn open(&self) -> usize {
         self.values.iter().take_while(|&&value| value <= OPEN * self.largest()).count()
     }
@@ -134,7 +134,7 @@ impl<'a> Comparison<'a> {
         state
     }
 
-    /// Levenberg-Marquardt, and undamped steps at its end, where the cost no longer tells one state from another.
+    /// Levenberg-Marquardt, and undamped steps at its end, where differences of the cost are rounding.
     fn descend(&self, start: State) -> State {
         let mut state = start;
         let mut normal = self.normal(&state);
@@ -267,7 +267,7 @@ impl<'a> Comparison<'a> {
         let n = scales.len();
         let (mut rows, mut residuals) = (Vec::new(), Vec::new());
         for (movers, (residual, derivative)) in &blocks {
-            // An offset moves what comes after by the joint's own screw where it now stands.
+            // An offset moves all later screws and the home pose by the joint's own screw at its current place.
             let mut columns: Vec<Vector3<f64>> = Vec::with_capacity(n);
             if self.offsets_free {
                 columns.extend(screws.iter().enumerate().map(|(index, screw)| {
@@ -314,7 +314,7 @@ fn of_point(point: &Vector3<f64>) -> Matrix3x6<f64> {
     derivative
 }
 
-/// What depends on the turn of a spatial twist only.
+/// Derivative that depends on the rotation of a spatial twist only.
 fn of_turn(by_turn: &Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
     let mut derivative = Matrix3x6::zeros();
     derivative.fixed_view_mut::<3, 3>(0, 3).copy_from(&(by_turn * scale));

@@ -16,8 +16,8 @@ use prediction::Predictions;
 /// The robot without offsets that is exactly `robot` with `offsets` added to its joint values (radians, metres; one a joint):
 /// `ξ'ᵢ = Ad(Gᵢ₋₁) ξᵢ`, `M' = Gₙ M` with `Gᵢ = exp(ξ₁δ₁) … exp(ξᵢδᵢ)`, so that `f'(θ) = f(θ + δ)` for every θ (theory.md §8 (38a)).
 ///
-/// A joint's frame is fixed to the link that the joint moves and goes with `Gᵢ`, its own turn included. Limits stay: they bound what
-/// is read. The offset of a mimic joint is that of its own value.
+/// A joint's frame is fixed to the link that the joint moves and moves by `Gᵢ`, its own rotation included. Limits stay, since they bound
+/// readings. The offset of a mimic joint is that of its own value.
 ///
 /// ```
 /// use poecal::offsets::into_screws;
@@ -79,7 +79,7 @@ impl End {
     }
 }
 
-/// How [`explain`] compares two robots.
+/// Options of [`explain`].
 ///
 /// ```
 /// use poecal::offsets::{End, Options};
@@ -90,7 +90,7 @@ impl End {
 pub struct Options {
     /// The base frame: free where the actual robot's is a choice.
     pub base: End,
-    /// The tip frame: free where the tool was changed or found anew.
+    /// The tip frame: free where the tool was changed or refitted.
     pub tip: End,
     /// Number of random configurations on which predictions are compared.
     pub configurations: usize,
@@ -104,7 +104,7 @@ impl Default for Options {
     }
 }
 
-/// What offsets leave of a joint's difference.
+/// Difference of a joint's screw that offsets do not explain.
 ///
 /// ```
 /// use poecal::offsets::{Options, explain};
@@ -122,7 +122,7 @@ pub struct JointRemainder {
     pub shift_m: Option<f64>,
 }
 
-/// What offsets leave of the home pose's difference.
+/// Difference of the home pose that offsets do not explain.
 ///
 /// ```
 /// use poecal::offsets::{Options, explain};
@@ -139,7 +139,7 @@ pub struct HomeRemainder {
     pub rotation_rad: f64,
 }
 
-/// The offsets with which one robot comes nearest to another, and what they leave.
+/// The offsets with which one robot comes nearest to another, and the remaining differences.
 ///
 /// ```
 /// use poecal::offsets::{Options, explain, into_screws};
@@ -154,18 +154,17 @@ pub struct HomeRemainder {
 pub struct Explanation {
     /// How the robots were compared.
     pub options: Options,
-    /// What is to be added to each joint's value, radians in (-π, π] or metres.
+    /// Offset of each joint's value, radians in (-π, π] or metres.
     pub offsets: Vec<f64>,
-    /// Joints (by index) whose offsets the comparison cannot tell, alone or from each other; theirs are the smallest that explain as
-    /// much.
+    /// Joints (by index) whose offsets are not determined, alone or in combination; theirs are the smallest that explain as much.
     pub undetermined: Vec<usize>,
     /// Motion of the nominal robot in the base frame; none where the base is kept.
     pub base_motion: Pose,
     /// `tip_from_tip` from the nominal tip to the actual one; none where the tip is kept.
     pub tip_motion: Pose,
-    /// What is left at each joint.
+    /// Remaining difference of each joint.
     pub joints: Vec<JointRemainder>,
-    /// What is left of the home pose; none where the tip is free.
+    /// Remaining difference of the home pose; none where the tip is free.
     pub home: Option<HomeRemainder>,
     /// Error of the nominal robot's tip against the actual one's, with the best base and tip where these are free.
     pub without_offsets: TipError,

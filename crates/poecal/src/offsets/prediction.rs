@@ -1,4 +1,4 @@
-//! What two robots predict in the same random configurations.
+//! Predictions of two robots in the same random configurations.
 
 use nalgebra::{Matrix4, Vector3};
 use rand_chacha::ChaCha8Rng;
@@ -31,7 +31,7 @@ pub struct TipError {
     pub max_rad: f64,
 }
 
-/// Random configurations and where the actual robot's tip is in them.
+/// Random configurations, with the pose of the actual robot's tip in each.
 pub(super) struct Predictions {
     readings: Vec<Vec<f64>>,
     actual: Vec<Pose>,
@@ -47,7 +47,7 @@ impl Predictions {
         Predictions { readings, actual, tip: options.tip }
     }
 
-    /// The best motion of the tip where it is free, and what is then left between `robot`, moved by `base`, and the actual one.
+    /// The best motion of the tip where it is free, and the errors between the tips of `robot`, moved by `base`, and the actual one.
     pub(super) fn compare(&self, robot: &Robot, base: &Pose) -> (Pose, TipError) {
         let tips: Vec<Pose> =
             self.readings.iter().map(|readings| *base * robot.forward_kinematics(readings)).collect();

@@ -7,8 +7,8 @@ use super::End;
 use super::fit::{Comparison, State};
 use crate::lie::{Pose, Screw, hat};
 
-/// Sine of an angle, or share of the arm's length, below which a motion does not tell.
-const TELLING: f64 = 1e-3;
+/// Sine of an angle, or share of the arm's length, below which a motion does not determine an offset.
+const LEAST_MOTION: f64 = 1e-3;
 
 impl Comparison<'_> {
     /// Each offset turns the next screw that it moves as near as possible to the actual one; a free base first takes the first screw
@@ -30,7 +30,7 @@ impl Comparison<'_> {
         State { offsets, base }
     }
 
-    /// The motion that takes the first screw to the actual one, turned and shifted along it as the next screws ask for.
+    /// The motion that takes the first screw to the actual one, with the rotation about it and the shift along it that fit the next screws.
     fn base_by_first_screws(&self) -> Pose {
         let (Some(from), Some(to)) = (self.nominal.joints.first(), self.actual.joints.first()) else {
             return Pose::identity();
@@ -43,18 +43,18 @@ impl Comparison<'_> {
         slide.exp(self.by_next_screw(&slide, 0, &turned).unwrap_or(0.0)) * turned
     }
 
-    /// The value of `about` by the first screw after joint `index` that it moves; what comes after stands at `motion`.
+    /// The value of `about` by the first screw after joint `index` that it moves; later screws are moved by `motion`.
     fn by_next_screw(&self, about: &Screw, index: usize, motion: &Pose) -> Option<f64> {
         let pairs = self.nominal.joints.iter().zip(&self.actual.joints).skip(index + 1);
         let mut values = pairs.map(|(nominal, actual)| {
             let moving = nominal.screw.transformed(motion);
             let origin = actual.screw.nearest_point(&actual.frame.translation);
-            nearest_value(about, &moving, &actual.screw, &origin, TELLING * self.length_m)
+            nearest_value(about, &moving, &actual.screw, &origin, LEAST_MOTION * self.length_m)
         });
         values.find_map(|value| value)
     }
 
-    /// The value of `about` that brings the home pose, which stands at `motion`, nearest; none where the tip is free.
+    /// The value of `about` that brings the home pose, moved by `motion`, nearest; none where the tip is free.
     fn by_home(&self, about: &Screw, motion: &Pose) -> Option<f64> {
         if self.options.tip == End::Free {
             return None;
@@ -71,28 +71,28 @@ impl Comparison<'_> {
     }
 }
 
-/// The value by which `about` brings `moving` nearest to `to`, an axis as seen from `origin`; none where it does not move it.
-/// Directions decide, and places (metres, from `telling_m`) where directions do not move.
+/// The value by which `about` brings `moving` nearest to `to`, an axis as seen from `origin`; `None` if it does not move it. Directions
+/// decide, and places where directions do not move: motions of at least `least_motion_m` (metres).
 fn nearest_value(
     about: &Screw,
     moving: &Screw,
     to: &Screw,
     origin: &Vector3<f64>,
-    telling_m: f64,
+    least_motion_m: f64,
 ) -> Option<f64> {
     let axis = about.direction();
     let across = |vector: Vector3<f64>, normal: &Vector3<f64>| vector - normal * normal.dot(&vector);
     let angle = |from: Vector3<f64>, to: Vector3<f64>| axis.dot(&from.cross(&to)).atan2(from.dot(&to));
     if about.is_prismatic() {
         let slide = across(axis, &moving.direction());
-        if moving.is_prismatic() || slide.norm() < TELLING {
+        if moving.is_prismatic() || slide.norm() < LEAST_MOTION {
             return None;
         }
         let left = moving.nearest_point(origin) - origin;
         return Some(-left.dot(&slide) / slide.norm_squared());
     }
     let lever = across(moving.direction(), &axis);
-    if lever.norm() > TELLING {
+    if lever.norm() > LEAST_MOTION {
         return Some(angle(lever, across(to.direction(), &axis)));
     }
     if moving.is_prismatic() {
@@ -100,5 +100,5 @@ fn nearest_value(
     }
     let center = about.nearest_point(origin);
     let lever = across(moving.nearest_point(&center) - center, &axis);
-    (lever.norm() > telling_m).then(|| angle(lever, across(to.nearest_point(&center) - center, &axis)))
+    (lever.norm() > least_motion_m).then(|| angle(lever, across(to.nearest_point(&center) - center, &axis)))
 }

@@ -25,7 +25,7 @@ pub enum Unit {
 pub struct Column {
     /// Unit of the step.
     pub unit: Unit,
-    /// Whether a step only shifts the target and never turns it.
+    /// Whether a step translates the target without rotating it.
     pub shifts_only: bool,
 }
 
@@ -45,13 +45,13 @@ pub struct Wrench {
     pub torque: Vector3<f64>,
 }
 
-/// What a parameter provides. At most six unknowns.
+/// Interface of a parameter with at most six unknowns: columns of the Jacobian, second derivatives, retraction.
 pub trait Columns {
-    /// Its unknowns in order.
+    /// The unknowns in order.
     fn columns(&self) -> &'static [Column];
 
-    /// Writes, for one row, the target's motion per unit of each unknown: shift of the target's origin and turn, both in the
-    /// device's axes (theory.md §4 (14)). `out` has one place an unknown and is not cleared.
+    /// Writes, for one row, the target twist per unit of each unknown: translation of the target's origin and rotation, both in the
+    /// device's axes (theory.md §4 (14)). `out` has one place for each unknown and is not cleared.
     fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]);
 
     /// Writes the second derivative of the target's motion by each pair of these unknowns, contracted with a wrench on the target:
@@ -59,13 +59,12 @@ pub trait Columns {
     /// the twists alone. `out` is all zero before.
     fn curvature(&self, _chain: &Chain, _wrench: &Wrench, _out: &mut [f64]) {}
 
-    /// Whether [`Columns::curvature`] is written. Where it is not, the solver goes without the full Hessian.
+    /// Whether [`Columns::curvature`] is implemented. Without it the solver does not use the full Hessian.
     fn has_curvature(&self) -> bool {
         true
     }
 
-    /// Sets to zero what the retraction drops of a step, to first order: where unknowns are constrained, and the constraint is put
-    /// right after the step.
+    /// Projects a step onto the constraints that the retraction restores, to first order. Without constraints it is the identity.
     fn project_constraints(&self, _step: &mut [f64]) {}
 
     /// Applies a step (metres, radians) to an estimate.

@@ -1,4 +1,4 @@
-//! Where the base stands in the measuring device's frame.
+//! Device frame: the base in the measuring device's frame.
 
 use nalgebra::Vector3;
 
@@ -6,9 +6,8 @@ use super::columns::{Column, Columns, Unit, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
 
-/// The device's frame, stepped about the point `about` of the device's frame (the middle of the data, so that a turn and a shift
-/// hardly compete): columns `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)). They are zero in rows that were seen from
-/// another place.
+/// The device frame, stepped about the point `about` of that frame (the middle of the data, so that rotation and translation are nearly
+/// uncorrelated): columns `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)). They are zero in rows of another station.
 ///
 /// ```
 /// use poecal::parameters::{Columns, DeviceFrame};
@@ -16,9 +15,9 @@ use crate::lie::{TargetTwist, rotation};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceFrame {
-    /// Which of the places that the device stood at.
+    /// Index of the station.
     pub station: usize,
-    /// Point about which the step turns, metres, device frame.
+    /// Point about which the step rotates, metres, device frame.
     pub about: Vector3<f64>,
 }
 

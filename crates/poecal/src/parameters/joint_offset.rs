@@ -7,8 +7,8 @@ use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
 use crate::robot::JointKind;
 
-/// The offset of joint `joint`, `θ ← θ + dθ`: the column `r = Ad_T ξ` of lou2009 (8d), which is `(z × d; z)` at the target, or `(z; 0)`
-/// if the joint slides. Beside free screws it adds no rank (lou2009 Proposition 1, docs/theory.md §3 (9)).
+/// The offset of joint `joint`, `θ ← θ + dθ`: the column `r = Ad_T ξ` of lou2009 (8d). At the target it is `(z × d; z)`, or `(z; 0)` of a
+/// prismatic joint (theory.md §5 (26)). Beside free screws it adds no rank (lou2009 Proposition 1, theory.md §3 (9)).
 ///
 /// ```
 /// use poecal::parameters::{Columns, JointOffset};

@@ -1,4 +1,5 @@
-//! What may be wrong with a robot. A parameter gives the motion of the target that its change causes; it knows no measurement.
+//! Parameters: groups of unknowns of a robot, its targets and the device. A parameter provides the motion of the target by each of its
+//! unknowns, and depends on no measurement.
 
 mod columns;
 mod device_frame;
@@ -18,8 +19,8 @@ pub use target_place::TargetPlace;
 
 use crate::robot::JointKind;
 
-/// A group of unknowns. In a list of parameters the order is that of the chain: device frame, joints from base to tip, targets. A new
-/// one is one file with [`Columns`] and one variant here; the compiler lists the places that have to decide.
+/// A group of unknowns. A list of parameters has the order of the chain: device frame, joints from base to tip, targets. A new parameter
+/// is one file with [`Columns`] and one variant here; the compiler lists the places that have to decide.
 ///
 /// ```
 /// use poecal::parameters::{Parameter, TargetPlace};
@@ -27,9 +28,9 @@ use crate::robot::JointKind;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Parameter {
-    /// A joint's screw: where its axis lies (4 unknowns), or where it slides to (2).
+    /// A joint's screw in the minimal basis: a revolute axis (4 unknowns), or a prismatic direction (2).
     ScrewAxis(ScrewAxis),
-    /// A joint's screw, written in a way that is given from outside.
+    /// A joint's screw in a parameterisation that is given from outside.
     OtherScrew(OtherScrew),
     /// Joint offset: joint value minus reading (1).
     JointOffset(JointOffset),
@@ -37,12 +38,12 @@ pub enum Parameter {
     TargetPlace(TargetPlace),
     /// Place and orientation of a target frame on the last link (6).
     TargetFrame(TargetFrame),
-    /// Where the base stands in the measuring device's frame (6).
+    /// Device frame: the base in the measuring device's frame (6).
     DeviceFrame(DeviceFrame),
 }
 
-/// The screws of joints of some kinds as unknowns, in the minimal basis: `ξ ← Ad_exp(η) ξ` without constraints or offsets (lou2009 16 to
-/// 18; docs/theory.md §5 (18)).
+/// The screws of joints of these kinds as unknowns, in the minimal basis: `ξ ← Ad_exp(η) ξ` without constraints or offsets (lou2009 (16)
+/// to (18); theory.md §5 (18)).
 ///
 /// ```
 /// use poecal::{parameters::screw_axes, robot::JointKind};
@@ -72,7 +73,7 @@ impl Parameter {
         }
     }
 
-    /// The axis that it moves, if it is one.
+    /// The screw axis, if the parameter is one.
     pub(crate) fn screw_axis(&self) -> Option<&ScrewAxis> {
         match self {
             Parameter::ScrewAxis(axis) => Some(axis),

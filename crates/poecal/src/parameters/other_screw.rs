@@ -1,4 +1,4 @@
-//! A joint's screw, its errors written as unknowns in another way than [`ScrewAxis`](super::ScrewAxis): given from outside.
+//! A joint's screw in another parameterisation than [`ScrewAxis`](super::ScrewAxis), which is given from outside.
 
 use std::fmt::Debug;
 
@@ -7,7 +7,7 @@ use crate::estimate::{Chain, Estimate, JointView};
 use crate::lie::{Pose, TargetTwist};
 use crate::robot::JointKind;
 
-/// How the errors of a screw are written as unknowns. The solver serves it row by row and without the full Hessian.
+/// Parameterisation of the errors of a screw. Such a problem takes the row-by-row path, without the full Hessian.
 pub trait ScrewModel: Debug + Sync {
     /// Its name; models of one name are equal.
     fn name(&self) -> &'static str;
@@ -15,10 +15,10 @@ pub trait ScrewModel: Debug + Sync {
     /// The unknowns of a joint of this kind, at most six.
     fn columns(&self, kind: JointKind) -> &'static [Column];
 
-    /// The target's motion per unit of each unknown, as [`Columns::target_twists`] has it.
+    /// Target twist per unit of each unknown, as in [`Columns::target_twists`].
     fn target_twists(&self, joint: &JointView, chain: &Chain, out: &mut [TargetTwist]);
 
-    /// As [`Columns::project_constraints`].
+    /// Projection of a step, as in [`Columns::project_constraints`].
     fn project_constraints(&self, kind: JointKind, step: &mut [f64]);
 
     /// `base_from_axis` after a step (metres, radians).
@@ -32,7 +32,7 @@ pub struct OtherScrew {
     pub joint: usize,
     /// Its kind.
     pub kind: JointKind,
-    /// How its errors are written.
+    /// Its parameterisation.
     pub model: &'static dyn ScrewModel,
 }
 

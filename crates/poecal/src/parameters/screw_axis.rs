@@ -1,4 +1,4 @@
-//! A joint's screw, in the minimal basis of its axis frame (docs/theory.md §5).
+//! A joint's screw, in the minimal basis of its axis frame (theory.md §5 (18)).
 
 use nalgebra::Vector3;
 
@@ -71,7 +71,7 @@ impl Columns for ScrewAxis {
             ),
             JointKind::Prismatic => (joint.x, joint.y),
         };
-        // exp(ε) exp(ẑθ) exp(-ε): one twist before the joint's motion, its opposite after. As (linear velocity at the target, turn).
+        // exp(ε) exp(ẑθ) exp(-ε): one twist before the joint's motion, its opposite after. As (linear velocity at the target, rotation).
         let zero = Vector3::zeros();
         let (before, after): (Vec<TargetTwist>, Vec<TargetTwist>) = match self.kind {
             JointKind::Revolute => (

@@ -10,7 +10,7 @@ use crate::parameters::Parameter;
 pub(super) struct ColumnMap {
     pub(super) sight: Sight,
     pub(super) plan: Plan,
-    /// Places of the plan's shifts and turns in a step.
+    /// Places of the plan's translation and rotation columns in a step.
     shift_places: Vec<usize>,
     pub(super) turn_places: Vec<usize>,
 }
@@ -33,12 +33,12 @@ impl ColumnMap {
         Some(made)
     }
 
-    /// Places of the plan's columns in a step: shifts, then turns.
+    /// Places of the plan's columns in a step: translation columns, then rotation columns.
     pub(super) fn places(&self) -> impl Iterator<Item = usize> {
         self.shift_places.iter().chain(&self.turn_places).copied()
     }
 
-    /// Numbers of a row's residual.
+    /// Length of a row's residual.
     pub(super) fn numbers(&self) -> usize {
         if self.plan.framed { NUMBERS } else { NUMBERS / 2 }
     }
@@ -47,7 +47,7 @@ impl ColumnMap {
         self.shift_places.extend(places.iter().map(|&(place, _)| place));
     }
 
-    /// Turns about the directions of the shifts from `first` on.
+    /// Adds rotation columns about the directions of the translation columns from `first` on.
     fn turn(&mut self, places: &[(usize, f64)], first: usize) {
         self.turn_places.extend(places.iter().map(|&(place, _)| place));
         self.plan.turns.extend(first..first + places.len());
@@ -55,7 +55,7 @@ impl ColumnMap {
 
     fn add_device(&mut self, layout: &Layout) -> Option<()> {
         for (parameter, places) in layout.parameters() {
-            // The frames of other places do not move these rows.
+            // Frames of other stations do not move these rows.
             if let Parameter::DeviceFrame(device) = parameter
                 && device.station == self.sight.station
             {
@@ -120,7 +120,7 @@ impl ColumnMap {
     }
 }
 
-/// Unknowns that make no sense: a mistake of the caller, which tests are to find; a release serves them row by row.
+/// Contradictory unknowns are a mistake of the caller. Tests stop there; a release takes the row-by-row path.
 fn contradiction(what: &str) -> Option<()> {
     debug_assert!(false, "{what}");
     None

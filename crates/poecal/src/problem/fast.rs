@@ -1,28 +1,29 @@
-//! The hot path: rows grouped by place of the device, target and kind, packed side by side, and summed by [`crate::lanes`].
+//! The hot path: rows grouped by station, target and kind, packed side by side, and summed by [`crate::lanes`].
 //!
-//! [`Problem::is_served`] says what it serves; everything else takes the row-by-row path (`row_by_row.rs`), against which this one is tested.
+//! [`Problem::is_served`] decides whether it applies; other problems take the row-by-row path (`row_by_row.rs`), against which this one
+//! is tested.
 
 use super::Problem;
 use super::column_map::ColumnMap;
 use super::row_group::{RowGroup, Whitening};
 use super::scatter::GramScatter;
 use crate::estimate::{Estimate, Linkage};
-use crate::lanes::{self, Arm, Level, Plan, RowData, Rows, Step, Totals, WIDTH};
+use crate::lanes::{self, Arm, FixedMotion, PackedRows, Plan, RowData, SimdLevel, Totals, WIDTH};
 use crate::measurement::{Measurement, PoseMeasurement};
 use crate::solve::Normal;
 use crate::threads;
 use std::cell::RefCell;
 
-/// Most rows that one partial sum takes in.
+/// Most rows of one partial sum.
 const CHUNK: usize = 1024;
-/// Partial sums that exist at a time: memory beside the data stays bounded.
+/// Partial sums held at a time, so that memory beside the data stays bounded.
 const TOGETHER: usize = 64;
 /// Most rows that stay packed. Larger problems are repacked in every pass: 10 % of its time, cheaper than page faults on new memory.
 const KEPT: usize = 2048;
 
 thread_local! {
-    /// Room for a chunk that is not kept.
-    pub(super) static ROWS: RefCell<Rows> = const { RefCell::new(Rows::EMPTY) };
+    /// Buffer of a chunk that does not stay packed.
+    pub(super) static ROWS: RefCell<PackedRows> = const { RefCell::new(PackedRows::EMPTY) };
 }
 
 /// Sums over rows.
@@ -36,24 +37,24 @@ pub(super) enum Accumulate {
     Gradient,
 }
 
-/// Groups of rows that are computed group.
+/// The groups of rows of a problem.
 #[derive(Clone, Debug)]
 pub(super) struct Fast {
     groups: Vec<(Group, GramScatter)>,
-    level: Level,
+    level: SimdLevel,
 }
 
 #[derive(Clone, Debug)]
 struct Group {
     arranged: ColumnMap,
     rows: Vec<u32>,
-    /// Chunks of the rows side by side, if they are kept.
-    packed: Vec<Rows>,
+    /// Chunks of packed rows, if they stay packed.
+    packed: Vec<PackedRows>,
 }
 
 impl Fast {
-    /// Arranges the rows of a problem; `None` as [`ColumnMap::new`] has it.
-    pub(super) fn new(problem: &Problem<'_>, level: Level) -> Option<Self> {
+    /// Groups the rows of a problem; `None` if a [`ColumnMap`] does not exist.
+    pub(super) fn new(problem: &Problem<'_>, level: SimdLevel) -> Option<Self> {
         let mut groups = Vec::new();
         for group in RowGroup::of_problem(problem) {
             let mut arranged = ColumnMap::new(problem, group.sight, group.framed)?;
@@ -66,24 +67,24 @@ impl Fast {
         Some(fast)
     }
 
-    /// Packs what is kept packed.
+    /// Packs the rows of small problems.
     pub(super) fn pack(&mut self, problem: &Problem<'_>) {
         if problem.rows.len() > KEPT {
             return;
         }
         for (Group { arranged, rows, packed }, _) in &mut self.groups {
             let size = chunk_size(rows.len());
-            packed.resize_with(rows.len().div_ceil(size), Rows::default);
+            packed.resize_with(rows.len().div_ceil(size), PackedRows::default);
             for (rows, packed) in rows.chunks(size).zip(packed) {
                 pack(problem, &arranged.plan, rows, packed);
             }
         }
     }
 
-    /// Normal information of all rows; a `JᵀJ` that is not asked for is left empty.
+    /// Normal information of all rows, theory.md §6 (28); without `JᵀJ` where only the gradient is wanted.
     pub(super) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Accumulate) -> Normal {
         let linkage = Linkage::new(state);
-        let mut steps: Vec<Step> = linkage.steps().iter().map(Step::from).collect();
+        let mut steps: Vec<FixedMotion> = linkage.steps().iter().map(FixedMotion::from).collect();
         let first = steps.first().copied();
         let mut normal = match sums {
             Accumulate::Gradient => Normal::new(0),
@@ -92,8 +93,8 @@ impl Fast {
         normal.gradient.resize(problem.layout.dim(), 0.0);
         for (group, scatter) in &self.groups {
             let ColumnMap { sight, plan, .. } = &group.arranged;
-            let end = Step::from(linkage.end(sight.target));
-            let own = linkage.first_step_from(sight.station).map(Step::from).or(first);
+            let end = FixedMotion::from(linkage.end(sight.target));
+            let own = linkage.first_step_from(sight.station).map(FixedMotion::from).or(first);
             if let Some((step, own)) = steps.first_mut().zip(own) {
                 *step = own;
             }
@@ -109,8 +110,8 @@ impl Fast {
 }
 
 impl Group {
-    /// Accumulate over all rows of the group, in the order of its chunks whatever the number of threads.
-    fn sum(&self, problem: &Problem<'_>, level: Level, arm: &Arm<'_>, sums: Accumulate) -> Totals {
+    /// Sums over all rows of the group, in the order of its chunks whatever the number of threads.
+    fn sum(&self, problem: &Problem<'_>, level: SimdLevel, arm: &Arm<'_>, sums: Accumulate) -> Totals {
         let sum = if sums == Accumulate::Gradient { lanes::sum_gradient } else { lanes::sum_products };
         let size = chunk_size(self.rows.len());
         let chunk = |index: usize| match self.packed.get(index) {
@@ -142,7 +143,7 @@ impl Group {
         total.unwrap_or_else(|| chunk(0))
     }
 
-    /// Puts cost and gradient of the group into the problem's normal information.
+    /// Adds cost and gradient of the group to the problem's normal information.
     fn put(&self, totals: &Totals, normal: &mut Normal) {
         for (value, place) in totals.gradient.iter().zip(self.arranged.places()) {
             normal.gradient[place] += value;
@@ -152,14 +153,14 @@ impl Group {
     }
 }
 
-/// Rows of each partial sum: about as many in each, so that threads are done together, and as many with any number of threads, so that
-/// the result does not depend on it.
+/// Rows of each partial sum: about equal parts, so that threads finish together, and independent of the number of threads, as is the
+/// result.
 fn chunk_size(rows: usize) -> usize {
     rows.div_ceil(rows.div_ceil(CHUNK).max(1)).next_multiple_of(WIDTH).max(WIDTH)
 }
 
-/// Sets rows side by side.
-pub(super) fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut Rows) {
+/// Packs rows side by side.
+pub(super) fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut PackedRows) {
     let usual = Whitening::new(problem.noise);
     packed.pack(plan, rows.len(), |at| row_data(problem, usual, rows[at] as usize, plan.framed));
 }

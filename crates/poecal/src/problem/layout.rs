@@ -1,12 +1,12 @@
-//! How the unknowns of all parameters are arranged and scaled.
+//! Order and scale of the unknowns of all parameters.
 
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
 use crate::parameters::{Parameter, Unit, Wrench};
 use nalgebra::Vector3;
 
-/// The free parameters and the place of each of their unknowns in a step: first those that only shift a target, whose rotation
-/// rows are zero, then the others. A step is in metres; radians are multiplied by a length.
+/// The free parameters and the place of each of their unknowns in a step: first those that only translate a target, whose rotation
+/// rows are zero, then the others. A step is in metres: radians are multiplied by the length L (theory.md §6, *Physical scaling*).
 ///
 /// ```
 /// use poecal::parameters::{Parameter, TargetFrame};
@@ -23,7 +23,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Arranges parameters; `length_m` is how many metres one radian counts.
+    /// Orders the unknowns of parameters; a radian counts as `length_m` metres.
     #[must_use]
     pub fn new(parameters: Vec<Parameter>, length_m: f64) -> Self {
         let columns: Vec<_> = parameters.iter().flat_map(|parameter| parameter.model().columns()).collect();
@@ -50,13 +50,13 @@ impl Layout {
         self.places.len()
     }
 
-    /// Number of unknowns that only shift a target; they come first in a step.
+    /// Number of unknowns that only translate a target; they come first in a step.
     #[must_use]
     pub fn shifts(&self) -> usize {
         self.shifts
     }
 
-    /// How many metres one radian counts.
+    /// Metres that a radian counts.
     pub(crate) fn length_m(&self) -> f64 {
         self.length_m
     }
@@ -71,7 +71,7 @@ impl Layout {
         })
     }
 
-    /// Whether joints are written in the minimal basis, so that none of the unknowns is redundant by its kind.
+    /// Whether all screws are in the minimal basis of theory.md §5 (18), without redundant unknowns.
     #[must_use]
     pub(crate) fn is_minimal(&self) -> bool {
         self.parameters.iter().all(|parameter| match parameter {
@@ -83,13 +83,13 @@ impl Layout {
         })
     }
 
-    /// Whether every parameter writes its curvature.
+    /// Whether every parameter provides its curvature.
     #[must_use]
     pub(crate) fn has_curvature(&self) -> bool {
         self.parameters.iter().all(|parameter| parameter.model().has_curvature())
     }
 
-    /// Sets to zero what the retraction drops of a scaled step, to first order.
+    /// Projects a scaled step onto the constraints that the retraction restores, to first order.
     pub(crate) fn project_constraints(&self, step: &mut [f64]) {
         let mut own = [0.0; 6];
         for (parameter, places) in self.parameters() {
@@ -103,7 +103,7 @@ impl Layout {
         }
     }
 
-    /// The target's motion per unit of each scaled unknown, in the order of a step.
+    /// Target twist `(v; ω)` per unit of each scaled unknown, in the order of a step and in the device's axes (theory.md §4 (14)).
     pub fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
         let mut own = [(Vector3::zeros(), Vector3::zeros()); 6];
         for (parameter, places) in self.parameters() {
@@ -115,7 +115,7 @@ impl Layout {
     }
 
     /// Adds `-wrench · ∂²(target's motion)` of every pair of unknowns to the upper triangle of a row-major matrix. With `a` before `b`
-    /// in the chain the target's second derivative is `ω_a × v_b`, and half `ω_a × ω_b` for its turn (theory.md §6 (31a)).
+    /// in the chain the second derivative is `ω_a × v_b` of the place and `½ ω_a × ω_b` of the rotation (theory.md §6 (31a)).
     pub(crate) fn add_curvature(&self, chain: &Chain, target: usize, wrench: &Wrench, out: &mut [f64]) {
         let n = self.dim();
         let mut add = |a: usize, b: usize, value: f64| out[a.min(b) * n + a.max(b)] -= value;
@@ -141,7 +141,7 @@ impl Layout {
         }
     }
 
-    /// The estimate after a scaled step.
+    /// The estimate after a scaled step: the retraction `x ⊕ δ` of theory.md §6 (27).
     #[must_use]
     pub fn retract(&self, estimate: &Estimate, step: &[f64]) -> Estimate {
         let mut moved = estimate.clone();

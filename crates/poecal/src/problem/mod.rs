@@ -1,4 +1,4 @@
-//! Rows × columns: measurements and parameters meet here and nowhere else. Assembly only, no algorithms.
+//! Rows × columns: the only place where measurements and parameters meet. Assembly of the normal equations, no algorithms.
 
 mod column_map;
 mod fast;
@@ -10,7 +10,7 @@ mod row_by_row;
 mod row_group;
 mod scatter;
 
-pub use crate::lanes::{Level, levels};
+pub use crate::lanes::{SimdLevel, simd_levels};
 pub use layout::Layout;
 pub use prior::Prior;
 pub use refit::Refit;
@@ -24,14 +24,13 @@ use fast::{Accumulate, Fast};
 use std::mem::discriminant;
 use std::sync::OnceLock;
 
-/// Unknowns that a fit has at most: its work grows with the cube of their number, its memory with the square. 1,000 take about half a
-/// minute of one core.
+/// Most unknowns of a fit: its time grows with the cube of their number, its memory with the square. 1,000 take about half a minute of
+/// one core.
 pub const MOST_UNKNOWNS: usize = 1000;
-/// Rows of which the farthest measurement is looked for, at most.
+/// Most rows among which the farthest measurement is sought.
 const SEEN: usize = 500;
 
-/// A calibration problem: which rows of which data, what is free, and the noise by which residuals are whitened
-/// (theory.md §6 (27) and (28)).
+/// A calibration problem: rows of the data, free parameters, and the noise that whitens residuals (theory.md §6 (27) and (28)).
 ///
 /// ```
 /// # use nalgebra::Vector3;
@@ -61,14 +60,14 @@ pub struct Problem<'a> {
     layout: Layout,
     noise: Noise,
     weights: Option<&'a [f64]>,
-    /// What the drawing is worth, and by how much it counts.
+    /// Prior of the axes, and its weight.
     prior: Option<(&'a Prior, f64)>,
-    /// What is taken for measured instead of the data, one a row of the data.
+    /// Measurements in place of the data's, one for each row of the data.
     measured: Option<Vec<Measurement>>,
     rounding_m: f64,
-    /// By which instructions the hot path runs.
-    level: Level,
-    /// The rows packed for the hot path; `None` inside where it does not serve.
+    /// Instruction set of the hot path.
+    level: SimdLevel,
+    /// The hot path, once it is built; `None` inside where it does not apply.
     fast: OnceLock<Option<Fast>>,
 }
 
@@ -83,7 +82,7 @@ impl<'a> Problem<'a> {
         noise: Noise,
         length_m: f64,
     ) -> Self {
-        // A few roundings of the largest number in sight, or about that: the distance from the device.
+        // A few roundings of about the largest number: the distance from the device.
         let position = |&row: &u32| data.observations[row as usize].measurement.residual_model().position();
         let some = rows.iter().step_by(rows.len().div_ceil(SEEN).max(1));
         let farthest = some.map(|row| position(row).amax());
@@ -98,22 +97,21 @@ impl<'a> Problem<'a> {
             prior: None,
             measured: None,
             rounding_m,
-            level: Level::best(),
+            level: SimdLevel::best(),
             fast: OnceLock::new(),
         }
     }
 
-    /// The same problem, its sums computed by other instructions: for tests and comparisons. Those that the machine lacks are replaced
-    /// by the baseline.
+    /// The same problem with another instruction set, for tests and comparisons. The baseline replaces one that the machine lacks.
     #[must_use]
-    pub fn with_level(mut self, level: Level) -> Self {
+    pub fn with_level(mut self, level: SimdLevel) -> Self {
         self.level = level;
         self.fast = OnceLock::new();
         self
     }
 
-    /// By which instructions the hot path runs.
-    pub(crate) fn level(&self) -> Level {
+    /// Instruction set of the hot path.
+    pub(crate) fn level(&self) -> SimdLevel {
         self.level
     }
 
@@ -127,35 +125,35 @@ impl<'a> Problem<'a> {
         self
     }
 
-    /// The same problem with a belief about the axes, if there is one, beside the measurements. It counts as many times as its weight
-    /// says: as much as the variance of the whitened residuals really is (theory.md §6 (27a)).
+    /// The same problem with a prior of the axes, if there is one, and its weight: the variance of the whitened residuals
+    /// (theory.md §6 (27a)).
     #[must_use]
     pub fn with_prior(mut self, prior: Option<(&'a Prior, f64)>) -> Self {
         self.prior = prior;
         self
     }
 
-    /// Adds the belief to what measurements say.
-    fn believing(&self, state: &Estimate, mut normal: Normal) -> Normal {
+    /// Adds the prior to the normal information of the measurements.
+    fn add_prior(&self, state: &Estimate, mut normal: Normal) -> Normal {
         if let Some((prior, weight)) = self.prior {
             prior.add(state, &self.layout, weight, &mut normal);
         }
         normal
     }
 
-    /// The arrangement of the unknowns.
+    /// Order and scale of the unknowns.
     #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// The rows that the problem takes in.
+    /// The rows of the problem.
     #[must_use]
     pub fn rows(&self) -> &[u32] {
         &self.rows
     }
 
-    /// The noise that whitens a row.
+    /// Noise that whitens a row: the W of theory.md §4 (17), divided by the root of the row's weight (theory.md §6 (34b)).
     #[must_use]
     pub fn noise(&self, row: usize) -> Noise {
         let noise = self.data.observations[row].noise_or(self.noise);
@@ -164,18 +162,18 @@ impl<'a> Problem<'a> {
         Noise { position_m: noise.position_m / root, rotation_rad: noise.rotation_rad / root }
     }
 
-    /// What was measured in a row.
+    /// Measurement of a row.
     fn measurement(&self, row: usize) -> &Measurement {
         let instead = self.measured.as_ref().and_then(|measured| measured.get(row));
         instead.unwrap_or(&self.data.observations[row].measurement)
     }
 
-    /// What was measured in a row, and how its error is written.
+    /// Measurement of a row, with the formulation of its residual.
     fn written(&self, row: usize) -> Written<'_> {
         Written::new(self.measurement(row), self.data.pose_residual)
     }
 
-    /// Takes these measurements, one a row of the data, for measured in the same configurations.
+    /// Replaces the measurements, one for each row of the data; the configurations stay.
     fn set_measurements(&mut self, measured: &[Measurement]) {
         let is_alike = self.rows.iter().all(|&row| {
             let before = discriminant(self.measurement(row as usize));
@@ -195,14 +193,14 @@ impl<'a> Problem<'a> {
 
 impl Problem<'_> {
     /// Whether the kernels serve this problem in this state: points and poses with the residuals of their types; screws in the minimal
-    /// basis, targets and device frames; no joint offsets. Whatever else there is takes the row-by-row path.
+    /// basis, targets and device frames; no joint offsets. All other problems take the row-by-row path.
     #[doc(hidden)]
     #[must_use]
     pub fn is_served(&self, state: &Estimate) -> bool {
         self.data.pose_residual.is_none() && self.layout.is_minimal() && state.is_for_kernels()
     }
 
-    /// The hot path, if it serves this problem in this state.
+    /// The hot path, if it applies to this problem in this state.
     fn fast(&self, state: &Estimate) -> Option<&Fast> {
         if !self.is_served(state) {
             return None;
@@ -228,20 +226,20 @@ impl LeastSquares for Problem<'_> {
 
     fn normal(&self, state: &Estimate) -> Normal {
         match self.fast(state) {
-            Some(fast) => self.believing(state, fast.normal(self, state, Accumulate::All)),
+            Some(fast) => self.add_prior(state, fast.normal(self, state, Accumulate::All)),
             None => self.normal_row_by_row(state),
         }
     }
 
     fn nearly_normal(&self, state: &Estimate) -> Normal {
         match self.fast(state) {
-            Some(fast) => self.believing(state, fast.normal(self, state, Accumulate::GaussNewton)),
+            Some(fast) => self.add_prior(state, fast.normal(self, state, Accumulate::GaussNewton)),
             None => self.normal_row_by_row(state),
         }
     }
 
     fn gradient(&self, state: &Estimate) -> Option<Normal> {
-        self.fast(state).map(|fast| self.believing(state, fast.normal(self, state, Accumulate::Gradient)))
+        self.fast(state).map(|fast| self.add_prior(state, fast.normal(self, state, Accumulate::Gradient)))
     }
 
     fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {

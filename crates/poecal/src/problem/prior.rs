@@ -1,4 +1,4 @@
-//! What a drawing is worth: the axes are near nominal (theory.md §6, *What a drawing is worth*).
+//! Gaussian prior: the axes are near nominal (theory.md §6 (27a)).
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
@@ -9,18 +9,17 @@ use crate::linalg::{self, Factor6};
 use crate::robot::{Robot, Tolerance};
 use crate::solve::Normal;
 
-/// Iterations that find the base, at most: it converges quadratically.
+/// Most Gauss-Newton iterations for the motion of the base, which converge quadratically.
 const ITERATIONS: usize = 20;
-/// A base that moves by less than this (metres, radians) has been found: what is left of its gradient moves no unknown by a picometre.
+/// Converged step of the base (metres, radians): the gradient then moves no unknown by a picometre.
 const FOUND: f64 = 1e-8;
-/// Share of the trace of the base's information below which it is rounding: axes that are all parallel leave some of it open.
+/// Rounding of the base's information, as a share of its trace: axes that are all parallel leave directions undetermined.
 const ROUNDING: f64 = 1e-12;
 
-/// A Gaussian belief about the axes: each stands about its nominal place, its direction and its place known to within a
-/// [`Tolerance`]. With the direction d of an axis, the nominal one d⁰, and the point q of the axis that is nearest to the nominal
-/// joint's origin o, an axis deviates by `u = ((d - d⁰) / σ_angle; (q - o) / σ_length)`, of a prismatic joint by the first part
-/// alone; the cost of it all is `½ Σ |u|²`. Where the device stands anywhere the base frame is a choice, and the cost is that of the
-/// base that fits best: a motion of all axes costs nothing (theory.md §6 (27a)).
+/// A Gaussian prior: each axis is near its nominal place, with the standard deviations of a [`Tolerance`]. With the direction d of an
+/// axis, the nominal one d⁰, and the point q of the axis nearest to the nominal joint's origin o (base frame), the deviation is
+/// `u = ((d - d⁰) / σ_angle; (q - o) / σ_length)`, of a prismatic joint its first part alone. The cost is `½ Σ |u|²`. With an unknown
+/// device frame the base frame is a choice, and the cost is minimal over motions of all axes (theory.md §6 (27a)).
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -52,17 +51,17 @@ struct Nominal {
     tolerance: Tolerance,
 }
 
-/// How an axis deviates, and what motions do to that; tilts before shifts, each over its standard deviation.
+/// Deviation of an axis with its derivatives by motions; tilts before shifts, each over its standard deviation.
 struct Deviation {
     value: Vector6<f64>,
-    /// By shifts along x and y and turns about x and y of the axis' own frame.
+    /// Derivatives by shifts along x and y and rotations about x and y of the axis' own frame.
     own: [Vector6<f64>; 4],
-    /// By a motion of the base, as a twist.
+    /// Derivative by a motion of the base, a twist.
     base: Matrix6<f64>,
 }
 
 impl Nominal {
-    /// Of an axis that stands in this frame.
+    /// Deviation of an axis with this `base_from_axis`.
     fn deviation(&self, frame: &Pose) -> Deviation {
         let [x, y, d] = [0, 1, 2].map(|k| frame.rotation.column(k).into_owned());
         let (tilt, shift) = (1.0 / self.tolerance.angle_rad, 1.0 / self.tolerance.length_m);
@@ -74,7 +73,7 @@ impl Nominal {
             let (a, b) = (tilted * tilt, shifted * shift);
             Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
         };
-        // A turn carries the direction by `turned`, a point of the axis by `moved`, and the nearest point also along the axis.
+        // A rotation moves the direction by `turned`, a point of the axis by `moved`, and the nearest point also along the axis.
         let change = |turned: Vector3<f64>, moved: Vector3<f64>| {
             both(turned, moved - d * d.dot(&moved) + d * turned.dot(&missing))
         };
@@ -94,8 +93,7 @@ impl Nominal {
 }
 
 impl Prior {
-    /// The belief about a robot's axes; a joint's own tolerance comes before the common one. `base_free` says that the device
-    /// stands anywhere.
+    /// The prior of a robot's axes; a joint's own tolerance comes before the common one. `base_free` if the device frame is unknown.
     #[must_use]
     pub fn new(robot: &Robot, common: Tolerance, base_free: bool) -> Self {
         let axes = robot.joints.iter().map(|joint| Nominal {
@@ -107,15 +105,15 @@ impl Prior {
         Prior { axes: axes.collect(), base_free }
     }
 
-    /// `½ Σ |u|²`.
+    /// `½ min_G Σ |u|²`: theory.md §6 (27a) for weight 1.
     #[must_use]
     pub fn cost(&self, estimate: &Estimate) -> f64 {
         let (deviations, _) = self.at_best_base(estimate);
         deviations.iter().map(|deviation| 0.5 * deviation.value.norm_squared()).sum()
     }
 
-    /// How many times the square of the tolerance axes really stand off, at least 1: mean square of the deviations for each unknown of the
-    /// screws. A robot that is evidently farther from its drawing than believed is believed so much less about the rest.
+    /// Mean of `|u|²` for each unknown of the screws, at least 1, which divides the prior's weight (theory.md §6, below (27a)). The prior of
+    /// a robot that is farther from nominal than its tolerances counts so much less.
     #[must_use]
     pub fn looseness(&self, estimate: &Estimate) -> f64 {
         let screws: usize = self.axes.iter().map(|axis| if axis.turns { 4 } else { 2 }).sum();
@@ -123,7 +121,7 @@ impl Prior {
         (2.0 * self.cost(estimate) / free as f64).max(1.0)
     }
 
-    /// Deviations in the base that fits best, and the factor of that base's information.
+    /// Deviations after the best motion of the base, and the factor of that motion's information.
     fn at_best_base(&self, estimate: &Estimate) -> (Vec<Deviation>, Option<Factor6>) {
         let deviations = |motion: &Pose| -> Vec<Deviation> {
             let frames = estimate.base_from_axis.iter().map(|frame| *motion * *frame);
@@ -148,13 +146,13 @@ impl Prior {
         (found, factor)
     }
 
-    /// Adds `weight` times the belief to the information of measurements about the unknowns of a layout: to the upper triangle of
-    /// `JᵀJ` (unless that is left empty), to the direction of descent and to the cost, with the base eliminated.
+    /// Adds `weight` times the prior to the normal information of a layout's unknowns: to the upper triangle of `JᵀJ` (unless that is
+    /// empty), to the gradient and to the cost, with the base eliminated (theory.md §6 (27a)).
     pub fn add(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
         let (deviations, base) = self.at_best_base(estimate);
         let n = layout.dim();
         let is_wanted = !normal.gram.is_empty();
-        // What each unknown does to the base's equations.
+        // Products of each unknown's column with those of the base.
         let mut shared: Vec<(usize, Vector6<f64>)> = Vec::with_capacity(n);
         for (parameter, places) in layout.parameters() {
             let Some(axis) = parameter.screw_axis() else { continue };

@@ -6,12 +6,12 @@ use crate::measurement::Measurement;
 use crate::solve::{LeastSquares, Normal, Options, Summary, WarmStart, minimize_warm};
 use crate::threads;
 
-/// Fits that one thread makes one after the other, with a copy of what they share.
+/// Fits that one thread makes in turn, with one copy of the problem.
 const TOGETHER: usize = 25;
 
-/// A problem at its optimum, to be fitted again and again to other measurements in the same configurations (Monte Carlo, bootstrap).
-/// All fits share what is packed and the factorised `JᵀJ` of the first optimum, so that most of them need residuals and gradients
-/// alone; where that does not converge fast, a fit goes the ordinary way, to the same optimum (theory.md §6, *Few passes*).
+/// A problem at its optimum, for repeated fits to other measurements in the same configurations (Monte Carlo, bootstrap). All fits share
+/// the packed rows and the factorised `JᵀJ` of the first optimum, so that most of them need residuals and gradients alone. A fit that
+/// does not converge fast computes `JᵀJ` as usual, and reaches the same optimum (theory.md §6, *Few passes*).
 ///
 /// ```
 /// # use nalgebra::Vector3;
@@ -57,14 +57,14 @@ impl<'a> Refit<'a> {
         Refit { problem, start: WarmStart::new(optimum, normal), options }
     }
 
-    /// Fits other measurements, one a row of the data and of the same kind as there. As [`crate::solve::minimize`] says, `JᵀJ` may
-    /// be that of a state close by.
+    /// Fits other measurements, one for each row of the data and of the same kind. The returned `JᵀJ` may be frozen, as in
+    /// [`crate::solve::minimize`].
     pub fn fit(&mut self, measured: &[Measurement]) -> (Estimate, Normal, Summary) {
         self.problem.set_measurements(measured);
         minimize_warm(&self.problem, &self.start, &self.options)
     }
 
-    /// [`Refit::fit`] of each of many trials by all threads, in their order, and what is to be `kept` of each.
+    /// [`Refit::fit`] of each trial by all threads; returns what `kept` extracts from each, in the order of the trials.
     pub fn fit_all<T: Send>(
         &self,
         trials: &[Vec<Measurement>],

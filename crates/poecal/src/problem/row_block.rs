@@ -5,10 +5,10 @@ use super::column_map::ColumnMap;
 use super::fast::{ROWS, pack};
 use super::row_group::RowGroup;
 use crate::estimate::{Estimate, Linkage};
-use crate::lanes::{self, Arm, NUMBERS, Step, WIDTH, Wide};
+use crate::lanes::{self, Arm, FixedMotion, NUMBERS, WIDTH, Wide};
 
 /// Whitened Jacobian of the prediction and residuals of up to [`WIDTH`] rows, one a lane: three numbers of the position, three of the
-/// rotation. What a row does not have is zero.
+/// rotation. Numbers that a row does not have are zero.
 pub(crate) struct RowBlock {
     /// Column after column.
     pub(crate) jacobian: Vec<[Wide; NUMBERS]>,
@@ -69,11 +69,11 @@ impl Problem<'_> {
         each: &mut impl FnMut(&[u32], &mut RowBlock),
     ) {
         let linkage = Linkage::new(state);
-        let mut steps: Vec<Step> = linkage.steps().iter().map(Step::from).collect();
+        let mut steps: Vec<FixedMotion> = linkage.steps().iter().map(FixedMotion::from).collect();
         if let Some((first, own)) = steps.first_mut().zip(linkage.first_step_from(arranged.sight.station)) {
-            *first = Step::from(own);
+            *first = FixedMotion::from(own);
         }
-        let end = Step::from(linkage.end(arranged.sight.target));
+        let end = FixedMotion::from(linkage.end(arranged.sight.target));
         let plan = &arranged.plan;
         let arm = Arm { plan, steps: &steps, end: &end, nearly: false };
         let columns: Vec<usize> = arranged.places().collect();

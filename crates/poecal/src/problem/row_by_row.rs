@@ -1,5 +1,5 @@
-//! The row-by-row path: every kind of measurement and parameter by its own formulas. It is what the kernels are tested against, and what
-//! serves whatever they do not; curvature is summed by it in every problem.
+//! The row-by-row path: every kind of measurement and parameter by its own formulas. It is the reference of the kernels, serves all
+//! problems that they do not, and sums the curvature of every problem.
 
 use nalgebra::Vector3;
 
@@ -10,15 +10,15 @@ use crate::parameters::Wrench;
 use crate::solve::{LeastSquares as _, Normal};
 use crate::threads;
 
-/// Rows that one partial sum takes in. Fixed, so that the result does not depend on the number of threads.
+/// Rows of one partial sum. Fixed, so that the result does not depend on the number of threads.
 const CHUNK: usize = 1024;
-/// Partial sums that exist at a time: memory beside the data stays bounded.
+/// Partial sums held at a time, so that memory beside the data stays bounded.
 const GROUP: usize = 64;
-/// Rows whose Jacobian is held at a time.
+/// Rows of one block of the Jacobian.
 const BLOCK: usize = 16;
 
 impl Problem<'_> {
-    /// Gives the whitened Jacobian of the prediction (row-major) and residual of each of some rows of the data, in turn.
+    /// Calls `each` with the whitened Jacobian of the prediction (row-major) and residual of each row in turn (theory.md §4 (17)).
     pub fn for_rows(&self, state: &Estimate, rows: &[u32], mut each: impl FnMut(u32, &[f64], &[f64])) {
         let n = self.layout.dim();
         let linkage = Linkage::new(state);
@@ -39,7 +39,7 @@ impl Problem<'_> {
         }
     }
 
-    /// [`LeastSquares::normal`] by the general path, which serves every problem: row after row, as measurements and parameters write it.
+    /// [`LeastSquares::normal`] by the general path, which serves every problem: theory.md §6 (28), row after row.
     #[must_use]
     pub fn normal_row_by_row(&self, state: &Estimate) -> Normal {
         let linkage = Linkage::new(state);
@@ -55,12 +55,12 @@ impl Problem<'_> {
             );
             normal
         });
-        self.believing(state, seen)
+        self.add_prior(state, seen)
     }
 
-    /// [`LeastSquares::second_order`].
+    /// [`LeastSquares::second_order`]: `Jᵀ e''` of theory.md §6 (31).
     pub(super) fn second_order_by_rows(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {
-        // Central second difference along the step; 0.1 of the step keeps both truncation and rounding far below what a
+        // Central second difference along the step: at 0.1 of the step, truncation and rounding are both far below the accuracy that a
         // correction of the step needs.
         const FRACTION: f64 = 0.1;
         let along = |sign: f64| {
@@ -97,7 +97,7 @@ impl Problem<'_> {
         total.gradient
     }
 
-    /// [`LeastSquares::curvature`].
+    /// [`LeastSquares::curvature`]: the C of theory.md §6 (31a).
     pub(super) fn curvature_by_rows(&self, state: &Estimate) -> Option<Vec<f64>> {
         if !self.layout.has_curvature() {
             return None;
@@ -123,7 +123,7 @@ impl Problem<'_> {
         (total.residuals == self.rows.len()).then_some(total.gram)
     }
 
-    /// Accumulate what `add` makes of each fixed chunk of rows, in the order of the rows whatever the number of threads.
+    /// Adds up `add` of each fixed chunk of rows, in the order of the rows whatever the number of threads.
     fn sum_chunks(&self, add: impl Fn(&[u32]) -> Normal + Sync + Send) -> Normal {
         if self.rows.len() <= CHUNK {
             return add(&self.rows);
@@ -136,7 +136,7 @@ impl Problem<'_> {
         total
     }
 
-    /// Gathers the rows' Jacobian and residuals in blocks, and hands each block over.
+    /// Gathers Jacobian and residuals of the rows in blocks, and adds each block to the normal equations.
     fn for_blocks(
         &self,
         linkage: &Linkage,
@@ -173,7 +173,7 @@ impl Problem<'_> {
     }
 }
 
-/// Rows of the Jacobian waiting to be accumulated.
+/// Rows of the Jacobian that are not yet accumulated.
 #[derive(Default)]
 struct Block {
     rows: Vec<f64>,

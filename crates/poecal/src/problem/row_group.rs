@@ -17,7 +17,7 @@ pub(super) struct RowGroup {
     pub(super) framed: bool,
     /// Position over rotation noise in m/rad, if it is the same in all rows.
     pub(super) ratio: Option<f64>,
-    /// The rows, or whatever key was asked for.
+    /// The rows, or another key of each.
     pub(super) rows: Vec<u32>,
 }
 

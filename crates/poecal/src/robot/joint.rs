@@ -1,11 +1,11 @@
-//! One joint: its screw, its frame, and how a reading becomes a joint value.
+//! One joint: its screw, its frame, and its joint value as a function of the reading.
 
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 
 use crate::lie::{Pose, Screw, rotation};
 
-/// What a joint does.
+/// Kind of a joint.
 ///
 /// ```
 /// assert_eq!(poecal::JointKind::Revolute.word(), "revolute");
@@ -44,11 +44,11 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// A sliding joint's stroke beyond which its limits are placeholders: files demand limits where none are known.
+    /// Stroke of a prismatic joint beyond which its limits are placeholders: files demand limits where none are known.
     pub const PLACEHOLDER_M: f64 = 100.0;
 }
 
-/// Where a joint's value comes from: `θ = multiplier · reading + offset`. Multiplier 1 and offset 0 but for mimic joints
+/// A joint's value as a function of a reading: `θ = multiplier · reading + offset`, with multiplier 1 and offset 0 but for mimic joints
 /// (theory.md §2 (7)).
 ///
 /// ```
@@ -66,7 +66,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// A joint that is read itself.
+    /// A joint with a reading of its own.
     #[must_use]
     pub fn own(name: &str) -> Self {
         Reading { name: name.to_owned(), multiplier: 1.0, offset: 0.0 }
@@ -79,7 +79,7 @@ impl Reading {
     }
 }
 
-/// Standard deviations by which an axis may stand off its drawing: what is believed of it before anything is measured.
+/// Standard deviations of an axis from nominal, by the prior of theory.md §6 (27a).
 ///
 /// ```
 /// let usual = poecal::robot::Tolerance::default();
@@ -94,7 +94,7 @@ pub struct Tolerance {
 }
 
 impl Default for Tolerance {
-    /// Half a degree and 5 mm: wider than machining, so that it costs nothing where the data tell.
+    /// Half a degree and 5 mm: wider than machining, so that the prior hardly matters where the data determine the axis.
     fn default() -> Self {
         Tolerance { angle_rad: 0.5f64.to_radians(), length_m: 5e-3 }
     }
@@ -121,9 +121,9 @@ pub struct Joint {
     pub frame: Pose,
     /// Limits of the value.
     pub limits: Option<Limits>,
-    /// How the value is read.
+    /// Joint value as a function of a reading.
     pub reading: Reading,
-    /// How far its axis may stand off this model, where that is not what is said of all.
+    /// Tolerance of its axis, if it differs from the common one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<Tolerance>,
 }

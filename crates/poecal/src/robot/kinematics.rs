@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::Robot;
-use crate::lanes::{self, Exponential, Level, WIDTH, Wide};
+use crate::lanes::{self, Exponential, SimdLevel, WIDTH, Wide};
 use crate::lie::{Pose, Screw, hat};
 
 impl Robot {
@@ -44,7 +44,7 @@ impl Robot {
                     *value = joint.reading.value(readings.get(index).copied().unwrap_or(0.0));
                 }
             }
-            lanes::cosines_and_sines(Level::best(), &values, &mut found);
+            lanes::cosines_and_sines(SimdLevel::best(), &values, &mut found);
             let each =
                 self.joints.iter().zip(&mut factors).zip(found.chunks(WIDTH).zip(values.chunks(WIDTH)));
             for ((joint, [first, second]), (found, values)) in each {
@@ -52,13 +52,13 @@ impl Robot {
                     (first.0[lane], second.0[lane]) = factors_of(&joint.screw, value, found);
                 }
             }
-            let rows = lanes::product_of_exponentials(Level::best(), &exponentials, &factors);
+            let rows = lanes::product_of_exponentials(SimdLevel::best(), &exponentials, &factors);
             (0..count).map(move |lane| Pose::from_rows(|i, j| rows[i][j].0[lane]) * self.home)
         })
     }
 
     /// Frames of the joints in the base, `exp(ξ₁θ₁) … exp(ξᵢθᵢ) base_from_joint_i`, at a configuration given as readings (radians, metres;
-    /// order of [`Robot::reading_names`]): what a drawing of the robot needs.
+    /// order of [`Robot::reading_names`]), for pictures of the robot.
     ///
     /// ```
     /// let robot = poecal::simulate::elbow();
@@ -85,7 +85,7 @@ impl Robot {
     #[must_use]
     pub fn motion(&self, joint_values: &[f64]) -> Pose {
         let mut found = vec![(0.0, 0.0); joint_values.len()];
-        lanes::cosines_and_sines(Level::best(), joint_values, &mut found);
+        lanes::cosines_and_sines(SimdLevel::best(), joint_values, &mut found);
         let mut rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
         for ((joint, &value), found) in self.joints.iter().zip(joint_values).zip(found) {
             let (first, second) = factors_of(&joint.screw, value, found);
@@ -96,7 +96,7 @@ impl Robot {
 }
 
 /// The two numbers of a joint's motion that depend on its value: `sin θ` and `1 - cos θ` with `(cos θ, sin θ)` known, or θ of a sliding
-/// joint. They are added to numbers of about one, so that rounding of `1 - cos θ` at small angles does not show.
+/// joint. They are added to numbers of about one, so that rounding of `1 - cos θ` at small angles is negligible.
 fn factors_of(screw: &Screw, value: f64, (cosine, sine): (f64, f64)) -> (f64, f64) {
     if screw.is_prismatic() { (value, 0.0) } else { (sine, 1.0 - cosine) }
 }

@@ -14,9 +14,9 @@ use nalgebra::Vector3;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, Screw};
 
-/// Moving joints that a robot has at most: a fit takes the cube of their number.
+/// Most moving joints of a robot: the time of a fit grows with the cube of their number.
 pub const MOST_JOINTS: usize = 1000;
-/// Letters that the name of a joint or a target has at most.
+/// Most letters of the name of a joint or a target.
 pub const LONGEST_NAME: usize = 200;
 
 /// A serial robot at its zero configuration, `base_from_tip(θ) = exp(ξ₁θ₁) … exp(ξₙθₙ) M` (lou2009 (2); theory.md §2 (6)).
@@ -45,7 +45,7 @@ pub struct Robot {
     pub joints: Vec<Joint>,
     /// Home pose `M = base_from_tip(0)`.
     pub home: Pose,
-    /// Tool points and frames that the model itself knows, in the tip frame.
+    /// Tool points and frames of the model, in the tip frame.
     pub targets: Vec<(String, Pose)>,
 }
 
@@ -150,7 +150,7 @@ impl Robot {
         }
     }
 
-    /// A length that says how large the arm is (metres): the longest way from axis to axis to the tip at zero, at least 1 cm.
+    /// Size of the arm (metres): the longest path from axis to axis to the tip at zero joint values, at least 1 cm.
     #[must_use]
     pub fn arm_m(&self) -> f64 {
         let mut at: Option<Vector3<f64>> = None;
@@ -165,8 +165,8 @@ impl Robot {
         (reach + (self.home.translation - last).norm()).max(0.01)
     }
 
-    /// A length that says how far the robot reaches (metres): the arm and the strokes of its sliding joints. Limits wider than 100 m
-    /// are placeholders and do not count.
+    /// Reach of the robot (metres): size of the arm plus the strokes of its prismatic joints. Limits wider than 100 m are placeholders and
+    /// do not count.
     #[must_use]
     pub fn reach_m(&self) -> f64 {
         let slides: f64 = self
@@ -181,7 +181,7 @@ impl Robot {
     }
 }
 
-/// Refuses a name that no message or table could show.
+/// Refuses a name that is too long for messages and tables.
 ///
 /// # Errors
 /// [`ErrorKind::Model`] if it has more letters than [`LONGEST_NAME`].

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use super::random;
 use crate::robot::{JointKind, Limits, Robot};
 
-/// The configurations of a robot: what each reading may be (±π and ±0.5 m where there are no limits).
+/// The configurations of a robot: the range of each reading (±π and ±0.5 m where there are no limits).
 ///
 /// ```
 /// use poecal::simulate::{Configurations, elbow};
@@ -21,13 +21,13 @@ pub struct Configurations {
 }
 
 impl Configurations {
-    /// Of a robot, its readings in the order of [`Robot::reading_names`].
+    /// The configurations of a robot, readings in the order of [`Robot::reading_names`].
     #[must_use]
     pub fn new(robot: &Robot) -> Self {
         Configurations { readings: robot.reading_names().iter().map(|name| range(robot, name)).collect() }
     }
 
-    /// One in which every joint is within its limits, in steps of 0.0001° and 0.001 mm, as controllers show them.
+    /// A random configuration with every joint within its limits, in steps of 0.0001° and 0.001 mm, as controllers show them.
     pub fn random(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let one = |&(kind, lower, upper): &(JointKind, f64, f64)| {
             let value = lower + (upper - lower).max(0.0) * random::uniform(generator);
@@ -41,7 +41,7 @@ impl Configurations {
     }
 }
 
-/// What a reading may be for every joint that has it.
+/// Range of a reading within the limits of all joints that follow it.
 fn range(robot: &Robot, name: &str) -> (JointKind, f64, f64) {
     let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
     let mut kind = JointKind::Revolute;

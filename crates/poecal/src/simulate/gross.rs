@@ -8,7 +8,7 @@ use super::random;
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
 
-/// Gross errors of a share of the rows: each is moved in a random direction, and every second one that sees orientation is turned too.
+/// Gross errors of a share of the rows: each is moved in a random direction, and every second one with an orientation is also rotated.
 /// Distances and angles are uniform between their two limits.
 ///
 /// ```
@@ -38,10 +38,10 @@ impl Default for Gross {
 }
 
 impl Gross {
-    /// Spoils the data; returns the rows that are wrong now, in their order.
+    /// Adds the gross errors; returns the rows that have one, in their order.
     pub fn spoil(&self, data: &mut Dataset) -> Vec<u32> {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
-        // Another stream than the one that made the session of the same seed.
+        // Another stream than that of a session with the same seed.
         generator.set_stream(2);
         let mut rows: Vec<u32> = data.all_rows();
         random::shuffle(&mut generator, &mut rows);

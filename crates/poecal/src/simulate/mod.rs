@@ -18,7 +18,7 @@ use crate::lie::{Pose, Twist, rotation};
 use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
 use crate::robot::Robot;
 
-/// What the simulated device sees.
+/// Kind of the simulated measurements.
 ///
 /// ```
 /// assert_eq!(poecal::Kind::Point.word(), "point");
@@ -44,7 +44,7 @@ impl Kind {
         }
     }
 
-    /// Whether the orientation of the tip is seen in some rows at least.
+    /// Whether some rows at least measure the orientation of the tip.
     #[must_use]
     pub fn sees_orientation(self) -> bool {
         match self {
@@ -76,7 +76,7 @@ pub struct Simulation {
     pub count: usize,
     /// Seed of everything random.
     pub seed: u64,
-    /// Whether the device stands somewhere unknown instead of at the robot's base.
+    /// Whether the device frame is unknown instead of equal to the robot's base.
     pub device_anywhere: bool,
 }
 
@@ -102,7 +102,7 @@ impl Default for Simulation {
 /// let readings = made.data.readings(0);
 /// let tip = made.device_from_base * made.actual.forward_kinematics(readings);
 /// let seen = made.data.observations[0].measurement.pose();
-/// // The device sees the actual robot's tip, but for its noise.
+/// // The device measures the actual robot's tip, up to its noise.
 /// assert!((tip.translation - seen.translation).norm() < 1e-3);
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -114,7 +114,7 @@ pub struct Simulated {
     pub actual: Robot,
     /// `device_from_base` of the truth.
     pub device_from_base: Pose,
-    /// What was measured.
+    /// The measurements.
     pub data: Dataset,
 }
 
@@ -151,7 +151,7 @@ impl Simulation {
         Ok(Simulated { nominal: nominal.clone(), actual, device_from_base, data })
     }
 
-    /// Further configurations of a simulated session, free of noise: what a calibration from it should predict.
+    /// Further configurations of a simulated session, free of noise, to judge the predictions of a calibration.
     ///
     /// # Errors
     /// Does not fail for a finite robot.

@@ -8,7 +8,7 @@ use crate::lie::rotation;
 use crate::linalg;
 
 /// The device-from-base rotation that maps the arm's relative rotations to the measured ones, and how much the second and third
-/// directions of rotation are excited (0 to 1): near zero, the data are poor in orientation and the answer means little.
+/// directions of rotation are excited (0 to 1): near zero, the data have few orientations and the rotation is weakly determined.
 pub(super) fn device_rotation(arm: &[Matrix3<f64>], seen: &[Matrix3<f64>]) -> (Matrix3<f64>, f64) {
     let mut correlation = Matrix3::zeros();
     let mut directions: Vec<Vector3<f64>> = Vec::new();

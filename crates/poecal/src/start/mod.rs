@@ -1,4 +1,4 @@
-//! Where the device stands and where the targets sit, found without an initial guess and with nominal screws (docs/theory.md §6).
+//! Device frame and targets without an initial guess, with nominal screws (theory.md §6, *Start*).
 
 mod averaging;
 mod hand_eye;

@@ -1,4 +1,4 @@
-//! Registration: the device's frame and the targets, with the screws as they are.
+//! Registration: device frame and targets are fitted, with fixed screws.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -11,16 +11,16 @@ use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
 use crate::problem::Problem;
 use crate::solve::{Options, minimize};
 
-/// Rows that the search for a start looks at; the polish afterwards takes all.
+/// Rows of the search for a start; the polish afterwards uses all.
 const SAMPLE: usize = 60;
 /// Candidates that are polished and compared.
 const FINALISTS: usize = 4;
-/// Times that targets and device frame of a closed form are found from each other.
+/// Alternations of targets and device frame from a closed form.
 const ROUNDS: usize = 4;
 /// Root mean square distance, as a share of the data's own spread, above which the closed forms are not trusted alone.
 const GOOD_MISFIT: f64 = 0.05;
 
-/// What is registered: which rows, by which noise, and what is free.
+/// A registration problem: rows, noise and unknowns.
 #[derive(Clone, Copy, Debug)]
 pub struct Registration<'a> {
     /// The measurements.
@@ -39,14 +39,14 @@ pub struct Registration<'a> {
     pub targets_free: bool,
 }
 
-/// Registers the data to an estimate's screws as if they were seen from one place.
-pub(super) fn at_one_place(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64) {
+/// Registers the data to an estimate's screws as if they were measured from one station. Returns the cost of theory.md §6 (27) with it.
+pub(super) fn at_one_station(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64) {
     let sample = sample_rows(problem.rows, SAMPLE);
-    let seen = Seen::new(problem, start, &sample);
+    let seen = SampledRows::new(problem, start, &sample);
     let mut best = seen.best_of(problem, start, &sample, seen.closed_forms(problem, start), ROUNDS);
     if problem.device_free && problem.targets_free && seen.misfit(&best.0) > GOOD_MISFIT {
         let turned = cube_rotations().map(|turn| seen.at_rotation(turn, start)).collect();
-        // Not alternated: that would draw them all to the same few device frames.
+        // Not alternated: all would converge to the same few device frames.
         let other = seen.best_of(problem, start, &sample, turned, 1);
         // A later start must be clearly better, so that rounding does not choose between equal ones.
         if other.1 < best.1 * (1.0 - 1e-6) {
@@ -56,12 +56,12 @@ pub(super) fn at_one_place(problem: &Registration<'_>, start: &Estimate) -> (Est
     polish(problem, best.0, problem.rows.to_vec(), 50)
 }
 
-/// Registers by the best closed form alone and a few iterations: for comparing many suppositions, of which the few that matter are
-/// registered in full afterwards.
+/// Registers by the best closed form and a few iterations, to compare many hypotheses, of which the best are registered in full
+/// afterwards.
 #[must_use]
 pub(crate) fn register_roughly(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     let sample = sample_rows(problem.rows, SAMPLE);
-    let seen = Seen::new(problem, start, &sample);
+    let seen = SampledRows::new(problem, start, &sample);
     let candidates = seen.closed_forms(problem, start).into_iter().map(|device| {
         let candidate = seen.alternate(problem, start, device, ROUNDS);
         (polish(problem, candidate.clone(), sample.clone(), 0).1, candidate)
@@ -76,7 +76,7 @@ pub fn register_again(problem: &Registration<'_>, start: &Estimate) -> Estimate 
     polish(problem, start.clone(), problem.rows.to_vec(), 50).0
 }
 
-/// The rest of the way to the optimum by least squares.
+/// Least squares from a start to the optimum, theory.md §6 (27); returns the cost with it.
 pub(super) fn polish(
     problem: &Registration<'_>,
     start: Estimate,
@@ -118,23 +118,23 @@ pub(crate) fn target_parameters(data: &Dataset, rows: &[u32]) -> impl Iterator<I
     })
 }
 
-/// The sampled rows: the arm's motion from zero in the base frame, and what was seen.
-struct Seen {
+/// The sampled rows: the arm's motion from zero in the base frame, and the measurements.
+struct SampledRows {
     base_motion: Vec<Pose>,
     measured: Vec<Vector3<f64>>,
     turned: Vec<Option<Matrix3<f64>>>,
     target: Vec<usize>,
-    /// How far the measurements are spread.
+    /// Spread of the measured positions, metres.
     spread_m: f64,
 }
 
-impl Seen {
+impl SampledRows {
     fn new(problem: &Registration<'_>, start: &Estimate, sample: &[u32]) -> Self {
         let mut in_base = start.clone();
         in_base.device_from_base = Pose::identity();
         let linkage = Linkage::new(&in_base);
         let mut chain = Chain::default();
-        let mut seen = Seen {
+        let mut seen = SampledRows {
             base_motion: Vec::new(),
             measured: Vec::new(),
             turned: Vec::new(),
@@ -154,7 +154,7 @@ impl Seen {
         seen
     }
 
-    /// The lowest optimum that a few of the candidates reach, with its cost on the sample.
+    /// The lowest optimum from the best candidates, with its cost on the sample.
     fn best_of(
         &self,
         problem: &Registration<'_>,
@@ -188,7 +188,7 @@ impl Seen {
         best
     }
 
-    /// Whether two device frames lead to one optimum for sure: a few degrees, and a tenth of the data's spread apart at most.
+    /// Whether two device frames lead to the same optimum: at most a few degrees and a tenth of the data's spread apart.
     fn is_near(&self, a: &Pose, b: &Pose) -> bool {
         let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
         let count = self.base_motion.len().max(1) as f64;
@@ -209,8 +209,8 @@ impl Seen {
         (missed / count).sqrt() / self.spread_m.max(f64::MIN_POSITIVE)
     }
 
-    /// Device frames worth trying: the given one; rigid motions of nominal targets and of targets on the last axis; the hand-eye
-    /// rotation; and, for orientation-poor data, the rotation that nominal target orientations ask for.
+    /// Candidates of the device frame: rigid motions of nominal targets and of targets on the last axis, theory.md §6 (32); the hand-eye
+    /// rotation, theory.md §6 (33); and the mean rotation by nominal target orientations. The given one if the device frame is known.
     fn closed_forms(&self, problem: &Registration<'_>, start: &Estimate) -> Vec<Pose> {
         if !problem.device_free {
             return vec![start.device_from_base];
@@ -224,7 +224,7 @@ impl Seen {
             if excitation > 1e-3 {
                 candidates.push(self.at_rotation(turn, start));
             }
-            // Orientation-poor data: the rotation that a nominal target orientation asks for.
+            // For data with few orientations: the mean rotation by nominal target orientations.
             let nominal = mean_rotation(framed.iter().zip(&seen).map(|(&k, turned)| {
                 let arm = self.base_motion[k].rotation;
                 turned * (arm * start.base_from_target[self.target[k]].rotation).transpose()
@@ -239,7 +239,7 @@ impl Seen {
         candidates
     }
 
-    /// The target moved onto the last axis: the place that the last joint cannot move.
+    /// The target moved onto the last axis, where the last joint does not move it.
     fn on_last_axis(&self, start: &Estimate, target: &Pose) -> Pose {
         let place =
             start.screws().last().map_or(target.translation, |s| s.nearest_point(&target.translation));
@@ -256,7 +256,7 @@ impl Seen {
         rigid_motion(&from, &self.measured)
     }
 
-    /// The device frame of a given rotation that centres the data with nominal targets.
+    /// The device frame with a given rotation, and the translation between the means of theory.md §6 (32), with nominal targets.
     fn at_rotation(&self, turn: Matrix3<f64>, start: &Estimate) -> Pose {
         let count = self.measured.len().max(1) as f64;
         let shift: Vector3<f64> = (0..self.measured.len())

@@ -1,4 +1,4 @@
-//! Registration of data of which some may be grossly wrong.
+//! Registration of data with gross errors.
 
 use super::registration::{Registration, free_parameters};
 use super::stations::register;
@@ -9,8 +9,8 @@ use crate::solve::{Options, minimize};
 /// Most reweightings of a robust registration.
 const REWEIGHTINGS: usize = 20;
 
-/// Registers data of which up to a third may be grossly wrong: the ordinary registration, then sums of distances instead of squares by
-/// reweighting, and the same once more from the better two thirds of the rows; the lower median distance wins (theory.md §6 (34c)).
+/// Registers data with gross errors in up to a third of the rows: the ordinary registration, then the sum of distances instead of squares
+/// by reweighting, and the same once more from the better two thirds of the rows; the lower median distance wins (theory.md §6 (34c)).
 #[must_use]
 pub fn register_robustly(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     let (first, first_median, distances) = least_distances(problem, register(problem, start).0);
@@ -25,7 +25,7 @@ pub fn register_robustly(problem: &Registration<'_>, start: &Estimate) -> Estima
     if second_median < first_median * (1.0 - 1e-6) { second } else { first }
 }
 
-/// Reweights a registration by the inverse whitened distance of each row. Returns it with the median of those distances, and them.
+/// Reweights a registration by the inverse whitened distance of each row. Returns it with the median of the distances, and the distances.
 fn least_distances(problem: &Registration<'_>, start: Estimate) -> (Estimate, f64, Vec<f64>) {
     let free = free_parameters(problem, problem.rows);
     let options = Options { iterations: 5, trust: 10.0, ..Options::default() };

@@ -1,11 +1,11 @@
-//! Registration of a device that stood at one place, or at several with a frame each while the targets stayed on the arm.
+//! Registration of a device with one station or several, each with a frame of its own while the targets stayed on the arm.
 
 use std::cmp::Reverse;
 
-use super::registration::{Registration, at_one_place, polish};
+use super::registration::{Registration, at_one_station, polish};
 use crate::estimate::Estimate;
 
-/// Rows that tell a frame if the targets are known: three points.
+/// Rows that determine a device frame if the targets are known: three points.
 const FEWEST: usize = 3;
 
 /// Registers the data to an estimate's screws: several closed-form starts, the best polished to the optimum. Its cost (`½ Σ e²`
@@ -15,12 +15,12 @@ pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64)
     if problem.device_free && !start.further_devices.is_empty() {
         return polish(problem, one_by_one(problem, start), problem.rows.to_vec(), 50);
     }
-    at_one_place(problem, start)
+    at_one_station(problem, start)
 }
 
-/// Each frame from its own rows, those of most rows first; the targets that these saw are known to the others (theory.md §6, *Start*).
+/// Each frame from its own rows, that of most rows first; the targets found with it are known to the others (theory.md §6, *Start*).
 fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
-    // As if all had been measured from one place: only the rows of one are looked at, at a time.
+    // A data set of one station: each registration uses the rows of one station only.
     let alone = problem.data.without_stations();
     let mut stations: Vec<(usize, Vec<u32>)> = (0..problem.data.station_count())
         .map(|station| (station, problem.data.seen_from(station, problem.rows)))
@@ -35,7 +35,7 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         let by_known = of_known.len() >= FEWEST.min(rows.len());
         let rows = if by_known { of_known } else { rows };
         let one = Registration { data: &alone, rows: &rows, targets_free: !by_known, ..*problem };
-        let (seen, _) = at_one_place(&one, &found.seen_from(station));
+        let (seen, _) = at_one_station(&one, &found.seen_from(station));
         *found.device_mut(station) = seen.device_from_base;
         if !by_known {
             for row in &rows {

@@ -1,4 +1,5 @@
-//! The spread of predictions by drawing neighbourhoods anew: no assumption on the errors but that neighbourhoods are independent.
+//! Block bootstrap: scatter of predictions when neighbourhoods of rows are drawn with replacement. The only assumption is that
+//! neighbourhoods are independent.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -11,16 +12,16 @@ use crate::linalg;
 use crate::simulate::random;
 use crate::solve::LeastSquares;
 
-/// Rows that it is done on, if there are more.
+/// Most rows of the bootstrap: more are sampled.
 const SAMPLE: usize = 2000;
-/// Rows of a neighbourhood, about, and how many neighbourhoods there are at most and at least.
+/// Approximate number of rows of a neighbourhood; most and fewest neighbourhoods.
 const NEIGHBOURHOOD: usize = 4;
 const MOST: usize = 200;
 const LEAST: usize = 10;
 /// Drawings.
 const DRAWINGS: usize = 400;
 
-/// Root mean square distance by which predictions at the measured configurations would differ had others been measured, metres.
+/// Scatter of predictions at the measured configurations, root mean square distance in metres (theory.md §9 (45)).
 ///
 /// ```
 /// let found = poecal::uncertainty::Bootstrap { drawings: 400, sigma_m: 2.1e-5, formal_sigma_m: 2.0e-5 };
@@ -28,16 +29,16 @@ const DRAWINGS: usize = 400;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bootstrap {
-    /// How often rows were drawn.
+    /// Number of drawings.
     pub drawings: usize,
-    /// As the drawings show it.
+    /// Scatter over the drawings.
     pub sigma_m: f64,
-    /// As the covariance says if residuals are white noise.
+    /// Scatter by the covariance, for residuals that are white noise.
     pub formal_sigma_m: f64,
 }
 
-/// Draws neighbourhoods of rows with replacement, each drawing refitted by one step with the factor of the whole: theory.md §9 (45).
-/// `None` if the rows are too few.
+/// Draws neighbourhoods of rows with replacement. Each drawing is refitted by one step with the common factor of all rows
+/// (theory.md §9 (45)). `None` if the rows are too few.
 #[must_use]
 pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
     let rows = sample_rows(view.rows, SAMPLE);
@@ -51,7 +52,7 @@ pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
         return None;
     }
     let variance = view.variance;
-    let factor = factor(&whole.gram, n, view.belief, variance)?;
+    let factor = factor(&whole.gram, n, view.prior, variance)?;
     let sample = View { rows: &rows, ..*view };
     let units = clusters(&sample, count);
     let steps: Vec<Vec<f64>> = units
@@ -74,7 +75,7 @@ pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
         }
         squares += quadratic(&information, &step);
     }
-    // Residuals are smaller than errors by the unknowns that were fitted, units by their mean; more rows than the sample are known better.
+    // Factors for the degrees of freedom that the unknowns take, for those that the mean takes, and for more rows than the sample.
     let freedom = whole.residuals as f64 / (whole.residuals - n) as f64;
     let units = units.len() as f64;
     let share = rows.len() as f64 / view.rows.len() as f64;

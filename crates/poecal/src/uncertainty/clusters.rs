@@ -1,4 +1,4 @@
-//! Neighbouring configurations together: whether errors there are alike, and so no noise.
+//! Clusters of neighbouring configurations: a test for errors that neighbours share, which are not noise.
 
 use nalgebra::DMatrix;
 
@@ -8,13 +8,13 @@ use crate::linalg;
 use crate::measurement::MANY_ROWS;
 use crate::solve::{LeastSquares, Normal};
 
-/// Standard deviations by which a figure must be beyond what white noise gives, to count.
+/// Significance of a figure: standard deviations beyond its mean in white noise.
 pub(super) const SIGNIFICANT: f64 = 3.0;
 /// Most clusters.
 const CLUSTERS: usize = 16;
 
-/// `Σ gᵀ N⁻¹ g` over clusters, g being the gradient of a cluster's rows, against what white noise makes of it: the cluster-robust
-/// covariance over the ordinary one, on average over all directions (liang1986, theory.md §9 (41)). `None` if it is no more than chance.
+/// `Σ gᵀ H⁻¹ g` over clusters, with the gradient g of a cluster's rows, over its expectation in white noise: the cluster-robust covariance
+/// over the ordinary one, averaged over all directions (liang1986, theory.md §9 (41)). `None` if it is not significant.
 pub(super) fn inflation(
     view: &View<'_>,
     whole: &Normal,
@@ -25,7 +25,7 @@ pub(super) fn inflation(
         return None;
     }
     let variance = view.variance;
-    let factor = factor(&whole.gram, n, view.belief, variance)?;
+    let factor = factor(&whole.gram, n, view.prior, variance)?;
     let inverse = DMatrix::from_vec(n, n, linalg::inverse(&factor));
     let count = (whole.residuals / n).clamp(2, CLUSTERS);
     let (mut found, mut expected, mut spread) = (0.0, 0.0, 0.0);
@@ -41,8 +41,8 @@ pub(super) fn inflation(
     (ratio.is_finite() && ratio > 1.0 + SIGNIFICANT * spread.sqrt() / expected).then_some(ratio)
 }
 
-/// `tr(D)` and `tr(D²)` of `D = H - H²`, `H = N⁻¹ P`, from the inverse of N and the upper triangle of P (row-major): mean and half the
-/// variance of `gᵀ N⁻¹ g` for a cluster with information P, in white noise of variance 1.
+/// `tr(D)` and `tr(D²)` of `D = H_c - H_c²` with the `H_c = H⁻¹ N_c` of theory.md §9 (41), from the inverse of H and the upper triangle of
+/// `N_c` (row-major): mean and half the variance of `gᵀ H⁻¹ g` of a cluster with information `N_c`, in white noise of variance 1.
 fn share_of(inverse: &DMatrix<f64>, part: &[f64]) -> (f64, f64) {
     let n = inverse.nrows();
     let h = inverse * DMatrix::from_fn(n, n, |i, j| part[i.min(j) * n + i.max(j)]);
@@ -62,7 +62,7 @@ pub(super) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
     };
     let mut clusters: Vec<Vec<&[u32]>> = vec![whole];
     while clusters.len() < count {
-        // The largest, of equal ones the first, so that the order is settled.
+        // The largest; of equal ones the first, so that the order is defined.
         let Some(largest) = (0..clusters.len()).max_by_key(|&k| (clusters[k].len(), usize::MAX - k)) else {
             break;
         };
@@ -86,7 +86,7 @@ pub(super) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
     clusters
 }
 
-/// About `count` clusters of rows that follow each other in the order of the data.
+/// About `count` clusters of consecutive rows, in the order of the data.
 pub(super) fn in_order(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
     let mut rows = view.rows.to_vec();
     rows.sort_unstable();

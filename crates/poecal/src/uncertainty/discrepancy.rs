@@ -1,4 +1,4 @@
-//! What the model does not describe, as the residuals show it.
+//! Model error, as the residuals show it.
 
 use super::folds::CrossValidation;
 use super::remainder::{Attribution, Remainder};
@@ -7,7 +7,7 @@ use super::{clusters, neighbours, order};
 use crate::measurement::Noise;
 use crate::solve::Normal;
 
-/// What residuals show beside noise.
+/// Model error and noise, as the residuals show them (theory.md §9 (40) and (41)).
 ///
 /// ```
 /// let none = poecal::uncertainty::Discrepancy::none();
@@ -15,25 +15,25 @@ use crate::solve::Normal;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discrepancy {
-    /// By how much the covariance of the unknowns is larger than residuals that are independent would make it, at least 1.
+    /// Factor κ of the covariance of the unknowns over that of independent residuals, at least 1.
     pub scatter: f64,
-    /// The same outside the range that was sampled: there what the model does not describe is a bias, which does not average out.
+    /// The factor outside the sampled range, where model error is a bias, which does not average out.
     pub extrapolation: f64,
-    /// Standard deviation of each component of what is the robot's.
+    /// Standard deviation of each component of the model error.
     pub standard_deviation: Noise,
-    /// Standard deviation of each component of what is the instrument's.
+    /// Standard deviation of each component of the instrument's noise.
     pub noise: Noise,
-    /// Whose the residuals of position are, and those of rotation.
+    /// Source of the residuals of position, and of those of rotation.
     pub attribution: [Attribution; 2],
-    /// Degrees of freedom by which these and the variance of the residuals are known, of positions and of rotations; infinite where
-    /// they are stated.
+    /// Degrees of freedom of these standard deviations and of the variance of the residuals, of positions and of rotations; infinite
+    /// where they are stated.
     pub freedom: [f64; 2],
-    /// Correlation of residuals that follow each other in the order of the rows, where it is no chance.
+    /// Correlation of the residuals of consecutive rows, if it is significant.
     pub lag_one: Option<f64>,
 }
 
 impl Discrepancy {
-    /// Nothing but noise that is known.
+    /// No model error, and noise that is known.
     #[must_use]
     pub fn none() -> Self {
         let zero = Noise { position_m: 0.0, rotation_rad: 0.0 };
@@ -49,8 +49,8 @@ impl Discrepancy {
     }
 }
 
-/// Whose the residuals of a fit are, and what they make of its covariance (theory.md §9 (41)). They are the robot's wherever it is
-/// used, unless stated noise explains them or repeated measurements scatter as much, and no structure is found in them.
+/// Attributes the residuals of a fit to robot or instrument, and finds the factors of its covariance (theory.md §9 (41) and (43)). They
+/// count as the robot's unless stated noise or the scatter of repeated measurements explains them and they show no structure.
 #[must_use]
 pub fn discrepancy(
     view: &View<'_>,
@@ -69,7 +69,7 @@ pub fn discrepancy(
     let blocks =
         cross_validation.filter(|_| position.attribution == Attribution::Robot).map_or(1.0, |found| {
             let squares = found.blocked.iter().map(|block| block.growth.max(0.0).powi(2)).sum::<f64>();
-            // On a sample the unknowns are known less well, so that the same error is a smaller multiple.
+            // The covariance of a sample's unknowns is larger, so that the same error is a smaller multiple of it.
             (squares / found.blocked.len().max(1) as f64).sqrt() / found.sampled
         });
     Discrepancy {

@@ -1,4 +1,4 @@
-//! Cross-validation without fitting again: the information that some rows leave tells where the fit would have ended without them.
+//! Cross-validation without further fits: rows are removed from the normal equations, and one step leads to the fit of the others.
 
 use std::collections::BTreeMap;
 
@@ -15,25 +15,25 @@ use crate::problem::Layout;
 use crate::simulate::random;
 use crate::solve::LeastSquares;
 
-/// Rows on which cross-validation is done, if there are more.
+/// Most rows of a cross-validation: more are sampled.
 const SAMPLE: usize = 2000;
-/// Random folds; a tail has as many rows as one of them.
+/// Number of random folds. An end of a joint's range has as many rows as one of them.
 const FOLDS: usize = 5;
-
-/// Names by which rows are grouped, at most, and rows of a name on average, at least: others are names of rows, not of groups.
+/// An id column defines groups if it has at most [`MOST_GROUPS`] values with [`LEAST_ROWS`] rows each on average; otherwise its values
+/// name single rows.
 const MOST_GROUPS: usize = 30;
 const LEAST_ROWS: usize = 4;
-/// Rows of each place of the device that a block must leave.
+/// Fewest rows of each station outside a block.
 const FEWEST_OF_STATION: usize = 6;
 
-/// Rows to leave out together.
+/// Rows that are left out together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Fold {
     pub(super) name: String,
     pub(super) rows: Vec<u32>,
 }
 
-/// What the other rows predict of those that were left out.
+/// Errors of the rows of a fold or block, predicted by the fit of the others.
 ///
 /// ```
 /// use poecal::uncertainty::LeftOut;
@@ -42,26 +42,27 @@ pub(super) struct Fold {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOut {
-    /// What these rows have in common.
+    /// Name of the block.
     pub name: String,
-    /// How many they are.
+    /// Number of rows.
     pub rows: usize,
     /// Root mean square error of position, metres.
     pub position_rms_m: f64,
     /// Root mean square error of rotation, radians, where measured.
     pub rotation_rms_rad: Option<f64>,
-    /// How much the squared error of position grew by leaving them out, over what the covariance of the unknowns makes of it (theory.md §9 (43)).
+    /// Growth of the squared error of position when these rows are left out, over its expectation by the covariance of the unknowns
+    /// (theory.md §9 (43)).
     pub growth: f64,
 }
 
 /// Cross-validation of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrossValidation {
-    /// Random parts left out in turn; one entry for all of them.
+    /// Random folds, left out in turn; one entry for all of them.
     pub random: LeftOut,
-    /// Parts that belong together left out: the ends of each joint's range, files, groups of equal `id`.
+    /// Blocks, left out in turn: the ends of each joint's range, files, groups of equal `id`.
     pub blocked: Vec<LeftOut>,
-    /// Share of the fitted rows that this was done on.
+    /// Share of the fitted rows in the subsample of the cross-validation.
     pub sampled: f64,
 }
 
@@ -73,29 +74,30 @@ impl CrossValidation {
     }
 }
 
-/// Random folds, and blocks: tails of every joint's range, each file and each repeated `id`.
+/// Cross-validation (theory.md §9 (42) and (43)) over random folds and over blocks: the ends of every joint's range, each file and each
+/// repeated `id`. `None` if the rows are too few or leave a system that is not positive definite.
 #[must_use]
 pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
     let sample = sample_rows(view.rows, SAMPLE);
     if sample.len() < 2 * FOLDS {
         return None;
     }
-    let left = Left::new(view, &sample)?;
-    let mut random = Sums::default();
+    let downdated = Downdated::new(view, &sample)?;
+    let mut random = ErrorSums::default();
     for fold in random_folds(view, &sample, seed) {
-        random.add(&left.sums(&fold.rows)?);
+        random.add(&downdated.errors_without(&fold.rows)?);
     }
     let name = format!("random, {FOLDS} folds");
     let blocked = blocks(view, &sample)
         .into_iter()
-        .filter_map(|fold| Some(left.sums(&fold.rows)?.result(fold.name)))
+        .filter_map(|fold| Some(downdated.errors_without(&fold.rows)?.result(fold.name)))
         .collect();
     let sampled = sample.len() as f64 / view.rows.len() as f64;
     Some(CrossValidation { random: random.result(name), blocked, sampled })
 }
 
 fn random_folds(view: &View<'_>, sample: &[u32], seed: u64) -> Vec<Fold> {
-    // Rows of one configuration are left out together: a copy would tell the fit what it is asked for.
+    // Rows of one configuration are left out together: a copy in the training rows would make its prediction trivial.
     let mut configurations = view.data.configurations(sample);
     random::shuffle(&mut ChaCha8Rng::seed_from_u64(seed ^ 0xf01d), &mut configurations);
     let part = configurations.len().div_ceil(FOLDS);
@@ -127,14 +129,14 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
     folds
 }
 
-/// Whether the rows that a fold leaves still tell where the device stood, at each of several places: nothing else does.
+/// Whether the rows outside a fold still determine the device frame of each of several stations.
 fn leaves_all_stations(view: &View<'_>, sample: &[u32], fold: &Fold) -> bool {
     let stations = view.data.station_count();
     let count = |rows: &[u32], station| view.data.seen_from(station, rows).len();
     stations == 1 || (0..stations).all(|it| count(sample, it) >= count(&fold.rows, it) + FEWEST_OF_STATION)
 }
 
-/// Rows of one name together, if the names are those of groups.
+/// Rows grouped by name, if the names define groups.
 fn groups(sample: &[u32], name: impl Fn(u32) -> Option<String>) -> Vec<Fold> {
     let mut groups: BTreeMap<String, Vec<u32>> = BTreeMap::new();
     for &row in sample {
@@ -148,21 +150,21 @@ fn groups(sample: &[u32], name: impl Fn(u32) -> Option<String>) -> Vec<Fold> {
     groups.into_iter().map(|(name, rows)| Fold { name, rows }).collect()
 }
 
-/// Sums over rows that were left out.
+/// Sums over rows that were left out: squared errors in m² and rad².
 #[derive(Clone, Copy, Default)]
-struct Sums {
+struct ErrorSums {
     rows: usize,
     turned: usize,
     position: f64,
     rotation: f64,
-    /// Squared position errors of the fit of all rows.
+    /// Squared position errors by the fit of all rows.
     before: f64,
-    /// What the covariances make of the growth.
+    /// Expected growth of the squared position errors, by the covariances: denominator of theory.md §9 (43).
     expected: f64,
 }
 
-impl Sums {
-    fn add(&mut self, other: &Sums) {
+impl ErrorSums {
+    fn add(&mut self, other: &ErrorSums) {
         self.rows += other.rows;
         self.turned += other.turned;
         self.position += other.position;
@@ -182,8 +184,8 @@ impl Sums {
     }
 }
 
-/// A fit of a sample, ready to lose rows.
-struct Left<'a> {
+/// Normal equations of a subsample, from which blocks of rows are removed.
+struct Downdated<'a> {
     view: View<'a>,
     estimate: Estimate,
     gram: Vec<f64>,
@@ -191,22 +193,22 @@ struct Left<'a> {
     covariance: Vec<f64>,
 }
 
-impl<'a> Left<'a> {
-    /// The optimum of the sample is one step from that of all rows.
+impl<'a> Downdated<'a> {
+    /// The subsample's optimum is one step from that of all rows.
     fn new(view: &View<'a>, sample: &[u32]) -> Option<Self> {
         let problem = view.problem(sample.to_vec());
         let normal = problem.normal(view.estimate);
         let n = problem.dim();
         let variance = view.variance;
-        let factor = factor(&normal.gram, n, view.belief, variance)?;
+        let factor = factor(&normal.gram, n, view.prior, variance)?;
         let pull: Vec<f64> = normal
             .gradient
             .iter()
-            .zip(&view.belief.normal.gradient)
-            .map(|(seen, believed)| seen + variance * believed)
+            .zip(&view.prior.normal.gradient)
+            .map(|(measured, prior)| measured + variance * prior)
             .collect();
         let step = linalg::cholesky_solve(&factor, &pull);
-        Some(Left {
+        Some(Downdated {
             view: *view,
             estimate: problem.retract(view.estimate, &step),
             covariance: covariance(&factor, variance)?,
@@ -215,19 +217,20 @@ impl<'a> Left<'a> {
         })
     }
 
-    /// Leaves rows out: `N - N_fold` and `-g_fold` are information and gradient of the others at the optimum of all (theory.md §9 (42)).
-    fn sums(&self, rows: &[u32]) -> Option<Sums> {
+    /// Errors of some rows by the fit of the others: at the optimum of all rows, `N - N_b` and `-g_b` are information and gradient
+    /// without the block b (theory.md §9 (42)).
+    fn errors_without(&self, rows: &[u32]) -> Option<ErrorSums> {
         let problem = self.view.problem(rows.to_vec());
         let part = problem.normal(&self.estimate);
         let rest: Vec<f64> = self.gram.iter().zip(&part.gram).map(|(all, part)| all - part).collect();
         let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
         let n = gradient.len();
-        let factor = factor(&rest, n, self.view.belief, self.variance)?;
+        let factor = factor(&rest, n, self.view.prior, self.variance)?;
         let without = problem.retract(&self.estimate, &linalg::cholesky_solve(&factor, &gradient));
         let covariance = covariance(&factor, self.variance)?;
         let both = DMatrix::from_iterator(n, n, covariance.iter().zip(&self.covariance).map(|(a, b)| a + b));
         let expected = self.position_variance(problem.layout(), rows, &both);
-        let mut sums = Sums { rows: rows.len(), expected, ..Sums::default() };
+        let mut sums = ErrorSums { rows: rows.len(), expected, ..ErrorSums::default() };
         for error in self.view.errors(rows, &without) {
             sums.position += error.position_m.norm_squared();
             if let Some(turn) = error.rotation_rad {
@@ -240,7 +243,7 @@ impl<'a> Left<'a> {
         Some(sums)
     }
 
-    /// Sum over rows of the variance of the predicted place, square metres.
+    /// Sum over rows of `tr P_p`, the variance of the predicted place in square metres (theory.md §9 (43)).
     fn position_variance(&self, layout: &Layout, rows: &[u32], covariance: &DMatrix<f64>) -> f64 {
         let linkage = Linkage::new(&self.estimate);
         let of = |some: &[u32]| {
@@ -251,11 +254,11 @@ impl<'a> Left<'a> {
     }
 }
 
-/// Clusters of configurations that are left out together when fits are compared.
+/// Number of clusters of configurations that are left out in turn when fits are compared.
 const CLUSTERS: usize = 10;
 
-/// Mean loss of the rows of each of some clusters of configurations by the fit of the others (theory.md §9 (42)), whose rows, one weight a
-/// row of the data, count as they do in the fit; on a sample of the rows if they are many. `None` where a part of them tells too little.
+/// Mean loss of the rows, each predicted by the fit without its cluster of configurations (theory.md §9 (42)). `weights` holds the weight
+/// of each row of the data in the fit; of many rows a sample is taken. `None` if the rows without a cluster do not determine the unknowns.
 #[must_use]
 pub fn leave_clusters_out(
     view: &View<'_>,
@@ -271,7 +274,7 @@ pub fn leave_clusters_out(
         let problem = view.problem(cluster.clone()).with_weights(weights);
         let part = problem.normal(view.estimate);
         let rest: Vec<f64> = whole.gram.iter().zip(&part.gram).map(|(all, part)| all - part).collect();
-        let factor = factor(&rest, n, view.belief, view.variance)?;
+        let factor = factor(&rest, n, view.prior, view.variance)?;
         let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
         let without = problem.retract(view.estimate, &linalg::cholesky_solve(&factor, &gradient));
         let errors = view.errors(&cluster, &without);

@@ -20,7 +20,7 @@ pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, Quantile, bound};
 pub use refit::Refit;
 pub use remainder::{Attribution, Part, Remainder, Settled, remainder};
-pub use view::{Belief, View};
+pub use view::{PriorInformation, View};
 
 use motions::{motions, products};
 
@@ -34,32 +34,33 @@ use crate::linalg::{self, Factor};
 use crate::problem::Layout;
 use crate::robot::JointKind;
 
-/// Configurations whose motions are worked out together: enough for a quick product, few enough for the cache.
+/// Configurations whose columns share one matrix: enough for a quick product, few enough for the cache.
 const TOGETHER: usize = 32;
-/// Share of the largest diagonal element that rounding makes of the normal equations.
+/// Rounding of the normal equations, as a share of their largest diagonal element.
 const ROUNDING: f64 = 1e-15;
 
-/// Covariance of an estimate's unknowns, and what the model does not describe.
+/// Covariance of an estimate's unknowns, and the model error beside it (theory.md §9 (39) and (41)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// The estimate that it is about.
+    /// The estimate.
     pub estimate: Estimate,
     /// The unknowns and their scales.
     pub layout: Layout,
     /// Covariance of the scaled unknowns (square metres), row-major `n × n`, with [`Discrepancy::scatter`] in it.
     pub covariance: Vec<f64>,
-    /// The same with [`Discrepancy::extrapolation`], where that is more: what holds outside the sampled range.
+    /// The covariance outside the sampled range, with [`Discrepancy::extrapolation`]; `None` where that is no larger.
     pub covariance_outside: Option<Vec<f64>>,
-    /// The range of each joint's values that was sampled.
+    /// Sampled range of each joint, radians or metres.
     pub sampled: Vec<[f64; 2]>,
-    /// What residuals show beside noise.
+    /// Model error that the residuals show.
     pub discrepancy: Discrepancy,
     /// Metres that a radian counts in the scaled unknowns.
     pub length_m: f64,
 }
 
 impl Uncertainty {
-    /// Of a fit with whitened information (upper triangle of `JᵀJ`) whose unknowns are `layout`. `None` if a number is not finite.
+    /// Covariance of a fit, theory.md §9 (39), from the upper triangle of its whitened `JᵀJ` and its unknowns. `None` if a number is not
+    /// finite.
     #[must_use]
     pub fn new(view: &View<'_>, layout: Layout, gram: &[f64], found: &Discrepancy) -> Option<Self> {
         let outside = (found.extrapolation > found.scatter)
@@ -76,7 +77,7 @@ impl Uncertainty {
         })
     }
 
-    /// Variance of a quantity that changes by `row` with each scaled unknown.
+    /// Variance `aᵀ Σ a` of a quantity whose derivatives by the scaled unknowns are `row` (a), with the Σ of theory.md §9 (39).
     #[must_use]
     pub fn variance(&self, row: &[f64]) -> f64 {
         let n = self.layout.dim().max(1);
@@ -88,13 +89,14 @@ impl Uncertainty {
             .max(0.0)
     }
 
-    /// The error to expect of predicted targets, one for each row of joint values.
+    /// Expected errors of a target's predictions, one for each row of joint values: theory.md §9 (40), in the axes of the first station's
+    /// device frame.
     #[must_use]
     pub fn predictions(&self, packed: &Packed, target: usize) -> Vec<PredictedError> {
         self.predictions_of((0..packed.rows()).map(|row| (row, target)), packed)
     }
 
-    /// The error to expect of each `(row of joint values, target)`.
+    /// Expected error of each `(row of joint values, target)`: theory.md §9 (40), in the axes of the first station's device frame.
     #[must_use]
     pub fn predictions_of(
         &self,
@@ -106,19 +108,19 @@ impl Uncertainty {
         errors.map(|[position, rotation]| PredictedError { position, rotation, quantiles }).collect()
     }
 
-    /// By how much bounds are wider than those of a known covariance, of positions and of rotations.
+    /// Factors by which 95 % bounds exceed those of a known covariance, of positions and of rotations.
     #[must_use]
     pub fn quantiles(&self) -> [Quantile; 2] {
         self.discrepancy.freedom.map(Quantile::new)
     }
 
-    /// [`Uncertainty::predictions`], covariances of the place alone, square metres.
+    /// Covariances of predicted places alone, square metres: `P_p` of theory.md §9 (40), in the axes of the first station's device frame.
     pub(crate) fn positions(&self, packed: &Packed, target: usize) -> Vec<Matrix3<f64>> {
         self.spread::<1>((0..packed.rows()).map(|row| in_first((row, target))), packed).into_flattened()
     }
 
-    /// How far outside the sampled range a configuration is: 0 inside, 1 from a fifth of the range on, which is how far the blocks of
-    /// cross-validation are.
+    /// Distance of a configuration from the sampled range: 0 inside, 1 from a fifth of the range on. The blocks of cross-validation are a
+    /// fifth of the range (theory.md §9 (41)).
     fn outside(&self, values: &[f64]) -> f64 {
         const FULLY: f64 = 0.2;
         let joints = values.iter().zip(&self.sampled).zip(&self.estimate.kinds);
@@ -136,7 +138,7 @@ impl Uncertainty {
         beyond.fold(0.0, f64::max).min(1.0)
     }
 
-    /// Covariances of the place, and of the turn if they are two.
+    /// Covariances of the place, and with two `PARTS` of the rotation: theory.md §9 (40).
     fn spread<const PARTS: usize>(
         &self,
         rows: impl Iterator<Item = (usize, Sight)>,
@@ -174,52 +176,54 @@ impl Uncertainty {
     }
 }
 
-/// What is predicted is said in the frame of the first place that the device stood at.
+/// Predictions are stated in the device frame of the first station.
 fn in_first((row, target): (usize, usize)) -> (usize, Sight) {
     (row, Sight::from(target))
 }
 
-/// Factor of `JᵀJ + variance · belief`.
-fn factor(gram: &[f64], n: usize, belief: &Belief, variance: f64) -> Option<Factor> {
-    let both = belief.with(gram, variance);
+/// Factor of `JᵀJ + variance · prior`, the H of theory.md §9 (39).
+fn factor(gram: &[f64], n: usize, prior: &PriorInformation, variance: f64) -> Option<Factor> {
+    let both = prior.with(gram, variance);
     let largest = (0..n).map(|k| both[k * n + k]).fold(0.0, f64::max);
     linalg::cholesky(&both, n, ROUNDING * largest)
 }
 
-/// Covariance of an estimate whose residuals scatter by `inflation` times what independent ones do: with `H = N + s²Λ` and a belief Λ that
-/// the fit holds, `s² H⁻¹ (κ N + s²Λ) H⁻¹`, which is `s² H⁻¹` for κ = 1; of a fit without it, `κ s² (N + κ s²Λ)⁻¹` (theory.md §9 (39)).
+/// Covariance of an estimate whose residuals scatter by `inflation` κ times as much as independent ones. With `H = N + s²Λ` and a prior Λ
+/// in the fit it is `s² H⁻¹ (κ N + s²Λ) H⁻¹`, which is `s² H⁻¹` for κ = 1. Without a prior in the fit it is `κ s² (N + κ s²Λ)⁻¹`
+/// (theory.md §9 (39)).
 fn inflated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<Vec<f64>> {
-    if !view.belief.is_fitted || inflation == 1.0 {
+    if !view.prior.is_fitted || inflation == 1.0 {
         let variance = view.variance * inflation;
-        return covariance(&factor(gram, n, view.belief, variance)?, variance);
+        return covariance(&factor(gram, n, view.prior, variance)?, variance);
     }
-    let formal = covariance(&factor(gram, n, view.belief, view.variance)?, view.variance)?;
+    let formal = covariance(&factor(gram, n, view.prior, view.variance)?, view.variance)?;
     let formal = DMatrix::from_row_slice(n, n, &formal);
-    let belief = &view.belief.normal.gram;
-    let believed = DMatrix::from_fn(n, n, |i, j| belief[i.min(j) * n + i.max(j)]);
-    let spread = &formal * inflation - &formal * believed * &formal * (inflation - 1.0);
+    let prior = &view.prior.normal.gram;
+    let of_prior = DMatrix::from_fn(n, n, |i, j| prior[i.min(j) * n + i.max(j)]);
+    let spread = &formal * inflation - &formal * of_prior * &formal * (inflation - 1.0);
     Some((&spread + spread.transpose()).scale(0.5).as_slice().to_vec())
 }
 
-/// Covariance for configurations outside the sampled range, where what the model does not describe is a bias: `κ s² (N + κ s²Λ)⁻¹`, with the
-/// belief Λ and that no unknown is farther off than a tenth of the length that a radian counts.
+/// Covariance outside the sampled range, where model error is a bias: `κ s² (N + κ s²(Λ + I/(0.1 L)²))⁻¹` with the prior Λ and the length
+/// L that a radian counts (theory.md §9, below (41)).
 fn extrapolated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<Vec<f64>> {
     const FARTHEST: f64 = 0.1;
     let variance = view.variance * inflation;
-    let mut both = view.belief.with(gram, variance);
+    let mut both = view.prior.with(gram, variance);
     let bound = variance / (FARTHEST * view.length_m).powi(2);
     both.iter_mut().step_by(n + 1).for_each(|value| *value += bound);
     covariance(&linalg::cholesky(&both, n, 0.0)?, variance)
 }
 
-/// `(JᵀJ / variance + belief)⁻¹` from [`factor`], row-major; `None` if a number is not finite.
+/// `(JᵀJ / variance + prior)⁻¹` from [`factor`], row-major: theory.md §9 (39) for κ = 1. `None` if a number is not finite.
 fn covariance(factor: &Factor, variance: f64) -> Option<Vec<f64>> {
     let mut covariance = linalg::inverse(factor);
     covariance.iter_mut().for_each(|value| *value *= variance);
     covariance.iter().all(|value| value.is_finite()).then_some(covariance)
 }
 
-/// Mean over rows of `Σ v_k v_lᵀ`, row-major: how much a step of the unknowns moves predicted places, squared.
+/// Mean over rows of `v_kᵀ v_l`, row-major: the Q of theory.md §9 (45). `δᵀ Q δ` is the mean square distance by which a step δ moves
+/// predicted places.
 fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
     let problem = view.problem(Vec::new());
     let layout = problem.layout();

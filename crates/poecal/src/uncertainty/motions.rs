@@ -1,12 +1,12 @@
-//! How targets move with the unknowns, several configurations in one matrix.
+//! Derivatives of predicted targets by the unknowns, several configurations in one matrix.
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::estimate::{Chain, Linkage, Packed, Sight};
 use crate::problem::Layout;
 
-/// Motions of targets in some rows of joint values, as they are seen there, with each scaled unknown, which has a column: three rows a target, or six
-/// with `parts` 2, of its place and of its turn.
+/// Target twists `(v; ω)` of theory.md §9 (40), in the device's axes: one column for each scaled unknown, and for each configuration three
+/// rows (v), or with two `parts` six (v, then ω).
 pub(super) fn motions(
     layout: &Layout,
     linkage: &Linkage,
@@ -31,7 +31,7 @@ pub(super) fn motions(
     motions
 }
 
-/// `Σ a bᵀ` over the columns of two matrices, each cut to three rows from `first` on.
+/// `Σ a bᵀ` over the columns of two matrices, each restricted to three rows from `first` on.
 pub(super) fn products(a: &DMatrix<f64>, b: &DMatrix<f64>, first: usize) -> Matrix3<f64> {
     let cut = |matrix: &DMatrix<f64>, column: usize| {
         let start = column * matrix.nrows() + first;

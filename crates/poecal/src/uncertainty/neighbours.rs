@@ -1,4 +1,4 @@
-//! Residuals of nearest neighbours: what they have in common is no noise.
+//! Correlation of the residuals of nearest neighbours, which noise does not have.
 
 use nalgebra::Vector3;
 
@@ -6,11 +6,12 @@ use super::clusters::SIGNIFICANT;
 use super::view::View;
 use crate::estimate::{sample_rows, turn_to_first};
 
-/// Rows whose nearest neighbour is looked for, and rows among which it is.
+/// Rows whose nearest neighbour is sought, and rows among which it is sought.
 const PROBES: usize = 400;
 const NEIGHBOURS: usize = 4000;
 
-/// Whether the residuals of one target in neighbouring configurations are alike beyond chance: of positions, and of rotations.
+/// Whether the residuals of one target in neighbouring configurations are correlated significantly, of positions and of rotations
+/// (theory.md §9, *Neighbours*).
 pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     let pool = sample_rows(view.rows, NEIGHBOURS);
     let mut errors = view.errors(&pool, view.estimate);
@@ -19,7 +20,7 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     let targets: Vec<usize> = pool.iter().map(|&row| view.data.observations[row as usize].target).collect();
     let step = pool.len().div_ceil(PROBES).max(1);
     let joints = scaled(view, &spans, &pool);
-    let (mut position, mut rotation) = (Shared::default(), Shared::default());
+    let (mut position, mut rotation) = (PairSums::default(), PairSums::default());
     let mut distances = vec![0.0; pool.len()];
     for a in (0..pool.len()).step_by(step) {
         square_distances(&joints, a, &mut distances);
@@ -38,7 +39,7 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     (position.is_significant(), rotation.is_significant())
 }
 
-/// Of each joint that moves its values in some rows, against how far it moves.
+/// Values of each joint that moves, over its sampled range.
 fn scaled(view: &View<'_>, spans: &[f64], rows: &[u32]) -> Vec<Vec<f64>> {
     let moving = spans.iter().enumerate().filter(|(_, span)| **span > 0.0);
     moving.map(|(joint, span)| rows.iter().map(|&row| view.values(row)[joint] / span).collect()).collect()
@@ -55,22 +56,22 @@ fn square_distances(joints: &[Vec<f64>], from: usize, distances: &mut [f64]) {
     }
 }
 
-/// Products of neighbours' residuals.
+/// Sums of products of neighbours' residuals.
 #[derive(Default)]
-struct Shared {
+struct PairSums {
     products: f64,
     squares: f64,
     pairs: usize,
 }
 
-impl Shared {
+impl PairSums {
     fn add(&mut self, a: &Vector3<f64>, b: &Vector3<f64>) {
         self.products += a.dot(b);
         self.squares += 0.5 * (a.norm_squared() + b.norm_squared());
         self.pairs += 1;
     }
 
-    /// In white noise the correlation of that many components has a standard deviation of one over the root of their number.
+    /// In white noise the correlation of m components has the standard deviation `1/√m`.
     fn is_significant(&self) -> bool {
         self.products > SIGNIFICANT / (3.0 * self.pairs as f64).sqrt() * self.squares
     }

@@ -1,16 +1,16 @@
-//! Rows that follow each other: whether what the fit leaves hangs together in time.
+//! Correlation of residuals along the order of the rows.
 
 use super::clusters::SIGNIFICANT;
 use super::view::View;
 
-/// Fewest pairs by which it is judged.
+/// Fewest pairs for a judgement.
 const PAIRS: usize = 20;
-/// Correlation of a joint's values in rows that follow each other from which on the robot goes its way in order: then its errors do too, and
-/// say nothing of time.
+/// Correlation of a joint's values in consecutive rows above which the configurations follow a path. The robot's errors then follow it
+/// too, and a correlation of residuals is no evidence of drift.
 const ORDERED: f64 = 0.5;
 
-/// Correlation of the residuals of one target in rows that follow each other in the data, if it is no chance (in white noise that of so
-/// many components has a standard deviation of one over the root of their number) and no joint goes with the order of the rows.
+/// Correlation of the residuals of one target in consecutive rows, if it is significant and no joint follows the order of the rows. In
+/// white noise the correlation of m components has the standard deviation `1/√m` (theory.md §9, *Order*).
 pub(super) fn correlation(view: &View<'_>) -> Option<f64> {
     let mut rows = view.rows.to_vec();
     rows.sort_unstable();
@@ -25,7 +25,7 @@ pub(super) fn correlation(view: &View<'_>) -> Option<f64> {
         let Some(last) = last.get_mut(observation.target) else { continue };
         let before = last.replace((at, observation.source.file));
         let Some((before, file)) = before else { continue };
-        // Rows of one configuration err alike for another reason.
+        // Rows of one configuration share the robot's error.
         let is_elsewhere =
             view.values(rows[before]).iter().zip(view.values(row)).any(|(a, b)| (a - b).abs() > 1e-3);
         if file != observation.source.file || !is_elsewhere {

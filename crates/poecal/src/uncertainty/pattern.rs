@@ -1,4 +1,4 @@
-//! Errors that follow the position of one joint: what its transmission or its load does.
+//! Errors that follow the position of one joint, as its transmission or load causes them.
 
 use nalgebra::Vector3;
 
@@ -9,15 +9,15 @@ use crate::linalg;
 use crate::robot::JointKind;
 use crate::solve::Normal;
 
-/// Rows on which patterns are looked for, if there are more.
+/// Most rows of the search: more are sampled.
 const SAMPLE: usize = 4000;
-/// Functions of a joint's position that its transmission is tried with.
+/// Number of shape functions of a joint's position.
 const SHAPES: usize = 5;
-/// Share of the squared errors that follow a joint's position, from which it is said.
+/// Smallest reported share of the squared errors that follow a joint's position.
 const SHARE: f64 = 0.1;
 /// Errors below this are rounding, metres.
 const ROUNDING_M: f64 = 1e-9;
-/// What chance makes of that in units of the variance of the residuals: a χ² of five, exceeded once in 10,000.
+/// Quantile of χ² with five degrees of freedom that is exceeded once in 10,000, in units of the variance of the residuals.
 const CHANCE: f64 = 25.7;
 
 /// Errors that follow a joint's position, as errors of that position.
@@ -34,23 +34,23 @@ pub struct Pattern {
     pub rms: f64,
 }
 
-/// What one joint's shapes explain: information and gradient of their amplitudes.
+/// Normal equations of the amplitudes of one joint's shapes.
 #[derive(Clone)]
-struct Sums {
+struct ShapeSums {
     gram: [f64; SHAPES * SHAPES],
     gradient: [f64; SHAPES],
-    /// `Σ f fᵀ` without the lever, for the size.
+    /// `Σ f fᵀ` without the lever arm, for the joint's error in its own unit.
     shapes: [f64; SHAPES * SHAPES],
 }
 
-/// The joint (its index) whose position explains most of the errors, if that is no chance: theory.md §9 (44).
+/// The joint (its index) whose position explains most of the squared errors, if that is significant: theory.md §9 (44).
 #[must_use]
 pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pattern)> {
     let rows = sample_rows(view.rows, SAMPLE);
     let joints = view.robot.joints.len();
     let ranges = ranges(joints, view.packed, view.rows);
     let empty =
-        Sums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
+        ShapeSums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
     let mut sums = vec![empty; joints];
     let errors = view.errors(&rows, view.estimate);
     let rms_m = (errors.iter().map(|error| error.position_m.norm_squared()).sum::<f64>()
@@ -73,7 +73,7 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
             sums.add(&shapes(joint.kind, joint.value, range), &(motion / sigma), &error);
         }
     }
-    // What exact data leave is rounding, and follows anything.
+    // Residuals of exact data are rounding, which may follow any shape.
     if rms_m < ROUNDING_M {
         return None;
     }
@@ -86,7 +86,8 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
     found.max_by(|a, b| a.1.share.total_cmp(&b.1.share))
 }
 
-/// Shapes of a joint's error: a scale, and once and twice a turn; of a sliding joint a scale, a bow and an S.
+/// The shapes f(θ) of theory.md §9 (44), with the scale relative to the sampled range. Revolute: θ, cos θ, sin θ, cos 2θ, sin 2θ.
+/// Prismatic: orthogonal polynomials of degree 1 to 3.
 fn shapes(kind: JointKind, value: f64, (least, most): (f64, f64)) -> [f64; SHAPES] {
     let half = (0.5 * (most - least)).max(f64::MIN_POSITIVE);
     let t = (value - 0.5 * (least + most)) / half;
@@ -100,7 +101,7 @@ fn shapes(kind: JointKind, value: f64, (least, most): (f64, f64)) -> [f64; SHAPE
     }
 }
 
-impl Sums {
+impl ShapeSums {
     fn add(&mut self, shapes: &[f64; SHAPES], motion: &Vector3<f64>, error: &Vector3<f64>) {
         let (lever, along) = (motion.norm_squared(), motion.dot(error));
         for (i, a) in shapes.iter().enumerate() {
@@ -112,7 +113,7 @@ impl Sums {
         }
     }
 
-    /// The squares that the best amplitudes take away, and the root mean square error of the joint that they mean.
+    /// The squares that the best amplitudes explain, `R_j` of theory.md §9 (44), and the root mean square of that error of the joint.
     fn explained(&self, rows: usize) -> Option<(f64, f64)> {
         let scale = (0..SHAPES).map(|i| self.gram[i * SHAPES + i]).fold(0.0, f64::max);
         let factor = linalg::cholesky(&self.gram, SHAPES, 1e-9 * scale)?;

@@ -1,4 +1,4 @@
-//! The error to expect of one predicted pose.
+//! Expected error of one predicted pose.
 
 use nalgebra::Matrix3;
 
@@ -21,38 +21,38 @@ pub struct PredictedError {
     pub position: Matrix3<f64>,
     /// Of the rotation vector, square radians.
     pub rotation: Matrix3<f64>,
-    /// By how much the bounds are wider than those of known covariances, of positions and of rotations.
+    /// Factors by which the bounds exceed those of known covariances, of positions and of rotations.
     pub quantiles: [Quantile; 2],
 }
 
 impl PredictedError {
-    /// Root mean square distance to expect, metres.
+    /// Expected distance, root mean square in metres: `√tr P_p` of theory.md §9 (40).
     #[must_use]
     pub fn sigma_position_m(&self) -> f64 {
         self.position.trace().max(0.0).sqrt()
     }
 
-    /// Root mean square angle to expect, radians.
+    /// Expected angle, root mean square in radians: `√tr P_R` of theory.md §9 (40).
     #[must_use]
     pub fn sigma_rotation_rad(&self) -> f64 {
         self.rotation.trace().max(0.0).sqrt()
     }
 
-    /// Distance that is not exceeded in 95 % of all cases, metres.
+    /// 95 % bound of the distance, metres: [`Quantile::bound`] of the `P_p` of theory.md §9 (40).
     #[must_use]
     pub fn bound_position_m(&self) -> f64 {
         self.quantiles[0].bound(&self.position)
     }
 
-    /// Angle that is not exceeded in 95 % of all cases, radians.
+    /// 95 % bound of the angle, radians: [`Quantile::bound`] of the `P_R` of theory.md §9 (40).
     #[must_use]
     pub fn bound_rotation_rad(&self) -> f64 {
         self.quantiles[1].bound(&self.rotation)
     }
 }
 
-/// The 95 % quantile of the length of a normal vector: its square is taken as a scaled χ² of equal mean and variance (satterthwaite1946),
-/// whose quantile follows wilson1931.
+/// The 95 % quantile of the length of a normal vector with this covariance, in the root of its unit. The squared length is taken as a
+/// scaled χ² of equal mean and variance (satterthwaite1946), whose quantile follows wilson1931.
 #[must_use]
 pub fn bound(covariance: &Matrix3<f64>) -> f64 {
     const Z: f64 = 1.644_853_626_951_472_7;
@@ -67,7 +67,7 @@ pub fn bound(covariance: &Matrix3<f64>) -> f64 {
     (squares / trace * quantile).sqrt()
 }
 
-/// By how much 95 % bounds grow because the variance itself was found from few residuals: F instead of χ².
+/// Growth of 95 % bounds where the variance was estimated from few residuals: quantiles of F instead of χ² (abramowitz1964).
 ///
 /// ```
 /// use poecal::uncertainty::Quantile;
@@ -87,7 +87,8 @@ impl Quantile {
     /// A variance that is known.
     pub const KNOWN: Quantile = Quantile { growth: [1.0; 3] };
 
-    /// A variance that was found with so many degrees of freedom.
+    /// A variance that was estimated with so many degrees of freedom: 95 % quantiles of F over those of χ² over its degrees of freedom
+    /// (theory.md §9, below (40)).
     #[must_use]
     pub fn new(freedom: f64) -> Self {
         const MANY: f64 = 1e5;
@@ -99,7 +100,8 @@ impl Quantile {
         Quantile { growth: std::array::from_fn(|k| f_quantile(0.05, (k + 1) as f64, freedom) / known[k]) }
     }
 
-    /// [`bound`] of a covariance whose size was found so.
+    /// [`bound`] of a covariance whose scale was estimated with these degrees of freedom, in the root of its unit (theory.md §9, below
+    /// (40)).
     #[must_use]
     pub fn bound(&self, covariance: &Matrix3<f64>) -> f64 {
         let (trace, squares) = (covariance.trace(), covariance.norm_squared());

@@ -1,4 +1,4 @@
-//! What remains uncertain of predictions when device frame and targets are found anew from the very rows that are predicted
+//! Uncertainty of predictions when device frame and targets are refitted from the very rows that are predicted
 //! (theory.md §9, *A promise kept?*).
 
 use nalgebra::DMatrix;
@@ -14,26 +14,27 @@ use crate::solve::LeastSquares as _;
 /// Share of the largest information of a refitted unknown below which it counts as not determined.
 const SMALL: f64 = 1e-12;
 
-/// What is found anew, and from what.
+/// A refit of device frame and targets: its rows, unknowns and optimum.
 #[derive(Clone, Copy, Debug)]
 pub struct Refit<'a> {
     /// The rows.
     pub data: &'a Dataset,
     /// Their joint values.
     pub packed: &'a Packed,
-    /// Device frame and targets as they were found.
+    /// The refitted device frame and targets.
     pub found: &'a Estimate,
-    /// The unknowns that were found.
+    /// The refitted unknowns.
     pub free: &'a [Parameter],
-    /// What the rows scatter by beside the unknowns of the calibration: noise of measuring and what no model describes.
+    /// Scatter of the rows beside the unknowns of the calibration: measurement noise and model error, the D of theory.md §9.
     pub scatter: Noise,
-    /// For each target of the rows, which of the calibration's targets it is; `None` if it is found anew.
+    /// For each target of the rows, which of the calibration's targets it is; `None` if it is refitted.
     pub targets: &'a [Option<usize>],
 }
 
 impl Uncertainty {
-    /// The uncertainty of predictions after a refit, the rows' own targets being its targets. A refit takes off what it can of every error
-    /// in common; so the refitted unknowns count as more unknowns, which err as the others make them. `None` if they are not determined.
+    /// The uncertainty of predictions after a refit, with the targets of its rows: the covariance `(I - P)(A Σ Aᵀ + D)(I - P)ᵀ` of
+    /// theory.md §9, *A promise kept?*. It is written as a covariance of more unknowns: the refitted ones follow the errors of the kept
+    /// ones. `None` if the refitted unknowns are not determined.
     #[must_use]
     pub fn refitted(&self, refit: &Refit<'_>) -> Option<Uncertainty> {
         let (kept, places) = self.kept(refit.targets);
@@ -49,7 +50,7 @@ impl Uncertainty {
         let (before, anew) = joint.split_at(places.len());
         let information = |a: usize, b: usize| gram[a.min(b) * n + a.max(b)];
 
-        // What the refitted unknowns are known to by these rows, and how they follow the others.
+        // Information of the rows about the refitted unknowns, and how these follow the others.
         let count = anew.len();
         let own: Vec<f64> = anew
             .iter()
@@ -67,7 +68,7 @@ impl Uncertainty {
             let spread =
                 DMatrix::from_fn(places.len(), places.len(), |i, j| known[places[i] * all + places[j]]);
             let both = &follow * &spread;
-            // The scatter of the rows moves the refit, which takes off twice as much of it as it adds.
+            // The refit's own variance counts negatively: `N⁻¹`, less `2 N⁻¹` by its correlation with the scatter of the predicted rows.
             let last = &both * follow.transpose() - &inverse;
             let mut covariance = vec![0.0; n * n];
             let mut put = |a: usize, b: usize, value: f64| {

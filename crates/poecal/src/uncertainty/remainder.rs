@@ -1,4 +1,4 @@
-//! What a fit leaves, by its kinds and by configurations: sums of squares and their degrees of freedom.
+//! Residual variances of position and rotation, between and within configurations, with their degrees of freedom.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -12,29 +12,29 @@ use crate::measurement::MANY_ROWS;
 use crate::problem::Layout;
 use crate::solve::{LeastSquares, Normal};
 
-/// Degrees of freedom of repeated measurements from which on they can show that the rest is no more than their scatter.
+/// Fewest degrees of freedom of repeated measurements for the test of lack of fit.
 const REPEATED: f64 = 20.0;
-/// Probability of noise alone to be taken for a lack of fit.
+/// False-alarm probability of the test of lack of fit.
 const CHANCE: f64 = 0.01;
-/// Rows up to which it is worked out which unknowns rotations tell.
+/// Rows up to which the effective number of unknowns of rotations is computed exactly.
 const FEW: usize = 300;
-/// Positions as good as not measured.
+/// Noise of positions that count as not measured.
 const UNMEASURED_M: f64 = 1e9;
 /// Residuals below this (metres, radians) are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// What is left of one kind of residuals, position or rotation.
+/// Residual variance of one kind, position (m²) or rotation (rad²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Mean square of a component, the unknowns taken off: of the configurations, if rows are repeated.
+    /// Mean square of a component over its degrees of freedom; between configurations, if rows are repeated.
     pub mean_square: f64,
     /// Its degrees of freedom.
     pub freedom: f64,
-    /// Mean square of a component within configurations, and its degrees of freedom; none of either without repeated rows.
+    /// Mean square of a component within configurations, and its degrees of freedom; both zero without repeated rows.
     pub within: (f64, f64),
-    /// Rows of a configuration, on average.
+    /// Mean number of rows of a configuration.
     pub repeats: f64,
-    /// Mean variance that is stated of a component, and the mean square in its units; if all rows state it, or it holds for all.
+    /// Mean stated variance of a component, and the mean square over it, if the noise of all rows is stated.
     pub stated: Option<(f64, f64)>,
 }
 
@@ -50,35 +50,36 @@ pub enum Attribution {
     Repeats,
 }
 
-/// Whose a part is.
+/// Variance components of the residuals of one kind: metres or radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settled {
-    /// Standard deviation of a component that is the robot's.
+    /// Standard deviation of each component of the model error.
     pub robot: f64,
-    /// Standard deviation of a component that is the instrument's.
+    /// Standard deviation of each component of the instrument's noise.
     pub instrument: f64,
-    /// Whose the part is.
+    /// Source of the residuals.
     pub attribution: Attribution,
     /// Degrees of freedom of the variance; infinite if it is stated.
     pub freedom: f64,
 }
 
 impl Part {
-    /// Whether the stated noise explains it: less, equal, more.
+    /// Position of the mean square relative to the stated noise's 99 % band (wilson1931): below, inside, above.
     #[must_use]
     pub fn against_stated(&self) -> Option<std::cmp::Ordering> {
         let (_, ratio) = self.stated?;
         Some(is_within_band(ratio, self.freedom))
     }
 
-    /// Whether configurations differ by more than what repeated rows of one scatter by; `None` if there are too few of these.
+    /// F test of lack of fit: whether the mean square between configurations exceeds that within them. `None` if too few rows are
+    /// repeated.
     fn lacks_fit(&self) -> Option<bool> {
         let (within, freedom) = self.within;
         (freedom >= REPEATED)
             .then(|| self.mean_square > within * f_quantile(CHANCE, self.freedom.max(1.0), freedom))
     }
 
-    /// Whose it is, if residuals do or do not show structure.
+    /// Attributes the residuals to robot or instrument, by whether they show structure (theory.md §9, between (40) and (41)).
     #[must_use]
     pub fn settled(&self, structured: bool) -> Settled {
         let robot = |variance: f64, instrument: f64| Settled {
@@ -97,7 +98,7 @@ impl Part {
         }
         if let (Some((variance, _)), Some(against)) = (self.stated, self.against_stated()) {
             return match against {
-                // What is less than stated noise shows that this is not what it is.
+                // Residuals below the stated noise disprove it.
                 std::cmp::Ordering::Less => robot(self.mean_square, 0.0),
                 std::cmp::Ordering::Equal if !structured => Settled {
                     robot: 0.0,
@@ -123,7 +124,7 @@ impl Part {
     }
 }
 
-/// What a fit leaves.
+/// Variances of the residuals of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remainder {
     /// Of positions.
@@ -132,16 +133,16 @@ pub struct Remainder {
     pub rotation: Part,
     /// Variance of the whitened residuals, of configurations if rows are repeated; 1 where stated noise explains it.
     pub variance: f64,
-    /// Unknowns that the measurements tell.
-    pub told: f64,
+    /// Effective number of unknowns that the measurements determine (theory.md §6 (34)).
+    pub effective_unknowns: f64,
     /// Numbers measured, those of one target in one configuration counted once.
     pub numbers: usize,
 }
 
-/// Sums of one kind.
+/// Sums over residuals of one kind.
 #[derive(Default)]
-struct Sums {
-    /// Of squares, whitened squares, whitened squares within configurations, squares within configurations, variances by which they are whitened.
+struct ResidualSums {
+    /// Sums of squares, of whitened squares, of both within configurations, and of the variances that whiten.
     squares: f64,
     whitened: f64,
     whitened_within: f64,
@@ -151,7 +152,7 @@ struct Sums {
     groups: usize,
 }
 
-impl Sums {
+impl ResidualSums {
     /// Adds the rows of one target in one configuration: errors with their standard deviations.
     fn add(&mut self, rows: &[(Vector3<f64>, f64)]) {
         if rows.is_empty() {
@@ -170,11 +171,11 @@ impl Sums {
         self.groups += 3;
     }
 
-    fn part(&self, told: f64, stated: bool) -> Part {
-        let freedom = (self.groups as f64 - told).max(1.0);
+    fn part(&self, determined: f64, stated: bool) -> Part {
+        let freedom = (self.groups as f64 - determined).max(1.0);
         let within_freedom = (self.components - self.groups) as f64;
         let repeats = self.components as f64 / self.groups.max(1) as f64;
-        let whole = (self.components as f64 - told).max(1.0);
+        let whole = (self.components as f64 - determined).max(1.0);
         let is_repeated = within_freedom > 0.0;
         let mean_square = if is_repeated {
             (self.squares - self.within).max(0.0) / freedom
@@ -199,11 +200,12 @@ impl Sums {
     }
 }
 
-/// Sums up what the fit leaves, given its normal information at the optimum.
+/// Variances of the residuals of a fit, given its normal information at the optimum: the s² of theory.md §9 (39), and mean squares of
+/// position (m²) and rotation (rad²) with the unknowns of each taken off (theory.md §6 (34)).
 #[must_use]
 pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder {
-    let (mut position, mut rotation) = (Sums::default(), Sums::default());
-    // So many rows tell it as well as all.
+    let (mut position, mut rotation) = (ResidualSums::default(), ResidualSums::default());
+    // A sample of so many rows gives the same variances.
     let sample = sample_rows(view.rows, MANY_ROWS);
     let share = sample.len() as f64 / view.rows.len().max(1) as f64;
     let errors = view.errors(&sample, view.estimate);
@@ -229,9 +231,10 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
         }
     }
     let total = (position.groups + rotation.groups) as f64;
-    let told = told(view, normal);
-    let by_rotations = share * told_by_rotations(view, normal, layout, told, &rotation, total);
-    let in_sample = share * told;
+    let effective_unknowns = effective_unknowns(view, normal);
+    let by_rotations =
+        share * determined_by_rotations(view, normal, layout, effective_unknowns, &rotation, total);
+    let in_sample = share * effective_unknowns;
     let variance = {
         let between = position.between(1.0) + rotation.between(1.0);
         let whole = position.whitened + rotation.whitened;
@@ -248,35 +251,35 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
         .all(|(part, sums)| sums.components == 0 || part.against_stated() == Some(std::cmp::Ordering::Equal));
     let variance = if explained { 1.0 } else { variance };
     let numbers = position.groups + rotation.groups;
-    Remainder { position: parts[0], rotation: parts[1], variance, told, numbers }
+    Remainder { position: parts[0], rotation: parts[1], variance, effective_unknowns, numbers }
 }
 
-/// How many unknowns the measurements tell beside what is believed: theory.md §6 (34).
-fn told(view: &View<'_>, normal: &Normal) -> f64 {
+/// Effective number of unknowns that the measurements determine beside the prior, `n - tr((N + wΛ)⁻¹ wΛ)`: theory.md §6 (34).
+fn effective_unknowns(view: &View<'_>, normal: &Normal) -> f64 {
     let n = normal.dim();
-    if !view.belief.is_fitted {
+    if !view.prior.is_fitted {
         return n as f64;
     }
     let variance = 2.0 * normal.cost / (normal.residuals as f64 - n as f64).max(1.0);
-    let Some(factor) = factor(&normal.gram, n, view.belief, variance) else { return n as f64 };
-    n as f64 - variance * linalg::trace_of_quotient(&factor, &view.belief.normal.gram, n)
+    let Some(factor) = factor(&normal.gram, n, view.prior, variance) else { return n as f64 };
+    n as f64 - variance * linalg::trace_of_quotient(&factor, &view.prior.normal.gram, n)
 }
 
-/// How many of them rotations tell.
-fn told_by_rotations(
+/// Effective number of unknowns that the rotation rows determine, `tr(N⁻¹ N_R)`: theory.md §6 (34). Of many rows it is in proportion.
+fn determined_by_rotations(
     view: &View<'_>,
     normal: &Normal,
     layout: &Layout,
-    told: f64,
-    rotation: &Sums,
+    determined: f64,
+    rotation: &ResidualSums,
     total: f64,
 ) -> f64 {
     let turned = 3.0 * view.data.frames(view.rows).iter().filter(|&&is_frame| is_frame).count() as f64;
     if rotation.components == 0 {
         return 0.0;
     }
-    let in_proportion =
-        turned + (told - turned).max(0.0) * (rotation.groups as f64 - turned) / (total - turned).max(1.0);
+    let in_proportion = turned
+        + (determined - turned).max(0.0) * (rotation.groups as f64 - turned) / (total - turned).max(1.0);
     if view.rows.len() > FEW {
         return in_proportion;
     }
@@ -285,8 +288,8 @@ fn told_by_rotations(
     unmeasured.noise.position_m = UNMEASURED_M;
     let stated = view.rows.iter().any(|&row| view.data.observations[row as usize].sigma_position_m.is_some());
     let part = unmeasured.problem(view.rows.to_vec()).normal(view.estimate);
-    match factor(&normal.gram, n, view.belief, if view.belief.is_fitted { 1.0 } else { 0.0 }) {
-        Some(factor) if !stated => linalg::trace_of_quotient(&factor, &part.gram, n).min(told),
+    match factor(&normal.gram, n, view.prior, if view.prior.is_fitted { 1.0 } else { 0.0 }) {
+        Some(factor) if !stated => linalg::trace_of_quotient(&factor, &part.gram, n).min(determined),
         _ => in_proportion,
     }
 }

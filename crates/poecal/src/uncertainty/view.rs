@@ -1,4 +1,4 @@
-//! A finished fit as the judging of it sees it.
+//! A finished fit, as input of its uncertainty.
 
 use std::cmp::Ordering;
 
@@ -10,18 +10,18 @@ use crate::problem::{Layout, Prior, Problem};
 use crate::robot::Robot;
 use crate::solve::Normal;
 
-/// What is believed of the unknowns, whatever the measurements say: information and direction of descent at the optimum, in the units
-/// of the unknowns and not of the noise.
+/// Prior of the unknowns: its information and gradient at the optimum, in the units of the scaled unknowns (metres), not whitened. The Λ
+/// of theory.md §6 (27a).
 #[derive(Clone, Debug)]
-pub struct Belief {
-    /// Upper triangle of the information, and the gradient.
+pub struct PriorInformation {
+    /// Upper triangle of the information, 1/m², and the gradient.
     pub normal: Normal,
-    /// Whether the fit holds it too; if not, it only bounds what the data leave open.
+    /// Whether the fit contained the prior; if not, it only bounds undetermined directions.
     pub is_fitted: bool,
 }
 
-impl Belief {
-    /// Of these unknowns of an estimate: a prior's, or that each unknown is what a drawing leaves of it.
+impl PriorInformation {
+    /// The information of a prior at an estimate (theory.md §6 (27a)); without a prior, `I/(0.03 L)²` (theory.md §9, below (39)).
     #[must_use]
     pub fn new(prior: Option<&Prior>, estimate: &Estimate, layout: &Layout, length_m: f64) -> Self {
         let n = layout.dim();
@@ -33,20 +33,20 @@ impl Belief {
                 normal.gram.iter_mut().step_by(n + 1).for_each(|value| *value = information);
             }
         }
-        Belief { normal, is_fitted: prior.is_some() }
+        PriorInformation { normal, is_fitted: prior.is_some() }
     }
 
-    /// The information of measurements with that of the belief, upper triangle, where whitened residuals have this variance.
+    /// Upper triangle of `N + s²Λ`, the H of theory.md §9 (39), from that of N and the variance s² of the whitened residuals.
     #[must_use]
     pub fn with(&self, gram: &[f64], variance: f64) -> Vec<f64> {
-        gram.iter().zip(&self.normal.gram).map(|(seen, believed)| seen + variance * believed).collect()
+        gram.iter().zip(&self.normal.gram).map(|(measured, prior)| measured + variance * prior).collect()
     }
 }
 
 /// Data, rows, unknowns and optimum of a fit.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// The robot as delivered: names of joints.
+    /// The nominal robot: names of joints.
     pub robot: &'a Robot,
     /// The measurements.
     pub data: &'a Dataset,
@@ -58,15 +58,15 @@ pub struct View<'a> {
     pub free: &'a [Parameter],
     /// The noise by which residuals were whitened.
     pub noise: Noise,
-    /// Whether that noise is stated, of positions and of rotations, and not what the residuals show.
+    /// Whether that noise is stated rather than estimated, of positions and of rotations.
     pub noise_is_stated: [bool; 2],
-    /// What is believed of the unknowns beside the measurements.
-    pub belief: &'a Belief,
+    /// Prior of the unknowns.
+    pub prior: &'a PriorInformation,
     /// Variance of the whitened residuals.
     pub variance: f64,
     /// Metres that a radian counts.
     pub length_m: f64,
-    /// Where the fit ended.
+    /// The optimum.
     pub estimate: &'a Estimate,
 }
 
@@ -76,12 +76,12 @@ impl<'a> View<'a> {
         Problem::new(self.data, self.packed, rows, self.free.to_vec(), self.noise, self.length_m)
     }
 
-    /// Errors of an estimate.
+    /// Errors of an estimate, metres and radians in the device's axes.
     pub(super) fn errors(&self, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
         row_errors(self.data, self.packed, rows, estimate)
     }
 
-    /// Rows with what was seen in them.
+    /// Rows with their targets and stations.
     pub(super) fn with_sights(&self, rows: &[u32]) -> Vec<(usize, Sight)> {
         rows.iter().map(|&row| (row as usize, Sight::from(&self.data.observations[row as usize]))).collect()
     }
@@ -91,7 +91,7 @@ impl<'a> View<'a> {
         self.packed.joint_values(row as usize)
     }
 
-    /// How far each joint moves in some rows.
+    /// Sampled range of each joint in some rows, radians or metres.
     pub(super) fn spans(&self, rows: &[u32]) -> Vec<f64> {
         let ranges = ranges(self.robot.joints.len(), self.packed, rows);
         ranges.into_iter().map(|(least, most)| most - least).collect()
@@ -104,7 +104,7 @@ impl<'a> View<'a> {
         sorted
     }
 
-    /// Which of two rows comes first by a joint's value, and then by number.
+    /// Order of two rows by a joint's value, and then by number.
     pub(super) fn by_joint(&self, joint: usize, a: u32, b: u32) -> Ordering {
         self.values(a)[joint].total_cmp(&self.values(b)[joint]).then(a.cmp(&b))
     }

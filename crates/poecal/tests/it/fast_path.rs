@@ -9,7 +9,7 @@ use poecal::estimate::{Estimate, Packed, delivered, row_errors};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise};
 use poecal::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis, TargetFrame, TargetPlace};
-use poecal::problem::{Level, Problem, Refit, levels};
+use poecal::problem::{Problem, Refit, SimdLevel, simd_levels};
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulation, elbow, gantry, random, random_chain, scara, seven_axis};
 use poecal::solve::{LeastSquares, Normal, Options, minimize};
@@ -127,7 +127,7 @@ impl Session {
         Session { data, packed, estimate, free, weights }
     }
 
-    fn problem(&self, case: &Case, level: Level) -> Problem<'_> {
+    fn problem(&self, case: &Case, level: SimdLevel) -> Problem<'_> {
         let rows = self.data.all_rows();
         let problem = Problem::new(&self.data, &self.packed, rows, self.free.clone(), NOISE, LENGTH_M)
             .with_level(level);
@@ -190,8 +190,8 @@ fn both_paths_agree() {
         for kind in [Kind::Pose, Kind::Point, Kind::Mixed] {
             for case in some(cases()).iter().filter(|case| robot.joints.len() < 20 || case.rows < 100) {
                 let session = Session::new(&robot, kind, case);
-                let general = session.problem(case, Level::Baseline).normal_row_by_row(&session.estimate);
-                for level in levels() {
+                let general = session.problem(case, SimdLevel::Baseline).normal_row_by_row(&session.estimate);
+                for level in simd_levels() {
                     let problem = session.problem(case, level);
                     let fast = problem.normal(&session.estimate);
                     let difference = difference(&fast, &general);
@@ -217,7 +217,7 @@ fn sums_do_not_depend_on_threads() {
     let case = many();
     let session = Session::new(&elbow(), Kind::Mixed, &case);
     let of = |threads: usize| {
-        let problem = session.problem(&case, Level::best());
+        let problem = session.problem(&case, SimdLevel::best());
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| problem.normal(&session.estimate))
     };
@@ -282,7 +282,7 @@ fn kernels_serve_the_kinds_that_they_know() {
                 Parameter::OtherScrew(_) | Parameter::JointOffset(_) => false,
             };
             session.free = vec![parameter];
-            let problem = session.problem(&Case::default(), Level::Baseline);
+            let problem = session.problem(&Case::default(), SimdLevel::Baseline);
             println!("{seen:?} by {parameter:?}: {served}");
             assert_eq!(problem.is_served(&session.estimate), served);
             // What is served is not handed on to the general path: that would be a failed assertion within the library.

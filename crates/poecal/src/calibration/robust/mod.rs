@@ -24,7 +24,7 @@ use crate::measurement::Noise;
 use crate::parameters::Parameter;
 use crate::solve;
 use crate::start::{Registration, register_robustly};
-use crate::uncertainty::{Belief, View, leave_clusters_out};
+use crate::uncertainty::{PriorInformation, View, leave_clusters_out};
 use rows::{Bounds, Judged, is_judgeable, judge_rows};
 use scale::{Parts, Scale, parts, settle};
 
@@ -104,7 +104,8 @@ impl RobustFit {
     /// Mean bounded loss of the rows of each cluster of configurations by the fit of the others, in units of this noise.
     fn left_out_loss(&self, task: &Task<'_>, noise: Noise) -> Option<f64> {
         let Fitted { estimate, layout, noise: own, .. } = &self.fitted;
-        let belief = Belief::new(task.prior.map(|(prior, _)| prior), estimate, layout, task.length_m);
+        let prior =
+            PriorInformation::new(task.prior.map(|(prior, _)| prior), estimate, layout, task.length_m);
         let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();
         let weights: Vec<f64> = self.judged.rows.iter().map(|row| row.weight).collect();
         let view = View {
@@ -115,7 +116,7 @@ impl RobustFit {
             free: &free,
             noise: *own,
             noise_is_stated: [false; 2],
-            belief: &belief,
+            prior: &prior,
             variance: 1.0,
             length_m: task.length_m,
             estimate,

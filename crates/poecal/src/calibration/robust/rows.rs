@@ -5,7 +5,7 @@ use super::{Configurations, Loss, Parts, Scale, parts};
 use crate::analysis::influence;
 use crate::calibration::fit::Task;
 use crate::calibration::found::Fitted;
-use crate::calibration::{SetAccuracy, measurements_words};
+use crate::calibration::SetAccuracy;
 use crate::distributions;
 use crate::measurement::Dataset;
 
