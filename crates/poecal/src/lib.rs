@@ -51,44 +51,45 @@
 //! `ARCHITECTURE.md`. Modules without a place in this list are there for the program, the Python package and the tests, and change
 //! without notice.
 
-#[doc(hidden)]
+// Hidden from readers only: for lints they are as public as they are.
+#[cfg_attr(doc, doc(hidden))]
 pub mod analysis;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod calibration;
 mod distributions;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod error;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod estimate;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod forensics;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod gauge;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod io;
 mod lanes;
 pub mod lie;
 mod linalg;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod measurement;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod offsets;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod parameters;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod problem;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod report;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod robot;
 pub mod simulate;
 pub mod solve;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod start;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod text;
 mod threads;
-#[doc(hidden)]
+#[cfg_attr(doc, doc(hidden))]
 pub mod uncertainty;
 
 pub use analysis::{Direction, Foresight, Identifiability, Session, identify};

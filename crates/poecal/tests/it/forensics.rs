@@ -35,7 +35,7 @@ fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
 
 /// Root mean square position error of the nominal robot with device and targets found, metres.
 fn registered_m(session: &Session, data: &Dataset) -> f64 {
-    let packed = Packed::of(&session.robot, &data);
+    let packed = Packed::of(&session.robot, data);
     let rows: Vec<u32> = data.all_rows();
     let registration = Registration {
         data,

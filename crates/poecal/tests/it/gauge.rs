@@ -40,7 +40,7 @@ fn calibrated(made: &Simulated) -> Calibration {
 }
 
 fn packed(robot: &Robot, data: &Dataset) -> Packed {
-    Packed::of(robot, &data)
+    Packed::of(robot, data)
 }
 
 /// Largest distance and angle between predictions of two estimates.

@@ -53,7 +53,7 @@ fn fit(robot: &Robot, data: &Dataset, robust: Robust) -> Calibration {
 
 /// Root mean square position error of an estimate, metres.
 fn rms_m(robot: &Robot, data: &Dataset, rows: &[u32], estimate: &Estimate) -> f64 {
-    let packed = Packed::of(robot, &data);
+    let packed = Packed::of(robot, data);
     let errors = row_errors(data, &packed, rows, estimate);
     (errors.iter().map(|e| e.position_m.norm_squared()).sum::<f64>() / errors.len() as f64).sqrt()
 }
