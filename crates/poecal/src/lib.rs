@@ -51,6 +51,8 @@
 //! `ARCHITECTURE.md`. Modules without a place in this list are there for the program, the Python package and the tests, and change
 //! without notice.
 
+#![forbid(unsafe_code)]
+
 // Hidden from readers only: for lints they are as public as they are.
 #[cfg_attr(doc, doc(hidden))]
 pub mod analysis;

@@ -1,16 +1,19 @@
 //! Jacobian and residuals of single rows, instead of sums over rows.
 
+use pulp::Simd;
+
 use super::influence::NUMBERS;
 use super::kernel::add_rows;
 use super::plan::Arm;
-use super::vector::{Vector, WIDTH, Wide};
+use super::vector::{Wide, parts};
 use super::work::WORK;
 
 /// Writes the whitened columns of the rows of one block to their places in `jacobian` (translation columns, then rotation columns), and
 /// their whitened residuals: three numbers of the position, three of the rotation. Numbers that a column does not have stay unchanged.
 /// The plan must have no common ratio, so that the rotation rows exist.
 #[inline(always)]
-pub(super) fn whitened_columns<V: Vector>(
+pub(super) fn whitened_columns<S: Simd>(
+    simd: S,
     arm: &Arm<'_>,
     block: &[Wide],
     places: &[usize],
@@ -20,8 +23,8 @@ pub(super) fn whitened_columns<V: Vector>(
     let plan = arm.plan;
     let mut work = WORK.take();
     work.begin(arm, true);
-    for part in 0..WIDTH / V::LANES {
-        let found = add_rows::<V, true>(arm, block, &mut work, 0, part);
+    for part in parts(simd) {
+        let found = add_rows::<S, true>(simd, arm, block, &mut work, 0, part);
         for (k, &value) in found.iter().flat_map(|part| &part.0).enumerate() {
             value.store(&mut residual[k], part);
         }

@@ -1,6 +1,8 @@
 //! Cholesky factor of a small dense matrix and solutions with it. Rows are padded to whole wide numbers, so that no loop has a remainder.
 
-use super::vector::{Vector, WIDTH, Wide};
+use pulp::Simd;
+
+use super::vector::{Lanes, WIDTH, Wide, parts};
 
 /// The factor `R` of `RᵀR`: upper, row after row. Elements on and below the diagonal are arbitrary.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +34,7 @@ const PANEL: usize = 4;
 /// Factor of the matrix given by its upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that is not positive
 /// definite.
 #[inline(always)]
-pub(super) fn cholesky<V: Vector>(upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
+pub(super) fn cholesky<S: Simd>(simd: S, upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
     let stride = n.div_ceil(WIDTH);
     let mut rows = vec![Wide::ZERO; n.next_multiple_of(PANEL) * stride];
     let mut inverses = Vec::with_capacity(n);
@@ -45,7 +47,7 @@ pub(super) fn cholesky<V: Vector>(upper: &[f64], n: usize, damping: f64) -> Opti
                 wide.0[..source.len()].copy_from_slice(source);
             }
         }
-        subtract_all::<V>(panel, above, stride, i);
+        subtract_all(simd, panel, above, stride, i);
         for k in 0..PANEL.min(n - i) {
             let (done, later) = panel.split_at_mut((k + 1) * stride);
             let row = &mut done[k * stride + block..];
@@ -57,12 +59,12 @@ pub(super) fn cholesky<V: Vector>(upper: &[f64], n: usize, damping: f64) -> Opti
             let inverse = 1.0 / pivot.sqrt();
             inverses.push(inverse);
             for wide in row.iter_mut() {
-                for part in 0..WIDTH / V::LANES {
-                    (V::load(wide, part) * V::splat(inverse)).store(wide, part);
+                for part in parts(simd) {
+                    (Lanes::load(simd, wide, part) * Lanes::splat(simd, inverse)).store(wide, part);
                 }
             }
             for (other, later) in later.chunks_exact_mut(stride).enumerate() {
-                subtract::<V>(&mut later[block..], row, row[0].0[lane + 1 + other]);
+                subtract(simd, &mut later[block..], row, row[0].0[lane + 1 + other]);
             }
         }
     }
@@ -71,15 +73,16 @@ pub(super) fn cholesky<V: Vector>(upper: &[f64], n: usize, damping: f64) -> Opti
 
 /// Eliminates the finished rows `above` from the rows of a panel, the first of which is row `i`.
 #[inline(always)]
-fn subtract_all<V: Vector>(panel: &mut [Wide], above: &[Wide], stride: usize, i: usize) {
+fn subtract_all<S: Simd>(simd: S, panel: &mut [Wide], above: &[Wide], stride: usize, i: usize) {
     let (first, lane) = (i / WIDTH, i % WIDTH);
     for block in first..stride {
-        for part in 0..WIDTH / V::LANES {
-            let mut values: [V; PANEL] = std::array::from_fn(|k| V::load(&panel[k * stride + block], part));
+        for part in parts(simd) {
+            let mut values: [Lanes<S>; PANEL] =
+                std::array::from_fn(|k| Lanes::load(simd, &panel[k * stride + block], part));
             for row in above.chunks_exact(stride) {
-                let other = V::load(&row[block], part);
+                let other = Lanes::load(simd, &row[block], part);
                 for (value, &factor) in values.iter_mut().zip(&row[first].0[lane..lane + PANEL]) {
-                    *value = other.times_from(V::splat(factor), *value);
+                    *value = other.times_from(Lanes::splat(simd, factor), *value);
                 }
             }
             for (k, value) in values.into_iter().enumerate() {
@@ -91,18 +94,20 @@ fn subtract_all<V: Vector>(panel: &mut [Wide], above: &[Wide], stride: usize, i:
 
 /// `row -= factor · other`.
 #[inline(always)]
-fn subtract<V: Vector>(row: &mut [Wide], other: &[Wide], factor: f64) {
-    let factor = V::splat(factor);
+fn subtract<S: Simd>(simd: S, row: &mut [Wide], other: &[Wide], factor: f64) {
+    let factor = Lanes::splat(simd, factor);
     for (wide, other) in row.iter_mut().zip(other) {
-        for part in 0..WIDTH / V::LANES {
-            V::load(other, part).times_from(factor, V::load(wide, part)).store(wide, part);
+        for part in parts(simd) {
+            Lanes::load(simd, other, part)
+                .times_from(factor, Lanes::load(simd, wide, part))
+                .store(wide, part);
         }
     }
 }
 
 /// Solves `Rᵀ x = b` in place.
 #[inline(always)]
-fn lower_solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
+fn lower_solve<S: Simd>(simd: S, factor: &Factor, x: &mut [f64]) {
     let stride = factor.n.div_ceil(WIDTH);
     let mut wide = vec![Wide::ZERO; stride];
     for (wide, x) in wide.iter_mut().zip(x.chunks(WIDTH)) {
@@ -111,22 +116,22 @@ fn lower_solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
     for (i, row) in factor.rows.chunks_exact(stride.max(1)).take(factor.n).enumerate() {
         let first = i / WIDTH;
         x[i] = wide[first].0[i % WIDTH] * factor.inverses[i];
-        subtract::<V>(&mut wide[first..], &row[first..], x[i]);
+        subtract(simd, &mut wide[first..], &row[first..], x[i]);
     }
 }
 
 /// Solves `RᵀR x = b` in place.
 #[inline(always)]
-pub(super) fn solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
-    lower_solve::<V>(factor, x);
+pub(super) fn solve<S: Simd>(simd: S, factor: &Factor, x: &mut [f64]) {
+    lower_solve(simd, factor, x);
     let stride = factor.n.div_ceil(WIDTH);
     let mut found = vec![Wide::ZERO; stride];
     for (i, row) in factor.rows.chunks_exact(stride.max(1)).take(factor.n).enumerate().rev() {
         let (block, lane) = (i / WIDTH, i % WIDTH);
-        let mut sum = V::splat(0.0);
+        let mut sum = Lanes::splat(simd, 0.0);
         for (row, found) in row[block + 1..].iter().zip(&found[block + 1..]) {
-            for part in 0..WIDTH / V::LANES {
-                sum = V::load(row, part).times_plus(V::load(found, part), sum);
+            for part in parts(simd) {
+                sum = Lanes::load(simd, row, part).times_plus(Lanes::load(simd, found, part), sum);
             }
         }
         // A vector that has just been written in part takes long to be loaded.
@@ -138,7 +143,7 @@ pub(super) fn solve<V: Vector>(factor: &Factor, x: &mut [f64]) {
 
 /// The inverse (row-major) of the matrix that was factorised: `WᵀW` with `W = R⁻ᵀ`, of which row i ends with column i.
 #[inline(always)]
-pub(super) fn inverse<V: Vector>(factor: &Factor) -> Vec<f64> {
+pub(super) fn inverse<S: Simd>(simd: S, factor: &Factor) -> Vec<f64> {
     let n = factor.n;
     let stride = n.div_ceil(WIDTH).max(1);
     let mut lower = vec![Wide::ZERO; n * stride];
@@ -146,14 +151,14 @@ pub(super) fn inverse<V: Vector>(factor: &Factor) -> Vec<f64> {
         let (done, own) = lower.split_at_mut(i * stride);
         own[i / WIDTH].0[i % WIDTH] = 1.0;
         for (block, own) in own.iter_mut().enumerate().take(i / WIDTH + 1) {
-            for part in 0..WIDTH / V::LANES {
-                let mut sum = V::load(own, part);
+            for part in parts(simd) {
+                let mut sum = Lanes::load(simd, own, part);
                 let both = done.chunks_exact(stride).zip(factor.rows.chunks_exact(stride));
                 for (row, factor) in both.skip(block * WIDTH) {
-                    let value = V::splat(factor[i / WIDTH].0[i % WIDTH]);
-                    sum = V::load(&row[block], part).times_from(value, sum);
+                    let value = Lanes::splat(simd, factor[i / WIDTH].0[i % WIDTH]);
+                    sum = Lanes::load(simd, &row[block], part).times_from(value, sum);
                 }
-                (sum * V::splat(pivot)).store(own, part);
+                (sum * Lanes::splat(simd, pivot)).store(own, part);
             }
         }
     }
@@ -161,11 +166,11 @@ pub(super) fn inverse<V: Vector>(factor: &Factor) -> Vec<f64> {
     for i in 0..n {
         for block in i / WIDTH..stride {
             let mut wide = Wide::ZERO;
-            for part in 0..WIDTH / V::LANES {
-                let mut sum = V::splat(0.0);
+            for part in parts(simd) {
+                let mut sum = Lanes::splat(simd, 0.0);
                 for row in lower.chunks_exact(stride).skip(block * WIDTH) {
-                    let value = V::splat(row[i / WIDTH].0[i % WIDTH]);
-                    sum = V::load(&row[block], part).times_plus(value, sum);
+                    let value = Lanes::splat(simd, row[i / WIDTH].0[i % WIDTH]);
+                    sum = Lanes::load(simd, &row[block], part).times_plus(value, sum);
                 }
                 sum.store(&mut wide, part);
             }

@@ -1,6 +1,8 @@
 //! Sums of products of columns in register tiles: most of the time of a fit.
 
-use super::vector::{Vector, WIDTH, Wide};
+use pulp::Simd;
+
+use super::vector::{Lanes, WIDTH, Wide, parts};
 
 /// Columns of one side of a tile: nine sums in registers hide the latency of their additions, and six loads feed nine products.
 pub(super) const TILE: usize = 3;
@@ -14,7 +16,8 @@ pub(super) fn sums_len(columns: usize, lanes: usize) -> usize {
 /// Adds the products of each pair of columns, summed over rows but not over lanes. A column is `stride` wide numbers long, of which
 /// the first `used` count; `columns` is a multiple of [`TILE`].
 #[inline(always)]
-pub(super) fn add_products<V: Vector>(
+pub(super) fn add_products<S: Simd>(
+    simd: S,
     jacobian: &[Wide],
     stride: usize,
     used: usize,
@@ -24,9 +27,9 @@ pub(super) fn add_products<V: Vector>(
     let mut at = 0;
     for i in (0..columns).step_by(TILE) {
         for j in (i..columns).step_by(TILE) {
-            let tile = tile::<V>(&jacobian[i * stride..], &jacobian[j * stride..], stride, used);
+            let tile = tile(simd, &jacobian[i * stride..], &jacobian[j * stride..], stride, used);
             for sum in tile {
-                sum.add_to(&mut sums[at * V::LANES / WIDTH], at % (WIDTH / V::LANES));
+                sum.add_to(&mut sums[at * S::F64_LANES / WIDTH], at % (WIDTH / S::F64_LANES));
                 at += 1;
             }
         }
@@ -35,14 +38,28 @@ pub(super) fn add_products<V: Vector>(
 
 /// The nine products of two groups of three columns.
 #[inline(always)]
-fn tile<V: Vector>(left: &[Wide], right: &[Wide], stride: usize, used: usize) -> [V; TILE * TILE] {
+fn tile<S: Simd>(
+    simd: S,
+    left: &[Wide],
+    right: &[Wide],
+    stride: usize,
+    used: usize,
+) -> [Lanes<S>; TILE * TILE] {
     let (a, b, c) = (&left[..used], &left[stride..stride + used], &left[2 * stride..2 * stride + used]);
     let (d, e, f) = (&right[..used], &right[stride..stride + used], &right[2 * stride..2 * stride + used]);
-    let mut sums = [V::splat(0.0); TILE * TILE];
+    let mut sums = [Lanes::splat(simd, 0.0); TILE * TILE];
     for k in 0..used {
-        for part in 0..WIDTH / V::LANES {
-            let left = [V::load(&a[k], part), V::load(&b[k], part), V::load(&c[k], part)];
-            let right = [V::load(&d[k], part), V::load(&e[k], part), V::load(&f[k], part)];
+        for part in parts(simd) {
+            let left = [
+                Lanes::load(simd, &a[k], part),
+                Lanes::load(simd, &b[k], part),
+                Lanes::load(simd, &c[k], part),
+            ];
+            let right = [
+                Lanes::load(simd, &d[k], part),
+                Lanes::load(simd, &e[k], part),
+                Lanes::load(simd, &f[k], part),
+            ];
             for row in 0..TILE {
                 for column in 0..TILE {
                     let sum = &mut sums[row * TILE + column];

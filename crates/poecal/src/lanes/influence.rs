@@ -1,7 +1,9 @@
 //! Influence of several rows: their blocks of the hat matrix, and their studentised residuals (theory.md §6 (34d) and (34e)).
 
+use pulp::Simd;
+
 use super::dense::Factor;
-use super::vector::{Vector, WIDTH, Wide};
+use super::vector::{Lanes, Wide, parts};
 
 /// Length of a row's residual: three numbers of a position, three of a rotation.
 pub(crate) const NUMBERS: usize = 6;
@@ -9,7 +11,8 @@ pub(crate) const NUMBERS: usize = 6;
 /// For each of several rows the trace of `H = J N⁻¹ Jᵀ`, and `eᵀ ((1 + least) I - w H)⁻¹ (I + (1 - w) H)⁻¹ e`: theory.md §6 (34d) and
 /// (34e). The Jacobian's columns follow one another and are overwritten; rotation rows of the first `shifts` of them are zero.
 #[inline(always)]
-pub(super) fn influences<V: Vector>(
+pub(super) fn influences<S: Simd>(
+    simd: S,
     factor: &Factor,
     shifts: usize,
     jacobian: &mut [[Wide; NUMBERS]],
@@ -19,36 +22,36 @@ pub(super) fn influences<V: Vector>(
 ) -> [Wide; 2] {
     let mut found = [Wide::ZERO; 2];
     let jacobian = &mut jacobian[..factor.n];
-    for part in 0..WIDTH / V::LANES {
+    for part in parts(simd) {
         for i in 0..factor.n {
             let (done, later) = jacobian.split_at_mut(i);
-            let mut own: [V; NUMBERS] = std::array::from_fn(|k| V::load(&later[0][k], part));
+            let mut own: [Lanes<S>; NUMBERS] = std::array::from_fn(|k| Lanes::load(simd, &later[0][k], part));
             let (moved, turned) = done.split_at(shifts.min(i));
             let mut above = factor.column(i);
             for (column, value) in moved.iter().zip(&mut above) {
-                let value = V::splat(value);
+                let value = Lanes::splat(simd, value);
                 own = std::array::from_fn(|k| match own[k] {
-                    own if k < NUMBERS / 2 => V::load(&column[k], part).times_from(value, own),
+                    own if k < NUMBERS / 2 => Lanes::load(simd, &column[k], part).times_from(value, own),
                     own => own,
                 });
             }
             for (column, value) in turned.iter().zip(above) {
-                let value = V::splat(value);
-                own = std::array::from_fn(|k| V::load(&column[k], part).times_from(value, own[k]));
+                let value = Lanes::splat(simd, value);
+                own = std::array::from_fn(|k| Lanes::load(simd, &column[k], part).times_from(value, own[k]));
             }
-            let inverse = V::splat(factor.inverses[i]);
+            let inverse = Lanes::splat(simd, factor.inverses[i]);
             for (own, wide) in own.into_iter().zip(&mut later[0]) {
                 (own * inverse).store(wide, part);
             }
         }
-        let hat = squared::<V>(jacobian, part);
+        let hat = squared(simd, jacobian, part);
         let trace = (1..NUMBERS).fold(hat[0][0], |sum, k| sum + hat[k][k]);
         trace.store(&mut found[0], part);
-        let weight = V::load(weight, part);
-        let whole = V::splat(1.0);
-        let residual: [V; NUMBERS] = std::array::from_fn(|k| V::load(&residual[k], part));
-        let left_out = solved(&hat, -weight, V::splat(1.0 + least), residual);
-        let judged = solved(&hat, whole - weight, whole, left_out);
+        let weight = Lanes::load(simd, weight, part);
+        let whole = Lanes::splat(simd, 1.0);
+        let residual: [Lanes<S>; NUMBERS] = std::array::from_fn(|k| Lanes::load(simd, &residual[k], part));
+        let left_out = solved(simd, &hat, -weight, Lanes::splat(simd, 1.0 + least), residual);
+        let judged = solved(simd, &hat, whole - weight, whole, left_out);
         let sum = (1..NUMBERS).fold(residual[0] * judged[0], |sum, k| residual[k].times_plus(judged[k], sum));
         sum.store(&mut found[1], part);
     }
@@ -57,10 +60,10 @@ pub(super) fn influences<V: Vector>(
 
 /// `Σ yᵢ yᵢᵀ` of these columns, its upper triangle.
 #[inline(always)]
-fn squared<V: Vector>(columns: &[[Wide; NUMBERS]], part: usize) -> [[V; NUMBERS]; NUMBERS] {
-    let mut sum = [[V::splat(0.0); NUMBERS]; NUMBERS];
+fn squared<S: Simd>(simd: S, columns: &[[Wide; NUMBERS]], part: usize) -> [[Lanes<S>; NUMBERS]; NUMBERS] {
+    let mut sum = [[Lanes::splat(simd, 0.0); NUMBERS]; NUMBERS];
     for column in columns {
-        let own: [V; NUMBERS] = std::array::from_fn(|k| V::load(&column[k], part));
+        let own: [Lanes<S>; NUMBERS] = std::array::from_fn(|k| Lanes::load(simd, &column[k], part));
         for (k, row) in sum.iter_mut().enumerate() {
             *row = std::array::from_fn(|l| if l < k { row[l] } else { own[k].times_plus(own[l], row[l]) });
         }
@@ -70,12 +73,13 @@ fn squared<V: Vector>(columns: &[[Wide; NUMBERS]], part: usize) -> [[V; NUMBERS]
 
 /// Solution of `(diagonal I + share H) x = b`. A pivot that is not positive, by rounding, counts as infinite.
 #[inline(always)]
-fn solved<V: Vector>(
-    hat: &[[V; NUMBERS]; NUMBERS],
-    share: V,
-    diagonal: V,
-    mut x: [V; NUMBERS],
-) -> [V; NUMBERS] {
+fn solved<S: Simd>(
+    simd: S,
+    hat: &[[Lanes<S>; NUMBERS]; NUMBERS],
+    share: Lanes<S>,
+    diagonal: Lanes<S>,
+    mut x: [Lanes<S>; NUMBERS],
+) -> [Lanes<S>; NUMBERS] {
     // No `map` of arrays: its closure would not be compiled for the vector instructions.
     let mut rows = *hat;
     for (k, row) in rows.iter_mut().enumerate() {
@@ -86,7 +90,7 @@ fn solved<V: Vector>(
     }
     let mut inverses = [diagonal; NUMBERS];
     for k in 0..NUMBERS {
-        inverses[k] = V::splat(1.0).over(rows[k][k], 0.0);
+        inverses[k] = Lanes::splat(simd, 1.0).over(rows[k][k], 0.0);
         let own = rows[k];
         for l in k + 1..NUMBERS {
             let factor = own[l] * inverses[k];

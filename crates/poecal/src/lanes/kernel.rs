@@ -2,46 +2,48 @@
 //!
 //! One source for every width of vector: as many rows as a vector has lanes are computed at a time, in blocks of [`WIDTH`].
 
+use pulp::Simd;
+
 use super::frame::{Frame, moved, turned};
 use super::gram::{TILE, add_products};
 use super::plan::{Arm, FixedMotion, Plan};
 use super::totals::Totals;
 use super::turn::Turn;
-use super::vector::{Vector, Vectors, WIDTH, Wide};
+use super::vector::{Lanes, Vectors, WIDTH, Wide, parts};
 use super::work::{Axis, WORK, Work};
 
 /// Sums over all rows of `blocks`.
 #[inline(always)]
-pub(super) fn sum_products<V: Vector>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
-    sum::<V, true>(arm, blocks)
+pub(super) fn sum_products<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    sum::<S, true>(simd, arm, blocks)
 }
 
 /// The same without products of columns.
 #[inline(always)]
-pub(super) fn sum_gradient<V: Vector>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
-    sum::<V, false>(arm, blocks)
+pub(super) fn sum_gradient<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+    sum::<S, false>(simd, arm, blocks)
 }
 
 /// Sums over all rows of `blocks`; products of columns only if `FULL`.
 #[inline(always)]
-fn sum<V: Vector, const FULL: bool>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
+fn sum<S: Simd, const FULL: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
     let plan = arm.plan;
     // A pass does not call another, so the room is free; if it were not, there would be another.
     let mut own = WORK.take();
     let work = &mut own;
     work.begin(arm, FULL);
     if FULL {
-        work.begin_products(plan, V::LANES);
+        work.begin_products(plan, S::F64_LANES);
     }
     let len = plan.block_len();
     for blocks in blocks.chunks(len * work.waiting) {
         for (filled, block) in blocks.chunks_exact(len).enumerate() {
-            for part in 0..WIDTH / V::LANES {
-                add_rows::<V, FULL>(arm, block, work, filled, part);
+            for part in parts(simd) {
+                add_rows::<S, FULL>(simd, arm, block, work, filled, part);
             }
         }
         if FULL {
-            multiply::<V>(plan, work, blocks.len() / len);
+            multiply(simd, plan, work, blocks.len() / len);
         }
     }
     for (joint, axis) in plan.joints.iter().zip(&work.axes) {
@@ -53,8 +55,8 @@ fn sum<V: Vector, const FULL: bool>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
     }
     let gradient = work.shift_gradient.iter().chain(&work.turn_gradient);
     let totals = Totals {
-        products: add_up::<V>(&work.products),
-        turned: add_up::<V>(&work.turned_products),
+        products: add_up(simd, &work.products),
+        turned: add_up(simd, &work.turned_products),
         gradient: gradient.map(total).collect(),
         cost: 0.5 * total(&work.square),
     };
@@ -64,25 +66,25 @@ fn sum<V: Vector, const FULL: bool>(arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
 
 /// Adds the products of the waiting columns.
 #[inline(always)]
-fn multiply<V: Vector>(plan: &Plan, work: &mut Work, filled: usize) {
+fn multiply<S: Simd>(simd: S, plan: &Plan, work: &mut Work, filled: usize) {
     let columns = plan.columns().next_multiple_of(TILE);
     let stride = 3 * work.waiting;
-    add_products::<V>(work.jacobian.as_flattened(), stride, 3 * filled, columns, &mut work.products);
+    add_products(simd, work.jacobian.as_flattened(), stride, 3 * filled, columns, &mut work.products);
     let rows = work.turned_rows;
     if rows > 0 {
         let turns = plan.turns.len().next_multiple_of(TILE);
         let (stride, used) = (rows * work.waiting, rows * filled);
-        add_products::<V>(&work.turned, stride, used, turns, &mut work.turned_products);
+        add_products(simd, &work.turned, stride, used, turns, &mut work.turned_products);
     }
 }
 
 /// Sums over the lanes of each vector.
 #[inline(always)]
-fn add_up<V: Vector>(sums: &[Wide]) -> Vec<f64> {
-    let mut out = Vec::with_capacity(sums.len() * (WIDTH / V::LANES));
+fn add_up<S: Simd>(simd: S, sums: &[Wide]) -> Vec<f64> {
+    let mut out = Vec::with_capacity(sums.len() * (WIDTH / S::F64_LANES));
     for wide in sums {
-        for part in 0..WIDTH / V::LANES {
-            out.push(V::load(wide, part).sum());
+        for part in parts(simd) {
+            out.push(Lanes::load(simd, wide, part).sum());
         }
     }
     out
@@ -108,32 +110,33 @@ struct Batch<'a> {
 
 /// Weight of each row, and its whitened residual as a wrench on the target.
 #[derive(Clone, Copy)]
-struct RowWrench<V> {
-    weight: V,
-    per_length: V,
+struct RowWrench<S: Simd> {
+    weight: Lanes<S>,
+    per_length: Lanes<S>,
     /// Whitened position error.
-    force: Vectors<V>,
+    force: Vectors<S>,
     /// Whitened rotation error, in the units of a rotation column's gradient.
-    torque: Vectors<V>,
+    torque: Vectors<S>,
 }
 
 /// Columns and gradient of part `part` of a block; gives the whitened residuals of position and rotation.
 #[inline(always)]
-pub(super) fn add_rows<V: Vector, const FULL: bool>(
+pub(super) fn add_rows<S: Simd, const FULL: bool>(
+    simd: S,
     arm: &Arm<'_>,
     block: &[Wide],
     work: &mut Work,
     filled: usize,
     part: usize,
-) -> [Vectors<V>; 2] {
-    let none = [Vectors([V::splat(0.0); 3]); 2];
+) -> [Vectors<S>; 2] {
+    let none = [Vectors([Lanes::splat(simd, 0.0); 3]); 2];
     let Arm { plan, steps, end, .. } = *arm;
     let Work { jacobian, turned, axes, shift_gradient, turn_gradient, square, waiting, .. } = work;
     let rows = work.turned_rows;
     let Some((noise, rest)) = block.split_first_chunk::<2>() else { return none };
     let Some((position, rest)) = rest.split_first_chunk::<3>() else { return none };
     let (measured, joints) = rest.split_at(if plan.framed { 9 } else { 0 });
-    let (weight, per_length) = (V::load(&noise[0], part), V::splat(1.0 / plan.length_m));
+    let (weight, per_length) = (Lanes::load(simd, &noise[0], part), Lanes::splat(simd, 1.0 / plan.length_m));
     if !FULL && weight.are_below(f64::MIN_POSITIVE) {
         // All rows are padding of the block.
         return none;
@@ -143,17 +146,18 @@ pub(super) fn add_rows<V: Vector, const FULL: bool>(
     let stride = *waiting;
     let mut batch = Batch { plan, part, columns, stride, axes, shift_gradient, turn_gradient };
 
-    let last = batch.chain(steps, joints.as_chunks::<2>().0, weight, per_length);
-    let target = if plan.joints.is_empty() { Frame::fixed(end) } else { last.then(end) };
-    let force = (Vectors::load(position, part) - target.origin()).scale(weight);
+    let last = batch.chain(simd, steps, joints.as_chunks::<2>().0, weight, per_length);
+    let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
+    let force = (Vectors::load(simd, position, part) - target.origin()).scale(weight);
     let mut squares = force.dot(force);
-    let mut residuals = [force, Vectors([V::splat(0.0); 3])];
+    let mut residuals = [force, Vectors([Lanes::splat(simd, 0.0); 3])];
     let mut wrench = RowWrench { weight, per_length, force, torque: residuals[1] };
     let mut turn = None;
     if let [x, y, z] = measured.as_chunks::<3>().0 {
-        let measured = [Vectors::load(x, part), Vectors::load(y, part), Vectors::load(z, part)];
-        let found = Turn::new(&measured, &[target.column(0), target.column(1), target.column(2)]);
-        let ratio = V::load(&noise[1], part);
+        let measured =
+            [Vectors::load(simd, x, part), Vectors::load(simd, y, part), Vectors::load(simd, z, part)];
+        let found = Turn::new(simd, &measured, &[target.column(0), target.column(1), target.column(2)]);
+        let ratio = Lanes::load(simd, &noise[1], part);
         let whitened = found.r.scale(weight * ratio);
         squares = squares + whitened.dot(whitened);
         residuals[1] = whitened;
@@ -161,11 +165,11 @@ pub(super) fn add_rows<V: Vector, const FULL: bool>(
         turn = Some((found, ratio * per_length));
     }
     squares.add_to(square, part);
-    batch.add_device::<V, FULL>(&target, &wrench);
-    batch.add_axes::<V, FULL>(&target, &wrench);
-    batch.add_place::<V, FULL>(&target, &wrench);
+    batch.add_device::<S, FULL>(simd, &target, &wrench);
+    batch.add_axes::<S, FULL>(simd, &target, &wrench);
+    batch.add_place::<S, FULL>(&target, &wrench);
     if let (true, true, Some((turn, ratio))) = (FULL, rows > 0, turn) {
-        batch.add_turned(&turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
+        batch.add_turned(simd, &turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
     }
     residuals
 }
@@ -173,25 +177,26 @@ pub(super) fn add_rows<V: Vector, const FULL: bool>(
 impl Batch<'_> {
     /// The chain from the device to the last joint's moved frame; writes the axes' shift columns: theory.md §5 (20) and (22).
     #[inline(always)]
-    fn chain<V: Vector>(
+    fn chain<S: Simd>(
         &mut self,
+        simd: S,
         steps: &[FixedMotion],
         values: &[[Wide; 2]],
-        weight: V,
-        per_length: V,
-    ) -> Frame<V> {
+        weight: Lanes<S>,
+        per_length: Lanes<S>,
+    ) -> Frame<S> {
         let part = self.part;
-        let mut link = Frame([[V::splat(0.0); 4]; 3]);
+        let mut link = Frame([[Lanes::splat(simd, 0.0); 4]; 3]);
         let joints = self.plan.joints.iter().zip(steps).zip(values).zip(&mut *self.axes);
         for (index, (((joint, step), [cosine, sine]), axis)) in joints.enumerate() {
             if index == 0 {
-                link = Frame::fixed(step);
+                link = Frame::fixed(simd, step);
             }
-            let (cosine, sine) = (V::load(cosine, part), V::load(sine, part));
+            let (cosine, sine) = (Lanes::load(simd, cosine, part), Lanes::load(simd, sine, part));
             let (slide, own_sine) = (weight * cosine * per_length, weight * sine);
             let versine = weight - weight * cosine;
             for (k, row) in link.0.iter_mut().enumerate() {
-                let still = if index == 0 { *row } else { turned(*row, step) };
+                let still = if index == 0 { *row } else { turned(simd, *row, step) };
                 let [x, y, _, origin] = still;
                 *row = moved(still, joint.turns, cosine, sine);
                 let (a, b) = if joint.turns {
@@ -209,13 +214,13 @@ impl Batch<'_> {
 
     /// Columns of the device's frame: theory.md §5 (25).
     #[inline(always)]
-    fn add_device<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, wrench: &RowWrench<V>) {
+    fn add_device<S: Simd, const FULL: bool>(&mut self, simd: S, target: &Frame<S>, wrench: &RowWrench<S>) {
         let Some(about) = &self.plan.device else { return };
         let part = self.part;
-        let arm = (target.origin() - Vectors::splat(about)).scale(wrench.per_length);
+        let arm = (target.origin() - Vectors::splat(simd, about)).scale(wrench.per_length);
         let moment = arm.cross(wrench.force) + wrench.torque;
         for k in 0..3 {
-            let mut axis = Vectors([V::splat(0.0); 3]);
+            let mut axis = Vectors([Lanes::splat(simd, 0.0); 3]);
             axis.0[k] = wrench.weight;
             (wrench.weight * wrench.force.0[k]).add_to(&mut self.shift_gradient[k], part);
             (wrench.weight * moment.0[k]).add_to(&mut self.turn_gradient[k], part);
@@ -228,11 +233,12 @@ impl Batch<'_> {
 
     /// Columns of the axes' tilts, theory.md §5 (21), and the gradient of all their unknowns.
     #[inline(always)]
-    fn add_axes<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, wrench: &RowWrench<V>) {
+    fn add_axes<S: Simd, const FULL: bool>(&mut self, simd: S, target: &Frame<S>, wrench: &RowWrench<S>) {
         let (part, stride) = (self.part, self.stride);
         for (joint, axis) in self.plan.joints.iter().zip(&mut *self.axes) {
             let Some((shift, tilt)) = joint.columns else { continue };
-            let (a, b) = (Vectors::load(&axis.shifts[0], part), Vectors::load(&axis.shifts[1], part));
+            let (a, b) =
+                (Vectors::load(simd, &axis.shifts[0], part), Vectors::load(simd, &axis.shifts[1], part));
             a.dot(wrench.force).add_to(&mut axis.gradient[0], part);
             b.dot(wrench.force).add_to(&mut axis.gradient[1], part);
             if FULL {
@@ -242,7 +248,7 @@ impl Batch<'_> {
             if !joint.turns {
                 continue;
             }
-            let arm = (target.origin() - Vectors::load(&axis.origin, part)).scale(wrench.per_length);
+            let arm = (target.origin() - Vectors::load(simd, &axis.origin, part)).scale(wrench.per_length);
             let moment = arm.cross(wrench.force) + wrench.torque;
             a.dot(moment).add_to(&mut axis.gradient[2], part);
             b.dot(moment).add_to(&mut axis.gradient[3], part);
@@ -256,7 +262,7 @@ impl Batch<'_> {
 
     /// Columns of the target's place and frame: theory.md §5 (23) and (24).
     #[inline(always)]
-    fn add_place<V: Vector, const FULL: bool>(&mut self, target: &Frame<V>, wrench: &RowWrench<V>) {
+    fn add_place<S: Simd, const FULL: bool>(&mut self, target: &Frame<S>, wrench: &RowWrench<S>) {
         let Some(place) = self.plan.place else { return };
         let part = self.part;
         for k in 0..3 {
@@ -273,19 +279,19 @@ impl Batch<'_> {
 
     /// Rows that rotation adds to the products of rotation columns; `ratio` is that of a rotation column to its translation column.
     #[inline(always)]
-    fn add_turned<V: Vector>(&self, turn: &Turn<V>, ratio: V, out: &mut [Wide], rows: usize) {
+    fn add_turned<S: Simd>(&self, simd: S, turn: &Turn<S>, ratio: Lanes<S>, out: &mut [Wide], rows: usize) {
         let columns = self.plan.turns.iter().map(|&shift| &self.columns[shift * self.stride]);
         let outs = out.chunks_mut((rows * self.stride).max(1));
         if self.plan.ratio.is_some() {
             let [first, second] = turn.excess();
             for (column, out) in columns.zip(outs) {
-                let w = Vectors::load(column, self.part);
+                let w = Vectors::load(simd, column, self.part);
                 first.dot(w).store(&mut out[0], self.part);
                 second.dot(w).store(&mut out[1], self.part);
             }
         } else {
             for (column, out) in columns.zip(outs) {
-                let moved = turn.apply(Vectors::load(column, self.part).scale(ratio));
+                let moved = turn.apply(Vectors::load(simd, column, self.part).scale(ratio));
                 for (out, number) in out.iter_mut().zip(moved.0) {
                     number.store(out, self.part);
                 }

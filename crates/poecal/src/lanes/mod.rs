@@ -6,7 +6,6 @@ mod frame;
 mod gram;
 mod influence;
 mod kernel;
-mod plain;
 mod plan;
 mod poses;
 mod simd;
@@ -16,8 +15,6 @@ mod totals;
 mod turn;
 mod vector;
 mod work;
-#[cfg(target_arch = "x86_64")]
-mod x86;
 
 pub(crate) use dense::Factor;
 pub(crate) use errors::Frames;

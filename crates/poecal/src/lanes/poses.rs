@@ -1,9 +1,11 @@
 //! Poses of a tip in several configurations side by side. No product is fused with a sum, so that the bits are the same by all
 //! instructions.
 
+use pulp::Simd;
+
 use std::ops::{Add, Mul};
 
-use super::vector::{Vector, WIDTH, Wide};
+use super::vector::{Lanes, Wide, parts};
 
 /// The motion of a joint, `I + f F + g G` with two functions f and g of its value (theory.md §1 (2a)): three directions and a translation,
 /// by rows.
@@ -35,16 +37,22 @@ impl Exponential {
 
 /// The product of the motions of all joints, each with its f and g (theory.md §2 (6)): three directions and a translation, by rows.
 #[inline(always)]
-pub(super) fn product_of_exponentials<V: Vector>(
+pub(super) fn product_of_exponentials<S: Simd>(
+    simd: S,
     joints: &[Exponential],
     factors: &[[Wide; 2]],
 ) -> [[Wide; 4]; 3] {
     let mut out = [[Wide::ZERO; 4]; 3];
-    for part in 0..WIDTH / V::LANES {
-        let unit = |i: usize, j: usize| V::splat(f64::from(u8::from(i == j)));
-        let mut rows: [[V; 4]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| unit(i, j)));
+    for part in parts(simd) {
+        let unit = |i: usize, j: usize| Lanes::splat(simd, f64::from(u8::from(i == j)));
+        let mut rows: [[Lanes<S>; 4]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| unit(i, j)));
         for (joint, [first, second]) in joints.iter().zip(factors) {
-            joint.advance(&mut rows, V::load(first, part), V::load(second, part), V::splat);
+            joint.advance(
+                &mut rows,
+                Lanes::load(simd, first, part),
+                Lanes::load(simd, second, part),
+                |value| Lanes::splat(simd, value),
+            );
         }
         for (row, out) in rows.iter().zip(&mut out) {
             row.iter().zip(out).for_each(|(value, out)| value.store(out, part));

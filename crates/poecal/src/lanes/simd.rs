@@ -1,110 +1,109 @@
-//! Run-time dispatch: the same source compiled for each set of vector instructions. The only unsafe code of the library.
+//! Run-time dispatch: the same source compiled for each set of vector instructions.
+
+use pulp::Scalar128b;
+#[cfg(target_arch = "aarch64")]
+use pulp::aarch64::Neon;
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::{V3, V3_512b, V4};
 
 use super::columns;
 use super::dense::{self, Factor};
 use super::errors::{self, Frames};
 use super::influence::{self, NUMBERS};
 use super::kernel;
-#[cfg(target_arch = "x86_64")]
-use super::plain::Pair;
-use super::plain::Two;
 use super::plan::{Arm, FixedMotion};
 use super::poses::{self, Exponential};
 use super::sincos;
 use super::tip;
 use super::totals::Totals;
 use super::vector::Wide;
-#[cfg(target_arch = "x86_64")]
-use super::x86::{Eight, Four};
 
-/// Instruction set of the kernels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Instruction set of the kernels. Who has one has found it on this machine.
+#[derive(Clone, Copy, Debug)]
 pub enum SimdLevel {
-    /// Instructions of every machine of the target: two numbers at a time.
-    Baseline,
-    /// AVX2 with FMA: four numbers at a time.
-    Avx2,
-    /// AVX2 with FMA, written for eight numbers at a time: slower, for tests of this width without AVX-512.
-    Avx2Wide,
     /// AVX-512: eight numbers at a time.
-    Avx512,
+    #[cfg(target_arch = "x86_64")]
+    Avx512(V4),
+    /// AVX2 with FMA: four numbers at a time.
+    #[cfg(target_arch = "x86_64")]
+    Avx2(V3),
+    /// AVX2 with FMA, written for eight numbers at a time: slower, for tests of this width without AVX-512.
+    #[cfg(target_arch = "x86_64")]
+    Avx2Wide(V3_512b),
+    /// NEON: two numbers at a time.
+    #[cfg(target_arch = "aarch64")]
+    Neon(Neon),
+    /// Instructions of every machine of the target: two numbers at a time.
+    Baseline(Scalar128b),
 }
 
 impl SimdLevel {
+    /// Instructions of every machine of the target.
+    pub const BASELINE: SimdLevel = SimdLevel::Baseline(Scalar128b);
+
     /// The best level of this machine.
     #[must_use]
     pub fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
-        {
-            if SimdLevel::Avx512.is_here() {
-                return SimdLevel::Avx512;
-            }
-            if SimdLevel::Avx2.is_here() {
-                return SimdLevel::Avx2;
-            }
-        }
-        SimdLevel::Baseline
-    }
-
-    /// Whether this machine has the instructions.
-    fn is_here(self) -> bool {
-        #[cfg(target_arch = "x86_64")]
-        {
-            let avx2 = || is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
-            match self {
-                SimdLevel::Baseline => true,
-                SimdLevel::Avx2 | SimdLevel::Avx2Wide => avx2(),
-                SimdLevel::Avx512 => is_x86_feature_detected!("avx512f") && avx2(),
-            }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        {
-            self == SimdLevel::Baseline
-        }
+        let found = V4::try_new().map(SimdLevel::Avx512).or_else(|| V3::try_new().map(SimdLevel::Avx2));
+        #[cfg(target_arch = "aarch64")]
+        let found = Neon::try_new().map(SimdLevel::Neon);
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        let found = None;
+        found.unwrap_or(SimdLevel::BASELINE)
     }
 }
 
 /// Levels that this machine has, the best first.
 #[must_use]
 pub fn simd_levels() -> Vec<SimdLevel> {
-    let all = [SimdLevel::Avx512, SimdLevel::Avx2, SimdLevel::Avx2Wide, SimdLevel::Baseline];
-    all.into_iter().filter(|level| level.is_here()).collect()
+    let mut levels = vec![SimdLevel::best()];
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx2) = V3::try_new() {
+        if matches!(levels[0], SimdLevel::Avx512(_)) {
+            levels.push(SimdLevel::Avx2(avx2));
+        }
+        levels.push(SimdLevel::Avx2Wide(V3_512b(avx2)));
+    }
+    if !matches!(levels[0], SimdLevel::Baseline(_)) {
+        levels.push(SimdLevel::BASELINE);
+    }
+    levels
+}
+
+/// Something that can be used once.
+struct Once;
+
+/// Calls a kernel in a function that is compiled for the instructions of a level. Only a closure that can be called but once is inlined
+/// there; another would be compiled without these instructions.
+macro_rules! vectorize {
+    ($level:expr, $simd:expr, $module:ident :: $name:ident ($($argument:ident),*)) => {{
+        let once = Once;
+        $level.vectorize(
+            #[inline(always)]
+            move || {
+                let _used = once;
+                $module::$name($simd, $($argument),*)
+            },
+        )
+    }};
 }
 
 /// Defines a function that calls a generic kernel, compiled for the instructions of a level.
 macro_rules! dispatch {
     ($(#[$doc:meta])* $module:ident :: $name:ident ($($argument:ident: $type:ty),*) $(-> $result:ty)?) => {
         $(#[$doc])*
-        #[allow(unsafe_code, reason = "functions compiled for further instructions may only be called where the machine has them")]
         pub(crate) fn $name(level: SimdLevel, $($argument: $type),*) $(-> $result)? {
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx2,fma")]
-            fn avx2($($argument: $type),*) $(-> $result)? {
-                $module::$name::<Four>($($argument),*)
-            }
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx2,fma")]
-            fn avx2_wide($($argument: $type),*) $(-> $result)? {
-                $module::$name::<Pair<Four>>($($argument),*)
-            }
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx512f,avx2,fma")]
-            fn avx512($($argument: $type),*) $(-> $result)? {
-                $module::$name::<Eight>($($argument),*)
-            }
-            match if level.is_here() { level } else { SimdLevel::Baseline } {
-                // SAFETY: `is_here` has found AVX2 and FMA, which is all that the function asks for.
+            match level {
                 #[cfg(target_arch = "x86_64")]
-                SimdLevel::Avx2 => unsafe { avx2($($argument),*) },
-                // SAFETY: as above.
+                SimdLevel::Avx512(simd) => vectorize!(simd, simd, $module::$name($($argument),*)),
                 #[cfg(target_arch = "x86_64")]
-                SimdLevel::Avx2Wide => unsafe { avx2_wide($($argument),*) },
-                // SAFETY: `is_here` has found AVX-512F, AVX2 and FMA, which is all that the function asks for.
+                SimdLevel::Avx2(simd) => vectorize!(simd, simd, $module::$name($($argument),*)),
                 #[cfg(target_arch = "x86_64")]
-                SimdLevel::Avx512 => unsafe { avx512($($argument),*) },
-                #[cfg(not(target_arch = "x86_64"))]
-                SimdLevel::Avx2 | SimdLevel::Avx2Wide | SimdLevel::Avx512 => $module::$name::<Two>($($argument),*),
-                SimdLevel::Baseline => $module::$name::<Two>($($argument),*),
+                SimdLevel::Avx2Wide(simd) => vectorize!(simd.0, simd, $module::$name($($argument),*)),
+                #[cfg(target_arch = "aarch64")]
+                SimdLevel::Neon(simd) => vectorize!(simd, simd, $module::$name($($argument),*)),
+                SimdLevel::Baseline(simd) => $module::$name(simd, $($argument),*),
             }
         }
     };

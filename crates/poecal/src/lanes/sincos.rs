@@ -1,7 +1,8 @@
 //! Sines and cosines of many angles: one loop without branches, which the compiler vectorises. No product is fused with a sum, so that the
 //! bits are the same at every level.
 
-use super::vector::Vector;
+use pulp::Simd;
+
 use std::f64::consts::FRAC_2_PI;
 
 /// π/2 in three parts of 33 bits, so that their products with a number of quarter turns below 2²⁰ are exact.
@@ -29,9 +30,9 @@ const COSINE: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// Writes `(cos, sin)` of each angle, to within about a unit in the last place. `V` only names the instructions.
+/// Writes `(cos, sin)` of each angle, to within about a unit in the last place. `S` only names the instructions.
 #[inline(always)]
-pub(super) fn cosines_and_sines<V: Vector>(angles: &[f64], out: &mut [(f64, f64)]) {
+pub(super) fn cosines_and_sines<S: Simd>(_simd: S, angles: &[f64], out: &mut [(f64, f64)]) {
     for (out, &angle) in out.iter_mut().zip(angles) {
         *out = cosine_and_sine(angle);
     }

@@ -1,6 +1,9 @@
 //! Numbers of several rows side by side: the vectors of the kernels, whatever the width of the machine's vectors.
 
+use std::any::TypeId;
 use std::ops::{Add, Mul, Neg, Sub};
+
+use pulp::{Scalar128b, Simd};
 
 /// Rows side by side in memory, whatever the width of the instructions.
 pub(crate) const WIDTH: usize = 8;
@@ -14,67 +17,160 @@ impl Wide {
     pub(crate) const ZERO: Wide = Wide([0.0; WIDTH]);
 }
 
-/// One number of each of `LANES` rows. `LANES` divides [`WIDTH`].
-pub(super) trait Vector:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
-{
-    const LANES: usize;
+/// One number of each of as many rows as a vector of the machine has lanes, a divisor of [`WIDTH`].
+#[derive(Clone, Copy)]
+pub(super) struct Lanes<S: Simd> {
+    /// The instructions that the machine has.
+    simd: S,
+    numbers: S::f64s,
+}
 
-    fn splat(value: f64) -> Self;
+/// Parts of a wide number.
+#[inline(always)]
+pub(super) fn parts<S: Simd>(_simd: S) -> std::ops::Range<usize> {
+    0..WIDTH / S::F64_LANES
+}
+
+impl<S: Simd> Lanes<S> {
+    #[inline(always)]
+    pub(super) fn splat(simd: S, value: f64) -> Self {
+        Lanes { simd, numbers: simd.splat_f64s(value) }
+    }
 
     /// Part `part` of the rows of a wide number.
-    fn load(wide: &Wide, part: usize) -> Self;
+    #[inline(always)]
+    pub(super) fn load(simd: S, wide: &Wide, part: usize) -> Self {
+        Lanes { simd, numbers: S::as_simd_f64s(&wide.0).0[part] }
+    }
 
-    fn store(self, wide: &mut Wide, part: usize);
+    #[inline(always)]
+    pub(super) fn store(self, wide: &mut Wide, part: usize) {
+        S::as_mut_simd_f64s(&mut wide.0).0[part] = self.numbers;
+    }
+
+    /// This value in every lane.
+    #[inline(always)]
+    pub(super) fn all(self, value: f64) -> Self {
+        Self::splat(self.simd, value)
+    }
 
     /// `self * factor + term`, fused if the machine can.
-    fn times_plus(self, factor: Self, term: Self) -> Self;
+    #[inline(always)]
+    pub(super) fn times_plus(self, factor: Self, term: Self) -> Self {
+        if is_fused::<S>() {
+            Lanes { numbers: self.simd.mul_add_f64s(self.numbers, factor.numbers, term.numbers), ..self }
+        } else {
+            self * factor + term
+        }
+    }
 
     /// `term - self * factor`, fused if the machine can.
-    fn times_from(self, factor: Self, term: Self) -> Self;
+    #[inline(always)]
+    pub(super) fn times_from(self, factor: Self, term: Self) -> Self {
+        if is_fused::<S>() {
+            let numbers = self.simd.negate_mul_add_f64s(self.numbers, factor.numbers, term.numbers);
+            Lanes { numbers, ..self }
+        } else {
+            term - self * factor
+        }
+    }
 
-    fn sqrt(self) -> Self;
+    #[inline(always)]
+    pub(super) fn sqrt(self) -> Self {
+        Lanes { numbers: self.simd.sqrt_f64s(self.numbers), ..self }
+    }
 
     /// `self / other`, or `otherwise` where `other` is not positive.
-    fn over(self, other: Self, otherwise: f64) -> Self;
+    #[inline(always)]
+    pub(super) fn over(self, other: Self, otherwise: f64) -> Self {
+        let positive = self.simd.greater_than_f64s(other.numbers, self.all(0.0).numbers);
+        let quotient = self.simd.div_f64s(self.numbers, other.numbers);
+        Lanes { numbers: self.simd.select_f64s(positive, quotient, self.all(otherwise).numbers), ..self }
+    }
 
     /// The sum of all, in a fixed order.
-    fn sum(self) -> f64;
+    #[inline(always)]
+    pub(super) fn sum(self) -> f64 {
+        self.simd.reduce_sum_f64s(self.numbers)
+    }
 
     /// Whether all are below a bound.
-    fn are_below(self, bound: f64) -> bool;
+    #[inline(always)]
+    pub(super) fn are_below(self, bound: f64) -> bool {
+        let is_below = self.simd.less_than_f64s(self.numbers, self.all(bound).numbers);
+        let others = self.simd.select_f64s(is_below, self.all(0.0).numbers, self.all(1.0).numbers);
+        self.simd.reduce_max_f64s(others) == 0.0
+    }
 
     /// Adds these to part `part` of a wide number.
     #[inline(always)]
-    fn add_to(self, sum: &mut Wide, part: usize) {
-        (Self::load(sum, part) + self).store(sum, part);
+    pub(super) fn add_to(self, sum: &mut Wide, part: usize) {
+        (Self::load(self.simd, sum, part) + self).store(sum, part);
     }
 
     /// The polynomial `c₀ + c₁ x + …` of these numbers.
     #[inline(always)]
-    fn polynomial<const N: usize>(self, coefficients: [f64; N]) -> Self {
-        let mut sum = Self::splat(coefficients[N - 1]);
+    pub(super) fn polynomial<const N: usize>(self, coefficients: [f64; N]) -> Self {
+        let mut sum = self.all(coefficients[N - 1]);
         for c in coefficients.iter().rev().skip(1) {
-            sum = sum.times_plus(self, Self::splat(*c));
+            sum = sum.times_plus(self, self.all(*c));
         }
         sum
     }
 }
 
-/// A vector in space for each row.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Vectors<V>(pub(super) [V; 3]);
+/// Whether the instructions multiply and add at once; for those of every machine a function of software would.
+#[inline(always)]
+fn is_fused<S: Simd>() -> bool {
+    TypeId::of::<S>() != TypeId::of::<Scalar128b>()
+}
 
-impl<V: Vector> Vectors<V> {
+impl<S: Simd> Add for Lanes<S> {
+    type Output = Self;
     #[inline(always)]
-    pub(super) fn splat(v: &[f64; 3]) -> Self {
-        Vectors([V::splat(v[0]), V::splat(v[1]), V::splat(v[2])])
+    fn add(self, other: Self) -> Self {
+        Lanes { numbers: self.simd.add_f64s(self.numbers, other.numbers), ..self }
+    }
+}
+
+impl<S: Simd> Sub for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Lanes { numbers: self.simd.sub_f64s(self.numbers, other.numbers), ..self }
+    }
+}
+
+impl<S: Simd> Mul for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Lanes { numbers: self.simd.mul_f64s(self.numbers, other.numbers), ..self }
+    }
+}
+
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Lanes { numbers: self.simd.neg_f64s(self.numbers), ..self }
+    }
+}
+
+/// A vector in space for each row.
+#[derive(Clone, Copy)]
+pub(super) struct Vectors<S: Simd>(pub(super) [Lanes<S>; 3]);
+
+impl<S: Simd> Vectors<S> {
+    #[inline(always)]
+    pub(super) fn splat(simd: S, v: &[f64; 3]) -> Self {
+        Vectors([Lanes::splat(simd, v[0]), Lanes::splat(simd, v[1]), Lanes::splat(simd, v[2])])
     }
 
     /// Part `part` of three wide numbers.
     #[inline(always)]
-    pub(super) fn load(wide: &[Wide; 3], part: usize) -> Self {
-        Vectors([V::load(&wide[0], part), V::load(&wide[1], part), V::load(&wide[2], part)])
+    pub(super) fn load(simd: S, [x, y, z]: &[Wide; 3], part: usize) -> Self {
+        Vectors([Lanes::load(simd, x, part), Lanes::load(simd, y, part), Lanes::load(simd, z, part)])
     }
 
     #[inline(always)]
@@ -85,20 +181,20 @@ impl<V: Vector> Vectors<V> {
     }
 
     #[inline(always)]
-    pub(super) fn scale(self, factor: V) -> Self {
+    pub(super) fn scale(self, factor: Lanes<S>) -> Self {
         let [x, y, z] = self.0;
         Vectors([x * factor, y * factor, z * factor])
     }
 
     /// `self * factor + term`.
     #[inline(always)]
-    pub(super) fn times_plus(self, factor: V, term: Self) -> Self {
+    pub(super) fn times_plus(self, factor: Lanes<S>, term: Self) -> Self {
         let ([x, y, z], [a, b, c]) = (self.0, term.0);
         Vectors([x.times_plus(factor, a), y.times_plus(factor, b), z.times_plus(factor, c)])
     }
 
     #[inline(always)]
-    pub(super) fn dot(self, other: Self) -> V {
+    pub(super) fn dot(self, other: Self) -> Lanes<S> {
         let ([x, y, z], [a, b, c]) = (self.0, other.0);
         x.times_plus(a, y.times_plus(b, z * c))
     }
@@ -110,7 +206,7 @@ impl<V: Vector> Vectors<V> {
     }
 }
 
-impl<V: Vector> Add for Vectors<V> {
+impl<S: Simd> Add for Vectors<S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -119,7 +215,7 @@ impl<V: Vector> Add for Vectors<V> {
     }
 }
 
-impl<V: Vector> Sub for Vectors<V> {
+impl<S: Simd> Sub for Vectors<S> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {

@@ -190,7 +190,7 @@ fn both_paths_agree() {
         for kind in [Kind::Pose, Kind::Point, Kind::Mixed] {
             for case in some(cases()).iter().filter(|case| robot.joints.len() < 20 || case.rows < 100) {
                 let session = Session::new(&robot, kind, case);
-                let general = session.problem(case, SimdLevel::Baseline).normal_row_by_row(&session.estimate);
+                let general = session.problem(case, SimdLevel::BASELINE).normal_row_by_row(&session.estimate);
                 for level in simd_levels() {
                     let problem = session.problem(case, level);
                     let fast = problem.normal(&session.estimate);
@@ -282,7 +282,7 @@ fn kernels_serve_the_kinds_that_they_know() {
                 Parameter::OtherScrew(_) | Parameter::JointOffset(_) => false,
             };
             session.free = vec![parameter];
-            let problem = session.problem(&Case::default(), SimdLevel::Baseline);
+            let problem = session.problem(&Case::default(), SimdLevel::BASELINE);
             println!("{seen:?} by {parameter:?}: {served}");
             assert_eq!(problem.is_served(&session.estimate), served);
             // What is served is not handed on to the general path: that would be a failed assertion within the library.

@@ -3,9 +3,9 @@
 use super::alike::TAILS;
 use super::{Configurations, Loss, Parts, Scale, parts};
 use crate::analysis::influence;
+use crate::calibration::SetAccuracy;
 use crate::calibration::fit::Task;
 use crate::calibration::found::Fitted;
-use crate::calibration::SetAccuracy;
 use crate::distributions;
 use crate::measurement::Dataset;
 
