@@ -33,6 +33,15 @@ def test_every_block_does_what_the_page_says(page, tmp_path):
     Page(page, tmp_path, COUNTS).run()
 
 
+def test_the_readme_shows_the_real_robots_of_the_last_validation():
+    sys.path.insert(0, str(ROOT / "scripts" / "docs"))
+    from readme import real_robots, with_real_robots
+
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(real_robots((ROOT / "validation" / "RESULTS.md").read_text(encoding="utf-8")).splitlines()) >= 7
+    assert with_real_robots(text) == text, "`python scripts/docs/readme.py PROGRAM` writes the table"
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_every_fence_begins_or_ends_a_block_that_is_found(page):
     fences = [line for line in page.read_text(encoding="utf-8").splitlines() if line.lstrip().startswith("```")]

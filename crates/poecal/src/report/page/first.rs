@@ -172,7 +172,7 @@ fn point_words(file: &CalibrationFile, point: &Point) -> Option<Markup> {
             Some(html! { (quoted(&joint.joint, format_args!("corrections.{k}.joint"))) ": " (words) })
         }
         Place::Open(k) => direction("unknown", &known.unidentifiable, "unidentifiable", k),
-        Place::Weak(k) => direction("weak", &known.weak, "weak", k),
+        Place::Weak(k) => direction("weak", &known.weak, "weakly determined", k),
     }
 }
 
