@@ -1,12 +1,18 @@
-"""What mkdocs does beyond its own: pages from texts that stand elsewhere in the repository, their links, and formulas as pictures."""
+"""Stages the pages of the documentation site: texts that stand elsewhere in the repository, their links, and formulas as pictures.
+
+    python scripts/docs/stage.py FOLDER
+
+What is in FOLDER afterwards is plain Markdown and HTML, which any program can build that reads mkdocs.yml.
+"""
 
 import posixpath
 import re
+import shutil
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
 import ziamath
-from mkdocs.structure.files import File
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -18,7 +24,6 @@ PAGES = {
     "CONTRIBUTING.md": "contributing.md",
     "validation/RESULTS.md": "validation.md",
 }
-SOURCES = {page: source for source, page in PAGES.items()}
 
 # Left alone by the patterns below: what is code.
 CODE = r"(?ms:^(?P<fence> *`{3,}).*?^(?P=fence)`* *$)|`[^`\n]+`"
@@ -26,34 +31,37 @@ LINK = re.compile(rf"{CODE}|(?P<text>\[[^\]\n]*\])\((?P<target>[^)\s]+)\)")
 FORMULA = re.compile(rf"(?ms:^```math\n(?P<block>.*?)^```$)|{CODE}|(?<![\\$])\$(?P<inline>[^$\n]+)\$")
 COMMENT = re.compile(rf"{CODE}|(?P<comment>(?s:<!--.*?-->)\n?)")
 
+# Stands for a formula's TeX until that can no longer be taken for something else.
+PLACEHOLDER = "formula"
+
 # Size of the text's letters in the pictures' own units.
 EM = 20
 
 
-def on_files(files, config):
-    for source, page in PAGES.items():
-        files.append(File.generated(config, page, content=(ROOT / source).read_text(encoding="utf-8")))
-    return files
+def stage(folder):
+    """Writes all pages, and copies all else of docs/ but results that are only linked from elsewhere."""
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(ROOT / "docs", folder, ignore=shutil.ignore_patterns("*.md", "results.json"))
+    sources = {path.relative_to(ROOT).as_posix(): path.relative_to(ROOT / "docs").as_posix() for path in (ROOT / "docs").rglob("*.md")} | PAGES
+    there = set(sources.values()) | {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    for source, page in sources.items():
+        target = folder / page
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(staged((ROOT / source).read_text(encoding="utf-8"), source, page, there), encoding="utf-8")
 
 
-def on_page_markdown(markdown, page, config, files):
-    page.formulas, page.glyphs = [], {}
-    source = SOURCES.get(page.file.src_uri, f"docs/{page.file.src_uri}")
+def staged(markdown, source, page, there):
+    """A page's Markdown as the site has it."""
     # What follows a language is for other readers, as in rust,no_run.
     markdown = re.sub(r"^( *```\w+),\S*$", r"\1", markdown, flags=re.M)
     markdown = COMMENT.sub(lambda match: "" if match["comment"] else match[0], markdown)
-    markdown = LINK.sub(lambda match: link(match, source, page.file.src_uri, files), markdown)
-    return FORMULA.sub(lambda match: formula(match, page), markdown)
+    markdown = LINK.sub(lambda match: link(match, source, page, there), markdown)
+    glyphs = {}
+    markdown = FORMULA.sub(lambda match: formula(match, glyphs), markdown)
+    return f'{markdown}\n\n<svg class="glyphs" aria-hidden="true">{"".join(glyphs.values())}</svg>\n' if glyphs else markdown
 
 
-def on_page_content(content, page, config, files):
-    if not page.formulas:
-        return content
-    content = re.sub(r"(?:<p>)?⟦(\d+)⟧(?:</p>)?", lambda match: page.formulas[int(match[1])], content)
-    return f'{content}<svg class="glyphs" aria-hidden="true">{"".join(page.glyphs.values())}</svg>'
-
-
-def link(match, source, page, files):
+def link(match, source, page, there):
     """A link as the site has it: to a page, or plain text where what it leads to is not on the site."""
     target = match["target"]
     if target is None or re.match(r"[a-z]+:|#", target):
@@ -61,29 +69,25 @@ def link(match, source, page, files):
     path, _, anchor = target.partition("#")
     place = posixpath.normpath(posixpath.join(posixpath.dirname(source), path))
     if not (ROOT / place).exists():
-        # Left for mkdocs to complain about.
+        # Left for the site's builder to complain about.
         return match[0]
     uri = PAGES.get(place, place.removeprefix("docs/"))
-    if files.get_file_from_path(uri) is None:
+    if uri not in there:
         return match["text"][1:-1]
     relative = posixpath.relpath(uri, posixpath.dirname(page) or ".")
     return f"{match['text']}({relative}{'#' + anchor if anchor else ''})"
 
 
-def formula(match, page):
-    """A mark in the place of a formula, whose picture is put there when the page is made: Markdown would take it apart."""
+def formula(match, glyphs):
+    """A formula as HTML in one line, which Markdown passes on."""
     if match["block"] is not None:
         tex = match["block"].strip()
         number = re.search(r"\\tag\{([^}]*)\}", tex)
         tex = re.sub(r"\s*\\tag\{[^}]*\}", "", tex)
-        pictures = "".join(f"<span>{picture(part, page.glyphs, inline=False)}</span>" for part in parts(tex))
+        pictures = "".join(f"<span>{picture(part, glyphs, inline=False)}</span>" for part in parts(tex))
         shown = f'<div class="number">({number[1]})</div>' if number else ""
-        page.formulas.append(f'<div class="formula"><div class="parts">{pictures}</div>{shown}</div>')
-    elif match["inline"] is not None:
-        page.formulas.append(picture(match["inline"], page.glyphs, inline=True))
-    else:
-        return match[0]
-    return f"⟦{len(page.formulas) - 1}⟧"
+        return f'<div class="formula"><div class="parts">{pictures}</div>{shown}</div>\n'
+    return picture(match["inline"], glyphs, inline=True) if match["inline"] is not None else match[0]
 
 
 def parts(tex):
@@ -116,6 +120,12 @@ def picture(tex, glyphs, inline):
         svg.remove(symbol)
     svg.set("class", "math")
     svg.set("role", "img")
-    svg.set("aria-label", tex)
+    svg.set("aria-label", PLACEHOLDER)
     svg.set("style", f"width:{width:.3f}em;height:{height:.3f}em;vertical-align:{down:.3f}em")
-    return ElementTree.tostring(svg, encoding="unicode")
+    # As numbers of characters: Markdown takes some of TeX's for its own.
+    label = "".join(character if character.isalnum() or character == " " else f"&#{ord(character)};" for character in " ".join(tex.split()))
+    return ElementTree.tostring(svg, encoding="unicode").replace(PLACEHOLDER, label).replace("\n", " ")
+
+
+if __name__ == "__main__":
+    stage(Path(sys.argv[1]))
