@@ -21,6 +21,7 @@ PAGES = {
     "README.md": "index.md",
     "CHANGELOG.md": "changelog.md",
     "ARCHITECTURE.md": "architecture.md",
+    "COMPARE.md": "compare.md",
     "CONTRIBUTING.md": "contributing.md",
     "validation/RESULTS.md": "validation.md",
 }
