@@ -29,7 +29,7 @@ PAGES = {
 # Left alone by the patterns below: what is code.
 CODE = r"(?ms:^(?P<fence> *`{3,}).*?^(?P=fence)`* *$)|`[^`\n]+`"
 LINK = re.compile(rf"{CODE}|(?P<text>\[[^\]\n]*\])\((?P<target>[^)\s]+)\)")
-FORMULA = re.compile(rf"(?ms:^```math\n(?P<block>.*?)^```$)|{CODE}|(?<![\\$])\$(?P<inline>[^$\n]+)\$")
+FORMULA = re.compile(rf"(?ms:^(?P<indent> *)```math\n(?P<block>.*?)^ *```$)|{CODE}|(?<![\\$])\$(?P<inline>[^$\n]+)\$")
 COMMENT = re.compile(rf"{CODE}|(?P<comment>(?s:<!--.*?-->)\n?)")
 
 # Stands for a formula's TeX until that can no longer be taken for something else.
@@ -86,8 +86,10 @@ def formula(match, glyphs):
         number = re.search(r"\\tag\{([^}]*)\}", tex)
         tex = re.sub(r"\s*\\tag\{[^}]*\}", "", tex)
         pictures = "".join(f"<span>{picture(part, glyphs, inline=False)}</span>" for part in parts(tex))
-        shown = f'<div class="number">({number[1]})</div>' if number else ""
-        return f'<div class="formula"><div class="parts">{pictures}</div>{shown}</div>\n'
+        shown = f'<span class="number">({number[1]})</span>' if number else ""
+        # Within an item of a list a formula belongs to the item's text.
+        tag = "span" if match["indent"] else "div"
+        return f'{match["indent"]}<{tag} class="formula"><span class="parts">{pictures}</span>{shown}</{tag}>\n'
     return picture(match["inline"], glyphs, inline=True) if match["inline"] is not None else match[0]
 
 
