@@ -1,4 +1,4 @@
-//! What a fit comes to.
+//! Result of a fit.
 
 use super::NoiseSource;
 use crate::estimate::Estimate;
@@ -6,14 +6,14 @@ use crate::measurement::Noise;
 use crate::problem::Layout;
 use crate::solve::{Normal, Summary, Termination};
 
-/// The minimisation: steps, end, convergence.
+/// Report of the minimisation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverReport {
     /// Iterations of the full fit, re-weighted rounds included.
     pub iterations: usize,
-    /// Why it ended.
+    /// Reason of its end.
     pub termination: Termination,
-    /// Further starts that were tried.
+    /// Number of further starts.
     pub restarts: usize,
     /// Mean square whitened residual by iteration.
     pub trace: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct SolverReport {
     pub joint_offsets: Option<Vec<f64>>,
 }
 
-/// A fit under way.
+/// A fit in progress.
 pub(super) struct Found {
     pub(super) estimate: Estimate,
     pub(super) normal: Normal,
@@ -30,7 +30,7 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// What one minimisation found.
+    /// Begins with one minimisation.
     pub(super) fn new((estimate, normal, summary): (Estimate, Normal, Summary)) -> Self {
         let report = SolverReport {
             iterations: summary.iterations,
@@ -42,8 +42,8 @@ impl Found {
         Found { estimate, normal, report }
     }
 
-    /// What one more minimisation made of it.
-    pub(super) fn follow(&mut self, (estimate, normal, summary): (Estimate, Normal, Summary)) {
+    /// Continues with another minimisation.
+    pub(super) fn update(&mut self, (estimate, normal, summary): (Estimate, Normal, Summary)) {
         (self.estimate, self.normal) = (estimate, normal);
         self.report.iterations += summary.iterations;
         self.report.termination = summary.termination;

@@ -206,7 +206,7 @@ impl IdentifiabilityEntry {
         IdentifiabilityEntry {
             parameters: found.parameters,
             rank: found.rank,
-            told: Some(found.told),
+            told: Some(found.effective_unknowns),
             condition: Some(found.condition).filter(|condition| condition.is_finite()),
             unidentifiable: found.unidentifiable.clone(),
             weak: found.weak.clone(),

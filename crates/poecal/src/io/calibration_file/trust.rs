@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{CalibrationFile, PoseEntry};
 use crate::analysis::JointCoverage;
-use crate::calibration::{Calibration, Expected, JointCorrection, Kept, KeptPart, Trust};
+use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Estimate;
 use crate::lie::Pose;
@@ -77,8 +77,8 @@ pub struct HeldOutEntry {
 }
 
 impl HeldOutEntry {
-    fn of(kept: &Kept) -> Self {
-        let entry = |part: KeptPart| KeptEntry {
+    fn of(kept: &CoverageCheck) -> Self {
+        let entry = |part: PartCoverage| KeptEntry {
             expected_rms: part.expected_rms,
             inside_bound95: part.inside_bound95,
         };
