@@ -101,7 +101,7 @@ pub(crate) fn check(
     }
     let file = measurements.map(|measurements| &*measurements.file);
     let check = py.detach(|| {
-        let options = forensics::Options { device_free, ..forensics::Options::default() };
+        let options = forensics::DiagnosisOptions { device_free, ..forensics::DiagnosisOptions::default() };
         let diagnose = |data| forensics::diagnose(&robot.model.robot, data, &data.all_rows(), &options);
         let found = file.map_or_else(Vec::new, |file| diagnose(&file.data));
         report::Check::new(&robot.model, file, &found)

@@ -283,7 +283,8 @@ impl<'a> Prepared<'a> {
         if !self.options.diagnose {
             return Vec::new();
         }
-        let options = forensics::Options { device_free: self.device_free(), calibrated: Some(calibrated) };
+        let options =
+            forensics::DiagnosisOptions { device_free: self.device_free(), calibrated: Some(calibrated) };
         let in_all = || forensics::diagnose(self.robot, data, &data.all_rows(), &options);
         let Some(believed) = believed else { return in_all() };
         let mut found = forensics::diagnose(self.robot, data, believed, &options);
