@@ -13,7 +13,7 @@ use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
-use poecal::io::residuals::{Residuals, Rows};
+use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::report;
 use poecal::text::visible_markup;
 use pyo3::IntoPyObjectExt as _;
@@ -169,7 +169,8 @@ impl Calibration {
                     Some(report::calibration_page(file, residuals)?)
                 }
             };
-            let results = Results { file: file.clone(), residuals: Rows::AtHand(residuals), report: page };
+            let results =
+                Results { file: file.clone(), residuals: ResidualRows::AtHand(residuals), report: page };
             output::write_robot(place, elsewhere, model, &robot, results)
         });
         let written = written.map_err(raise)?;

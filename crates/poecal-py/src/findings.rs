@@ -174,7 +174,7 @@ pub(crate) fn offsets(
     let base = base.map(|word| end("base", word)).transpose()?;
     let tip = tip.map(|word| end("tip", word)).transpose()?;
     let [(base, base_reason), (tip, tip_reason)] = report::offset_ends(base, tip, actual);
-    let options = explanations::Options { base, tip, ..explanations::Options::default() };
+    let options = explanations::OffsetOptions { base, tip, ..explanations::OffsetOptions::default() };
     let explained =
         py.detach(|| explanations::explain(&nominal.robot, &actual.robot, &options)).map_err(raise)?;
     let found = report::Offsets::new(nominal, actual, &explained, [base_reason, tip_reason]);
@@ -215,7 +215,7 @@ pub(crate) fn reproduce(
     }
     let words = [("lou2009", Experiment::Lou2009), ("breakdown", Experiment::Breakdown)];
     let experiment = chosen("experiment", experiment, &words)?;
-    let options = experiments::Options { trials: trials as usize, starts: starts as usize, seed };
+    let options = experiments::ReproductionOptions { trials: trials as usize, starts: starts as usize, seed };
     let reserved =
         |folder: &PathBuf| reserved_folder(py, folder, Contents::Reproduction, Existing::forced(force), &[]);
     let place = out.as_ref().map(reserved).transpose()?;

@@ -20,7 +20,7 @@ use crate::words::{chosen, from_deg, from_mm};
 const QUATERNION_TOLERANCE: f64 = 1e-2;
 
 /// Arguments of `Measurements.from_arrays`.
-pub(crate) struct Columns<'a, 'py> {
+pub(crate) struct ArrayColumns<'a, 'py> {
     pub(crate) joints: &'a Bound<'py, PyAny>,
     pub(crate) positions: Option<&'a Bound<'py, PyAny>>,
     pub(crate) quaternions_xyzw: Option<&'a Bound<'py, PyAny>>,
@@ -36,7 +36,7 @@ pub(crate) struct Columns<'a, 'py> {
 }
 
 /// The rows.
-pub(crate) fn dataset(robot: &Robot, columns: &Columns<'_, '_>) -> PyResult<Dataset> {
+pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult<Dataset> {
     let length =
         Unit::parse(columns.length_unit, Quantity::Length).map_err(|error| named("length_unit", error))?;
     let readings = readings(robot, columns, length)?;
@@ -93,7 +93,7 @@ fn named(argument: &str, error: Error) -> PyErr {
 }
 
 /// The readings in SI, row after row.
-fn readings(robot: &Robot, columns: &Columns<'_, '_>, length: Unit) -> PyResult<Vec<f64>> {
+fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: Unit) -> PyResult<Vec<f64>> {
     let angle =
         Unit::parse(columns.angle_unit, Quantity::Angle).map_err(|error| named("angle_unit", error))?;
     let names = robot.reading_names();
@@ -126,7 +126,7 @@ fn check_size(name: &str, row: usize, si: &[f64]) -> PyResult<()> {
 }
 
 /// What was seen, in SI.
-fn measured(columns: &Columns<'_, '_>, m: usize, length: Unit) -> PyResult<Vec<Measurement>> {
+fn measured(columns: &ArrayColumns<'_, '_>, m: usize, length: Unit) -> PyResult<Vec<Measurement>> {
     match (columns.positions, columns.poses) {
         (Some(positions), None) => points(positions, columns.quaternions_xyzw, m, length),
         (None, Some(poses)) if columns.quaternions_xyzw.is_none() => frames(poses, m, length),
@@ -197,7 +197,7 @@ fn points(
     .collect()
 }
 
-fn sets(columns: &Columns<'_, '_>) -> PyResult<Vec<Option<Set>>> {
+fn sets(columns: &ArrayColumns<'_, '_>) -> PyResult<Vec<Option<Set>>> {
     let words = [("fit", Set::Fit), ("held_out", Set::HeldOut)];
     let stated = columns.sets.iter().flatten();
     stated.map(|word| word.as_ref().map(|word| chosen("sets", word, &words)).transpose()).collect()

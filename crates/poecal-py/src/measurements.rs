@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::arrays::{pose_arrays, table};
 use crate::errors::{argument, python_words, raise};
-use crate::from_arrays::{Columns, dataset};
+use crate::from_arrays::{ArrayColumns, dataset};
 use crate::from_dataframe;
 use crate::pickle;
 use crate::robot::Robot;
@@ -46,7 +46,7 @@ pub(crate) struct MeasurementSource {
 
 /// What rebuilds measurements.
 #[derive(Serialize, Deserialize)]
-struct State {
+struct MeasurementState {
     data: Dataset,
     warnings: Vec<String>,
     source: MeasurementSource,
@@ -106,7 +106,7 @@ impl Measurements {
     }
 
     pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
-        let State { data, warnings, source } = pickle::value(state)?;
+        let MeasurementState { data, warnings, source } = pickle::value(state)?;
         data.check().map_err(raise)?;
         let file = MeasurementFile { data, warnings, ..MeasurementFile::default() };
         Ok(Measurements { file: Arc::new(file), source: Arc::new(source) })
@@ -213,7 +213,7 @@ impl Measurements {
         angle_unit: &str,
         length_unit: &str,
     ) -> PyResult<Self> {
-        let columns = Columns {
+        let columns = ArrayColumns {
             joints,
             positions,
             quaternions_xyzw,
@@ -365,7 +365,11 @@ impl Measurements {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let MeasurementFile { data, warnings, .. } = &*self.file;
-        let state = State { data: data.clone(), warnings: warnings.clone(), source: (*self.source).clone() };
+        let state = MeasurementState {
+            data: data.clone(),
+            warnings: warnings.clone(),
+            source: (*self.source).clone(),
+        };
         pickle::reduce(py, "_measurements", PyBytes::new(py, &pickle::bytes(&state)?))
     }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use numpy::PyArray2;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::model::{Model, ModelSource};
-use poecal::io::output::{self, Contents, Existing, Session};
+use poecal::io::output::{self, Contents, Existing, SimulatedSession};
 use poecal::simulate::{self as simulated, Kind, Simulated};
 use poecal::text::visible;
 use pyo3::prelude::*;
@@ -68,7 +68,7 @@ impl Simulation {
     /// Writes both robots, the measurements and the truth to a folder, as the program does. Gives the names of the files.
     #[pyo3(signature = (folder, *, force=false))]
     fn write(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<Vec<String>> {
-        let session = Session {
+        let session = SimulatedSession {
             simulation: &self.simulation,
             kind: self.kind,
             made: &self.made,

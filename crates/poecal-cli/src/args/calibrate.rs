@@ -8,7 +8,7 @@ use poecal::io::output::Existing;
 use poecal_lou2009::{Formulation, Method, Residual};
 
 use super::report::ReportPlace;
-use super::shared::{Chain, Frame, Reading};
+use super::shared::{ChainArgs, Frame, Reading};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 
 /// How errors of the joints are parameterised.
@@ -109,7 +109,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// The measuring device's frame

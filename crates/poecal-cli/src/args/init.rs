@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use poecal::simulate::Kind;
 
-use super::shared::Chain;
+use super::shared::ChainArgs;
 use crate::quantity::whole;
 
 /// What will be measured.
@@ -32,7 +32,7 @@ pub(crate) struct Init {
     /// Robot model: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     /// What the device will see
     #[arg(long, value_enum, default_value = "points")]
     pub(crate) measure: Measured,

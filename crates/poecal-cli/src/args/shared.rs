@@ -11,7 +11,7 @@ use crate::console::Console;
 
 /// Which chain of a URDF.
 #[derive(Args, Debug)]
-pub(crate) struct Chain {
+pub(crate) struct ChainArgs {
     /// First link of the chain, where a URDF has several
     #[arg(long, value_name = "LINK")]
     pub(crate) base_link: Option<String>,
@@ -20,7 +20,7 @@ pub(crate) struct Chain {
     pub(crate) tip_link: Option<String>,
 }
 
-impl Chain {
+impl ChainArgs {
     pub(crate) fn selection(&self) -> ChainSelection {
         ChainSelection { base_link: self.base_link.clone(), tip_link: self.tip_link.clone() }
     }
@@ -37,13 +37,13 @@ pub(crate) enum Frame {
 
 /// What columns of files mean.
 #[derive(Args, Debug)]
-pub(crate) struct Columns {
+pub(crate) struct ColumnArgs {
     /// Mapping file that says what the columns of other people's files mean
     #[arg(long, value_name = "MAP.toml")]
     pub(crate) columns: Option<PathBuf>,
 }
 
-impl Columns {
+impl ColumnArgs {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let mapping = self.columns.as_ref().map(ColumnMap::read).transpose()?;
         Ok(ReadOptions { mapping, ..ReadOptions::default() })
@@ -88,7 +88,7 @@ pub(crate) struct DeviceFrames {
 #[derive(Args, Debug)]
 pub(crate) struct Reading {
     #[command(flatten)]
-    pub(crate) columns: Columns,
+    pub(crate) columns: ColumnArgs,
     #[command(flatten)]
     pub(crate) strictness: Strictness,
     #[command(flatten)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use poecal::simulate::Kind;
 
-use super::shared::{Chain, Frame};
+use super::shared::{ChainArgs, Frame};
 use crate::quantity::LengthAndAngle;
 
 /// What a simulated device sees.
@@ -35,7 +35,7 @@ pub(crate) struct Simulate {
     /// Robot model to deviate from: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     /// Angle and distance by which every axis, and the tip, is off
     #[arg(long, value_name = "ANGLE,LENGTH", default_value = "1deg,2mm", allow_hyphen_values = true)]
     pub(crate) errors: LengthAndAngle,

@@ -11,7 +11,7 @@ use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
 use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
-use poecal::io::residuals::{Residuals, Rows};
+use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::measurement::Dataset;
 use poecal::report::Detail;
 use poecal::{Error, ErrorKind, Result, report};
@@ -219,7 +219,7 @@ fn write(
     let place = &arguments.report;
     let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
     let report = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
-    let residuals = residuals.as_ref().map_or(Rows::Of(data, calibration), Rows::AtHand);
+    let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
     let results = Results { file, residuals, report };
     let written = output::write(places.folder, places.report, model, calibration, results)?;
     for note in &written.notes {

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 
 use poecal::io::model::Model;
 use poecal::io::urdf::ChainSelection;
-use poecal::offsets::{Options, explain};
+use poecal::offsets::{OffsetOptions, explain};
 use poecal::{Result, report};
 
 use super::convert::quoted;
@@ -23,7 +23,7 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
     let actual = Model::read(&arguments.actual, if one_chain { &whole } else { &selection })?;
     let ends = [arguments.base, arguments.tip].map(|end| end.map(Into::into));
     let [(base, base_reason), (tip, tip_reason)] = report::offset_ends(ends[0], ends[1], &actual);
-    let options = Options { base, tip, ..Options::default() };
+    let options = OffsetOptions { base, tip, ..OffsetOptions::default() };
     let explanation =
         explain(&nominal.robot, &actual.robot, &options).map_err(|error| error.in_file(&arguments.actual))?;
     for joint in &nominal.robot.joints {

@@ -2,11 +2,11 @@
 
 use poecal::Result;
 use poecal::io::model::Model;
-use poecal::io::output::{self, Contents, Existing, FolderPlace, Session};
+use poecal::io::output::{self, Contents, Existing, FolderPlace, SimulatedSession};
 use poecal::simulate::{Kind, Simulation};
 use poecal::text::visible;
 
-use crate::args::{Chain, Frame, Simulate};
+use crate::args::{ChainArgs, Frame, Simulate};
 use crate::console::Console;
 use crate::style::{labelled, shown};
 
@@ -36,7 +36,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         count => Some(simulation.held_out(&made, kind, count as usize)?),
     };
     let command = command(arguments, kind);
-    let session = Session {
+    let session = SimulatedSession {
         simulation: &simulation,
         kind,
         made: &made,
@@ -53,7 +53,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
 
 /// The command that makes the same files anywhere: with every option that they depend on, and no output folder.
 fn command(arguments: &Simulate, kind: Kind) -> String {
-    let Chain { base_link, tip_link } = &arguments.chain;
+    let ChainArgs { base_link, tip_link } = &arguments.chain;
     let mut words = vec!["poecal simulate".to_owned(), arguments.model.display().to_string()];
     for (option, link) in [("--base-link", base_link), ("--tip-link", tip_link)] {
         words.extend(link.as_ref().map(|link| format!("{option} {link}")));

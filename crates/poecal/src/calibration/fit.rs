@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::found::{Fitted, Found, SolverReport};
+use super::found::{Fitted, OngoingFit, SolverReport};
 use super::noise::stated;
 use super::{
     CalibrationOptions, DeviceFrameKnowledge, Formulation, Minimum, NoiseSource, delivered, estimate_noise,
@@ -154,14 +154,14 @@ impl Task<'_> {
     }
 
     /// The first fit from a registration.
-    pub(super) fn first_fit(&self, registered: &Estimate, noise: Noise) -> Found {
+    pub(super) fn first_fit(&self, registered: &Estimate, noise: Noise) -> OngoingFit {
         let mut start = registered.clone();
         start.recentre(self.data, self.packed, self.rows);
-        Found::new(self.fit(start, noise))
+        OngoingFit::new(self.fit(start, noise))
     }
 
     /// Effective number of unknowns determined by the measurements rather than the prior: theory.md §6 (34).
-    pub(super) fn effective_unknowns(&self, found: &Found) -> f64 {
+    pub(super) fn effective_unknowns(&self, found: &OngoingFit) -> f64 {
         let unknowns = found.normal.dim();
         let Some((prior, weight)) = self.prior else { return unknowns as f64 };
         let layout = self.problem(&found.estimate, Noise { position_m: 1.0, rotation_rad: 1.0 });
@@ -171,7 +171,7 @@ impl Task<'_> {
     }
 
     /// Mean squared whitened residual, without the prior's part of the cost.
-    fn mean_square(&self, found: &Found) -> f64 {
+    fn mean_square(&self, found: &OngoingFit) -> f64 {
         let believed = self.prior.map_or(0.0, |(prior, weight)| weight * prior.cost(&found.estimate));
         2.0 * (found.normal.cost - believed).max(0.0) / found.normal.residuals.max(1) as f64
     }
@@ -180,7 +180,7 @@ impl Task<'_> {
     /// the residuals).
     pub(super) fn complete(
         &self,
-        mut found: Found,
+        mut found: OngoingFit,
         registered: &Estimate,
         noise: Noise,
         source: NoiseSource,
@@ -232,7 +232,7 @@ impl Task<'_> {
 
     /// Effective number of unknowns determined by the rotation residuals, `tr(N⁻¹ N_R)`: theory.md §6 (34). Only for few rows, where it
     /// matters.
-    pub(super) fn determined_by_rotations(&self, found: &Found, noise: Noise) -> Option<f64> {
+    pub(super) fn determined_by_rotations(&self, found: &OngoingFit, noise: Noise) -> Option<f64> {
         const FEW: usize = 300;
         // With positions practically unmeasured, the information of rotations remains.
         const UNMEASURED_M: f64 = 1e9;
@@ -247,7 +247,7 @@ impl Task<'_> {
     }
 
     /// The result of a fit at its optimum, with its information in the minimal basis where possible.
-    pub(super) fn finish(&self, found: Found, noise: Noise, source: NoiseSource) -> Result<Fitted> {
+    pub(super) fn finish(&self, found: OngoingFit, noise: Noise, source: NoiseSource) -> Result<Fitted> {
         let mut found = found;
         let mut normal = self.problem(&found.estimate, noise).normal(&found.estimate);
         // The last change of the noise moved the optimum.
@@ -256,7 +256,7 @@ impl Task<'_> {
             found.update(self.minimize(&self.problem(&start, noise), start, &self.options.solver));
             normal = self.problem(&found.estimate, noise).normal(&found.estimate);
         }
-        let Found { mut estimate, mut report, .. } = found;
+        let OngoingFit { mut estimate, mut report, .. } = found;
         if !normal.cost.is_finite() {
             return Err(Error::new(
                 ErrorKind::Solver,

@@ -23,13 +23,13 @@ pub struct SolverReport {
 }
 
 /// A fit in progress.
-pub(super) struct Found {
+pub(super) struct OngoingFit {
     pub(super) estimate: Estimate,
     pub(super) normal: Normal,
     pub(super) report: SolverReport,
 }
 
-impl Found {
+impl OngoingFit {
     /// Begins with one minimisation.
     pub(super) fn new((estimate, normal, summary): (Estimate, Normal, Summary)) -> Self {
         let report = SolverReport {
@@ -39,7 +39,7 @@ impl Found {
             trace: summary.trace,
             joint_offsets: None,
         };
-        Found { estimate, normal, report }
+        OngoingFit { estimate, normal, report }
     }
 
     /// Continues with another minimisation.

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use super::{Robustness, RowError};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, sample_rows};
 use crate::measurement::Dataset;
-use series::{Change, Series};
+use series::{Series, SeriesChange};
 
 /// Most rows of the search: with fewer a change still shows, and its place is known to a few rows.
 const MOST_ROWS: usize = 20_000;
@@ -71,9 +71,9 @@ pub(super) struct ChangeSearch<'a> {
     pub(super) again: Option<&'a FrameSearch<'a>>,
 }
 
-/// Subject of a series of errors.
+/// MovedObject of a series of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Subject {
+enum MovedObject {
     /// The device at one station.
     Device(usize),
     /// A target.
@@ -84,9 +84,9 @@ enum Subject {
 pub(super) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
     let rows = sample_rows(search.rows, MOST_ROWS);
     let errors = super::row_errors(search.data, search.packed, &rows, search.estimate);
-    let mut found: Option<(Subject, Vec<u32>, Change)> = None;
-    let mut consider = |subject: Subject, series: Series| {
-        let change = series.change(matches!(subject, Subject::Device(_)));
+    let mut found: Option<(MovedObject, Vec<u32>, SeriesChange)> = None;
+    let mut consider = |subject: MovedObject, series: Series| {
+        let change = series.change(matches!(subject, MovedObject::Device(_)));
         if let Some(change) = change
             && found.as_ref().is_none_or(|(_, _, best)| change.explained > best.explained)
         {
@@ -94,10 +94,10 @@ pub(super) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
         }
     };
     for station in 0..search.data.station_count() {
-        consider(Subject::Device(station), of_device(search, &rows, &errors, station));
+        consider(MovedObject::Device(station), of_device(search, &rows, &errors, station));
     }
     for (target, series) in of_targets(search, &rows, &errors).into_iter().enumerate() {
-        consider(Subject::Target(target), series);
+        consider(MovedObject::Target(target), series);
     }
     let (subject, rows, change) = found?;
     Some(search.moved(subject, &rows, &change))
@@ -145,7 +145,7 @@ fn of_targets(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError]) -> V
 }
 
 impl ChangeSearch<'_> {
-    fn moved(&self, subject: Subject, rows: &[u32], change: &Change) -> Moved {
+    fn moved(&self, subject: MovedObject, rows: &[u32], change: &SeriesChange) -> Moved {
         let (data, far_mm) = (self.data, 1e3 * change.distance_m);
         let Some(at) = change.at else {
             let (first, last) = (rows.first().copied().unwrap_or(0), rows.last().copied().unwrap_or(0));
@@ -159,11 +159,11 @@ impl ChangeSearch<'_> {
         };
         let place = data.place(rows[at]);
         let statement = match subject {
-            Subject::Device(_) => {
+            MovedObject::Device(_) => {
                 let again = self.again.and_then(|again| again.moved_m(rows[at]));
                 self.device_words(rows, at, again.map_or(far_mm, |far_m| 1e3 * far_m), &place)
             }
-            Subject::Target(target) => match data.targets.get(target).and_then(Option::as_deref) {
+            MovedObject::Target(target) => match data.targets.get(target).and_then(Option::as_deref) {
                 Some(name) if data.targets.len() > 1 => format!(
                     "from {place} on target `{name}` is shifted by {far_mm:.2} mm on the arm, and no other target is: \
                      its nest seems to have been knocked; give it another name from there on, or leave these rows out"

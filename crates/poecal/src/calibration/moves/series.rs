@@ -36,7 +36,7 @@ pub(super) struct Series {
 
 /// A step or a drift.
 #[derive(Clone, Debug)]
-pub(super) struct Change {
+pub(super) struct SeriesChange {
     /// First row after the step, as an index into the series; `None` for a drift.
     pub(super) at: Option<usize>,
     /// Distance, metres; of a drift from the first row to the last.
@@ -56,7 +56,7 @@ struct Explained {
 
 impl Series {
     /// The step (or, if `may_drift`, the drift) that explains most, if it is significant: theory.md §9, *Change points*.
-    pub(super) fn change(&self, may_drift: bool) -> Option<Change> {
+    pub(super) fn change(&self, may_drift: bool) -> Option<SeriesChange> {
         let kept = self.without_wrong()?;
         let values: Vec<Vector3<f64>> = kept.iter().map(|&index| self.values[index]).collect();
         let count = values.len() as f64;
@@ -71,7 +71,7 @@ impl Series {
             let is_drift = beyond.explained > DRIFT_CHANCE * left
                 && steady.change.norm() > DRIFT_SIGMAS * left.sqrt()
                 && steady.change.norm() > ROUNDING_M;
-            return is_drift.then(|| Change {
+            return is_drift.then(|| SeriesChange {
                 at: None,
                 distance_m: steady.change.norm(),
                 explained: steady.explained,
@@ -82,7 +82,7 @@ impl Series {
         let is_step = step.explained > STEP_CHANCE * left
             && step.change.norm() > STEP_SIGMAS * left.sqrt()
             && step.change.norm() > ROUNDING_M;
-        is_step.then(|| Change {
+        is_step.then(|| SeriesChange {
             at: Some(kept[step.at]),
             distance_m: step.change.norm(),
             explained: step.explained,

@@ -14,7 +14,7 @@ pub(super) use rows::registrable;
 pub use rows::{Robustness, RowJudgement};
 
 use super::fit::Task;
-use super::found::{Fitted, Found};
+use super::found::{Fitted, OngoingFit};
 use super::noise::{NoiseSource, stated};
 use super::{CalibrationOptions, estimate_noise};
 use crate::error::Result;
@@ -143,7 +143,7 @@ impl RobustFit {
 fn ordinary(
     task: &Task<'_>,
     configurations: &Configurations,
-    found: Found,
+    found: OngoingFit,
     registered: &Estimate,
     noise: Noise,
     source: NoiseSource,
@@ -158,7 +158,7 @@ fn ordinary(
 fn shows_outliers(
     task: &Task<'_>,
     configurations: &Configurations,
-    found: &Found,
+    found: &OngoingFit,
     noise: Noise,
     source: NoiseSource,
 ) -> bool {
@@ -294,7 +294,7 @@ impl<'c> Reweighted<'c> {
     fn end(mut self, task: &Task<'_>, loss: Loss, source: NoiseSource) -> Result<RobustFit> {
         let bounds = Bounds::suspected(task.rows.len());
         let mut source = source;
-        let mut found: Option<Found> = None;
+        let mut found: Option<OngoingFit> = None;
         for _ in 0..ITERATIONS {
             let mut parts = parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
             let unknowns = self.unknowns(task);
@@ -333,13 +333,13 @@ impl<'c> Reweighted<'c> {
             self.estimate = renewed.0.clone();
             match &mut found {
                 Some(found) => found.update(renewed),
-                None => found = Some(Found::new(renewed)),
+                None => found = Some(OngoingFit::new(renewed)),
             }
         }
         let weighted = Task { weights: Some(&self.weights), ..self.with_prior_weight(task, source) };
         let mut found = match found {
             Some(found) => found,
-            None => Found::new(weighted.fit(self.estimate, self.noise)),
+            None => OngoingFit::new(weighted.fit(self.estimate, self.noise)),
         };
         found.report.iterations += self.iterations;
         found.report.trace.splice(0..0, self.trace);

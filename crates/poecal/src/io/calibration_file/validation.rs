@@ -1,4 +1,4 @@
-//! A calibration judged by measurements that it did not see.
+//! A calibration file judged by other measurements.
 
 use super::CalibrationFile;
 use crate::calibration::{
@@ -7,19 +7,19 @@ use crate::calibration::{
 use crate::error::Result;
 use crate::measurement::Dataset;
 
-/// A device frame that fits leaves errors of the calibration's own size; beyond this many times it, the device was moved.
+/// Ratio to the calibration's own error above which a device frame that is not refitted must have moved.
 const MOVED_DEVICE: f64 = 20.0;
 /// Share of errors inside their 95 % bound below which the bounds do not hold.
 const BROKEN: f64 = 0.75;
-/// What a calibration of exact data leaves is rounding, below a nanometre.
+/// Errors of exact data below this are rounding: a nanometre.
 const ROUNDING_MM: f64 = 1e-6;
 
 impl CalibrationFile {
-    /// Judges the calibration by measurements, of which every row counts, with the device's frame and the targets found anew as asked.
+    /// Judges the calibration by all rows of some measurements, with device frame and targets refitted as asked.
     ///
     /// # Errors
-    /// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the measurements are of other targets or instruments, or too few for what is found anew;
-    /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file has been changed into no calibration.
+    /// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the measurements are of other targets or instruments, or too few for the refit;
+    /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file holds no valid calibration.
     pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
         let (calibrated, nominal) = (self.robot()?, self.nominal_robot()?);
         if !refit_tool {
