@@ -92,7 +92,7 @@ pub(crate) fn calibrate(
     Ok(Calibration::of_fit(robot.same(), found, data, inputs, took))
 }
 
-/// The fit, without the interpreter's lock, and how long the library took. Warns as the program does.
+/// The fit, without the interpreter's lock, and the time of the library. Warns as the program does.
 fn fit(
     py: Python<'_>,
     nominal: &poecal::robot::Robot,
@@ -120,7 +120,7 @@ fn fit(
     Ok((found, took))
 }
 
-/// The rows to fit and to hold out, joined and settled.
+/// Training and held-out rows, joined.
 fn rows<'a>(
     py: Python<'_>,
     robot: &Robot,
@@ -163,7 +163,7 @@ fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: Residual) -> PyRes
     )
 }
 
-/// What was read, as `calibration.json` states it.
+/// Inputs, as in `calibration.json`.
 fn inputs(robot: &Robot, measurements: &Measurements, validate: Option<&Measurements>) -> Inputs {
     let sources = || [Some(measurements), validate].into_iter().flatten().map(|it| &it.source);
     let mut sha256 = (*robot.sha256).clone();

@@ -31,7 +31,7 @@ use crate::prediction::Prediction;
 use crate::robot::{Robot, poses};
 use crate::words::chosen;
 
-/// Where a report goes: among the results or not, or to a file.
+/// Place of a report: among the results, a file, or none.
 #[derive(FromPyObject)]
 enum ReportPlace {
     Among(bool),

@@ -1,4 +1,4 @@
-//! What `check`, `identify`, `offsets`, `reproduce` and `Calibration.validate` find.
+//! Results of `check`, `identify`, `offsets`, `reproduce` and `Calibration.validate`.
 
 use std::path::PathBuf;
 

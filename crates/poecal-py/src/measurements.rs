@@ -1,4 +1,4 @@
-//! Measurements: of files, arrays and data frames.
+//! Measurements from files, arrays and data frames.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -33,10 +33,10 @@ pub(crate) struct Measurements {
     pub(crate) source: Arc<MeasurementSource>,
 }
 
-/// Where measurements came from.
+/// Source of measurements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct MeasurementSource {
-    /// The files, or what stands for them.
+    /// File names, or their substitutes.
     pub(crate) names: Vec<String>,
     /// SHA-256 of each file that was read.
     pub(crate) sha256: BTreeMap<String, String>,
@@ -44,7 +44,7 @@ pub(crate) struct MeasurementSource {
     pub(crate) fit_where: bool,
 }
 
-/// What rebuilds measurements.
+/// Pickled measurements.
 #[derive(Serialize, Deserialize)]
 struct MeasurementState {
     data: Dataset,
@@ -59,7 +59,7 @@ enum Paths {
     Several(Vec<PathBuf>),
 }
 
-/// How to read, from the arguments of that name.
+/// Options of a reader, from the arguments of the same names.
 fn options(
     columns: Option<&PathBuf>,
     fit_where: Option<&str>,
@@ -77,7 +77,7 @@ fn options(
 }
 
 impl Measurements {
-    /// Rows that came from no file.
+    /// Source of rows without a file.
     pub(crate) fn in_memory(data: Dataset, name: &str) -> Self {
         let file = MeasurementFile { data, ..MeasurementFile::default() };
         let source = MeasurementSource { names: vec![name.to_owned()], ..MeasurementSource::default() };
@@ -252,7 +252,7 @@ impl Measurements {
         };
         let mut file = py.detach(read).map_err(from_dataframe::raise)?;
         crate::warn(py, &file.warnings)?;
-        // The lines of a text that nobody sees would mislead: rows are told by their number.
+        // Line numbers of an internal text would mislead: errors name rows instead.
         file.data.files.clear();
         file.data.observations.iter_mut().for_each(|row| row.source = Default::default());
         let names = vec![from_dataframe::NAME.to_owned()];

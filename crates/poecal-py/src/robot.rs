@@ -26,7 +26,7 @@ use crate::pickle;
 use crate::places::reserved_file;
 use crate::words::chosen;
 
-/// The form that is named, or that the extension of a file names.
+/// The named form, or that of a file's extension.
 pub(crate) fn form(to: Option<&str>, path: Option<&Path>) -> PyResult<ModelFormat> {
     if let Some(word) = to {
         return chosen("to", word, &[("urdf", ModelFormat::Urdf), ("toml", ModelFormat::Toml)]);

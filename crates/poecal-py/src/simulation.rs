@@ -17,7 +17,7 @@ use crate::places::reserved_folder;
 use crate::robot::Robot;
 use crate::words::{frame as frame_word, from_deg, from_mm, kind as kind_word, size};
 
-/// Most rows of a simulation, as of the program.
+/// Most rows of a simulation, as by the program.
 const MOST: usize = 10_000_000;
 
 /// A simulated session: the nominal robot, the actual one, and what a device measured of it.

@@ -174,12 +174,12 @@ pub(crate) struct Calibrate {
 }
 
 impl Calibrate {
-    /// What may become of results that exist.
+    /// Treatment of existing results.
     pub(crate) fn existing(&self) -> Existing {
         if self.force_own && !self.force { Existing::Own } else { Existing::forced(self.force) }
     }
 
-    /// Every file that is read.
+    /// All input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         let mapping = self.reading.columns.columns.iter();
         let files = self.model.iter().chain(&self.measurements).chain(&self.validate).chain(&self.settings);

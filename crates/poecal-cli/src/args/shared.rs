@@ -118,7 +118,7 @@ pub(crate) struct OutFile {
 }
 
 impl OutFile {
-    /// The place, which none of the files that are read may be; none for standard output.
+    /// Place of the output, which may be no input; `None` for standard output.
     pub(crate) fn reserve(&self, inputs: &[&Path], console: &Console) -> poecal::Result<Option<FilePlace>> {
         let out = self.out.as_deref().filter(|out| *out != Path::new("-"));
         out.map(|out| FilePlace::reserve(out, Existing::forced(self.force), inputs, &mut console.warner()))

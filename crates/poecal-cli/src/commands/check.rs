@@ -1,4 +1,4 @@
-//! `poecal check`: how files are understood.
+//! `poecal check`: how files are read.
 
 use poecal::forensics::{DiagnosisOptions, diagnose};
 use poecal::io::measurements;

@@ -1,4 +1,4 @@
-//! `poecal offsets`: the joint offsets with which a model comes nearest to another.
+//! `poecal offsets`: the joint offsets with which one model comes nearest to another.
 
 use std::ffi::OsStr;
 
@@ -16,7 +16,7 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
     let place = arguments.place.reserve(&[&arguments.nominal, &arguments.actual], console)?;
     let selection = arguments.chain.selection();
     let nominal = Model::read(&arguments.nominal, &selection)?;
-    // Other forms than URDF have one chain only; a calibration beside a URDF that has several is compared with the chain chosen there.
+    // Only a URDF can have several chains; the chosen one is also that of a calibration beside it.
     let one_chain =
         ["toml", "json"].map(OsStr::new).contains(&arguments.actual.extension().unwrap_or_default());
     let whole = ChainSelection::default();

@@ -1,4 +1,4 @@
-//! `poecal reproduce`: the experiment of a paper and what became of its claims, or what gross errors do.
+//! `poecal reproduce`: a paper's experiment and its claims, or the effect of gross errors.
 
 use poecal::Result;
 use poecal::io::output::{self, Contents, Existing, FolderPlace};

@@ -1,4 +1,4 @@
-//! `poecal simulate`: a robot with known errors, and what a device would measure of it.
+//! `poecal simulate`: a robot with known errors, and its measurements.
 
 use poecal::Result;
 use poecal::io::model::Model;
@@ -51,7 +51,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     Ok(console.say_of(&words, &written.folder))
 }
 
-/// The command that makes the same files anywhere: with every option that they depend on, and no output folder.
+/// The command that reproduces the files: all options that they depend on, and no output folder.
 fn command(arguments: &Simulate, kind: Kind) -> String {
     let ChainArgs { base_link, tip_link } = &arguments.chain;
     let mut words = vec!["poecal simulate".to_owned(), arguments.model.display().to_string()];
@@ -66,6 +66,6 @@ fn command(arguments: &Simulate, kind: Kind) -> String {
     if arguments.held_out_count > 0 {
         words.push(format!("--held-out-count {}", arguments.held_out_count));
     }
-    // The command becomes a line of a file.
+    // The command becomes one line of a file.
     visible(&words.join(" ")).into_owned()
 }
