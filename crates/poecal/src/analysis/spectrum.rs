@@ -87,7 +87,7 @@ impl Spectrum {
     }
 
     /// Variance of a linear function of the unknowns (its derivative in the order of a step), `Σ_k σ_k² (v_kᵀ d)²` over determined
-    /// directions. `None` if undetermined directions have a part in it.
+    /// directions (theory.md §7 (36c)). `None` if undetermined directions have a part in it.
     #[must_use]
     pub fn variance_along(&self, derivative: &[f64]) -> Option<f64> {
         let length: f64 = derivative.iter().map(|d| d * d).sum();
