@@ -50,7 +50,7 @@ impl JointCoverage {
         (allowed > 0.0).then(|| (sampled / allowed).min(1.0))
     }
 
-    /// Whether a value lies in the sampled range; of a revolute joint also after whole turns.
+    /// Whether a value is in the sampled range; for a revolute joint also after whole turns.
     #[must_use]
     pub fn contains(&self, kind: JointKind, value: f64) -> bool {
         // Readings are rounded: smaller differences do not count.
