@@ -12,7 +12,7 @@ use super::{
 use crate::analysis::effective_unknowns;
 use crate::distributions::is_within_band;
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Estimate, Packed, sample_rows};
+use crate::estimate::{Estimate, Packed, position_rms_m, sample_rows};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::{DeviceFrame, Parameter, screw_axes};
@@ -114,11 +114,6 @@ fn predicted_reduction(normal: &Normal) -> f64 {
     normal.full_step().map_or(0.0, |step| normal.predicted_reduction(&step))
 }
 
-/// Whether a variance of the whitened residuals agrees with the stated noise (99 % band of χ²).
-pub(super) fn explains(variance: f64, freedom: f64) -> bool {
-    is_within_band(variance, freedom) == std::cmp::Ordering::Equal
-}
-
 /// Whether a position error is larger than elastic gears and links of a robot of this size explain.
 pub(super) fn is_suspicious(rms_m: f64, length_m: f64) -> bool {
     rms_m >= SUSPICIOUS * 3.0 * length_m
@@ -209,8 +204,8 @@ impl Task<'_> {
                 // Stated noise scales the prior as long as it explains the residuals.
                 let freedom = (found.normal.residuals as f64 - unknowns).max(1.0);
                 let variance = mean_square * found.normal.residuals as f64 / freedom;
-                weight =
-                    if source != NoiseSource::Exact && explains(variance, freedom) { 1.0 } else { variance };
+                let explains = source != NoiseSource::Exact && is_within_band(variance, freedom).is_eq();
+                weight = if explains { 1.0 } else { variance };
             }
             // The axes' deviations estimate how good the nominal model is.
             weight /= task.prior.map_or(1.0, |(prior, _)| prior.looseness(&found.estimate));
@@ -349,9 +344,7 @@ impl Task<'_> {
 
     /// Root mean square distance from prediction to measurement, metres.
     fn position_rms(&self, estimate: &Estimate) -> f64 {
-        let errors = row_errors(self.data, self.packed, self.rows, estimate);
-        let sum: f64 = errors.iter().map(|e| e.position_m.norm_squared()).sum();
-        (sum / errors.len().max(1) as f64).sqrt()
+        position_rms_m(&row_errors(self.data, self.packed, self.rows, estimate))
     }
 
     /// The estimate with every axis tilted by about `scale` radians and shifted by as much of the arm's length.

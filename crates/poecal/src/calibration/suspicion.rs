@@ -1,5 +1,6 @@
 //! Corrections of joints, and suspicious joints: the correction stands out, or the residuals follow the joint's position.
 
+use crate::distributions::median;
 use crate::robot::JointKind;
 use crate::solve::Normal;
 use crate::uncertainty::{Pattern, View, strongest_pattern};
@@ -53,9 +54,7 @@ pub(super) fn suspicions(
 /// Whether a joint's axis is farther from nominal than those of the other joints of its kind.
 fn stands_out(correction: &JointCorrection, others: &[&JointCorrection]) -> Vec<String> {
     let median = |of: fn(&JointCorrection) -> f64| {
-        let mut values: Vec<f64> = others.iter().map(|it| of(it)).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().filter(|_| values.len() >= FEWEST)
+        median(others.iter().map(|it| of(it))).filter(|_| others.len() >= FEWEST)
     };
     let mut parts = Vec::new();
     let mut judge = |value: f64, sigma: Option<f64>, least: f64, others: Option<f64>, words: String| {

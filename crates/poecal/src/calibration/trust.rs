@@ -7,7 +7,7 @@ use rand_core::SeedableRng;
 use super::suspicion::{JointCorrection, suspicions};
 use super::{CoverageCheck, Models, row_errors};
 use crate::analysis::{JointCoverage, PLAUSIBLE, coverage};
-use crate::estimate::{Estimate, Packed, sample_rows};
+use crate::estimate::{Estimate, Packed, position_rms_m, sample_rows};
 use crate::gauge::{Deviation, screw_deviations};
 use crate::problem::Layout;
 use crate::robot::{Joint, JointKind, Robot};
@@ -26,7 +26,7 @@ const PARTS: usize = 6;
 /// Most targets over which expected errors are taken.
 const MOST_TARGETS: usize = 12;
 /// Rows by which the effect of each correction is computed.
-const WORTH_SAMPLE: usize = 300;
+const EFFECT_SAMPLE: usize = 300;
 
 /// Expected errors of predicted positions, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,7 +112,9 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let cross_validation = cross_validate(view, finished.seed);
     let found = discrepancy(view, finished.normal, finished.remainder, cross_validation.as_ref());
     let uncertainty = uncertainty(finished, &found);
-    let sampled = sampled_values(view, view.rows);
+    let sample = sample_rows(view.rows, CONFIGURATIONS);
+    let sampled: Vec<f64> =
+        sample.iter().flat_map(|&row| view.packed.joint_values(row as usize).iter().copied()).collect();
     let coverage = coverage(view.robot, view.packed, view.rows);
     let ranges = ranges(view.robot, &coverage);
     let anywhere = anywhere(view.robot, &ranges, finished.seed);
@@ -148,12 +150,6 @@ fn uncertainty(finished: &Finished<'_>, found: &Discrepancy) -> Option<Uncertain
         return None;
     }
     Uncertainty::new(&finished.view, finished.layout.clone(), &normal.gram, found)
-}
-
-/// Joint values of at most [`CONFIGURATIONS`] of the rows.
-fn sampled_values(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
-    let sample = sample_rows(rows, CONFIGURATIONS);
-    sample.iter().flat_map(|&row| view.packed.joint_values(row as usize).iter().copied()).collect()
 }
 
 /// Usable range of each joint: its limits; of a revolute joint at most a turn, about the middle of the sampled range; of a prismatic joint
@@ -232,7 +228,7 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
     let deviations =
         screw_deviations(calibrated, view.robot, finished.layout, view.length_m, finished.base_free);
     let nominal: Vec<_> = view.robot.joints.iter().map(|joint| joint.screw).collect();
-    let rows = sample_rows(view.rows, WORTH_SAMPLE);
+    let rows = sample_rows(view.rows, EFFECT_SAMPLE);
     let mut joints: Vec<JointCorrection> = deviations
         .into_iter()
         .enumerate()
@@ -241,14 +237,12 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
             let mut screws = calibrated.screws();
             screws[joint] = nominal[joint];
             let left = registered_again(finished, &rows, &calibrated.with_screws(&screws));
-            let errors = row_errors(view.data, view.packed, &rows, &left);
-            let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
             JointCorrection {
                 tilt_rad: deviation.tilt_rad,
                 shift_m: deviation.shift_m,
                 sigma_tilt_rad,
                 sigma_shift_m,
-                left_nominal_rms_m: (squares / rows.len().max(1) as f64).sqrt(),
+                left_nominal_rms_m: position_rms_m(&row_errors(view.data, view.packed, &rows, &left)),
                 suspicious: None,
             }
         })

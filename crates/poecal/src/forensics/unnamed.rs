@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::fitter::Fitter;
 use super::judge::short;
 use super::{Diagnosis, DiagnosisKind};
+use crate::distributions::median;
 use crate::lie::rotation;
 use crate::measurement::{Dataset, Measurement};
 
@@ -40,7 +41,7 @@ pub(super) fn diagnose<'a>(
     let pairs = count * (count - 1) / 2;
     let at = |pair: usize| move |places: &&Places| places.distances.get(pair).copied().unwrap_or(0.0);
     let distances: Vec<f64> =
-        (0..pairs).map(|pair| usual_number(alike.iter().map(at(pair)).collect())).collect();
+        (0..pairs).map(|pair| median(alike.iter().map(at(pair))).unwrap_or(0.0)).collect();
     let keeps = |places: &&&Places| {
         places
             .distances
@@ -117,12 +118,6 @@ fn is_shift(alike: &[&Places]) -> bool {
 fn usual(mut numbers: Vec<usize>) -> Option<usize> {
     numbers.sort_unstable();
     numbers.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first().copied()
-}
-
-/// The median.
-fn usual_number(mut numbers: Vec<f64>) -> f64 {
-    numbers.sort_unstable_by(f64::total_cmp);
-    numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Distance of two measurements of one configuration, metres, if it exceeds a robot's repeatability.

@@ -3,7 +3,7 @@
 
 use super::super::{CalibrationOptions, delivered, fit_screws, row_errors};
 use super::{ChangeKind, Moved};
-use crate::estimate::{Estimate, Packed};
+use crate::estimate::{Estimate, Packed, position_rms_m};
 use crate::measurement::{Dataset, Noise};
 use crate::problem::Prior;
 use crate::robot::Robot;
@@ -181,9 +181,7 @@ impl FrameSearch<'_> {
         let prior = prior.as_ref().map(|prior| (prior, 1.0));
         let (noise, length_m) = (self.noise, self.length_m);
         let (estimate, ..) = fit_screws(data, packed, self.rows, start, noise, length_m, prior, options);
-        let errors = row_errors(data, packed, self.rows, &estimate);
-        let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
-        let own_m = (squares / self.rows.len().max(1) as f64).sqrt();
+        let own_m = position_rms_m(&row_errors(data, packed, self.rows, &estimate));
         (estimate, own_m)
     }
 

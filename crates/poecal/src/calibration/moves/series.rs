@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::distributions::{median, median_point};
 use crate::linalg;
 
 /// Least share of the rows, and least number, on each side of a step. Single regions of the workspace, measured one after the other, may
@@ -93,7 +94,7 @@ impl Series {
     /// Indices without gross errors; `None` if too few remain.
     fn without_wrong(&self) -> Option<Vec<usize>> {
         let count = self.values.len();
-        let far = FAR * median(self.values.iter().map(Vector3::norm));
+        let far = FAR * median(self.values.iter().map(Vector3::norm))?;
         let near: Vec<Vector3<f64>> = self
             .values
             .iter()
@@ -101,9 +102,9 @@ impl Series {
             .collect();
         let step = strongest_step(&near)?;
         let (before, after) = self.values.split_at(step.at);
-        let middles = [middle(before), middle(after)];
+        let middles = [median_point(before), median_point(after)];
         let aside = |index: usize| (self.values[index] - middles[usize::from(index >= step.at)]).norm();
-        let wrong = WRONG * median((0..count).map(aside));
+        let wrong = WRONG * median((0..count).map(aside))?;
         let kept: Vec<usize> = (0..count).filter(|&index| aside(index) <= wrong).collect();
         if (count - kept.len()) as f64 > MOST_WRONG * count as f64 {
             return Some((0..count).collect());
@@ -134,9 +135,10 @@ impl Series {
             }
         }
         let factor = linalg::cholesky(&gram, n, 1e-9 * values.len() as f64)?;
-        let told = linalg::cholesky_solve(&factor, &pull);
-        let own =
-            |(shape, time): (&&[f64], &f64)| time - shape.iter().zip(&told).map(|(a, b)| a * b).sum::<f64>();
+        let coefficients = linalg::cholesky_solve(&factor, &pull);
+        let own = |(shape, time): (&&[f64], &f64)| {
+            time - shape.iter().zip(&coefficients).map(|(a, b)| a * b).sum::<f64>()
+        };
         let own: Vec<f64> = shapes.iter().zip(&times).map(own).collect();
         let squares: f64 = own.iter().map(|time| time * time).sum();
         let sum: Vector3<f64> = own.iter().zip(values).map(|(&time, value)| (value - mean) * time).sum();
@@ -179,15 +181,4 @@ fn strongest_step(values: &[Vector3<f64>]) -> Option<Explained> {
         }
     }
     best
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// The median of each component.
-fn middle(values: &[Vector3<f64>]) -> Vector3<f64> {
-    Vector3::from_fn(|k, _| median(values.iter().map(|value| value[k])))
 }

@@ -2,7 +2,7 @@
 
 use crate::calibration::CalibrationOptions;
 use crate::calibration::noise::{ROUNDING, stated};
-use crate::distributions;
+use crate::distributions::{chi_square_median, median};
 use crate::estimate::{Estimate, Packed, map_squares};
 use crate::measurement::{Dataset, Noise};
 
@@ -92,14 +92,7 @@ pub(super) fn settle(
 
 /// Root of the median of squares over the median of χ²; `left` is the redundant share of the rows.
 fn median_scale<'a>(rows: impl Iterator<Item = &'a RowPart>, left: f64) -> Option<f64> {
-    let mut squares: Vec<f64> = rows
-        .filter(|part| part.components > 0)
-        .map(|part| part.squares / distributions::median(part.components))
-        .collect();
-    if squares.is_empty() {
-        return None;
-    }
-    let middle = squares.len() / 2;
-    let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
-    Some((*median / left).sqrt())
+    let measured = rows.filter(|part| part.components > 0);
+    let median = median(measured.map(|part| part.squares / chi_square_median(part.components)))?;
+    Some((median / left).sqrt())
 }

@@ -8,6 +8,7 @@ use super::inputs::{Input, InputReader};
 use super::layout::ColumnLayout;
 use super::table::Row;
 use super::units::{Quantity, Unit, UnitSource};
+use crate::distributions::median_point;
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Observation;
 use crate::robot::{Joint, Limits, Robot};
@@ -215,7 +216,7 @@ pub(super) fn check_positions(
     let reach = robot.reach_m() + slides_m;
     let positions: Vec<Vector3<f64>> =
         rows.iter().map(|row| row.measurement.residual_model().position()).collect();
-    let middle = middle(&positions);
+    let middle = median_point(&positions);
     let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();
     let furthest = positions
         .iter()
@@ -236,19 +237,6 @@ pub(super) fn check_positions(
         stated = input.unit.symbol(),
     );
     Err(Error::new(ErrorKind::Unit, message).at_line(path, line as usize))
-}
-
-/// Median of each coordinate, which a few corrupt rows do not change.
-pub(super) fn middle(positions: &[Vector3<f64>]) -> Vector3<f64> {
-    let mut middle = Vector3::zeros();
-    for (axis, coordinate) in middle.iter_mut().enumerate() {
-        let mut values: Vec<f64> = positions.iter().map(|position| position[axis]).collect();
-        let half = values.len() / 2;
-        if half < values.len() {
-            *coordinate = *values.select_nth_unstable_by(half, f64::total_cmp).1;
-        }
-    }
-    middle
 }
 
 /// A number to four significant digits.

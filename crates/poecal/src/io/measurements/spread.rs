@@ -7,8 +7,9 @@ use nalgebra::Vector3;
 use super::header::Header;
 use super::inputs::{Input, InputSource};
 use super::layout::ColumnLayout;
-use super::scale::{middle, short};
+use super::scale::short;
 use super::units::{Quantity, Unit};
+use crate::distributions::{median, median_point};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
 use crate::robot::Robot;
@@ -82,10 +83,8 @@ pub(super) fn check(
 
 /// Median distance from the middle, which a few corrupt rows do not change.
 fn spread(positions: Vec<Vector3<f64>>) -> f64 {
-    let middle = middle(&positions);
-    let mut distances: Vec<f64> = positions.iter().map(|position| (position - middle).norm()).collect();
-    let half = distances.len() / 2;
-    if half < distances.len() { *distances.select_nth_unstable_by(half, f64::total_cmp).1 } else { 0.0 }
+    let middle = median_point(&positions);
+    median(positions.iter().map(|position| (position - middle).norm())).unwrap_or(0.0)
 }
 
 fn is_about(ratio: f64, expected: f64) -> bool {
