@@ -26,8 +26,8 @@ use crate::words::{
 /// Parameters
 /// ----------
 /// robot : the nominal robot
-/// measurements : what was measured of it
-/// frame : the measuring device's frame: "unknown" (it stands anywhere) or "base"
+/// measurements : its measurements
+/// frame : the measuring device's frame: "unknown" or "base"
 /// sigma_position_mm, sigma_rotation_deg : standard deviation of each measured component, default estimated from the data
 /// tolerance_deg_mm : prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or
 ///     None; it decides where the measurements determine nothing
@@ -38,7 +38,7 @@ use crate::words::{
 /// residual : residual of measured frames: "tool" or "spatial"
 /// method : "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws)
 /// validate : measurements to judge by: all other rows are fitted
-/// progress : called with what is done next, in words
+/// progress : called with the next stage, in words
 ///
 /// Raises
 /// ------

@@ -23,7 +23,7 @@ use crate::pickle;
 use crate::robot::Robot;
 use crate::words::chosen;
 
-/// Measurements of a robot: in each row a configuration and what a device saw of a target there. They never change.
+/// Measurements of a robot: in each row a configuration and the measurement of a target. Immutable.
 ///
 /// Make them by `Measurements.from_csv`, `from_arrays` or `from_dataframe`. Lengths are in metres, angles in radians. Measurements
 /// compare by value, and can be copied and pickled.
@@ -134,7 +134,7 @@ impl Measurements {
     /// ----------
     /// paths : a path or several
     /// robot : the robot whose joints the columns name
-    /// columns : a mapping file that says what the columns of other people's files mean
+    /// columns : a mapping file for files with other column names
     /// fit_where : "COLUMN=VALUE[,VALUE]"
     ///     Fit only rows whose column has one of these values, and hold out all others.
     /// ignore_sets : whether the files' column `set` means nothing, as for rows that judge a calibration
@@ -188,7 +188,7 @@ impl Measurements {
     /// poses : array of shape (m, 4, 4), instead of `positions`
     ///     Poses device_from_target, translations in `length_unit`.
     /// targets : list of m names, default the tip itself
-    /// instruments : list of m names of what measured, each with a frame of its own
+    /// instruments : list of m names of the measuring devices, each with a frame of its own
     /// sets : list of m "fit" or "held_out" (or None for rows that do not say)
     /// ids : list of m names of the rows
     /// sigma_position_mm, sigma_rotation_deg : a number, or an array of shape (m,)
@@ -335,7 +335,7 @@ impl Measurements {
         self.data().files.iter().map(|path| path.display().to_string()).collect()
     }
 
-    /// What the user should know of the files, a sentence each.
+    /// Warnings about the files, a sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.file.warnings.iter().map(|warning| python_words(warning)).collect()

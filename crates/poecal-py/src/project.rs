@@ -22,7 +22,7 @@ const MOST: usize = 100_000;
 /// ----------
 /// model : path of a URDF, TOML model or calibration.json
 /// out : folder; files in it are never overwritten
-/// measure : "points" or "poses", what the device will see
+/// measure : "points" or "poses"
 /// count : number of configurations to suggest, from 1 to 100,000
 /// seed : of their choice
 /// base_link, tip_link : the chain of a URDF that has several

@@ -149,7 +149,7 @@ impl Robot {
             .map(Robot::new)
     }
 
-    /// Where the tip, or a target of the model, stands in the base frame.
+    /// Poses of the tip, or of a target of the model, in the base frame.
     ///
     /// `joints` is of shape (m, n), radians and metres, in the order of `reading_names`; the result of shape (m, 4, 4). One
     /// configuration of shape (n,) gives one pose of shape (4, 4).

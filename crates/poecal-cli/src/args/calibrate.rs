@@ -101,9 +101,9 @@ impl From<MethodWord> for Method {
 /// Arguments of `poecal calibrate`.
 #[derive(Args, Debug)]
 pub(crate) struct Calibrate {
-    /// Robot model: URDF, TOML or calibration.json [default: what the settings name]
+    /// Robot model: URDF, TOML or calibration.json [default: from the settings]
     pub(crate) model: Option<PathBuf>,
-    /// Measurement files (CSV), joined [default: what the settings name]
+    /// Measurement files (CSV), joined [default: from the settings]
     pub(crate) measurements: Vec<PathBuf>,
     /// Settings (TOML) for options that are not given here [default: poecal.toml in this folder, if no model is named]
     #[arg(long, value_name = "FILE")]

@@ -20,7 +20,7 @@ pub(crate) struct Identify {
     pub(crate) chain: ChainArgs,
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
-    /// What the device will see of the tip
+    /// Kind of the measurements of the tip
     #[arg(long, value_enum, default_value = "pose")]
     pub(crate) kind: SimulatedKind,
     /// Standard deviation of each measured position component [default: 0.05mm]

@@ -33,7 +33,7 @@ pub(crate) struct Init {
     pub(crate) model: PathBuf,
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
-    /// What the device will see
+    /// Kind of the measurements
     #[arg(long, value_enum, default_value = "points")]
     pub(crate) measure: Measured,
     /// Number of configurations to suggest

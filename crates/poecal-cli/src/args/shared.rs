@@ -29,7 +29,7 @@ impl ChainArgs {
 /// What is known of the measuring device's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Frame {
-    /// The device stands anywhere
+    /// The device frame is unknown
     Unknown,
     /// Measurements are in the robot's base frame
     Base,
@@ -38,7 +38,7 @@ pub(crate) enum Frame {
 /// What columns of files mean.
 #[derive(Args, Debug)]
 pub(crate) struct ColumnArgs {
-    /// Mapping file that says what the columns of other people's files mean
+    /// Mapping file for files with other column names
     #[arg(long, value_name = "MAP.toml")]
     pub(crate) columns: Option<PathBuf>,
 }

@@ -48,10 +48,10 @@ pub(crate) struct Simulate {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// What the device sees
+    /// Kind of the measurements
     #[arg(long, value_enum, default_value = "pose")]
     pub(crate) kind: SimulatedKind,
-    /// Where the device stands: anywhere, or at the robot's base
+    /// The measuring device's frame: unknown, or the robot's base
     #[arg(long, value_enum, default_value = "unknown")]
     pub(crate) frame: Frame,
     /// Number of further measurements, free of noise, to judge a calibration by

@@ -16,8 +16,8 @@ use crate::robot::{Robot, RobotState};
 
 /// A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
 ///
-/// `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`; what is not asked for
-/// is not converted.
+/// `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`,
+/// converted on demand.
 #[pyclass(frozen, module = "poecal", name = "Calibration")]
 pub(crate) struct Calibration {
     /// The nominal robot, after whose file models are written.
