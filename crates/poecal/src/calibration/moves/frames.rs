@@ -12,7 +12,7 @@ use crate::start::{Registration, register};
 /// Most files whose frames are compared, and fewest rows of each.
 const MOST_FILES: usize = 20;
 const FEWEST_ROWS: usize = 4;
-/// Fewest rows of a session in two parts; its first and last such share are assumed to have one frame each.
+/// Fewest rows of a session in two parts; the first and the last of so many parts are assumed to have one frame each.
 const FEWEST_TO_PART: usize = 32;
 const PARTS: usize = 4;
 /// Least ratio by which a fit with separate frames must reduce the error.

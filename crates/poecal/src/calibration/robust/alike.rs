@@ -10,7 +10,7 @@ use crate::measurement::Dataset;
 pub(super) const TAILS: f64 = 2.0;
 /// A row has the error of its configuration if it differs from the others' mean by less than this share of its own length.
 const SHARE: f64 = 0.5;
-/// The same factor for configurations with a common error: gears and links give by less.
+/// The same factor for configurations with a common error: elastic gears and links cause less.
 const COMMON_TAILS: f64 = 8.0;
 
 /// Configurations measured several times, or with several targets.
