@@ -225,7 +225,7 @@ mod tests {
         assert_eq!(
             told("A,B,C", "10,20,30"),
             "t.csv: the columns A, B, C look like KUKA's A, B, C (turns about z, then the new y, then the new x); they are ignored and the rows read as points: a mapping (--columns) with `orientation = { form = \"intrinsic_zyx\", columns = [\"A\", \"B\", \"C\"], unit = \"deg\" }` \
-             has them read as poses"
+             reads them as poses"
         );
         assert!(
             told("w[deg],p[deg],r[deg]", "1,2,3")
