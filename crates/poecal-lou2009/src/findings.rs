@@ -1,9 +1,9 @@
-//! What a reproduction of lou2009 found: every number that its reports and plots show.
+//! Results of a reproduction of lou2009: every number of its reports and plots.
 
 use crate::Formulation;
 use serde::Serialize;
 
-/// What the device of a run saw.
+/// Kind of a run's measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MeasurementKind {

@@ -1,7 +1,7 @@
 //! URDF: reads a serial chain, and writes calibrated values into the same text.
 //!
-//! Read: links, joints (fixed, revolute, continuous, prismatic), origins, axes, limits, mimic relations. Everything else in the
-//! file (meshes, inertias, controllers, comments) is neither looked at nor changed.
+//! It reads links, joints (fixed, revolute, continuous, prismatic), origins, axes, limits and mimic relations. Everything else in the
+//! file (meshes, inertias, controllers, comments) is ignored and stays.
 
 mod chain;
 mod ends;
