@@ -15,7 +15,7 @@ pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
 pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
-pub(crate) use shared::{Chain, Frame};
+pub(crate) use shared::{ChainArgs, Frame};
 pub(crate) use simulate::Simulate;
 
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 
 use crate::quantity::threads;
-use shared::{Columns, DeviceFrames, OutFile, Reading, Strictness};
+use shared::{ColumnArgs, DeviceFrames, OutFile, Reading, Strictness};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
@@ -85,7 +85,7 @@ pub(crate) struct Validate {
     #[arg(required = true)]
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) columns: Columns,
+    pub(crate) columns: ColumnArgs,
     #[command(flatten)]
     pub(crate) strictness: Strictness,
     #[command(flatten)]
@@ -131,9 +131,9 @@ pub(crate) struct Predict {
     /// Joint readings (CSV); other columns than the joints' and `id` are ignored
     pub(crate) joints: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     #[command(flatten)]
-    pub(crate) columns: Columns,
+    pub(crate) columns: ColumnArgs,
     /// The frame of the poses
     #[arg(long, value_enum, default_value = "base")]
     pub(crate) frame: PredictIn,
@@ -155,7 +155,7 @@ pub(crate) struct Check {
     /// Measurement files (CSV)
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// The measuring device's frame: `base` looks for mistakes in it too
@@ -190,7 +190,7 @@ pub(crate) struct Convert {
     /// Robot model: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     /// The form to write [default: as the extension of --out says]
     #[arg(long, value_enum)]
     pub(crate) to: Option<Form>,

@@ -1,4 +1,4 @@
-//! Standard output for results, standard error for everything else. On a terminal, colours and lines as wide as it; elsewhere neither.
+//! Standard output for results, standard error for messages. On a terminal with colours and its width; elsewhere without either.
 
 use std::cell::RefCell;
 use std::fmt::Display;
@@ -15,23 +15,23 @@ use poecal::text::{visible, visible_lines};
 use crate::{DONE, Said, WORSE, style};
 
 thread_local! {
-    /// What is said, where it is kept and not printed.
+    /// Captured output, if it is not printed.
     static KEPT: RefCell<Option<Said>> = const { RefCell::new(None) };
 }
 
-/// Keeps what is said, if that is wanted; false if it is to be printed.
+/// Captures output, if that is wanted; false if it is to be printed.
 fn kept(add: impl FnOnce(&mut Said)) -> bool {
     KEPT.with_borrow_mut(|kept| kept.as_mut().map(add)).is_some()
 }
 
-/// Does some work, and gives what is said on standard output and standard error.
+/// Does some work, and returns what it would print on standard output and standard error.
 pub(crate) fn captured(work: impl FnOnce() -> u8) -> Said {
     KEPT.replace(Some(Said::default()));
     let code = work();
     Said { code, ..KEPT.take().unwrap_or_default() }
 }
 
-/// What clap has to say: help, the version, or a mistake in the use.
+/// Output of clap: help, version, or a usage error.
 pub(crate) fn usage(error: &clap::Error) {
     let text = error.render().to_string();
     let add = |said: &mut Said| {
@@ -42,7 +42,7 @@ pub(crate) fn usage(error: &clap::Error) {
     }
 }
 
-/// Where the program speaks.
+/// Output of the program.
 pub(crate) struct Console {
     quiet: bool,
 }
@@ -52,7 +52,7 @@ impl Console {
         Console { quiet }
     }
 
-    /// A result that must arrive whole; only a reader that has gone away (a closed pipe) is no error.
+    /// A result that must arrive completely; only a closed pipe is no error.
     pub(crate) fn data(&self, text: &str) -> Result<()> {
         if kept(|said| said.out.push_str(text)) {
             return Ok(());
@@ -70,19 +70,19 @@ impl Console {
         }
     }
 
-    /// Data into a file, or to standard output.
+    /// Data to a file, or to standard output.
     pub(crate) fn deliver(&self, text: String, place: Option<FilePlace>) -> Result<()> {
         let Some(place) = place else { return self.data(&text) };
         place.write(vec![text.into()])
     }
 
-    /// A result that `--quiet` suppresses.
+    /// A result, unless `--quiet` suppresses it.
     pub(crate) fn say(&self, text: &str) -> Result<()> {
         if self.quiet {
             return Ok(());
         }
         let stdout = std::io::stdout();
-        // Lines are the report's own; what else acts on a terminal comes from a file.
+        // Line breaks are the report's own; other control characters come from a file.
         let text = visible_lines(text);
         let text = match width_of(&stdout) {
             Some(width) => style::narrowed(&text, width),
@@ -92,7 +92,7 @@ impl Console {
         self.data(&if plain { text } else { style::painted(&text) })
     }
 
-    /// A result about what has been written. If it cannot be said, what was written is there all the same: gives the code to end with.
+    /// A result about written files. If it cannot be printed, the files exist all the same: returns the exit code.
     pub(crate) fn say_of(&self, text: &str, written: &Path) -> u8 {
         self.told(self.say(text), written)
     }
@@ -108,7 +108,7 @@ impl Console {
         WORSE
     }
 
-    /// Says warnings as they come.
+    /// Prints warnings immediately.
     pub(crate) fn warner(&self) -> impl FnMut(String) {
         |message| self.warning(message)
     }
@@ -119,7 +119,7 @@ impl Console {
         }
     }
 
-    /// A line about the run itself, asked for and so never suppressed.
+    /// A line about the run itself, which was asked for and is never suppressed.
     pub(crate) fn note(&self, line: impl Display) {
         let line = visible(&line.to_string()).into_owned();
         if kept(|said| said.err.push_str(&format!("{line}\n"))) {
@@ -132,7 +132,7 @@ impl Console {
         tell("error:", style::ERROR, &message.to_string());
     }
 
-    /// A bar of `steps` on a terminal that can draw it; nothing elsewhere.
+    /// A progress bar of `steps` on a terminal; nothing elsewhere.
     pub(crate) fn progress(&self, steps: u64) -> ProgressBar {
         let draws =
             std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb");
@@ -148,19 +148,19 @@ impl Console {
     }
 }
 
-/// Columns of a stream that is a terminal.
+/// Width of standard output, if it is a terminal.
 #[cfg(unix)]
 fn width_of(stream: &impl std::os::fd::AsFd) -> Option<usize> {
     terminal_size::terminal_size_of(stream).map(|(terminal_size::Width(width), _)| usize::from(width))
 }
 
-/// Columns of a stream that is a terminal.
+/// Width of standard error, if it is a terminal.
 #[cfg(windows)]
 fn width_of(stream: &impl std::os::windows::io::AsHandle) -> Option<usize> {
     terminal_size::terminal_size_of(stream).map(|(terminal_size::Width(width), _)| usize::from(width))
 }
 
-/// A message on standard error: one line, or on a terminal as many as its width asks for.
+/// A message on standard error: one line, or on a terminal as many as its width requires.
 fn tell(word: &str, style: anstyle::Style, message: &str) {
     let message = visible(message);
     if kept(|said| said.err.push_str(&format!("{word} {message}\n"))) {
@@ -172,6 +172,6 @@ fn tell(word: &str, style: anstyle::Style, message: &str) {
         None => message.into_owned(),
     };
     let mut out = AutoStream::auto(stderr.lock());
-    // Nobody is left to hear that nobody listens.
+    // Standard error is closed too.
     let _ = writeln!(out, "{style}{word}{style:#} {message}");
 }

@@ -1,8 +1,8 @@
-//! The `poecal` program as a function: arguments in, exit code out. Commands read files, call the library and print; they compute
+//! The `poecal` program as a function from arguments to an exit code. Commands read files, call the library and print; they compute
 //! nothing.
 //!
 //! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` asks, or
-//! could not be printed; 2 refused: a mistake in the input or its use, and nothing was written; 3 there is no result.
+//! could not be printed; 2 refused: wrong input or usage, and nothing was written; 3 there is no result.
 
 mod args;
 mod commands;
@@ -26,19 +26,19 @@ use poecal::{Error, ErrorKind};
 
 /// Done.
 pub(crate) const DONE: u8 = 0;
-/// Done, but what was found should not be used, or is worse than `--require` asks.
+/// Done, but the result should not be used, or is worse than `--require` asks.
 pub(crate) const WORSE: u8 = 1;
 /// Refused: wrong input or usage.
 const REFUSED: u8 = 2;
-/// Begun, but without a result.
+/// Failed without a result.
 const NO_RESULT: u8 = 3;
 
-/// The words of a command line as people may see them. What is wrong with them is told of these, since clap quotes them as they are.
+/// A command line without control characters, for messages: clap quotes its words unchanged.
 fn shown(typed: &[OsString]) -> Vec<OsString> {
     typed.iter().map(|word| OsString::from(visible(&word.to_string_lossy()).as_ref())).collect()
 }
 
-/// Help and version go to standard output, mistakes to standard error: one sentence for a bad value, with clap's hints for the rest.
+/// Prints help and version on standard output, usage errors on standard error: one sentence for a bad value, with clap's hints for others.
 fn usage(error: &clap::Error) -> u8 {
     match (error.get(ContextKind::InvalidArg), error.source()) {
         (Some(option), Some(sentence)) => {
@@ -51,7 +51,7 @@ fn usage(error: &clap::Error) -> u8 {
     if error.use_stderr() { REFUSED } else { DONE }
 }
 
-/// The command line, with what its settings file adds, and what it means; or else the code to end with.
+/// The parsed command line with the settings file, or the exit code.
 fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
     let refused = |error: &Error| {
         Console::new(false).error(error);
@@ -64,7 +64,7 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
     };
     let told = |words: &[OsString], error: clap::Error| match parsed(&shown(words)) {
         Err(shown) => usage(&shown),
-        // Words that are right as they are shown can only be wrong because of what acts in them.
+        // Words that are valid without control characters can only be wrong because of these.
         Ok(_) => {
             let message = error.to_string();
             let sentence = message.lines().next().unwrap_or_default().trim_start_matches("error: ");
@@ -84,13 +84,12 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
     }
 }
 
-/// Runs the program, as all that the process is for.
+/// Runs the program in a process of its own.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     ExitCode::from(run_process(arguments))
 }
 
-/// [`run`], with the exit code as a number, for callers that end the process themselves. A signal that ends the process lets it
-/// clean up first.
+/// [`run`] with the exit code as a number, for callers that end the process themselves. A signal that ends the process cleans up first.
 pub fn run_process(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     signals::clean_up_on_signals();
     let code = run_to_code(arguments);
@@ -98,18 +97,18 @@ pub fn run_process(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     code
 }
 
-/// What a run of the program said.
+/// Captured run of the program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Said {
-    /// The exit code.
+    /// Exit code.
     pub code: u8,
-    /// What went to standard output.
+    /// Standard output.
     pub out: String,
-    /// What went to standard error.
+    /// Standard error.
     pub err: String,
 }
 
-/// Runs the program within a process that does other things, and gives what it says instead of printing it.
+/// Runs the program within another process, and captures its output.
 pub fn run_captured(arguments: impl IntoIterator<Item = OsString>) -> Said {
     console::captured(|| run_to_code(arguments))
 }
@@ -122,7 +121,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     };
     let console = Console::new(arguments.quiet);
     if let Some(threads) = arguments.threads {
-        // Fails only if a pool exists already, which then stays.
+        // Fails only if a pool exists already, which is then used.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
     let result = match &arguments.command {
@@ -142,7 +141,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     match result {
         Ok(code) => code,
         Err(error) => {
-            // A run that is being ended fails over what was cleaned up, which is no news.
+            // After a signal, errors from removed files mean nothing.
             signals::wait_if_ending();
             console.error(&error);
             if error.kind() == ErrorKind::Solver { NO_RESULT } else { REFUSED }

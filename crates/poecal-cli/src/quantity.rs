@@ -9,7 +9,7 @@ use poecal::{Error, ErrorKind, MOST_THREADS, Result};
 /// A number with its unit, in SI: metres for a length, radians for an angle.
 ///
 /// # Errors
-/// One sentence that says what was found and expected.
+/// One sentence with found and expected.
 pub(crate) fn parse(text: &str, quantity: Quantity) -> Result<f64> {
     let (value, symbol) = value_and_symbol(text, example(quantity))?;
     Ok(Unit::parse(symbol, quantity)?.to_si(value))
@@ -32,7 +32,7 @@ fn example(quantity: Quantity) -> &'static str {
     }
 }
 
-/// The number, which is not negative, and the symbol of its unit.
+/// A non-negative number, and the symbol of its unit.
 fn value_and_symbol<'a>(text: &'a str, example: &str) -> Result<(f64, &'a str)> {
     match signed_and_symbol(text, example)? {
         (value, _) if value < 0.0 => Err(bad(text, "", " not below 0,", example)),
@@ -57,7 +57,7 @@ fn bad(text: &str, what: &str, expected: &str, example: &str) -> Error {
     Error::new(ErrorKind::Option, message)
 }
 
-/// A length and an angle as the user wrote them: `1deg,2mm` in either order; what is left out is zero.
+/// A length and an angle as given by the user: `1deg,2mm` in either order; an omitted one is zero.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LengthAndAngle {
     pub(crate) text: String,
@@ -87,7 +87,7 @@ impl FromStr for LengthAndAngle {
     }
 }
 
-/// How far axes may stand off the drawing, or that nothing is believed of it.
+/// Tolerance of the prior, or `none`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BelievedTolerance(pub(crate) Option<Tolerance>);
 

@@ -1,4 +1,4 @@
-//! What a settings file says, written out as options, so that one parser understands both.
+//! Settings files as command-line options, so that there is one parser.
 
 use std::error::Error as _;
 use std::ffi::OsString;
@@ -13,26 +13,26 @@ use poecal::{Error, ErrorKind, Result};
 
 use crate::args::Arguments;
 
-/// The settings that are read where no model is named.
+/// Settings file that is read if no model is named.
 const USUAL: &str = "poecal.toml";
-/// The command that reads settings.
+/// The command with settings.
 const COMMAND: &str = "calibrate";
-/// Options that are not kept in a file: those of one run of the program.
+/// Options of a single run, which settings cannot hold.
 const NOT_KEPT: [&str; 8] =
     ["settings", "verbose", "json", "timings", "quiet", "threads", "help", "force_own"];
-/// Settings that say where something is written.
+/// Settings with the place of an output.
 const OUTPUTS: [&str; 2] = ["out", "report"];
-/// Settings that name files, which are seen from the settings' folder.
+/// Settings with file names, relative to the settings' folder.
 const FILES: [&str; 6] = ["model", "measurements", "columns", "validate", "out", "report"];
 
-/// A command line with the settings in it, and where they came from.
+/// A command line with the settings in it, and their source.
 pub(crate) struct Completed {
-    /// The words, as if all of them had been typed.
+    /// The words, as if all had been typed.
     pub(crate) words: Vec<OsString>,
     settings: Settings,
 }
 
-/// The command line `typed`, which clap understood as `matches`, with what its settings file adds; `None` if it has none.
+/// The command line `typed`, parsed by clap as `matches`, with its settings file; `None` without one.
 ///
 /// # Errors
 /// As [`Settings::read`], and if no model is named and there are no settings.
@@ -54,7 +54,7 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
     let settings = Settings::read(path, &keys)?;
     let (mut options, mut files) = (Vec::new(), Vec::new());
     if named.is_none() {
-        // So that the command knows that it reads them.
+        // So that the command knows its settings file.
         options.push(OsString::from(format!("--settings={USUAL}")));
     }
     for arg in kept(command) {
@@ -72,7 +72,7 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
 }
 
 impl Completed {
-    /// clap's complaint about a setting, at the setting's place; `None` if it is about something that was typed.
+    /// clap's error about a setting, at the setting's place; `None` if it concerns a typed word.
     pub(crate) fn error(&self, error: &clap::Error) -> Option<Error> {
         let option = error.get(ContextKind::InvalidArg)?.to_string();
         let key = option.split([' ', '=']).next()?.trim_start_matches('-').replace('-', "_");
@@ -88,7 +88,7 @@ impl Completed {
     }
 }
 
-/// The options that a settings file may have: all that clap knows, so that there is one list of them.
+/// Options that a settings file may have, from clap, so that there is one list.
 fn kept(command: &Command) -> impl Iterator<Item = &Arg> {
     command.get_arguments().filter(|arg| !NOT_KEPT.contains(&arg.get_id().as_str()))
 }
@@ -111,7 +111,7 @@ fn values(arg: &Arg, entry: &Setting, settings: &Settings) -> Result<Vec<OsStrin
         || arg.get_num_args().is_some_and(|range| range.max_values() > 1);
     let texts = match &entry.value {
         SettingValue::Switch(on) if is_switch => {
-            // Settings may have come from elsewhere, with a model: they let results go, but nothing else.
+            // Settings may come from elsewhere, with a model: they may replace results, but nothing else.
             let option = if key == "force" { "force-own".to_owned() } else { key.replace('_', "-") };
             let words = on.then(|| format!("--{option}").into());
             return Ok(words.into_iter().collect());
@@ -149,7 +149,7 @@ fn values(arg: &Arg, entry: &Setting, settings: &Settings) -> Result<Vec<OsStrin
     Ok(texts.into_iter().map(word).collect())
 }
 
-/// Whether a path leads out of a folder, by itself or by a link on its way.
+/// Whether a path leads out of a folder, by itself or by a link.
 fn leads_out(folder: &Path, path: &Path) -> bool {
     if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
         return true;
@@ -158,17 +158,17 @@ fn leads_out(folder: &Path, path: &Path) -> bool {
     let home = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let Ok(home) = disk.actual(home) else { return true };
     let whole = home.join(path);
-    // A link that leads nowhere is none that may be followed.
+    // A dangling link cannot be checked.
     let first = whole.ancestors().find(|place| disk.look(place).is_ok());
     first.is_none_or(|place| disk.actual(place).map_or(true, |actual| !actual.starts_with(&home)))
 }
 
-/// A file's name that clap does not take for an option.
+/// A file name that clap does not take for an option.
 fn not_an_option(name: OsString) -> OsString {
     if name.to_string_lossy().starts_with('-') { Path::new(".").join(name).into_os_string() } else { name }
 }
 
-/// Options go behind the command, so that they stand before any `--`; files go last, behind those that were typed.
+/// Inserts options behind the command, before any `--`, and files at the end.
 fn joined(typed: &[OsString], options: Vec<OsString>, files: Vec<OsString>) -> Vec<OsString> {
     let at = typed.iter().position(|word| word == COMMAND).map_or(typed.len(), |index| index + 1);
     let (before, after) = typed.split_at(at);

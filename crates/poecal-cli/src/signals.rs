@@ -1,4 +1,4 @@
-//! Signals that end the program: what it has written and not put in place goes first.
+//! Signals that end the program, after removing its staged files.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,8 +12,7 @@ pub(crate) fn wait_if_ending() {
     }
 }
 
-/// Lets SIGINT, SIGTERM and SIGHUP clean up before they end the program as they would have. Elsewhere than on Unix the next run
-/// cleans up.
+/// Makes SIGINT, SIGTERM and SIGHUP clean up before they end the program. Elsewhere than on Unix the next run cleans up.
 #[cfg(unix)]
 pub(crate) fn clean_up_on_signals() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -21,10 +20,10 @@ pub(crate) fn clean_up_on_signals() {
     use signal_hook::low_level::emulate_default_handler;
 
     let (installed, wait) = std::sync::mpsc::channel::<()>();
-    // Without a thread to spare signals end the program at once, and the next run cleans up.
+    // Without a thread, signals end the program at once, and the next run cleans up.
     let _ = std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
-        // What was ignored when the program was started, as by `nohup` or a shell's `&`, stays so. Only Linux tells that, and only
-        // SIGHUP is ignored elsewhere as a rule.
+        // Signals ignored from the start, as by `nohup` or a shell's `&`, stay ignored. Only Linux reports them; elsewhere usually only
+        // SIGHUP is ignored.
         let ignored = ignored();
         let all =
             if cfg!(target_os = "linux") { &[SIGINT, SIGTERM, SIGHUP][..] } else { &[SIGINT, SIGTERM][..] };
@@ -32,7 +31,7 @@ pub(crate) fn clean_up_on_signals() {
         let Ok(mut signals) = Signals::new(heeded) else { return };
         drop(installed);
         for signal in signals.forever() {
-            // Who asks twice does not wait.
+            // A second signal ends the program at once.
             if !ENDING.swap(true, Ordering::SeqCst) {
                 let _ = std::thread::Builder::new().spawn(move || {
                     poecal::io::output::clean_up();
@@ -43,11 +42,11 @@ pub(crate) fn clean_up_on_signals() {
             }
         }
     });
-    // Nothing is written before signals are heeded: the channel ends when they are, or cannot be.
+    // Waits until signals are handled: the channel closes when they are, or cannot be.
     let _ = wait.recv();
 }
 
-/// The signals that this process ignores, a bit each; none where the system does not tell.
+/// Signals ignored by this process, a bit each; 0 where the system does not report them.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

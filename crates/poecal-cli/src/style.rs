@@ -1,33 +1,33 @@
-//! How reports look on a terminal: labels, verdicts and what to look at stand out. Their words are the library's.
+//! Colours and line widths of reports on a terminal. The words are the library's.
 
 use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 use poecal::text::visible;
 
-/// Of the word before an error.
+/// For the word before an error.
 pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
-/// Of the word before a warning.
+/// For the word before a warning.
 pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 const GOOD: Style = AnsiColor::Green.on_default().bold();
 const LABEL: Style = Style::new().bold();
 
 /// Width of the column of labels.
 const LABELS: usize = 14;
-/// Width of lines that are not as wide as a terminal.
+/// Default width of lines.
 const WIDTH: usize = 80;
-/// Labels of what a reader must look at.
+/// Labels of warnings for the reader.
 const LOOK: [&str; 4] = ["look at", "outliers", "warnings", "diagnosis"];
-/// How each verdict begins.
+/// First words of each verdict.
 const VERDICTS: [(&str, Style); 3] =
     [("good", GOOD), ("use inside the sampled range", WARNING), ("do not use", ERROR)];
 
-/// A path as people may see it, on one line.
+/// A path on one line, without control characters.
 pub(crate) fn shown(path: &Path) -> String {
     visible(&path.display().to_string()).into_owned()
 }
 
-/// A labelled paragraph as reports have them, in lines of 80 characters where words are not longer.
+/// A labelled paragraph as in reports, in lines of 80 characters where words are not longer.
 pub(crate) fn labelled(label: &str, text: &str) -> String {
     let mut out = format!("{label:LABELS$}");
     for (k, line) in text.lines().enumerate() {
@@ -40,12 +40,12 @@ pub(crate) fn labelled(label: &str, text: &str) -> String {
     out
 }
 
-/// A message in lines of a width; the first one begins behind `before` characters, the others are indented by two.
+/// A message in lines of a width; the first begins after `before` characters, the others are indented by two.
 pub(crate) fn wrapped(message: &str, before: usize, width: usize) -> String {
     broken(message, before, 2, width)
 }
 
-/// A report whose paragraphs fit a terminal that is narrower than usual. Tables stay as they are: they would tell nothing if broken.
+/// A report with paragraphs for a narrow terminal. Tables stay: broken lines would be unreadable.
 pub(crate) fn narrowed(text: &str, width: usize) -> String {
     if width >= WIDTH || width <= 2 * LABELS {
         return text.to_owned();
@@ -62,7 +62,7 @@ pub(crate) fn narrowed(text: &str, width: usize) -> String {
     lines.collect()
 }
 
-/// A text with line breaks in place of blanks where it would be wider than `width`.
+/// A text with line breaks in place of blanks where a line would exceed `width`.
 fn broken(text: &str, before: usize, indent: usize, width: usize) -> String {
     let (mut out, mut used) = (String::new(), before);
     for (k, word) in text.split(' ').enumerate() {
@@ -81,7 +81,7 @@ fn broken(text: &str, before: usize, indent: usize, width: usize) -> String {
     out
 }
 
-/// A report with its labels and its verdict in colours.
+/// A report with coloured labels and verdict.
 pub(crate) fn painted(text: &str) -> String {
     text.split_inclusive('\n').map(painted_line).collect()
 }
@@ -99,7 +99,7 @@ fn painted_line(line: &str) -> String {
     format!("{style}{label}{style:#}{gap}{rest}")
 }
 
-/// The label that a line begins with, and the rest of the line.
+/// The label of a line, and the rest of it.
 fn label(line: &str) -> Option<(&str, &str)> {
     let (label, rest) = line.split_at_checked(LABELS)?;
     let words = label.trim_end();

@@ -1,4 +1,4 @@
-//! Where the time of a calibration goes.
+//! Times of the parts of a calibration.
 
 use std::time::{Duration, Instant};
 
@@ -6,12 +6,12 @@ use cpu_time::ProcessTime;
 use poecal::solve::Summary;
 use serde_json::{Value, json};
 
-/// A solve is repeated for about this long, and at most that often.
+/// Time and number of repetitions of a solve, at most.
 const LONG_ENOUGH: Duration = Duration::from_millis(300);
 const MOST_REPEATS: usize = 2000;
 const FEWEST_REPEATS: usize = 5;
 
-/// CPU time of the process (all threads) and time of the clock.
+/// CPU time of the process (all threads) and wall time.
 #[derive(Clone, Copy, Default)]
 struct Span {
     cpu: Duration,
@@ -29,7 +29,7 @@ impl Span {
     }
 }
 
-/// A stop watch of both.
+/// A stop watch for both.
 struct Watch {
     cpu: ProcessTime,
     wall: Instant,
@@ -45,7 +45,7 @@ impl Watch {
     }
 }
 
-/// Parts of a calibration, one after the other.
+/// Times of consecutive parts.
 pub(crate) struct Timings {
     watch: Watch,
     parts: Vec<(&'static str, Span)>,
@@ -62,8 +62,7 @@ impl Timings {
         self.watch = Watch::start();
     }
 
-    /// One line of JSON. `solve` alone is timed here, repeated until it takes long enough to be told, as the median; it is taken off
-    /// `start`, of which it was a part.
+    /// One line of JSON. `solve` is timed alone, as the median of repetitions, and subtracted from `start`, which contained it.
     pub(crate) fn line(&self, solve: impl Fn() -> Summary) -> String {
         let (solved, repeats, iterations) = repeated(&solve);
         let mut object = serde_json::Map::new();

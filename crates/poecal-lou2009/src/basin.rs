@@ -5,8 +5,8 @@ use rand_core::SeedableRng;
 use rayon::prelude::*;
 
 use super::seeds::{Purpose, derived};
-use super::session::Session;
-use super::{Basin, LENGTH_M, Seen, tables};
+use super::session::PaperSession;
+use super::{Basin, LENGTH_M, MeasurementKind, tables};
 use crate::{Formulation, Method, Residual};
 use poecal::error::Result;
 use poecal::estimate::Estimate;
@@ -39,7 +39,7 @@ const WAYS: [(Formulation, Method); 6] = [
 /// Shares of noise-free fits that reach the truth, for each formulation, kind of measurement and size of error.
 pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
     let mut found = Vec::new();
-    for seen in [Seen::Poses, Seen::Points] {
+    for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         let mut by_error = Vec::new();
         for error_deg in ERRORS_DEG {
             let reached: Vec<[bool; WAYS.len()]> = (0..trials as u64)
@@ -68,15 +68,15 @@ pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
 }
 
 /// The paper's residual of poses belongs to the paper's method. Points have one residual only.
-fn residual(seen: Seen, method: Method) -> Residual {
+fn residual(seen: MeasurementKind, method: Method) -> Residual {
     match (seen, method) {
-        (Seen::Poses, Method::GaussNewton) => Residual::Spatial,
-        (Seen::Poses, Method::LevenbergMarquardt) | (Seen::Points, _) => Residual::Tool,
+        (MeasurementKind::Poses, Method::GaussNewton) => Residual::Spatial,
+        (MeasurementKind::Poses, Method::LevenbergMarquardt) | (MeasurementKind::Points, _) => Residual::Tool,
     }
 }
 
 /// Which ways reach a random truth from the nominal elbow.
-fn reached(seen: Seen, error_deg: f64, seed: u64, trial: u64) -> Result<[bool; WAYS.len()]> {
+fn reached(seen: MeasurementKind, error_deg: f64, seed: u64, trial: u64) -> Result<[bool; WAYS.len()]> {
     let nominal = tables::nominal();
     let simulation = Simulation {
         error_rotation_rad: error_deg.to_radians(),
@@ -86,7 +86,7 @@ fn reached(seen: Seen, error_deg: f64, seed: u64, trial: u64) -> Result<[bool; W
     let mut generator = ChaCha8Rng::seed_from_u64(derived(seed, Purpose::Truth, trial));
     let actual = simulation.perturbed(&nominal, &mut generator);
     let truth = Estimate::new(&actual, vec![actual.home], Pose::identity());
-    let session = Session::new(&nominal, truth, seen, ROWS, derived(seed, Purpose::TruthRows, trial));
+    let session = PaperSession::new(&nominal, truth, seen, ROWS, derived(seed, Purpose::TruthRows, trial));
     // Radians count as the length of the arm that they move, so that neither outweighs the other.
     let noise = Noise { position_m: LENGTH_M, rotation_rad: 1.0 };
     let exact = session.exact();

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::Options;
+use super::ReproductionOptions;
 use poecal::calibration::{CalibrationOptions, Loss, Models, Robust, calibrate, row_errors};
 use poecal::error::Result;
 use poecal::estimate::Packed;
@@ -21,8 +21,8 @@ const JUDGING: usize = 200;
 /// What gross errors did to many simulated sessions.
 ///
 /// ```
-/// use poecal_lou2009::{Options, breakdown};
-/// let found = breakdown(&Options { trials: 1, ..Options::default() })?;
+/// use poecal_lou2009::{ReproductionOptions, breakdown};
+/// let found = breakdown(&ReproductionOptions { trials: 1, ..ReproductionOptions::default() })?;
 /// assert_eq!((found.sessions, found.entries.len()), (1, 4 * 11));
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -56,11 +56,11 @@ pub struct BreakdownEntry {
 }
 
 /// Spoils simulated sessions of an elbow, a SCARA, a 7-axis arm and a gantry, by poses and by points, and calibrates from them with
-/// every loss. [`Options::trials`] is the number of sessions.
+/// every loss. [`ReproductionOptions::trials`] is the number of sessions.
 ///
 /// # Errors
 /// As [`calibrate`].
-pub fn breakdown(options: &Options) -> Result<Breakdown> {
+pub fn breakdown(options: &ReproductionOptions) -> Result<Breakdown> {
     let robots = [elbow(), scara(), seven_axis(), gantry()];
     let outcomes: Vec<Vec<Outcome>> = (0..options.trials)
         .into_par_iter()

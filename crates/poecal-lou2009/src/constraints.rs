@@ -32,7 +32,7 @@ pub(super) struct Watched<'a>(pub(super) &'a Problem<'a>);
 
 /// An estimate, and the constraints until then.
 #[derive(Clone)]
-pub(super) struct State {
+pub(super) struct WatchedState {
     pub(super) estimate: Estimate,
     /// Screws that only ever were moved by `ξ ← Ad(e^η) ξ`, without any projection.
     screws: Vec<Twist>,
@@ -40,29 +40,29 @@ pub(super) struct State {
     pub(super) miss: Miss,
 }
 
-impl State {
+impl WatchedState {
     pub(super) fn new(estimate: Estimate) -> Self {
         let screws = estimate.screws().iter().map(|screw| screw.twist()).collect();
-        State { estimate, screws, miss: Miss::default() }
+        WatchedState { estimate, screws, miss: Miss::default() }
     }
 }
 
 impl LeastSquares for Watched<'_> {
-    type State = State;
+    type State = WatchedState;
 
     fn dim(&self) -> usize {
         self.0.dim()
     }
 
-    fn normal(&self, state: &State) -> Normal {
+    fn normal(&self, state: &WatchedState) -> Normal {
         self.0.normal(&state.estimate)
     }
 
-    fn second_order(&self, state: &State, step: &[f64]) -> Vec<f64> {
+    fn second_order(&self, state: &WatchedState, step: &[f64]) -> Vec<f64> {
         self.0.second_order(&state.estimate, step)
     }
 
-    fn curvature(&self, state: &State) -> Option<Vec<f64>> {
+    fn curvature(&self, state: &WatchedState) -> Option<Vec<f64>> {
         self.0.curvature(&state.estimate)
     }
 
@@ -74,7 +74,7 @@ impl LeastSquares for Watched<'_> {
         self.0.rounding()
     }
 
-    fn retract(&self, state: &State, step: &[f64]) -> State {
+    fn retract(&self, state: &WatchedState, step: &[f64]) -> WatchedState {
         let (mut screws, mut miss) = (state.screws.clone(), state.miss);
         for (parameter, places) in self.0.layout().parameters() {
             let own: Vec<f64> = places.iter().map(|&(place, scale)| step[place] / scale).collect();
@@ -100,26 +100,26 @@ impl LeastSquares for Watched<'_> {
                 | Parameter::DeviceFrame(_) => {}
             }
         }
-        State { estimate: self.0.retract(&state.estimate, step), screws, miss }
+        WatchedState { estimate: self.0.retract(&state.estimate, step), screws, miss }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::Seen;
+    use super::super::MeasurementKind;
     use super::super::runs;
     use super::*;
     use crate::{Formulation, Residual};
     use poecal::measurement::Noise;
 
     /// A step of 1e-2 in every unknown.
-    fn stepped(formulation: Formulation) -> State {
-        let session = runs::session(false, Seen::Poses, 1);
+    fn stepped(formulation: Formulation) -> WatchedState {
+        let session = runs::session(false, MeasurementKind::Poses, 1);
         let data = session.data(Residual::Spatial, &session.exact()).unwrap();
         let noise = Noise { position_m: 1.0, rotation_rad: 1.0 };
         let free = session.free(formulation);
         let problem = Problem::new(&data, &session.packed, session.rows(), free, noise, 1.0);
-        Watched(&problem).retract(&State::new(session.start()), &vec![1e-2; problem.dim()])
+        Watched(&problem).retract(&WatchedState::new(session.start()), &vec![1e-2; problem.dim()])
     }
 
     #[test]

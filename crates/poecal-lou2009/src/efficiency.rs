@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::seeds::{Purpose, derived};
-use super::session::Session;
-use super::{Efficiency, LENGTH_M, NOISE, Seen, runs, tables};
+use super::session::PaperSession;
+use super::{Efficiency, LENGTH_M, MeasurementKind, NOISE, runs, tables};
 use crate::{Formulation, Method, Residual};
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal::error::Result;
@@ -46,9 +46,10 @@ const POINT_WAYS: [Way; 5] = [
 /// every way.
 pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
     let mut found = Vec::new();
-    for (seen, ways) in [(Seen::Poses, &POSE_WAYS[..]), (Seen::Points, &POINT_WAYS[..])] {
+    for (seen, ways) in [(MeasurementKind::Poses, &POSE_WAYS[..]), (MeasurementKind::Points, &POINT_WAYS[..])]
+    {
         let rows_seed = derived(seed, Purpose::Fits, 0);
-        let session = Session::new(&tables::nominal(), runs::truth(false), seen, ROWS, rows_seed);
+        let session = PaperSession::new(&tables::nominal(), runs::truth(false), seen, ROWS, rows_seed);
         let (bound_rms_m, unknowns) = bound(&session)?;
         let trials: Vec<Vec<Option<f64>>> = (0..trials as u64)
             .into_par_iter()
@@ -63,7 +64,7 @@ pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
 }
 
 /// Squared held-out errors of one noisy session fitted in every way; nothing for a fit that did not end.
-fn fits(session: &Session, ways: &[Way], seed: u64) -> Result<Vec<Option<f64>>> {
+fn fits(session: &PaperSession, ways: &[Way], seed: u64) -> Result<Vec<Option<f64>>> {
     let measured = session.noisy(NOISE, seed);
     let tool = session.data(Residual::Tool, &measured)?;
     let spatial = session.data(Residual::Spatial, &measured)?;
@@ -79,7 +80,13 @@ fn fits(session: &Session, ways: &[Way], seed: u64) -> Result<Vec<Option<f64>>> 
 }
 
 /// What the fits of one way have in common.
-fn summary(seen: Seen, way: Way, ends: &[Option<f64>], bound_rms_m: f64, unknowns: usize) -> Efficiency {
+fn summary(
+    seen: MeasurementKind,
+    way: Way,
+    ends: &[Option<f64>],
+    bound_rms_m: f64,
+    unknowns: usize,
+) -> Efficiency {
     let squares: Vec<f64> = ends.iter().flatten().copied().collect();
     let count = squares.len() as f64;
     // Not a number without any fit.
@@ -105,7 +112,7 @@ fn summary(seen: Seen, way: Way, ends: &[Option<f64>], bound_rms_m: f64, unknown
 
 /// The least RMS error of predicted positions that an unbiased estimator can have, metres: `tr(J N⁻¹ Jᵀ)` at the truth, N being the
 /// information of the minimal basis about what a device with this noise sees. With the number of unknowns.
-fn bound(session: &Session) -> Result<(f64, usize)> {
+fn bound(session: &PaperSession) -> Result<(f64, usize)> {
     let data = session.data(Residual::Tool, &session.exact())?;
     let free = session.free(Formulation::Adjoint);
     let problem = Problem::new(&data, &session.packed, session.rows(), free, NOISE, LENGTH_M);
@@ -119,7 +126,7 @@ fn bound(session: &Session) -> Result<(f64, usize)> {
 
 /// Sum over unseen configurations and coordinates of the variance of the predicted position.
 fn variance(
-    session: &Session,
+    session: &PaperSession,
     problem: &Problem<'_>,
     truth: &Estimate,
     of_row: impl Fn(&DVector<f64>) -> f64,
@@ -145,9 +152,9 @@ mod tests {
 
     #[test]
     fn without_any_fit_there_is_no_ratio() {
-        let none = summary(Seen::Poses, POSE_WAYS[0], &[None, None], 1e-5, 30);
+        let none = summary(MeasurementKind::Poses, POSE_WAYS[0], &[None, None], 1e-5, 30);
         assert!(none.converged == 0 && none.ratio.is_nan() && none.held_out_rms_m.is_nan());
-        let some = summary(Seen::Poses, POSE_WAYS[0], &[Some(4e-10), None], 1e-5, 30);
+        let some = summary(MeasurementKind::Poses, POSE_WAYS[0], &[Some(4e-10), None], 1e-5, 30);
         assert!((some.ratio - 2.0).abs() < 1e-12 && (some.ratio_sigma - 2.0 / 60_f64.sqrt()).abs() < 1e-12);
         assert!(!some.exceeds(&none) && !none.exceeds(&some));
     }

@@ -1,25 +1,25 @@
-//! What a reproduction of lou2009 found: every number that its reports and plots show.
+//! Results of a reproduction of lou2009: every number of its reports and plots.
 
 use crate::Formulation;
 use serde::Serialize;
 
-/// What the device of a run saw.
+/// Kind of a run's measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Seen {
+pub enum MeasurementKind {
     /// Position and orientation of the tool frame (lou2009, first simulation).
     Poses,
     /// Position of one tool point (second simulation).
     Points,
 }
 
-impl Seen {
+impl MeasurementKind {
     /// The word used in files.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
-            Seen::Poses => "poses",
-            Seen::Points => "points",
+            MeasurementKind::Poses => "poses",
+            MeasurementKind::Points => "points",
         }
     }
 }
@@ -30,7 +30,7 @@ pub struct Run {
     /// How errors are written.
     pub formulation: Formulation,
     /// What was seen.
-    pub measurement: Seen,
+    pub measurement: MeasurementKind,
     /// Whether the true robot has joint offsets beside its screw errors.
     pub offsets_in_truth: bool,
     /// Whether the measurements are noisy.
@@ -126,7 +126,7 @@ pub struct OffsetRow {
 
 /// Singular values of one of the paper's matrices, radians counted by [`Reproduction::length_m`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Spectrum {
+pub struct MatrixSpectrum {
     /// Which matrix.
     pub matrix: String,
     /// Where it was evaluated: `nominal` or `identified`.
@@ -145,7 +145,7 @@ pub struct Efficiency {
     /// How errors are written.
     pub formulation: Formulation,
     /// What was seen.
-    pub measurement: Seen,
+    pub measurement: MeasurementKind,
     /// `tool` (at the tool, whitened) or `spatial` (the paper's logarithm, whitened alike); points have `tool` only.
     pub residual: String,
     /// `gauss-newton` or `levenberg-marquardt`.
@@ -181,7 +181,7 @@ pub struct Basin {
     /// How errors are written.
     pub formulation: Formulation,
     /// What was seen.
-    pub measurement: Seen,
+    pub measurement: MeasurementKind,
     /// `tool` or `spatial`, as in [`Efficiency`].
     pub residual: String,
     /// `gauss-newton` or `levenberg-marquardt`.
@@ -252,7 +252,7 @@ pub struct Reproduction {
     /// Offsets, prescribed and identified.
     pub offsets: Vec<OffsetRow>,
     /// Ranks.
-    pub spectra: Vec<Spectrum>,
+    pub spectra: Vec<MatrixSpectrum>,
     /// Accuracy with noise.
     pub efficiency: Vec<Efficiency>,
     /// Convergence from afar.

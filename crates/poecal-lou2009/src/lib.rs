@@ -21,7 +21,8 @@ pub mod tables;
 
 pub use breakdown::{Breakdown, BreakdownEntry, breakdown};
 pub use findings::{
-    Basin, Claim, Efficiency, Iteration, OffsetRow, PointRow, Reproduction, Run, ScrewRow, Seen, Spectrum,
+    Basin, Claim, Efficiency, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow, PointRow, Reproduction,
+    Run, ScrewRow,
 };
 
 pub use formulation::{Formulation, Method, Residual, formulated};
@@ -45,11 +46,11 @@ const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 1.745_329_251_994_3
 /// How much to try.
 ///
 /// ```
-/// let options = poecal_lou2009::Options { trials: 50, ..Default::default() };
+/// let options = poecal_lou2009::ReproductionOptions { trials: 50, ..Default::default() };
 /// assert_eq!(options.seed, 1);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
+pub struct ReproductionOptions {
     /// Noisy sessions for each formulation.
     pub trials: usize,
     /// Random starts for each formulation and size of error.
@@ -58,9 +59,9 @@ pub struct Options {
     pub seed: u64,
 }
 
-impl Default for Options {
+impl Default for ReproductionOptions {
     fn default() -> Self {
-        Options { trials: 1000, starts: 100, seed: 1 }
+        ReproductionOptions { trials: 1000, starts: 100, seed: 1 }
     }
 }
 
@@ -68,8 +69,8 @@ impl Default for Options {
 /// and without joint offsets and noise; its claims; and the comparison of the formulations over many trials.
 ///
 /// ```
-/// use poecal_lou2009::{Options, lou2009};
-/// let found = lou2009(&Options { trials: 4, starts: 2, seed: 1 })?;
+/// use poecal_lou2009::{ReproductionOptions, lou2009};
+/// let found = lou2009(&ReproductionOptions { trials: 4, starts: 2, seed: 1 })?;
 /// assert_eq!(found.runs.len(), 32);
 /// assert!(found.runs[0].converged && found.runs[0].iterations <= 5);
 /// # Ok::<(), poecal::Error>(())
@@ -77,7 +78,7 @@ impl Default for Options {
 ///
 /// # Errors
 /// [`ErrorKind::Option`] without a trial or a start; [`ErrorKind::Problem`] if a claim lacks what it is judged by.
-pub fn lou2009(options: &Options) -> Result<Reproduction> {
+pub fn lou2009(options: &ReproductionOptions) -> Result<Reproduction> {
     if options.trials == 0 || options.starts == 0 {
         return Err(Error::new(
             ErrorKind::Option,
@@ -109,7 +110,7 @@ pub fn lou2009(options: &Options) -> Result<Reproduction> {
 }
 
 /// A noise-free run.
-fn exact(ended: &[Ended], formulation: Formulation, seen: Seen, offsets: bool) -> Option<&Ended> {
+fn exact(ended: &[Ended], formulation: Formulation, seen: MeasurementKind, offsets: bool) -> Option<&Ended> {
     ended.iter().find(|it| {
         (it.plan.formulation, it.plan.seen, it.plan.offsets_in_truth, it.plan.noise)
             == (formulation, seen, offsets, false)
@@ -138,8 +139,8 @@ fn screws(ended: &[Ended]) -> Vec<ScrewRow> {
             nominal: coordinates(&joint.screw),
             printed: printed.to_vector().into(),
             prescribed: coordinates(&truth.screw),
-            from_poses: identified(Seen::Poses, k),
-            from_points: identified(Seen::Points, k),
+            from_poses: identified(MeasurementKind::Poses, k),
+            from_points: identified(MeasurementKind::Points, k),
         })
         .collect()
 }
@@ -148,14 +149,14 @@ fn point(ended: &[Ended]) -> PointRow {
     PointRow {
         nominal: tables::nominal().home.translation.into(),
         prescribed: tables::prescribed().home.translation.into(),
-        from_points: exact(ended, Formulation::Adjoint, Seen::Points, false)
+        from_points: exact(ended, Formulation::Adjoint, MeasurementKind::Points, false)
             .map_or([f64::NAN; 3], |run| run.estimate.base_from_target[0].translation.into()),
     }
 }
 
 fn offsets(ended: &[Ended]) -> Vec<OffsetRow> {
     let identified = |formulation, joint: usize| {
-        exact(ended, formulation, Seen::Poses, true)
+        exact(ended, formulation, MeasurementKind::Poses, true)
             .map_or(f64::NAN, |run| run.estimate.joint_offset[joint].to_degrees())
     };
     tables::nominal()
@@ -173,9 +174,9 @@ fn offsets(ended: &[Ended]) -> Vec<OffsetRow> {
 }
 
 /// The paper's matrices of all formulations, at the nominal and at the identified robot.
-fn spectra(ended: &[Ended], seed: u64) -> Vec<Spectrum> {
+fn spectra(ended: &[Ended], seed: u64) -> Vec<MatrixSpectrum> {
     let mut spectra = Vec::new();
-    for seen in [Seen::Poses, Seen::Points] {
+    for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         let session = runs::session(false, seen, seed);
         for formulation in Formulation::ALL {
             let Some(identified) = exact(ended, formulation, seen, false) else { continue };
@@ -183,7 +184,7 @@ fn spectra(ended: &[Ended], seed: u64) -> Vec<Spectrum> {
                 let matrix = runs::matrix(&session, estimate, formulation);
                 let (values, rank) = literal::singular_values(&matrix);
                 let largest = values.first().copied().unwrap_or(1.0);
-                spectra.push(Spectrum {
+                spectra.push(MatrixSpectrum {
                     matrix: format!("{}, {}", formulation.word(), seen.word()),
                     at: at.to_owned(),
                     columns: matrix.ncols(),

@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, Matrix3x6, Matrix6, Vector3, Vector6};
 
-use super::Seen;
+use super::MeasurementKind;
 use crate::Formulation;
 use poecal::lie::{Pose, Screw, Twist, hat};
 use poecal::robot::Robot;
@@ -129,12 +129,17 @@ pub fn point_rows(point: &Vector3<f64>) -> Matrix3x6<f64> {
 /// The free screw of a prismatic joint has 3 columns instead of 6: its ω is zero, "and thus left out of the calibration".
 ///
 /// ```
-/// use poecal_lou2009::{Formulation, Seen, literal::jacobian, tables};
-/// let a = jacobian(&tables::nominal(), &[0.1; 6], Formulation::ScrewOffsets, Seen::Poses);
+/// use poecal_lou2009::{Formulation, MeasurementKind, literal::jacobian, tables};
+/// let a = jacobian(&tables::nominal(), &[0.1; 6], Formulation::ScrewOffsets, MeasurementKind::Poses);
 /// assert_eq!(a.shape(), (6, 48));
 /// ```
 #[must_use]
-pub fn jacobian(robot: &Robot, values: &[f64], formulation: Formulation, seen: Seen) -> DMatrix<f64> {
+pub fn jacobian(
+    robot: &Robot,
+    values: &[f64],
+    formulation: Formulation,
+    seen: MeasurementKind,
+) -> DMatrix<f64> {
     if !formulation.has_free_screws() {
         return adjoint_jacobian(robot, &AdjointErrors::none(robot), values, formulation.has_offsets(), seen);
     }
@@ -151,9 +156,9 @@ pub fn jacobian(robot: &Robot, values: &[f64], formulation: Formulation, seen: S
 /// `M = exp(Υ) M^n`.
 ///
 /// ```
-/// use poecal_lou2009::{Seen, literal::{AdjointErrors, adjoint_jacobian}, tables};
+/// use poecal_lou2009::{MeasurementKind, literal::{AdjointErrors, adjoint_jacobian}, tables};
 /// let nominal = tables::nominal();
-/// let a = adjoint_jacobian(&nominal, &AdjointErrors::none(&nominal), &[0.1; 6], false, Seen::Points);
+/// let a = adjoint_jacobian(&nominal, &AdjointErrors::none(&nominal), &[0.1; 6], false, MeasurementKind::Points);
 /// assert_eq!(a.shape(), (3, 39));
 /// ```
 #[must_use]
@@ -162,7 +167,7 @@ pub fn adjoint_jacobian(
     errors: &AdjointErrors,
     values: &[f64],
     offsets: bool,
-    seen: Seen,
+    seen: MeasurementKind,
 ) -> DMatrix<f64> {
     let robot = errors.apply(nominal);
     let literal = Literal::new(&robot, values);
@@ -182,17 +187,17 @@ fn assemble(
     home: &Matrix6<f64>,
     joints: &[Vector6<f64>],
     offsets: bool,
-    seen: Seen,
+    seen: MeasurementKind,
 ) -> DMatrix<f64> {
     let mut twists = if offsets { literal.offset_columns.clone() } else { Vec::new() };
     twists.extend(joints);
     match seen {
-        Seen::Poses => {
+        MeasurementKind::Poses => {
             twists.extend(home.column_iter().map(|column| column.into_owned()));
             let columns: Vec<f64> = twists.iter().flatten().copied().collect();
             DMatrix::from_vec(6, twists.len(), columns)
         }
-        Seen::Points => {
+        MeasurementKind::Points => {
             let rows = point_rows(&literal.motion.act(&robot.home.translation));
             let mut columns: Vec<Vector3<f64>> = twists.iter().map(|twist| rows * twist).collect();
             columns.extend(literal.motion.rotation.column_iter().map(|column| column.into_owned()));
@@ -206,9 +211,9 @@ fn assemble(
 /// columns, so that singular values compare. A length of 1 leaves the numbers as they are.
 ///
 /// ```
-/// use poecal_lou2009::{Formulation, Seen, literal::stacked, tables};
+/// use poecal_lou2009::{Formulation, MeasurementKind, literal::stacked, tables};
 /// let configurations = [vec![0.1; 6], vec![0.7; 6]];
-/// let a = stacked(&tables::nominal(), &configurations, Formulation::Adjoint, Seen::Poses, 0.5);
+/// let a = stacked(&tables::nominal(), &configurations, Formulation::Adjoint, MeasurementKind::Poses, 0.5);
 /// assert_eq!(a.shape(), (12, 42));
 /// ```
 #[must_use]
@@ -216,15 +221,15 @@ pub fn stacked(
     robot: &Robot,
     configurations: &[Vec<f64>],
     formulation: Formulation,
-    seen: Seen,
+    seen: MeasurementKind,
     length_m: f64,
 ) -> DMatrix<f64> {
     let scales = column_scales(robot, formulation, seen, length_m);
-    let each = if seen == Seen::Poses { 6 } else { 3 };
+    let each = if seen == MeasurementKind::Poses { 6 } else { 3 };
     let mut all = DMatrix::zeros(each * configurations.len(), scales.len());
     for (k, values) in configurations.iter().enumerate() {
         all.rows_mut(each * k, each).copy_from(&jacobian(robot, values, formulation, seen));
-        if seen == Seen::Poses {
+        if seen == MeasurementKind::Poses {
             all.rows_mut(each * k + 3, 3).scale_mut(length_m);
         }
     }
@@ -235,7 +240,7 @@ pub fn stacked(
 }
 
 /// Metres per unit of each column's unknown, inverted: 1 for a length, `1 / length_m` for an angle or a direction.
-fn column_scales(robot: &Robot, formulation: Formulation, seen: Seen, length_m: f64) -> Vec<f64> {
+fn column_scales(robot: &Robot, formulation: Formulation, seen: MeasurementKind, length_m: f64) -> Vec<f64> {
     let turn = 1.0 / length_m;
     let twist = [1.0, 1.0, 1.0, turn, turn, turn];
     let mut scales = Vec::new();
@@ -249,7 +254,7 @@ fn column_scales(robot: &Robot, formulation: Formulation, seen: Seen, length_m: 
             scales.extend(twist);
         }
     }
-    scales.extend(if seen == Seen::Poses { &twist[..] } else { &twist[..3] });
+    scales.extend(if seen == MeasurementKind::Poses { &twist[..] } else { &twist[..3] });
     scales
 }
 

@@ -1,11 +1,11 @@
 //! The paper's calibrations from the nominal screws, with every formulation, traced by iteration.
 
-use super::constraints::{State, Watched};
+use super::constraints::{Watched, WatchedState};
 use super::literal;
 use super::seeds::{Purpose, derived};
-use super::session::Session;
+use super::session::PaperSession;
 use super::tables;
-use super::{Iteration, LENGTH_M, NOISE, Run, Seen};
+use super::{Iteration, LENGTH_M, MeasurementKind, NOISE, Run};
 use crate::{Formulation, Residual, gauss_newton};
 use poecal::error::Result;
 use poecal::estimate::{Estimate, Packed};
@@ -31,7 +31,7 @@ const NOISY_FACTOR: f64 = 10.0;
 #[derive(Clone, Copy)]
 pub(super) struct Plan {
     pub(super) formulation: Formulation,
-    pub(super) seen: Seen,
+    pub(super) seen: MeasurementKind,
     pub(super) offsets_in_truth: bool,
     pub(super) noise: bool,
 }
@@ -56,7 +56,7 @@ pub(super) fn truth(offsets: bool) -> Estimate {
 /// All runs: every formulation, poses and points, with and without offsets and noise.
 pub(super) fn runs(seed: u64) -> Result<Vec<Ended>> {
     let mut runs = Vec::new();
-    for seen in [Seen::Poses, Seen::Points] {
+    for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         for offsets_in_truth in [false, true] {
             for noise in [false, true] {
                 for formulation in Formulation::ALL {
@@ -69,17 +69,17 @@ pub(super) fn runs(seed: u64) -> Result<Vec<Ended>> {
 }
 
 /// Measurements of a kind that a run fits.
-fn count(seen: Seen) -> usize {
+fn count(seen: MeasurementKind) -> usize {
     match seen {
-        Seen::Poses => POSES,
-        Seen::Points => POINTS,
+        MeasurementKind::Poses => POSES,
+        MeasurementKind::Points => POINTS,
     }
 }
 
 /// The configurations of the runs of a kind, and the robot that is there.
-pub(super) fn session(offsets_in_truth: bool, seen: Seen, seed: u64) -> Session {
+pub(super) fn session(offsets_in_truth: bool, seen: MeasurementKind, seed: u64) -> PaperSession {
     let seed = derived(seed, Purpose::Runs, 0);
-    Session::new(&tables::nominal(), truth(offsets_in_truth), seen, count(seen), seed)
+    PaperSession::new(&tables::nominal(), truth(offsets_in_truth), seen, count(seen), seed)
 }
 
 /// One run by plain Gauss-Newton, with the paper's residual of poses.
@@ -93,7 +93,7 @@ fn run(plan: Plan, seed: u64) -> Result<Ended> {
     let problem = Problem::new(&data, &session.packed, session.rows(), free, sigma, LENGTH_M);
     let once = Options { iterations: 1, ..Options::default() };
 
-    let mut state = State::new(session.start());
+    let mut state = WatchedState::new(session.start());
     let mut trace = vec![iteration(&session, &data, &state.estimate)];
     let termination = loop {
         let (next, _, summary) = gauss_newton(&Watched(&problem), state.clone(), &once);
@@ -112,9 +112,9 @@ fn run(plan: Plan, seed: u64) -> Result<Ended> {
 
 /// What is told of a run that ended.
 fn measures(
-    session: &Session,
+    session: &PaperSession,
     plan: Plan,
-    state: &State,
+    state: &WatchedState,
     trace: Vec<Iteration>,
     (unknowns, termination): (usize, Termination),
 ) -> Run {
@@ -153,7 +153,7 @@ fn measures(
 }
 
 /// Residual and parameter error of an estimate.
-fn iteration(session: &Session, data: &Dataset, estimate: &Estimate) -> Iteration {
+fn iteration(session: &PaperSession, data: &Dataset, estimate: &Estimate) -> Iteration {
     let errors = poecal::calibration::row_errors(data, &session.packed, &session.rows(), estimate);
     let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
     Iteration {
@@ -190,14 +190,14 @@ fn offset_error_deg(found: &Estimate, truth: &Estimate) -> f64 {
 }
 
 /// Columns and rank of the paper's own matrix at an estimate, on the configurations of a session.
-fn rank(session: &Session, estimate: &Estimate, formulation: Formulation) -> (usize, usize) {
+fn rank(session: &PaperSession, estimate: &Estimate, formulation: Formulation) -> (usize, usize) {
     let matrix = matrix(session, estimate, formulation);
     (matrix.ncols(), literal::singular_values(&matrix).1)
 }
 
 /// The paper's own matrix at an estimate.
 pub(super) fn matrix(
-    session: &Session,
+    session: &PaperSession,
     estimate: &Estimate,
     formulation: Formulation,
 ) -> nalgebra::DMatrix<f64> {

@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::Seen;
+use super::MeasurementKind;
 use crate::{Formulation, Residual};
 use nalgebra::Vector3;
 use poecal::error::Result;
@@ -18,10 +18,10 @@ use poecal::simulate::{random, random_configuration};
 const UNSEEN: usize = 60;
 
 /// Random configurations of a robot within its limits, and the robot that is really there.
-pub(super) struct Session {
+pub(super) struct PaperSession {
     pub(super) nominal: Robot,
     pub(super) truth: Estimate,
-    pub(super) seen: Seen,
+    pub(super) seen: MeasurementKind,
     pub(super) readings: Vec<f64>,
     pub(super) packed: Packed,
     pub(super) unseen: Packed,
@@ -29,8 +29,14 @@ pub(super) struct Session {
     unseen_positions: Vec<Vector3<f64>>,
 }
 
-impl Session {
-    pub(super) fn new(nominal: &Robot, truth: Estimate, seen: Seen, count: usize, seed: u64) -> Self {
+impl PaperSession {
+    pub(super) fn new(
+        nominal: &Robot,
+        truth: Estimate,
+        seen: MeasurementKind,
+        count: usize,
+        seed: u64,
+    ) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let mut configurations = |count: usize| -> Vec<f64> {
             (0..count).flat_map(|_| random_configuration(nominal, &mut generator)).collect()
@@ -40,7 +46,7 @@ impl Session {
         let packed = Packed::new(nominal, &readings, width);
         let unseen = Packed::new(nominal, &configurations(UNSEEN), width);
         let unseen_positions = poses(&truth, &unseen).map(|pose| pose.translation).collect();
-        Session { nominal: nominal.clone(), truth, seen, readings, packed, unseen, unseen_positions }
+        PaperSession { nominal: nominal.clone(), truth, seen, readings, packed, unseen, unseen_positions }
     }
 
     /// All rows.
@@ -69,8 +75,10 @@ impl Session {
         let mut data = Dataset::new(self.nominal.reading_names());
         for (readings, &pose) in self.readings.chunks_exact(self.nominal.joints.len()).zip(measured) {
             let measurement = match self.seen {
-                Seen::Poses => Measurement::Pose(PoseMeasurement { pose }),
-                Seen::Points => Measurement::Point(PointMeasurement { position: pose.translation }),
+                MeasurementKind::Poses => Measurement::Pose(PoseMeasurement { pose }),
+                MeasurementKind::Points => {
+                    Measurement::Point(PointMeasurement { position: pose.translation })
+                }
             };
             data.push(readings, None, measurement)?;
         }
@@ -87,8 +95,8 @@ impl Session {
     pub(super) fn free(&self, formulation: Formulation) -> Vec<Parameter> {
         let mut free = formulation.joint_parameters(&self.truth.kinds);
         free.push(match self.seen {
-            Seen::Poses => Parameter::TargetFrame(TargetFrame { target: 0 }),
-            Seen::Points => Parameter::TargetPlace(TargetPlace { target: 0 }),
+            MeasurementKind::Poses => Parameter::TargetFrame(TargetFrame { target: 0 }),
+            MeasurementKind::Points => Parameter::TargetPlace(TargetPlace { target: 0 }),
         });
         free
     }

@@ -121,7 +121,7 @@ impl From<calibration::Accuracy> for Accuracy {
     }
 }
 
-/// How far a calibration may be used, and why no farther.
+/// Verdict: how far a calibration may be used, and why no farther.
 #[pyclass(frozen, eq, module = "poecal", name = "Verdict")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Verdict(pub(crate) calibration::Verdict);
@@ -134,7 +134,7 @@ impl Verdict {
         self.0.level.word()
     }
 
-    /// Sentences with the figures that decided.
+    /// Sentences with the deciding figures.
     #[getter]
     fn reasons(&self) -> Vec<String> {
         self.0.reasons.clone()

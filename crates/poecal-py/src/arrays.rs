@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 
 use crate::errors::argument;
 
-/// How far a rotation matrix may be from one: what is left of matrices that were printed with three decimals.
+/// Largest deviation from a rotation matrix: rounding of matrices printed with three decimals.
 const ROTATION_TOLERANCE: f64 = 1e-2;
 
-/// Numbers of any array-like, one after the other, with their shape.
+/// Numbers of an array-like in C order, with their shape.
 pub(crate) struct Numbers {
     pub(crate) values: Vec<f64>,
     pub(crate) shape: Vec<usize>,
@@ -68,7 +68,7 @@ impl Numbers {
     }
 }
 
-/// `numpy.ascontiguousarray(value, dtype=float)`, refused where that would lose or guess something.
+/// `numpy.ascontiguousarray(value, dtype=float)`, refused where that would be lossy or ambiguous.
 fn converted<'py>(
     value: &Bound<'py, PyAny>,
     name: &str,
@@ -85,7 +85,7 @@ fn converted<'py>(
         return Err(argument(name, format!("found {found}, expected {expected}")));
     }
     let array = numpy.call_method1("ascontiguousarray", (array, "float64"))?;
-    // A number alone becomes an array of one.
+    // A scalar becomes an array of one element.
     let array = if value.getattr("__len__").is_err() { array.call_method1("reshape", ((),))? } else { array };
     array.extract()
 }
@@ -152,14 +152,14 @@ pub(crate) fn table<'py>(
 
 /// Joint readings, of shape (m, n) or (n,) for one configuration.
 pub(crate) struct Joints {
-    /// One configuration after the other, in the order of the robot's readings.
+    /// All configurations, in the order of the robot's readings.
     pub(crate) readings: Vec<f64>,
-    /// Whether it was one configuration alone.
+    /// Whether it was a single configuration.
     pub(crate) single: bool,
 }
 
 impl Joints {
-    /// Of the argument `joints`.
+    /// From the argument `joints`.
     pub(crate) fn of(value: &Bound<'_, PyAny>, robot: &poecal::robot::Robot) -> PyResult<Self> {
         let names = robot.reading_names();
         let n = names.len();

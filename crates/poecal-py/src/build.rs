@@ -1,4 +1,4 @@
-//! Robots of arrays. The arrays become a TOML model, whose reader checks all that there is to check.
+//! Robots from arrays, by way of a TOML model, whose reader makes all checks.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use crate::arrays::{Numbers, pose};
 use crate::errors::{argument, raise};
 use crate::words::chosen;
 
-/// What does not concern geometry.
+/// Arguments that do not concern geometry.
 pub(crate) struct Naming<'a, 'py> {
     pub(crate) name: &'a str,
     pub(crate) names: Option<Vec<String>>,
@@ -34,7 +34,7 @@ impl Naming<'_, '_> {
         }
     }
 
-    /// Limits of the joints as keys of their tables.
+    /// Limits as keys of the joints' tables.
     fn limits(&self, count: usize) -> PyResult<Vec<String>> {
         let Some(limits) = self.limits else { return Ok(vec![String::new(); count]) };
         let expected = format!("shape ({count}, 2): lower and upper limit of each joint, radians or metres");
@@ -49,7 +49,7 @@ impl Naming<'_, '_> {
         Ok(limits.values.chunks_exact(2).map(key).collect())
     }
 
-    /// The model of a TOML text that begins with this and goes on with `rest`.
+    /// The model of the TOML text that begins with this and continues with `rest`.
     fn model(&self, rest: &str) -> PyResult<Model> {
         let text = format!(
             "poecal_robot = 1\nname = {}\nlength_unit = \"m\"\nangle_unit = \"rad\"\nbase_link = {}\ntip_link = {}\n{rest}",
@@ -57,14 +57,14 @@ impl Naming<'_, '_> {
             quoted(self.base_link),
             quoted(self.tip_link)
         );
-        // The place in a text that the user did not write would mislead.
+        // A place in a text that the user did not write would mislead.
         let without_place = |error: Error| raise(Error::new(error.kind(), error.message()));
         let robot = robot_toml::parse(&text, self.name).map_err(without_place)?;
         Ok(Model { robot, source: ModelSource::Toml, path: self.name.into() })
     }
 }
 
-/// A text as TOML writes it.
+/// A TOML string.
 fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
@@ -78,7 +78,7 @@ fn quoted(text: &str) -> String {
     out + "\""
 }
 
-/// A pose as a table of TOML.
+/// A pose as a TOML table.
 fn pose_table(name: &str, pose: &Pose) -> String {
     let [x, y, z]: [f64; 3] = pose.translation.into();
     let row = |row: usize| {
@@ -114,7 +114,7 @@ pub(crate) fn from_screws(
     naming.model(&(text + &pose_table("home", &pose(home, "home")?)))
 }
 
-/// Denavit-Hartenberg parameters as Python gives them.
+/// Denavit-Hartenberg parameters as arguments.
 pub(crate) struct DhTable<'a, 'py> {
     pub(crate) a_m: &'a Bound<'py, PyAny>,
     pub(crate) alpha_rad: &'a Bound<'py, PyAny>,

@@ -26,8 +26,8 @@ use crate::words::{
 /// Parameters
 /// ----------
 /// robot : the nominal robot
-/// measurements : what was measured of it
-/// frame : the measuring device's frame: "unknown" (it stands anywhere) or "base"
+/// measurements : its measurements
+/// frame : the measuring device's frame: "unknown" or "base"
 /// sigma_position_mm, sigma_rotation_deg : standard deviation of each measured component, default estimated from the data
 /// tolerance_deg_mm : prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or
 ///     None; it decides where the measurements determine nothing
@@ -38,7 +38,7 @@ use crate::words::{
 /// residual : residual of measured frames: "tool" or "spatial"
 /// method : "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws)
 /// validate : measurements to judge by: all other rows are fitted
-/// progress : called with what is done next, in words
+/// progress : called with the next stage, in words
 ///
 /// Raises
 /// ------
@@ -92,7 +92,7 @@ pub(crate) fn calibrate(
     Ok(Calibration::of_fit(robot.same(), found, data, inputs, took))
 }
 
-/// The fit, without the interpreter's lock, and how long the library took. Warns as the program does.
+/// The fit, without the interpreter's lock, and the time of the library. Warns as the program does.
 fn fit(
     py: Python<'_>,
     nominal: &poecal::robot::Robot,
@@ -120,7 +120,7 @@ fn fit(
     Ok((found, took))
 }
 
-/// The rows to fit and to hold out, joined and settled.
+/// Training and held-out rows, joined.
 fn rows<'a>(
     py: Python<'_>,
     robot: &Robot,
@@ -163,7 +163,7 @@ fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: Residual) -> PyRes
     )
 }
 
-/// What was read, as `calibration.json` states it.
+/// Inputs, as in `calibration.json`.
 fn inputs(robot: &Robot, measurements: &Measurements, validate: Option<&Measurements>) -> Inputs {
     let sources = || [Some(measurements), validate].into_iter().flatten().map(|it| &it.source);
     let mut sha256 = (*robot.sha256).clone();

@@ -13,7 +13,7 @@ use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
-use poecal::io::residuals::{Residuals, Rows};
+use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::report;
 use poecal::text::visible_markup;
 use pyo3::IntoPyObjectExt as _;
@@ -31,7 +31,7 @@ use crate::prediction::Prediction;
 use crate::robot::{Robot, poses};
 use crate::words::chosen;
 
-/// Where a report goes: among the results or not, or to a file.
+/// Place of a report: among the results, a file, or none.
 #[derive(FromPyObject)]
 enum ReportPlace {
     Among(bool),
@@ -74,7 +74,7 @@ impl Calibration {
         self.errors().into()
     }
 
-    /// How far it may be used; None of a file that states none.
+    /// Verdict; None for a file without one.
     #[getter]
     fn verdict(&self) -> Option<Verdict> {
         self.judged().cloned().map(Verdict)
@@ -86,7 +86,7 @@ impl Calibration {
         self.file().solver.converged
     }
 
-    /// What makes the result doubtful, and mistakes that the measurements show, a sentence each.
+    /// Warnings, and mistakes in the input, a sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         let file = self.file();
@@ -100,13 +100,13 @@ impl Calibration {
         pose_array(py, &self.file().base_from_device().map_err(raise)?)
     }
 
-    /// Where each instrument stands: `stations` of calibration.json; empty if no row names one.
+    /// Frames of the instruments: `stations` of calibration.json; empty if no row names one.
     #[getter]
     fn stations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, &self.file().stations)
     }
 
-    /// Each joint's correction, its uncertainty and its worth: `corrections` of calibration.json.
+    /// Each joint's correction, its uncertainty and its effect: `corrections` of calibration.json.
     #[getter]
     fn corrections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, &self.file().corrections)
@@ -169,7 +169,8 @@ impl Calibration {
                     Some(report::calibration_page(file, residuals)?)
                 }
             };
-            let results = Results { file: file.clone(), residuals: Rows::AtHand(residuals), report: page };
+            let results =
+                Results { file: file.clone(), residuals: ResidualRows::AtHand(residuals), report: page };
             output::write_robot(place, elsewhere, model, &robot, results)
         });
         let written = written.map_err(raise)?;
@@ -186,7 +187,7 @@ impl Calibration {
         py.detach(|| place.write(report::calibration_page(file, residuals)?)).map_err(raise)
     }
 
-    /// Where the calibrated tip, or a target, stands.
+    /// Poses of the calibrated tip, or of a target.
     ///
     /// `joints` is of shape (m, n), radians and metres, or (n,) for one configuration. Gives poses of shape (m, 4, 4), or (4, 4), in
     /// the `frame` "base" or "device"; with `with_uncertainty` a `Prediction`, with the expected error of each.

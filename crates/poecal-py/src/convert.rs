@@ -22,7 +22,7 @@ use crate::robot::{Robot, form};
 /// Parameters
 /// ----------
 /// to : "urdf" (a new one of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says
-/// offset : dict of joint names and what is added to their values, radians or metres
+/// offset : dict of joint names and offsets of their values, radians or metres
 ///     The text has the screws and home pose of the robot with these offsets. Mimic joints that follow a joint stay.
 #[pyfunction]
 #[pyo3(signature = (robot, *, to=None, offset=None, out=None, force=false))]
@@ -87,7 +87,7 @@ pub(crate) fn schema() -> String {
 
 /// Joint readings of a file, shape (m, n), radians and metres, in the order of `robot.reading_names`. Other columns are ignored.
 ///
-/// `columns` is a mapping file that says what the columns of other people's files mean.
+/// `columns` is a mapping file for files with other column names.
 #[pyfunction]
 #[pyo3(signature = (path, robot, *, columns=None))]
 pub(crate) fn read_joints<'py>(

@@ -16,17 +16,17 @@ fn class_name(kind: ErrorKind) -> &'static str {
         ErrorKind::Problem => "ProblemError",
         ErrorKind::Export => "ExportError",
         ErrorKind::Solver => "SolverError",
-        // Kinds that later versions of the library add.
+        // Kinds of later versions of the library.
         _ => "Error",
     }
 }
 
-/// The exception of an error of the library.
+/// The exception for an error of the library.
 pub(crate) fn raise(error: Error) -> PyErr {
     raise_at_row(error, None)
 }
 
-/// The same for an error of a table in memory, whose row (from 0) is then told instead of a line.
+/// The same for an error in a table in memory, with its row (from 0) instead of a line.
 pub(crate) fn raise_at_row(error: Error, row: Option<usize>) -> PyErr {
     Python::attach(|py| exception(py, &error, row).unwrap_or_else(|failure| failure))
 }
@@ -52,7 +52,7 @@ pub(crate) fn argument(name: &str, message: impl std::fmt::Display) -> PyErr {
     raise(Error::new(ErrorKind::Option, format!("{name}: {message}")))
 }
 
-/// Options of the program by the names that they have here: `--held-out` is `held_out`.
+/// Names of the program's options in Python: `--held-out` is `held_out`.
 pub(crate) fn python_words(message: &str) -> String {
     let mut words = String::with_capacity(message.len());
     let mut rest = message;

@@ -1,4 +1,4 @@
-//! What `check`, `identify`, `offsets`, `reproduce` and `Calibration.validate` find.
+//! Results of `check`, `identify`, `offsets`, `reproduce` and `Calibration.validate`.
 
 use std::path::PathBuf;
 
@@ -55,7 +55,7 @@ impl Findings {
         self.json.clone()
     }
 
-    /// What the user should know, a sentence each.
+    /// Warnings, a sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
@@ -101,7 +101,7 @@ pub(crate) fn check(
     }
     let file = measurements.map(|measurements| &*measurements.file);
     let check = py.detach(|| {
-        let options = forensics::Options { device_free, ..forensics::Options::default() };
+        let options = forensics::DiagnosisOptions { device_free, ..forensics::DiagnosisOptions::default() };
         let diagnose = |data| forensics::diagnose(&robot.model.robot, data, &data.all_rows(), &options);
         let found = file.map_or_else(Vec::new, |file| diagnose(&file.data));
         report::Check::new(&robot.model, file, &found)
@@ -114,9 +114,9 @@ pub(crate) fn check(
 /// Parameters
 /// ----------
 /// joints : array of shape (m, n), radians and metres, in the order of `robot.reading_names`
-/// kind : what the device will see of the tip: "pose", "point", or "mixed" (both in turn)
+/// kind : kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn)
 /// sigma_position_mm, sigma_rotation_deg : standard deviation of each measured component (default 0.05 mm, 0.01 deg)
-/// frame : the measuring device's frame: "unknown" (it stands anywhere) or "base"
+/// frame : the measuring device's frame: "unknown" or "base"
 #[pyfunction]
 #[pyo3(signature = (robot, joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown"))]
 pub(crate) fn identify(
@@ -153,7 +153,7 @@ pub(crate) enum RobotOrCalibration<'py> {
     Calibration(Bound<'py, Calibration>),
 }
 
-/// The joint offsets that explain best how a robot differs from its model, and what they leave.
+/// The joint offsets that explain best how a robot differs from its model, and the remaining errors.
 ///
 /// `actual` is a robot or a calibration. `base` and `tip` say whether these frames are the same in both ("kept") or found with the
 /// offsets ("free"); by default what a calibration fitted is free.
@@ -174,7 +174,7 @@ pub(crate) fn offsets(
     let base = base.map(|word| end("base", word)).transpose()?;
     let tip = tip.map(|word| end("tip", word)).transpose()?;
     let [(base, base_reason), (tip, tip_reason)] = report::offset_ends(base, tip, actual);
-    let options = explanations::Options { base, tip, ..explanations::Options::default() };
+    let options = explanations::OffsetOptions { base, tip, ..explanations::OffsetOptions::default() };
     let explained =
         py.detach(|| explanations::explain(&nominal.robot, &actual.robot, &options)).map_err(raise)?;
     let found = report::Offsets::new(nominal, actual, &explained, [base_reason, tip_reason]);
@@ -193,7 +193,7 @@ pub(crate) fn offsets(
     Findings::new(found.text(), &found, warnings)
 }
 
-/// Repeats the experiment of a paper and checks its claims ("lou2009"), or shows what gross errors do ("breakdown").
+/// Repeats the experiment of a paper and checks its claims ("lou2009"), or shows the effect of gross errors ("breakdown").
 ///
 /// `trials` sessions compare the formulations, or the losses; `starts` random starts each size of error (lou2009). With `out` the
 /// report is written to that folder.
@@ -215,7 +215,7 @@ pub(crate) fn reproduce(
     }
     let words = [("lou2009", Experiment::Lou2009), ("breakdown", Experiment::Breakdown)];
     let experiment = chosen("experiment", experiment, &words)?;
-    let options = experiments::Options { trials: trials as usize, starts: starts as usize, seed };
+    let options = experiments::ReproductionOptions { trials: trials as usize, starts: starts as usize, seed };
     let reserved =
         |folder: &PathBuf| reserved_folder(py, folder, Contents::Reproduction, Existing::forced(force), &[]);
     let place = out.as_ref().map(reserved).transpose()?;

@@ -1,4 +1,4 @@
-//! Measurements of arrays.
+//! Measurements from arrays.
 
 use std::collections::BTreeMap;
 
@@ -16,11 +16,11 @@ use crate::arrays::{Numbers, pose_of};
 use crate::errors::{argument, raise, raise_at_row};
 use crate::words::{chosen, from_deg, from_mm};
 
-/// How far a quaternion may be from unit length, as in files.
+/// Largest deviation of a quaternion's norm from 1, as in files.
 const QUATERNION_TOLERANCE: f64 = 1e-2;
 
 /// Arguments of `Measurements.from_arrays`.
-pub(crate) struct Columns<'a, 'py> {
+pub(crate) struct ArrayColumns<'a, 'py> {
     pub(crate) joints: &'a Bound<'py, PyAny>,
     pub(crate) positions: Option<&'a Bound<'py, PyAny>>,
     pub(crate) quaternions_xyzw: Option<&'a Bound<'py, PyAny>>,
@@ -36,7 +36,7 @@ pub(crate) struct Columns<'a, 'py> {
 }
 
 /// The rows.
-pub(crate) fn dataset(robot: &Robot, columns: &Columns<'_, '_>) -> PyResult<Dataset> {
+pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult<Dataset> {
     let length =
         Unit::parse(columns.length_unit, Quantity::Length).map_err(|error| named("length_unit", error))?;
     let readings = readings(robot, columns, length)?;
@@ -62,7 +62,7 @@ pub(crate) fn dataset(robot: &Robot, columns: &Columns<'_, '_>) -> PyResult<Data
     let at = |values: &[Option<f64>], row: usize| values.get(row).copied().flatten();
     let width = names.len();
     let mut data = Dataset::new(names);
-    // Looked up once a target: there may be very many.
+    // Found once per target: there may be very many.
     let mut known: BTreeMap<Option<&str>, usize> = BTreeMap::new();
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for (row, (readings, measurement)) in readings.chunks_exact(width.max(1)).zip(seen).enumerate() {
@@ -92,8 +92,8 @@ fn named(argument: &str, error: Error) -> PyErr {
     raise(Error::new(error.kind(), format!("{argument}: {}", error.message())))
 }
 
-/// The readings in SI, row after row.
-fn readings(robot: &Robot, columns: &Columns<'_, '_>, length: Unit) -> PyResult<Vec<f64>> {
+/// Readings of all rows in SI.
+fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: Unit) -> PyResult<Vec<f64>> {
     let angle =
         Unit::parse(columns.angle_unit, Quantity::Angle).map_err(|error| named("angle_unit", error))?;
     let names = robot.reading_names();
@@ -116,7 +116,7 @@ fn readings(robot: &Robot, columns: &Columns<'_, '_>, length: Unit) -> PyResult<
     Ok(readings)
 }
 
-/// Refuses numbers that nothing measured can be, which sums of squares would not bear, as files do.
+/// Refuses numbers beyond any measurement, whose squares would overflow, as in files.
 fn check_size(name: &str, row: usize, si: &[f64]) -> PyResult<()> {
     let Some(value) = si.iter().find(|value| value.abs() > LARGEST_NUMBER) else { return Ok(()) };
     let message = format!(
@@ -125,8 +125,8 @@ fn check_size(name: &str, row: usize, si: &[f64]) -> PyResult<()> {
     Err(argument(name, message))
 }
 
-/// What was seen, in SI.
-fn measured(columns: &Columns<'_, '_>, m: usize, length: Unit) -> PyResult<Vec<Measurement>> {
+/// Measurements in SI.
+fn measured(columns: &ArrayColumns<'_, '_>, m: usize, length: Unit) -> PyResult<Vec<Measurement>> {
     match (columns.positions, columns.poses) {
         (Some(positions), None) => points(positions, columns.quaternions_xyzw, m, length),
         (None, Some(poses)) if columns.quaternions_xyzw.is_none() => frames(poses, m, length),
@@ -197,13 +197,13 @@ fn points(
     .collect()
 }
 
-fn sets(columns: &Columns<'_, '_>) -> PyResult<Vec<Option<Set>>> {
+fn sets(columns: &ArrayColumns<'_, '_>) -> PyResult<Vec<Option<Set>>> {
     let words = [("fit", Set::Fit), ("held_out", Set::HeldOut)];
     let stated = columns.sets.iter().flatten();
     stated.map(|word| word.as_ref().map(|word| chosen("sets", word, &words)).transpose()).collect()
 }
 
-/// The standard deviation of each row, if it states one.
+/// Standard deviation of each row, if stated.
 fn sigma(
     name: &str,
     value: Option<&Bound<'_, PyAny>>,

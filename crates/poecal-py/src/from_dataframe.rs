@@ -1,4 +1,4 @@
-//! A data frame as the text of a table, so that it is read by the same rules as files.
+//! Data frames as text of a table, read by the same rules as files.
 
 use poecal::Error;
 use pyo3::prelude::*;
@@ -6,10 +6,10 @@ use pyo3::types::{PyFloat, PyString};
 
 use crate::errors::{argument, raise_at_row};
 
-/// What stands for the file in messages.
+/// Name of the data frame in messages.
 pub(crate) const NAME: &str = "dataframe";
 
-/// The frame as CSV. Numbers read back as they are.
+/// The frame as CSV with exact numbers.
 pub(crate) fn text(frame: &Bound<'_, PyAny>) -> PyResult<String> {
     let expected = "a data frame: something with `columns` and with columns by name, as of pandas or polars";
     let no_frame = |_| {
@@ -46,7 +46,7 @@ pub(crate) fn text(frame: &Bound<'_, PyAny>) -> PyResult<String> {
     Ok(text)
 }
 
-/// A value as a cell: numbers with all their digits, nothing for what is missing.
+/// A value as a cell: numbers with all digits, missing values empty.
 fn cell(value: &Bound<'_, PyAny>) -> PyResult<String> {
     if value.is_none() {
         return Ok(String::new());
@@ -61,13 +61,13 @@ fn cell(value: &Bound<'_, PyAny>) -> PyResult<String> {
     }
     let text = value.str()?;
     let text = text.to_cow()?;
-    // The missing values of pandas.
+    // Missing values of pandas.
     Ok(if matches!(&*text, "<NA>" | "NaT") { String::new() } else { quoted(&text) })
 }
 
-/// A cell in quotes, where it needs them. A cell is one line.
+/// A cell, quoted if necessary, on one line.
 fn quoted(text: &str) -> String {
-    // The reader takes an apostrophe off before what a spreadsheet would run; one of the frame's own stays behind another.
+    // The reader removes an apostrophe before a text that a spreadsheet would run; one in the frame is protected by another.
     let mark = if text.starts_with('\'') { "'" } else { "" };
     let text = format!("{mark}{}", text.replace(['\n', '\r'], " "));
     if text.contains([',', '"', ';', '\t', ' ', '#']) {
@@ -77,7 +77,7 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// The exception of an error in the table, told by the frame's row.
+/// The exception for an error in the table, with the row of the frame.
 pub(crate) fn raise(error: Error) -> PyErr {
     // The header is the first line.
     let line = error.place().filter(|place| place.path.as_os_str() == NAME).and_then(|place| place.line);

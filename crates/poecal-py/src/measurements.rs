@@ -1,4 +1,4 @@
-//! Measurements: of files, arrays and data frames.
+//! Measurements from files, arrays and data frames.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -17,13 +17,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::arrays::{pose_arrays, table};
 use crate::errors::{argument, python_words, raise};
-use crate::from_arrays::{Columns, dataset};
+use crate::from_arrays::{ArrayColumns, dataset};
 use crate::from_dataframe;
 use crate::pickle;
 use crate::robot::Robot;
 use crate::words::chosen;
 
-/// Measurements of a robot: in each row a configuration and what a device saw of a target there. They never change.
+/// Measurements of a robot: in each row a configuration and the measurement of a target. Immutable.
 ///
 /// Make them by `Measurements.from_csv`, `from_arrays` or `from_dataframe`. Lengths are in metres, angles in radians. Measurements
 /// compare by value, and can be copied and pickled.
@@ -33,10 +33,10 @@ pub(crate) struct Measurements {
     pub(crate) source: Arc<MeasurementSource>,
 }
 
-/// Where measurements came from.
+/// Source of measurements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct MeasurementSource {
-    /// The files, or what stands for them.
+    /// File names, or their substitutes.
     pub(crate) names: Vec<String>,
     /// SHA-256 of each file that was read.
     pub(crate) sha256: BTreeMap<String, String>,
@@ -44,9 +44,9 @@ pub(crate) struct MeasurementSource {
     pub(crate) fit_where: bool,
 }
 
-/// What rebuilds measurements.
+/// Pickled measurements.
 #[derive(Serialize, Deserialize)]
-struct State {
+struct MeasurementState {
     data: Dataset,
     warnings: Vec<String>,
     source: MeasurementSource,
@@ -59,7 +59,7 @@ enum Paths {
     Several(Vec<PathBuf>),
 }
 
-/// How to read, from the arguments of that name.
+/// Options of a reader, from the arguments of the same names.
 fn options(
     columns: Option<&PathBuf>,
     fit_where: Option<&str>,
@@ -77,7 +77,7 @@ fn options(
 }
 
 impl Measurements {
-    /// Rows that came from no file.
+    /// Source of rows without a file.
     pub(crate) fn in_memory(data: Dataset, name: &str) -> Self {
         let file = MeasurementFile { data, ..MeasurementFile::default() };
         let source = MeasurementSource { names: vec![name.to_owned()], ..MeasurementSource::default() };
@@ -106,7 +106,7 @@ impl Measurements {
     }
 
     pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
-        let State { data, warnings, source } = pickle::value(state)?;
+        let MeasurementState { data, warnings, source } = pickle::value(state)?;
         data.check().map_err(raise)?;
         let file = MeasurementFile { data, warnings, ..MeasurementFile::default() };
         Ok(Measurements { file: Arc::new(file), source: Arc::new(source) })
@@ -134,7 +134,7 @@ impl Measurements {
     /// ----------
     /// paths : a path or several
     /// robot : the robot whose joints the columns name
-    /// columns : a mapping file that says what the columns of other people's files mean
+    /// columns : a mapping file for files with other column names
     /// fit_where : "COLUMN=VALUE[,VALUE]"
     ///     Fit only rows whose column has one of these values, and hold out all others.
     /// ignore_sets : whether the files' column `set` means nothing, as for rows that judge a calibration
@@ -188,7 +188,7 @@ impl Measurements {
     /// poses : array of shape (m, 4, 4), instead of `positions`
     ///     Poses device_from_target, translations in `length_unit`.
     /// targets : list of m names, default the tip itself
-    /// instruments : list of m names of what measured, each with a frame of its own
+    /// instruments : list of m names of the measuring devices, each with a frame of its own
     /// sets : list of m "fit" or "held_out" (or None for rows that do not say)
     /// ids : list of m names of the rows
     /// sigma_position_mm, sigma_rotation_deg : a number, or an array of shape (m,)
@@ -213,7 +213,7 @@ impl Measurements {
         angle_unit: &str,
         length_unit: &str,
     ) -> PyResult<Self> {
-        let columns = Columns {
+        let columns = ArrayColumns {
             joints,
             positions,
             quaternions_xyzw,
@@ -252,7 +252,7 @@ impl Measurements {
         };
         let mut file = py.detach(read).map_err(from_dataframe::raise)?;
         crate::warn(py, &file.warnings)?;
-        // The lines of a text that nobody sees would mislead: rows are told by their number.
+        // Line numbers of an internal text would mislead: errors name rows instead.
         file.data.files.clear();
         file.data.observations.iter_mut().for_each(|row| row.source = Default::default());
         let names = vec![from_dataframe::NAME.to_owned()];
@@ -335,7 +335,7 @@ impl Measurements {
         self.data().files.iter().map(|path| path.display().to_string()).collect()
     }
 
-    /// What the user should know of the files, a sentence each.
+    /// Warnings about the files, a sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.file.warnings.iter().map(|warning| python_words(warning)).collect()
@@ -365,7 +365,11 @@ impl Measurements {
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let MeasurementFile { data, warnings, .. } = &*self.file;
-        let state = State { data: data.clone(), warnings: warnings.clone(), source: (*self.source).clone() };
+        let state = MeasurementState {
+            data: data.clone(),
+            warnings: warnings.clone(),
+            source: (*self.source).clone(),
+        };
         pickle::reduce(py, "_measurements", PyBytes::new(py, &pickle::bytes(&state)?))
     }
 

@@ -1,4 +1,4 @@
-//! Pickling: an object's state as bytes, and the function that rebuilds it.
+//! Pickling: an object's state as bytes, and the function that restores it.
 
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 
 use crate::errors::argument;
 
-/// What `__reduce__` gives: the function of this name, and its argument.
+/// Result of `__reduce__`: the function of this name, and its argument.
 pub(crate) fn reduce<'py>(
     py: Python<'py>,
     function: &str,
@@ -17,7 +17,7 @@ pub(crate) fn reduce<'py>(
     PyTuple::new(py, [function, PyTuple::new(py, [state])?.into_any()])
 }
 
-/// A state as bytes. Numbers read back as they were, to the last digit.
+/// A state as bytes, with exact numbers.
 pub(crate) fn bytes(state: &impl Serialize) -> PyResult<Vec<u8>> {
     serde_json::to_vec(state)
         .map_err(|error| argument("pickle", format!("the object cannot be written: {error}")))

@@ -1,4 +1,4 @@
-//! Where files go, as by the program; what is said on the way becomes warnings.
+//! Places of output files, reserved as by the program; messages become warnings.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ pub(crate) fn reserved_folder(
     said(py, |say| FolderPlace::reserve(folder, contents, existing, inputs, say))
 }
 
-/// What `reserve` gives; what it says becomes warnings.
+/// Result of `reserve`; its messages become warnings.
 pub(crate) fn said<T>(
     py: Python<'_>,
     reserve: impl FnOnce(&mut dyn FnMut(String)) -> poecal::Result<T>,

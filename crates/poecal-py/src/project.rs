@@ -1,4 +1,4 @@
-//! A folder to start a calibration from.
+//! Project folders.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::errors::{argument, raise};
 use crate::places::reserved_folder;
 use crate::words::chosen;
 
-/// Most configurations that are suggested, as by the program.
+/// Most suggested configurations, as by the program.
 const MOST: usize = 100_000;
 
 /// Writes a project folder to start from: the model, a measurement file to fill in, configurations to measure, settings for
@@ -22,7 +22,7 @@ const MOST: usize = 100_000;
 /// ----------
 /// model : path of a URDF, TOML model or calibration.json
 /// out : folder; files in it are never overwritten
-/// measure : "points" or "poses", what the device will see
+/// measure : "points" or "poses"
 /// count : number of configurations to suggest, from 1 to 100,000
 /// seed : of their choice
 /// base_link, tip_link : the chain of a URDF that has several

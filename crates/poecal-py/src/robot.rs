@@ -26,7 +26,7 @@ use crate::pickle;
 use crate::places::reserved_file;
 use crate::words::chosen;
 
-/// The form that is named, or that the extension of a file names.
+/// The named form, or that of a file's extension.
 pub(crate) fn form(to: Option<&str>, path: Option<&Path>) -> PyResult<ModelFormat> {
     if let Some(word) = to {
         return chosen("to", word, &[("urdf", ModelFormat::Urdf), ("toml", ModelFormat::Toml)]);
@@ -149,7 +149,7 @@ impl Robot {
             .map(Robot::new)
     }
 
-    /// Where the tip, or a target of the model, stands in the base frame.
+    /// Poses of the tip, or of a target of the model, in the base frame.
     ///
     /// `joints` is of shape (m, n), radians and metres, in the order of `reading_names`; the result of shape (m, 4, 4). One
     /// configuration of shape (n,) gives one pose of shape (4, 4).

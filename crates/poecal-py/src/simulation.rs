@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use numpy::PyArray2;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::model::{Model, ModelSource};
-use poecal::io::output::{self, Contents, Existing, Session};
+use poecal::io::output::{self, Contents, Existing, SimulatedSession};
 use poecal::simulate::{self as simulated, Kind, Simulated};
 use poecal::text::visible;
 use pyo3::prelude::*;
@@ -17,10 +17,10 @@ use crate::places::reserved_folder;
 use crate::robot::Robot;
 use crate::words::{frame as frame_word, from_deg, from_mm, kind as kind_word, size};
 
-/// Most rows of a simulation, as of the program.
+/// Most rows of a simulation, as by the program.
 const MOST: usize = 10_000_000;
 
-/// A simulated session: the nominal robot, the actual one, and what a device measured of it.
+/// A simulated session: nominal and actual robot, and measurements of the actual one.
 #[pyclass(frozen, module = "poecal", name = "Simulation")]
 pub(crate) struct Simulation {
     nominal: Robot,
@@ -39,7 +39,7 @@ impl Simulation {
         self.nominal.same()
     }
 
-    /// The robot that was measured.
+    /// The actual robot.
     #[getter]
     fn actual(&self) -> Robot {
         let robot = self.made.actual.clone();
@@ -47,7 +47,7 @@ impl Simulation {
         Robot::new(Model { robot, source: ModelSource::Toml, path })
     }
 
-    /// What was measured.
+    /// The measurements.
     #[getter]
     fn measurements(&self) -> Measurements {
         Measurements::in_memory(self.made.data.clone(), "simulated")
@@ -68,7 +68,7 @@ impl Simulation {
     /// Writes both robots, the measurements and the truth to a folder, as the program does. Gives the names of the files.
     #[pyo3(signature = (folder, *, force=false))]
     fn write(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<Vec<String>> {
-        let session = Session {
+        let session = SimulatedSession {
             simulation: &self.simulation,
             kind: self.kind,
             made: &self.made,
@@ -93,12 +93,12 @@ impl Simulation {
 /// Parameters
 /// ----------
 /// robot : the robot to deviate from
-/// kind : what the device sees: "pose", "point", or "mixed" (both in turn)
+/// kind : kind of the measurements: "pose", "point", or "mixed" (both in turn)
 /// count : number of measurements
 /// seed : seed of everything random
 /// error_position_mm, error_rotation_deg : distance and angle by which every axis, and the tip, is off
 /// noise_position_mm, noise_rotation_deg : standard deviation of each measured component
-/// frame : where the device stands: "unknown" (anywhere) or "base" (at the robot's base)
+/// frame : the measuring device's frame: "unknown" or "base"
 /// held_out_count : number of further measurements, free of noise, to judge a calibration by
 #[pyfunction]
 #[pyo3(signature = (robot, *, kind="pose", count=50, seed=1, error_position_mm=2.0, error_rotation_deg=1.0, noise_position_mm=0.05,

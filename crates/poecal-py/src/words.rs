@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 use crate::errors::{argument, raise};
 
-/// The meaning of `word`, which must be one of these.
+/// Meaning of `word`, which must be one of these.
 pub(crate) fn chosen<T: Copy>(name: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
     if let Some((_, meaning)) = words.iter().find(|(known, _)| *known == word) {
         return Ok(*meaning);
@@ -66,7 +66,7 @@ pub(crate) fn from_deg(value: f64) -> PyResult<f64> {
     Ok(Unit::parse("deg", Quantity::Angle).map_err(raise)?.to_si(value))
 }
 
-/// A standard deviation in SI, if it is given.
+/// A standard deviation in SI, if given.
 pub(crate) fn sigma(
     name: &str,
     value: Option<f64>,

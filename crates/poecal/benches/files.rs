@@ -9,7 +9,7 @@ use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
 use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::io::measurements::{ReadOptions, read};
-use poecal::io::residuals::{Residuals, Rows};
+use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::simulate::{Kind, Simulated, Simulation, elbow};
 
 fn main() {
@@ -79,7 +79,8 @@ fn write(bencher: Bencher<'_, '_>, at_hand: bool) {
     let calibration =
         calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).expect("a calibration");
     let residuals = Residuals::of(&made.data, &calibration);
-    let rows = if at_hand { Rows::AtHand(&residuals) } else { Rows::Of(&made.data, &calibration) };
+    let rows =
+        if at_hand { ResidualRows::AtHand(&residuals) } else { ResidualRows::Of(&made.data, &calibration) };
     bencher
         .counter(BytesCount::new(residuals.text().len()))
         .bench_local(|| rows.write_to(&mut std::io::sink()).expect("a sink takes all"));

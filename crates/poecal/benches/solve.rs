@@ -117,9 +117,9 @@ fn calibrate_poses(bencher: Bencher<'_, '_>, rows: usize) {
 fn diagnose_what_is_clean(bencher: Bencher<'_, '_>) {
     let made = Simulation::default().run(&elbow(), Kind::Point).expect("a simulation of a finite robot");
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).expect("a fit");
-    let options = forensics::Options {
+    let options = forensics::DiagnosisOptions {
         calibrated: Some(&calibration.models.calibrated),
-        ..forensics::Options::default()
+        ..forensics::DiagnosisOptions::default()
     };
     let rows = made.data.all_rows();
     bencher.bench_local(|| black_box(diagnose(&made.nominal, &made.data, &rows, &options)));

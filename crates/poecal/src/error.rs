@@ -171,6 +171,11 @@ const LONG_NAME: usize = 120;
 const LONGEST_COMPARED: usize = 64;
 
 /// Result of the library's fallible functions.
+///
+/// ```
+/// let model: poecal::Result<_> = poecal::Model::read("missing.urdf", &poecal::ChainSelection::default());
+/// assert!(model.is_err());
+/// ```
 pub type Result<T> = std::result::Result<T, Error>;
 
 /// The candidate nearest to `word` by edit distance, for "did you mean"; none if each differs by more than half of the word.

@@ -82,8 +82,8 @@ fn turn_derivative(by_turn: &nalgebra::Matrix3<f64>, scale: f64) -> Matrix3x6<f6
     derivative
 }
 
-/// The step inside the null space of `gram` that brings the screws nearest to nominal, or `None` if there is no null space. With
-/// `base_free` the base may follow ([`base_motion`] in turn): the step is then the best one together with that.
+/// The step within the null space of `gram` that brings the screws nearest to nominal, theory.md §8, below (38); `None` without a null
+/// space. With `base_free` it is the best step together with that of the base ([`base_motion`]).
 #[must_use]
 pub fn null_step(
     estimate: &Estimate,

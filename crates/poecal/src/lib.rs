@@ -6,8 +6,8 @@
 //! base_from_tip(θ) = exp(ξ₁θ₁) exp(ξ₂θ₂) … exp(ξₙθₙ) M
 //! ```
 //!
-//! A real robot's screws are a little off. A device that stands somewhere and sees the tool, as points or poses, tells by how much:
-//! [`calibrate`] finds the screws, the tool and the device's frame that explain best what was measured.
+//! A real robot's screws are a little off. A device at an unknown place measures the tool, as points or poses: [`calibrate`] fits the
+//! screws, the tool and the device frame to these measurements.
 //!
 //! ```
 //! use poecal::simulate::elbow;
@@ -17,7 +17,7 @@
 //! let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
 //! let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 //!
-//! // 30 % of the points were held out: 0.05 mm in each of three coordinates is what is left there.
+//! // 30 % of the points were held out: their error is the noise of 0.05 mm in each of three coordinates.
 //! let held_out = calibration.accuracy.held_out.ok_or("no rows were held out")?;
 //! assert!(held_out.registered.position_mm.rms > 10.0);
 //! assert!(held_out.calibrated.position_mm.rms < 0.15);

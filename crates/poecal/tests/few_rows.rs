@@ -7,7 +7,7 @@ use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{Contents, Existing, FolderPlace, Results, write};
-use poecal::io::residuals::{Residuals, Rows};
+use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::report::calibration_page;
 use poecal::simulate::{Kind, Simulation, elbow};
 
@@ -28,7 +28,7 @@ fn fifty_rows_are_one_threads_work() {
         let report = Some(calibration_page(&file, &residuals).unwrap());
         let model = Model { robot: made.nominal, source: ModelSource::Toml, path: "elbow.toml".into() };
         let folder = std::env::temp_dir().join(format!("poecal_few_rows_{}", std::process::id()));
-        let results = Results { file, residuals: Rows::AtHand(&residuals), report };
+        let results = Results { file, residuals: ResidualRows::AtHand(&residuals), report };
         let place =
             FolderPlace::reserve(&folder, Contents::Calibration, Existing::Replaced, &[], &mut |_| ());
         write(place.unwrap(), None, &model, &calibration, results).unwrap();

@@ -8,7 +8,7 @@ use poecal::io::output::Existing;
 use poecal_lou2009::{Formulation, Method, Residual};
 
 use super::report::ReportPlace;
-use super::shared::{Chain, Frame, Reading};
+use super::shared::{ChainArgs, Frame, Reading};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 
 /// How errors of the joints are parameterised.
@@ -101,15 +101,15 @@ impl From<MethodWord> for Method {
 /// Arguments of `poecal calibrate`.
 #[derive(Args, Debug)]
 pub(crate) struct Calibrate {
-    /// Robot model: URDF, TOML or calibration.json [default: what the settings name]
+    /// Robot model: URDF, TOML or calibration.json [default: from the settings]
     pub(crate) model: Option<PathBuf>,
-    /// Measurement files (CSV), joined [default: what the settings name]
+    /// Measurement files (CSV), joined [default: from the settings]
     pub(crate) measurements: Vec<PathBuf>,
     /// Settings (TOML) for options that are not given here [default: poecal.toml in this folder, if no model is named]
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// The measuring device's frame
@@ -174,12 +174,12 @@ pub(crate) struct Calibrate {
 }
 
 impl Calibrate {
-    /// What may become of results that exist.
+    /// Treatment of existing results.
     pub(crate) fn existing(&self) -> Existing {
         if self.force_own && !self.force { Existing::Own } else { Existing::forced(self.force) }
     }
 
-    /// Every file that is read.
+    /// All input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         let mapping = self.reading.columns.columns.iter();
         let files = self.model.iter().chain(&self.measurements).chain(&self.validate).chain(&self.settings);

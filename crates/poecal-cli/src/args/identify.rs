@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::shared::{Chain, Columns, Frame};
+use super::shared::{ChainArgs, ColumnArgs, Frame};
 use super::simulate::SimulatedKind;
 use crate::quantity::{sigma_m, sigma_rad};
 
@@ -17,10 +17,10 @@ pub(crate) struct Identify {
     #[arg(required = true)]
     pub(crate) joints: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     #[command(flatten)]
-    pub(crate) columns: Columns,
-    /// What the device will see of the tip
+    pub(crate) columns: ColumnArgs,
+    /// Kind of the measurements of the tip
     #[arg(long, value_enum, default_value = "pose")]
     pub(crate) kind: SimulatedKind,
     /// Standard deviation of each measured position component [default: 0.05mm]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use poecal::simulate::Kind;
 
-use super::shared::Chain;
+use super::shared::ChainArgs;
 use crate::quantity::whole;
 
 /// What will be measured.
@@ -32,8 +32,8 @@ pub(crate) struct Init {
     /// Robot model: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: Chain,
-    /// What the device will see
+    pub(crate) chain: ChainArgs,
+    /// Kind of the measurements
     #[arg(long, value_enum, default_value = "points")]
     pub(crate) measure: Measured,
     /// Number of configurations to suggest

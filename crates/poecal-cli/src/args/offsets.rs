@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use poecal::offsets;
 
-use super::shared::{Chain, OutFile};
+use super::shared::{ChainArgs, OutFile};
 
 /// Whether a frame is the same in both models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -33,7 +33,7 @@ pub(crate) struct Offsets {
     /// Model of the actual robot, with the same joints: URDF, TOML or calibration.json
     pub(crate) actual: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     /// The base frame [default: free for a calibration whose device stood anywhere, else kept]
     #[arg(long, value_enum)]
     pub(crate) base: Option<End>,

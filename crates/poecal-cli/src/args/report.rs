@@ -1,11 +1,11 @@
-//! Arguments of `poecal report`, and where `poecal calibrate` writes its report.
+//! Arguments of `poecal report`, and place of the report of `poecal calibrate`.
 
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
 
-/// Where the report of a calibration goes.
+/// Place of a calibration's report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum ReportPlace {
     /// Nowhere.

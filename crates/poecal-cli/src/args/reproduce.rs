@@ -11,7 +11,7 @@ use crate::quantity::whole;
 pub(crate) enum Experiment {
     /// Lou, Chen, Wu, Li, Jiang 2009: POE calibration of an elbow manipulator
     Lou2009,
-    /// What a growing share of gross errors does to a calibration, with least squares and with each robust loss
+    /// Effect of a growing share of gross errors on a calibration, by least squares and by each robust loss
     Breakdown,
 }
 

@@ -11,7 +11,7 @@ use crate::console::Console;
 
 /// Which chain of a URDF.
 #[derive(Args, Debug)]
-pub(crate) struct Chain {
+pub(crate) struct ChainArgs {
     /// First link of the chain, where a URDF has several
     #[arg(long, value_name = "LINK")]
     pub(crate) base_link: Option<String>,
@@ -20,7 +20,7 @@ pub(crate) struct Chain {
     pub(crate) tip_link: Option<String>,
 }
 
-impl Chain {
+impl ChainArgs {
     pub(crate) fn selection(&self) -> ChainSelection {
         ChainSelection { base_link: self.base_link.clone(), tip_link: self.tip_link.clone() }
     }
@@ -29,7 +29,7 @@ impl Chain {
 /// What is known of the measuring device's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Frame {
-    /// The device stands anywhere
+    /// The device frame is unknown
     Unknown,
     /// Measurements are in the robot's base frame
     Base,
@@ -37,13 +37,13 @@ pub(crate) enum Frame {
 
 /// What columns of files mean.
 #[derive(Args, Debug)]
-pub(crate) struct Columns {
-    /// Mapping file that says what the columns of other people's files mean
+pub(crate) struct ColumnArgs {
+    /// Mapping file for files with other column names
     #[arg(long, value_name = "MAP.toml")]
     pub(crate) columns: Option<PathBuf>,
 }
 
-impl Columns {
+impl ColumnArgs {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let mapping = self.columns.as_ref().map(ColumnMap::read).transpose()?;
         Ok(ReadOptions { mapping, ..ReadOptions::default() })
@@ -88,7 +88,7 @@ pub(crate) struct DeviceFrames {
 #[derive(Args, Debug)]
 pub(crate) struct Reading {
     #[command(flatten)]
-    pub(crate) columns: Columns,
+    pub(crate) columns: ColumnArgs,
     #[command(flatten)]
     pub(crate) strictness: Strictness,
     #[command(flatten)]
@@ -118,7 +118,7 @@ pub(crate) struct OutFile {
 }
 
 impl OutFile {
-    /// The place, which none of the files that are read may be; none for standard output.
+    /// Place of the output, which may be no input; `None` for standard output.
     pub(crate) fn reserve(&self, inputs: &[&Path], console: &Console) -> poecal::Result<Option<FilePlace>> {
         let out = self.out.as_deref().filter(|out| *out != Path::new("-"));
         out.map(|out| FilePlace::reserve(out, Existing::forced(self.force), inputs, &mut console.warner()))

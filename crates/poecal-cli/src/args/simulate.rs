@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use poecal::simulate::Kind;
 
-use super::shared::{Chain, Frame};
+use super::shared::{ChainArgs, Frame};
 use crate::quantity::LengthAndAngle;
 
 /// What a simulated device sees.
@@ -35,7 +35,7 @@ pub(crate) struct Simulate {
     /// Robot model to deviate from: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: Chain,
+    pub(crate) chain: ChainArgs,
     /// Angle and distance by which every axis, and the tip, is off
     #[arg(long, value_name = "ANGLE,LENGTH", default_value = "1deg,2mm", allow_hyphen_values = true)]
     pub(crate) errors: LengthAndAngle,
@@ -48,10 +48,10 @@ pub(crate) struct Simulate {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// What the device sees
+    /// Kind of the measurements
     #[arg(long, value_enum, default_value = "pose")]
     pub(crate) kind: SimulatedKind,
-    /// Where the device stands: anywhere, or at the robot's base
+    /// The measuring device's frame: unknown, or the robot's base
     #[arg(long, value_enum, default_value = "unknown")]
     pub(crate) frame: Frame,
     /// Number of further measurements, free of noise, to judge a calibration by

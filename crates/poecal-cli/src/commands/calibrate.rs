@@ -1,4 +1,4 @@
-//! `poecal calibrate`: model and measurements in, calibrated robot out.
+//! `poecal calibrate`: from model and measurements to a calibrated robot.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
 use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
-use poecal::io::residuals::{Residuals, Rows};
+use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::measurement::Dataset;
 use poecal::report::Detail;
 use poecal::{Error, ErrorKind, Result, report};
@@ -71,7 +71,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     Ok(code.max(told))
 }
 
-/// What goes to standard output.
+/// Standard output.
 enum Said {
     Table(String),
     Json(String),
@@ -88,7 +88,7 @@ impl Said {
         Said::Table(report::summary(file, detail) + &more)
     }
 
-    /// The warnings and diagnoses that it does not hold, or not where people read.
+    /// Warnings and diagnoses that it does not contain.
     fn beside(&self, file: &CalibrationFile, detail: Detail) -> Vec<String> {
         match self {
             Said::Table(_) => report::unsaid(file, detail),
@@ -100,7 +100,7 @@ impl Said {
     }
 }
 
-/// What a calibration that has been written ends with.
+/// Exit code after a written calibration.
 fn code(arguments: &Calibrate, calibration: &Calibration) -> u8 {
     let level = calibration.verdict.level;
     let worse = arguments.require.is_some_and(|required| level < required.into());
@@ -122,12 +122,12 @@ fn stated_model(arguments: &Calibrate) -> Result<&Path> {
     }
 }
 
-/// Reads and joins the files; with `--validate`, those rows are held out and all others fitted. Tells what was read.
+/// Reads and joins the files; with `--validate`, those rows are held out and all others fitted. Reports what was read.
 fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) -> Result<(Dataset, Inputs)> {
     refuse_repeats(&arguments.measurements)?;
     refuse_repeats(&arguments.validate)?;
     refuse_fitted(&arguments.validate, &arguments.measurements)?;
-    // With --validate the files themselves say what is held out.
+    // With --validate the sets are given by the files' roles.
     let ignore_sets = !arguments.validate.is_empty();
     let options = ReadOptions { ignore_sets, ..arguments.reading.options()? };
     let mapping = arguments.reading.columns.columns.iter();
@@ -182,10 +182,10 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
     }
 }
 
-/// Where results go.
+/// Places of the results.
 struct Places {
     folder: FolderPlace,
-    /// Of a report that does not lie among the results.
+    /// A report outside the results.
     report: Option<FilePlace>,
 }
 
@@ -207,7 +207,7 @@ impl Places {
     }
 }
 
-/// Writes the results; says where.
+/// Writes the results; returns their place.
 fn write(
     places: Places,
     arguments: &Calibrate,
@@ -215,11 +215,11 @@ fn write(
     file: CalibrationFile,
     console: &Console,
 ) -> Result<String> {
-    // Without a report nobody needs all rows at once.
+    // Without a report, rows are computed while they are written.
     let place = &arguments.report;
     let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
     let report = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
-    let residuals = residuals.as_ref().map_or(Rows::Of(data, calibration), Rows::AtHand);
+    let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
     let results = Results { file, residuals, report };
     let written = output::write(places.folder, places.report, model, calibration, results)?;
     for note in &written.notes {

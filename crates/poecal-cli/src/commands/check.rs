@@ -1,6 +1,6 @@
-//! `poecal check`: how files are understood.
+//! `poecal check`: how files are read.
 
-use poecal::forensics::{Options, diagnose};
+use poecal::forensics::{DiagnosisOptions, diagnose};
 use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::{Result, report};
@@ -19,7 +19,7 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
     };
     let found = measurements.as_ref().map_or_else(Vec::new, |file| {
         let device_free = arguments.frame == Frame::Unknown;
-        let options = Options { device_free, ..Options::default() };
+        let options = DiagnosisOptions { device_free, ..DiagnosisOptions::default() };
         diagnose(&model.robot, &file.data, &file.data.all_rows(), &options)
     });
     let check = report::Check::new(&model, measurements.as_ref(), &found);

@@ -38,7 +38,7 @@ pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
     Ok(DONE)
 }
 
-/// The offsets that `--offset JOINT=VALUE` state, in the order of the joints.
+/// Offsets of `--offset JOINT=VALUE`, in the order of the joints.
 fn offsets(stated: &[String], robot: &Robot) -> Result<Vec<f64>> {
     let mut offsets = vec![None; robot.joints.len()];
     for text in stated {
@@ -62,7 +62,7 @@ fn offsets(stated: &[String], robot: &Robot) -> Result<Vec<f64>> {
     Ok(offsets.into_iter().map(|offset| offset.unwrap_or(0.0)).collect())
 }
 
-/// Names as a message shows them.
+/// Names for a message.
 pub(super) fn quoted(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }

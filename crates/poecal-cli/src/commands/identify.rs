@@ -1,4 +1,4 @@
-//! `poecal identify`: what measuring in some configurations would tell.
+//! `poecal identify`: identifiability by measurements in given configurations.
 
 use poecal::analysis::{Session, identify as foresee};
 use poecal::io::measurements;

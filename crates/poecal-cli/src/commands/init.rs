@@ -1,4 +1,4 @@
-//! `poecal init`: a folder to start a calibration from.
+//! `poecal init`: a project folder.
 
 use poecal::Result;
 use poecal::io::model::Model;

@@ -1,4 +1,4 @@
-//! The commands, one a file (and `typed`, what was typed).
+//! The commands, one per file (and `typed`, the command line of a run).
 
 mod calibrate;
 mod check;

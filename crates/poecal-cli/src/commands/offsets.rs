@@ -1,10 +1,10 @@
-//! `poecal offsets`: the joint offsets with which a model comes nearest to another.
+//! `poecal offsets`: the joint offsets with which one model comes nearest to another.
 
 use std::ffi::OsStr;
 
 use poecal::io::model::Model;
 use poecal::io::urdf::ChainSelection;
-use poecal::offsets::{Options, explain};
+use poecal::offsets::{OffsetOptions, explain};
 use poecal::{Result, report};
 
 use super::convert::quoted;
@@ -16,14 +16,14 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
     let place = arguments.place.reserve(&[&arguments.nominal, &arguments.actual], console)?;
     let selection = arguments.chain.selection();
     let nominal = Model::read(&arguments.nominal, &selection)?;
-    // Other forms than URDF have one chain only; a calibration beside a URDF that has several is compared with the chain chosen there.
+    // Only a URDF can have several chains; the chosen one is also that of a calibration beside it.
     let one_chain =
         ["toml", "json"].map(OsStr::new).contains(&arguments.actual.extension().unwrap_or_default());
     let whole = ChainSelection::default();
     let actual = Model::read(&arguments.actual, if one_chain { &whole } else { &selection })?;
     let ends = [arguments.base, arguments.tip].map(|end| end.map(Into::into));
     let [(base, base_reason), (tip, tip_reason)] = report::offset_ends(ends[0], ends[1], &actual);
-    let options = Options { base, tip, ..Options::default() };
+    let options = OffsetOptions { base, tip, ..OffsetOptions::default() };
     let explanation =
         explain(&nominal.robot, &actual.robot, &options).map_err(|error| error.in_file(&arguments.actual))?;
     for joint in &nominal.robot.joints {

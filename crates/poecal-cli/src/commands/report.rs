@@ -1,4 +1,4 @@
-//! `poecal report`: the report of a finished calibration, made again from its files.
+//! `poecal report`: the report of a finished calibration, from its files.
 
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::output::{self, Existing, FilePlace};

@@ -1,8 +1,8 @@
-//! `poecal reproduce`: the experiment of a paper and what became of its claims, or what gross errors do.
+//! `poecal reproduce`: a paper's experiment and its claims, or the effect of gross errors.
 
 use poecal::Result;
 use poecal::io::output::{self, Contents, Existing, FolderPlace};
-use poecal_lou2009::{Options, breakdown, lou2009, report};
+use poecal_lou2009::{ReproductionOptions, breakdown, lou2009, report};
 
 use crate::args::{Experiment, Reproduce};
 use crate::console::Console;
@@ -12,7 +12,7 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> 
     let existing = Existing::forced(arguments.force);
     let place =
         FolderPlace::reserve(&arguments.out, Contents::Reproduction, existing, &[], &mut console.warner())?;
-    let options = Options {
+    let options = ReproductionOptions {
         trials: arguments.trials as usize,
         starts: arguments.starts as usize,
         seed: arguments.seed,

@@ -1,12 +1,12 @@
-//! `poecal simulate`: a robot with known errors, and what a device would measure of it.
+//! `poecal simulate`: a robot with known errors, and its measurements.
 
 use poecal::Result;
 use poecal::io::model::Model;
-use poecal::io::output::{self, Contents, Existing, FolderPlace, Session};
+use poecal::io::output::{self, Contents, Existing, FolderPlace, SimulatedSession};
 use poecal::simulate::{Kind, Simulation};
 use poecal::text::visible;
 
-use crate::args::{Chain, Frame, Simulate};
+use crate::args::{ChainArgs, Frame, Simulate};
 use crate::console::Console;
 use crate::style::{labelled, shown};
 
@@ -36,7 +36,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         count => Some(simulation.held_out(&made, kind, count as usize)?),
     };
     let command = command(arguments, kind);
-    let session = Session {
+    let session = SimulatedSession {
         simulation: &simulation,
         kind,
         made: &made,
@@ -51,9 +51,9 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     Ok(console.say_of(&words, &written.folder))
 }
 
-/// The command that makes the same files anywhere: with every option that they depend on, and no output folder.
+/// The command that reproduces the files: all options that they depend on, and no output folder.
 fn command(arguments: &Simulate, kind: Kind) -> String {
-    let Chain { base_link, tip_link } = &arguments.chain;
+    let ChainArgs { base_link, tip_link } = &arguments.chain;
     let mut words = vec!["poecal simulate".to_owned(), arguments.model.display().to_string()];
     for (option, link) in [("--base-link", base_link), ("--tip-link", tip_link)] {
         words.extend(link.as_ref().map(|link| format!("{option} {link}")));
@@ -66,6 +66,6 @@ fn command(arguments: &Simulate, kind: Kind) -> String {
     if arguments.held_out_count > 0 {
         words.push(format!("--held-out-count {}", arguments.held_out_count));
     }
-    // The command becomes a line of a file.
+    // The command becomes one line of a file.
     visible(&words.join(" ")).into_owned()
 }

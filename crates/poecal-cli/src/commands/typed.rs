@@ -1,12 +1,12 @@
-//! The command by which a result can be made again.
+//! The command that reproduces a result.
 
 use std::ffi::OsString;
 
-/// Options that say where results go, what is printed and how fast, but not what is computed; settings are among the words already.
+/// Options that do not change the result: places, output, speed; settings are among the words already.
 const WITH_VALUE: [&str; 5] = ["--out", "--threads", "--require", "--report", "--settings"];
 const WITHOUT_VALUE: [&str; 5] = ["--force", "--force-own", "--json", "--verbose", "--quiet"];
 
-/// The arguments of a run, the program first, as one would type them, without those that do not change the result.
+/// Arguments of a run, the program first, without those that do not change the result.
 pub(super) fn command(arguments: &[OsString]) -> String {
     let mut words = vec!["poecal".to_owned()];
     let mut rest = arguments.iter().skip(1).map(|word| word.to_string_lossy());
@@ -31,7 +31,7 @@ pub(super) fn command(arguments: &[OsString]) -> String {
     words.join(" ")
 }
 
-/// A word as a shell reads it back.
+/// A word, quoted for a shell.
 fn shell_word(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

@@ -1,4 +1,4 @@
-//! `poecal validate`: a calibration judged by measurements that it did not see.
+//! `poecal validate`: a calibration judged by other measurements.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
         if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
     };
     let calibrated = file.robot().map_err(in_file)?;
-    // Every row counts, whatever set the files say.
+    // Every row counts, whatever its set.
     let (strict, frames) = (arguments.strictness.strict, arguments.frames.frames.into());
     let options = ReadOptions { ignore_sets: true, strict, frames, ..arguments.columns.options()? };
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
@@ -43,7 +43,7 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     Ok(WORSE)
 }
 
-/// The measurement files; those that the calibration was made from are marked.
+/// The measurement files; those of the calibration are marked.
 fn named(arguments: &Validate, file: &CalibrationFile) -> String {
     let training: HashSet<PathBuf> =
         file.inputs.measurements.iter().map(|name| actual(Path::new(name))).collect();

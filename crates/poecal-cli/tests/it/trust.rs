@@ -98,14 +98,14 @@ fn validation_says_whether_the_promise_was_kept() {
     let text = folder.done("validate all/calibration.json measurements.csv");
     assert!(text.contains("inside their 95 % bounds"), "{text}");
 
-    // A tool that was bent breaks the promise.
+    // A tool that was bent exceeds the bounds.
     let mut bent = json(&folder, "all/calibration.json");
     let home = bent["robot"]["base_from_tip_at_zero"]["position_m"][2].as_f64().unwrap();
     bent["robot"]["base_from_tip_at_zero"]["position_m"][2] = (home + 5e-4).into();
     folder.write("bent.json", bent.to_string());
     let run = folder.run("validate bent.json measurements.csv");
     assert!(run.err.contains("exceed their 95 % bound"), "{run:?}");
-    // Where it is found anew, what the screws do is as promised.
+    // Where it is found anew, the screws are as expected.
     let anew = folder.done("validate bent.json measurements.csv --refit-tool --json");
     let found: serde_json::Value = serde_json::from_str(&anew).unwrap();
     assert!(found["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() > 0.85, "{anew}");

@@ -1,7 +1,7 @@
 //! All of a calibration, in memory.
 
 use poecal::calibration::{Calibration, CalibrationOptions, calibrate};
-use poecal::forensics::{Options, diagnose};
+use poecal::forensics::{DiagnosisOptions, diagnose};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{ColumnMap, MeasurementFile, ReadOptions, parse, parse_joints};
 use poecal::io::model::{Model, ModelSource};
@@ -59,7 +59,7 @@ pub fn pipeline(data: &[u8]) -> bool {
 }
 
 fn checked(model: &Model, file: &MeasurementFile) {
-    let found = diagnose(&model.robot, &file.data, &file.data.all_rows(), &Options::default());
+    let found = diagnose(&model.robot, &file.data, &file.data.all_rows(), &DiagnosisOptions::default());
     found.iter().for_each(|diagnosis| one_line(&diagnosis.statement));
     let check = report::Check::new(model, Some(file), &found);
     assert!(!check.text().is_empty());

@@ -1,6 +1,6 @@
 //! Accuracy with noise, and convergence from afar.
 
-use super::super::{Basin, Claim, Efficiency, Seen};
+use super::super::{Basin, Claim, Efficiency, MeasurementKind};
 use super::{Evidence, said};
 use crate::{Formulation, Method, Residual};
 use poecal::error::Result;
@@ -17,7 +17,7 @@ pub(super) fn ratio(it: &Efficiency) -> String {
 pub(super) fn normalisation(evidence: &Evidence<'_>) -> Result<Claim> {
     let mut told = Vec::new();
     let (mut at_truth, mut worse) = (true, true);
-    for seen in [Seen::Poses, Seen::Points] {
+    for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         let screw = evidence.efficiency(Formulation::Screw, seen, Residual::Tool)?;
         let adjoint = evidence.efficiency(Formulation::Adjoint, seen, Residual::Tool)?;
         at_truth &= evidence.run(Formulation::Screw, seen, false)?.run.converged;
@@ -59,9 +59,10 @@ pub(super) fn convergence(evidence: &Evidence<'_>) -> Result<Claim> {
         };
         basins.iter().map(share).collect::<Vec<String>>().join(", ")
     };
-    let poses = evidence.basins(Formulation::Adjoint, Seen::Poses, Method::GaussNewton)?;
-    let points = evidence.basins(Formulation::Adjoint, Seen::Points, Method::GaussNewton)?;
-    let damped = evidence.basins(Formulation::Adjoint, Seen::Points, Method::LevenbergMarquardt)?;
+    let poses = evidence.basins(Formulation::Adjoint, MeasurementKind::Poses, Method::GaussNewton)?;
+    let points = evidence.basins(Formulation::Adjoint, MeasurementKind::Points, Method::GaussNewton)?;
+    let damped =
+        evidence.basins(Formulation::Adjoint, MeasurementKind::Points, Method::LevenbergMarquardt)?;
     let mut near = poses.iter().chain(&points).filter(|it| it.error_deg <= ROBUST_DEG);
     Ok(said(
         "Iterated least squares converges robustly.",

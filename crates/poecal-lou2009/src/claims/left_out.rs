@@ -1,6 +1,6 @@
 //! What the paper leaves out.
 
-use super::super::{Claim, Run, Seen, literal, runs, tables};
+use super::super::{Claim, MeasurementKind, Run, literal, runs, tables};
 use super::accuracy::ratio;
 use super::{Evidence, left_out};
 use crate::{Formulation, Residual};
@@ -14,8 +14,8 @@ const LAST_RANK: usize = 27;
 const ROUNDED_MM: f64 = 1e-6;
 
 pub(super) fn redundancy(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = &evidence.run(Formulation::Adjoint, Seen::Poses, false)?.run;
-    let points = &evidence.run(Formulation::Adjoint, Seen::Points, false)?.run;
+    let poses = &evidence.run(Formulation::Adjoint, MeasurementKind::Poses, false)?.run;
+    let points = &evidence.run(Formulation::Adjoint, MeasurementKind::Points, false)?.run;
     let redundant = |run: &Run| run.rank < run.parameters && run.rank == run.unknowns;
     Ok(left_out(
         "The components of η are redundant.",
@@ -33,12 +33,12 @@ pub(super) fn redundancy(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn point_on_axis(evidence: &Evidence<'_>) -> Result<Claim> {
-    let session = runs::session(false, Seen::Points, evidence.seed);
+    let session = runs::session(false, MeasurementKind::Points, evidence.seed);
     let rank = |estimate: &Estimate| {
         literal::singular_values(&runs::matrix(&session, estimate, Formulation::Adjoint)).1
     };
     let start = rank(&session.start());
-    let end = rank(&evidence.run(Formulation::Adjoint, Seen::Points, false)?.estimate);
+    let end = rank(&evidence.run(Formulation::Adjoint, MeasurementKind::Points, false)?.estimate);
     Ok(left_out(
         "The nominal point lies on axis 6, so the first Jacobian has rank 25.",
         "Table II puts the nominal point on nominal axis 6; nothing is said of it.",
@@ -54,7 +54,7 @@ pub(super) fn point_on_axis(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn lever_arm(evidence: &Evidence<'_>) -> Result<Claim> {
-    let of = |residual| evidence.efficiency(Formulation::Adjoint, Seen::Poses, residual);
+    let of = |residual| evidence.efficiency(Formulation::Adjoint, MeasurementKind::Poses, residual);
     let (spatial, tool) = (of(Residual::Spatial)?, of(Residual::Tool)?);
     Ok(left_out(
         "The spatial logarithm costs accuracy.",

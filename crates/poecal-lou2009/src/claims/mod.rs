@@ -6,7 +6,7 @@ mod offsets;
 mod simulations;
 
 use super::runs::Ended;
-use super::{Basin, Claim, Efficiency, Reproduction, Seen};
+use super::{Basin, Claim, Efficiency, MeasurementKind, Reproduction};
 use crate::{Formulation, Method, Residual};
 use poecal::error::{Error, ErrorKind, Result};
 
@@ -24,7 +24,7 @@ pub(super) struct Evidence<'a> {
 
 impl Evidence<'_> {
     /// A noise-free run.
-    fn run(&self, formulation: Formulation, seen: Seen, offsets: bool) -> Result<&Ended> {
+    fn run(&self, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> Result<&Ended> {
         let of = |ended: &&Ended| {
             let plan = ended.plan;
             (plan.formulation, plan.seen, plan.offsets_in_truth, plan.noise)
@@ -34,7 +34,12 @@ impl Evidence<'_> {
     }
 
     /// The fits with noise by plain Gauss-Newton.
-    fn efficiency(&self, formulation: Formulation, seen: Seen, residual: Residual) -> Result<&Efficiency> {
+    fn efficiency(
+        &self,
+        formulation: Formulation,
+        seen: MeasurementKind,
+        residual: Residual,
+    ) -> Result<&Efficiency> {
         let of = |it: &&Efficiency| {
             (it.formulation, it.measurement, it.residual.as_str(), it.method.as_str())
                 == (formulation, seen, residual.word(), Method::GaussNewton.word())
@@ -43,7 +48,7 @@ impl Evidence<'_> {
     }
 
     /// The starts from afar, the nearest first.
-    fn basins(&self, formulation: Formulation, seen: Seen, method: Method) -> Result<Vec<&Basin>> {
+    fn basins(&self, formulation: Formulation, seen: MeasurementKind, method: Method) -> Result<Vec<&Basin>> {
         let of = |it: &&Basin| {
             (it.formulation, it.measurement, it.method.as_str()) == (formulation, seen, method.word())
         };
@@ -55,7 +60,7 @@ impl Evidence<'_> {
     }
 }
 
-fn missing(what: &str, formulation: Formulation, seen: Seen) -> Error {
+fn missing(what: &str, formulation: Formulation, seen: MeasurementKind) -> Error {
     let message = format!(
         "found no {what} of `{}` with {}, expected one to judge a claim by",
         formulation.word(),
@@ -111,7 +116,9 @@ mod tests {
 
     #[test]
     fn a_claim_without_evidence_is_an_error() {
-        let found = super::super::lou2009(&super::super::Options { trials: 1, starts: 1, seed: 3 }).unwrap();
+        let found =
+            super::super::lou2009(&super::super::ReproductionOptions { trials: 1, starts: 1, seed: 3 })
+                .unwrap();
         let runs = super::super::runs::runs(3).unwrap();
         let without_fits = Reproduction { efficiency: vec![], ..found.clone() };
         let without_starts = Reproduction { basin: vec![], ..found.clone() };

@@ -1,7 +1,7 @@
 //! Sections III.B and V: the adjoint error, and the two simulations.
 
 use super::super::runs::Ended;
-use super::super::{Claim, Run, Seen, tables};
+use super::super::{Claim, MeasurementKind, Run, tables};
 use super::{Evidence, RECOVERED, ROUNDING, said};
 use crate::Formulation;
 use poecal::error::Result;
@@ -41,7 +41,7 @@ pub(super) fn constraints(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 /// The noise-free run of the adjoint form without offsets in the truth.
-fn adjoint<'a>(evidence: &'a Evidence<'_>, seen: Seen) -> Result<&'a Run> {
+fn adjoint<'a>(evidence: &'a Evidence<'_>, seen: MeasurementKind) -> Result<&'a Run> {
     evidence.run(Formulation::Adjoint, seen, false).map(|ended| &ended.run)
 }
 
@@ -60,7 +60,7 @@ fn within(most: usize) -> String {
 }
 
 pub(super) fn poses_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = adjoint(evidence, Seen::Poses)?;
+    let run = adjoint(evidence, MeasurementKind::Poses)?;
     Ok(said(
         "From poses, the parameters are identified within 6 iterations.",
         "Section V: \"After 6 iterations, the kinematic parameters are successfully identified\".",
@@ -70,7 +70,7 @@ pub(super) fn poses_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn points_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = adjoint(evidence, Seen::Points)?;
+    let run = adjoint(evidence, MeasurementKind::Points)?;
     Ok(said(
         "From points, the parameters are identified within 10 iterations.",
         "Section V: \"10 iterations are required to achieve the same accuracy\".",
@@ -80,7 +80,8 @@ pub(super) fn points_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn twice_as_many(evidence: &Evidence<'_>) -> Result<Claim> {
-    let (poses, points) = (adjoint(evidence, Seen::Poses)?, adjoint(evidence, Seen::Points)?);
+    let (poses, points) =
+        (adjoint(evidence, MeasurementKind::Poses)?, adjoint(evidence, MeasurementKind::Points)?);
     let ratio = points.iterations as f64 / poses.iterations as f64;
     Ok(said(
         "Points take nearly twice as many iterations as poses.",
@@ -91,8 +92,8 @@ pub(super) fn twice_as_many(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn table(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = &evidence.run(Formulation::Adjoint, Seen::Poses, false)?.run;
-    let points = evidence.run(Formulation::Adjoint, Seen::Points, false)?;
+    let poses = &evidence.run(Formulation::Adjoint, MeasurementKind::Poses, false)?.run;
+    let points = evidence.run(Formulation::Adjoint, MeasurementKind::Points, false)?;
     let prescribed = tables::prescribed().home.translation;
     let point = (points.estimate.base_from_target[0].translation - prescribed).amax();
     let largest = poses.screw_error_max.max(points.run.screw_error_max).max(point);

@@ -1,7 +1,7 @@
 //! The original formulation beside the adjoint one, in words that the numbers choose.
 
 use super::numbers::{mm, number, percent, stated};
-use crate::{Basin, Efficiency, Reproduction, Run, Seen};
+use crate::{Basin, Efficiency, MeasurementKind, Reproduction, Run};
 use crate::{Formulation, Method};
 
 /// Without noise, with noise, with offsets, from afar: a paragraph for each that the findings can tell.
@@ -12,7 +12,7 @@ pub(super) fn sentences(found: &Reproduction) -> Vec<String> {
         .collect()
 }
 
-fn run(found: &Reproduction, formulation: Formulation, seen: Seen, offsets: bool) -> Option<&Run> {
+fn run(found: &Reproduction, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> Option<&Run> {
     found.runs.iter().find(|run| {
         (run.formulation, run.measurement, run.offsets_in_truth, run.noise)
             == (formulation, seen, offsets, false)
@@ -23,13 +23,13 @@ fn without_noise(found: &Reproduction) -> Option<String> {
     let pair = |seen| {
         Some((run(found, Formulation::Screw, seen, false)?, run(found, Formulation::Adjoint, seen, false)?))
     };
-    let (poses, points) = (pair(Seen::Poses)?, pair(Seen::Points)?);
+    let (poses, points) = (pair(MeasurementKind::Poses)?, pair(MeasurementKind::Points)?);
     let as_good = |(screw, adjoint): (&Run, &Run)| {
         screw.converged && adjoint.converged && screw.iterations <= adjoint.iterations + 1
     };
     let verdict = if as_good(poses) && as_good(points) { "are as good" } else { "are not as good" };
     let end = |run: &Run| if run.converged { "" } else { " (not converged)" };
-    let words = |(screw, adjoint): (&Run, &Run), seen: Seen| {
+    let words = |(screw, adjoint): (&Run, &Run), seen: MeasurementKind| {
         format!(
             "from {} {} iterations{} to a held-out error of {} mm (`adjoint`: {}{})",
             seen.word(),
@@ -42,8 +42,8 @@ fn without_noise(found: &Reproduction) -> Option<String> {
     };
     Some(format!(
         "Without noise and offsets, free screws that are normalised after each step (`screw`) {verdict}: {}, {}.",
-        words(poses, Seen::Poses),
-        words(points, Seen::Points)
+        words(poses, MeasurementKind::Poses),
+        words(points, MeasurementKind::Points)
     ))
 }
 
@@ -56,7 +56,7 @@ fn with_noise(found: &Reproduction) -> Option<String> {
         found.efficiency.iter().find(way)
     };
     let (mut told, mut worse) = (Vec::new(), 0);
-    for seen in [Seen::Poses, Seen::Points] {
+    for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         let (screw, adjoint) = (fits(Formulation::Screw, seen)?, fits(Formulation::Adjoint, seen)?);
         let verdict = if screw.exceeds(adjoint) {
             worse += 1;
@@ -87,7 +87,7 @@ fn with_chance(it: &Efficiency) -> String {
 }
 
 fn with_offsets(found: &Reproduction) -> Option<String> {
-    let of = |formulation| run(found, formulation, Seen::Poses, true);
+    let of = |formulation| run(found, formulation, MeasurementKind::Poses, true);
     let (original, adjoint) = (of(Formulation::ScrewOffsets)?, of(Formulation::Adjoint)?);
     let verdict = match (original.converged, adjoint.converged) {
         (true, true) => "predicts as well as `adjoint` without any",
@@ -110,7 +110,7 @@ fn from_afar(found: &Reproduction) -> Option<String> {
     let row = |formulation, method: Method| -> Option<&Basin> {
         found.basin.iter().find(|row| {
             (row.formulation, row.measurement, row.method.as_str())
-                == (formulation, Seen::Points, method.word())
+                == (formulation, MeasurementKind::Points, method.word())
                 && row.error_deg == furthest
         })
     };

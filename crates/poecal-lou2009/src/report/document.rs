@@ -15,12 +15,12 @@ pub(super) enum Block {
     Text(String),
     /// What is typed or printed as it stands.
     Code(String),
-    Table(Table),
+    Table(DocumentTable),
     Figure(Figure),
 }
 
 /// A table; its rows are as long as its head.
-pub(super) struct Table {
+pub(super) struct DocumentTable {
     pub(super) caption: String,
     pub(super) head: Vec<String>,
     pub(super) rows: Vec<Vec<String>>,

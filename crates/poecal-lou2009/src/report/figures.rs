@@ -4,10 +4,10 @@ use super::document::Figure;
 use super::numbers::stated;
 use super::tables::distinct;
 use crate::Formulation;
-use crate::{Iteration, Reproduction, Run, ScrewRow, Seen, Spectrum};
+use crate::{Iteration, MatrixSpectrum, MeasurementKind, Reproduction, Run, ScrewRow};
 use poecal::report::plot::{Axis, DotPlot, Dots, Line, LinePlot, Mark, NamedPlot, Scale};
 
-const SEEN: [Seen; 2] = [Seen::Poses, Seen::Points];
+const SEEN: [MeasurementKind; 2] = [MeasurementKind::Poses, MeasurementKind::Points];
 /// Names of the parts of `v` and `ω`.
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// From this ratio on, an axis of ratios is logarithmic.
@@ -23,7 +23,7 @@ fn style(formulation: Formulation) -> usize {
 /// A value of an iteration over iterations, for all noise-free runs of a measurement.
 fn trace_plot(
     found: &Reproduction,
-    (seen, offsets_in_truth): (Seen, bool),
+    (seen, offsets_in_truth): (MeasurementKind, bool),
     (what, unit): (&str, &str),
     value: fn(&Iteration) -> f64,
 ) -> LinePlot {
@@ -62,7 +62,7 @@ fn named_dots(name: String, plot: DotPlot) -> NamedPlot {
 
 /// Figure 1: residuals by iteration.
 pub(super) fn residuals(found: &Reproduction) -> Figure {
-    let plot = |seen: Seen| {
+    let plot = |seen: MeasurementKind| {
         let words = ("Residual", "RMS residual of position, mm");
         let plot = trace_plot(found, (seen, false), words, |state| 1e3 * state.residual_rms_m);
         named_lines(format!("1-residual-{}", seen.word()), plot)
@@ -75,7 +75,7 @@ pub(super) fn residuals(found: &Reproduction) -> Figure {
 
 /// Figure 2: screw errors by iteration.
 pub(super) fn screw_errors(found: &Reproduction) -> Figure {
-    let plot = |(seen, offsets): (Seen, bool)| {
+    let plot = |(seen, offsets): (MeasurementKind, bool)| {
         let words = ("Screw error", "largest screw error, m (v), no unit (ω)");
         let plot = trace_plot(found, (seen, offsets), words, |state| state.screw_error_max);
         let case = if offsets { "with-offsets" } else { "no-offsets" };
@@ -186,7 +186,7 @@ pub(super) fn offsets(found: &Reproduction) -> Figure {
 
 /// Figure 5: singular values.
 pub(super) fn spectra(found: &Reproduction) -> Figure {
-    let plot = |(k, spectrum): (usize, &Spectrum)| {
+    let plot = |(k, spectrum): (usize, &MatrixSpectrum)| {
         let values = spectrum.singular_values.iter().enumerate();
         let gap = (spectrum.rank < spectrum.columns)
             .then(|| Mark { at: spectrum.rank as f64 + 0.5, label: format!("rank {}", spectrum.rank) });
@@ -219,7 +219,7 @@ pub(super) fn spectra(found: &Reproduction) -> Figure {
 pub(super) fn efficiency(found: &Reproduction) -> Figure {
     let rows = distinct(found.efficiency.iter().map(|row| (row.formulation, row.measurement)));
     let ways = distinct(found.efficiency.iter().map(|row| (row.residual.as_str(), row.method.as_str())));
-    let ratio = |(formulation, seen): (Formulation, Seen), way: (&str, &str)| {
+    let ratio = |(formulation, seen): (Formulation, MeasurementKind), way: (&str, &str)| {
         let fits = |row: &&crate::Efficiency| {
             (row.formulation, row.measurement) == (formulation, seen)
                 && (row.residual.as_str(), row.method.as_str()) == way
@@ -256,7 +256,7 @@ pub(super) fn efficiency(found: &Reproduction) -> Figure {
 /// Figure 7: share of starts that converge.
 pub(super) fn basin(found: &Reproduction) -> Figure {
     let panels = distinct(found.basin.iter().map(|row| (row.measurement, row.method.as_str())));
-    let plot = |(k, (seen, method)): (usize, &(Seen, &str))| {
+    let plot = |(k, (seen, method)): (usize, &(MeasurementKind, &str))| {
         let here =
             || found.basin.iter().filter(|row| (row.measurement, row.method.as_str()) == (*seen, *method));
         let line = |formulation: Formulation| Line {

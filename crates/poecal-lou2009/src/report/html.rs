@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::document::{Block, Document, Figure, Table};
+use super::document::{Block, Document, DocumentTable, Figure};
 use poecal::text::visible_markup;
 
 const STYLE: &str = include_str!("report.css");
@@ -40,7 +40,7 @@ fn of_block(block: &Block) -> Markup {
     }
 }
 
-fn of_table(table: &Table) -> Markup {
+fn of_table(table: &DocumentTable) -> Markup {
     // Sentences in columns are too wide for a narrow screen: there each row becomes a block of labelled cells.
     let sentences = table.rows.iter().flatten().any(|cell| is_long(cell));
     let class = |k: usize, long: bool| match (k < table.words, long) {

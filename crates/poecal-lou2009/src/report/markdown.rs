@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::document::{Block, Document, Table};
+use super::document::{Block, Document, DocumentTable};
 
 pub(super) fn markdown(document: &Document) -> String {
     let mut out = format!("# {}\n", plain(&document.title));
@@ -32,7 +32,7 @@ pub(super) fn markdown(document: &Document) -> String {
     out
 }
 
-fn write_table(out: &mut String, table: &Table) {
+fn write_table(out: &mut String, table: &DocumentTable) {
     let _ = writeln!(out, "{}\n", plain(&table.caption));
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     out.push_str(&row(table.head.iter().map(|cell| plain(cell)).collect()));

@@ -5,7 +5,7 @@ use super::numbers::{mm, number, stated};
 use super::tables::largest_difference;
 use super::{comparison, figures, tables};
 use crate::Formulation;
-use crate::{Reproduction, Run, ScrewRow, Seen};
+use crate::{MeasurementKind, Reproduction, Run, ScrewRow};
 
 const REFERENCE: &str = "lou2009: Y. Lou, T. Chen, Y. Wu, Z. Li, S. Jiang. Improved and modified geometric formulation of POE based kinematic calibration of serial robots. IEEE/RSJ International Conference on Intelligent Robots and Systems (IROS), 2009.";
 const WHAT: &str = "This report repeats the experiment of lou2009 and sets what was measured beside what the paper says. The robot is the elbow manipulator of the paper's Tables I and II. Every number comes from the run that wrote this report, and stands in `results.json` too.";
@@ -60,7 +60,7 @@ pub(super) fn document(found: &Reproduction) -> Document {
 fn own(found: &Reproduction) -> String {
     let count = |seen| found.runs.iter().find(|run| run.measurement == seen).map(|run| run.measurements);
     let offsets: Vec<String> = found.offsets.iter().map(|row| stated(row.prescribed_deg)).collect();
-    match (count(Seen::Poses), count(Seen::Points)) {
+    match (count(MeasurementKind::Poses), count(MeasurementKind::Points)) {
         (Some(poses), Some(points)) => format!(
             "{OWN} There are {poses} poses or {points} points, and joint offsets, where there are any, of {} deg.",
             offsets.join(", ")
@@ -148,7 +148,7 @@ fn convergence(found: &Reproduction) -> String {
         let end = if run.converged { "" } else { ", not converged" };
         format!("`{}` {}{end}", run.formulation.word(), run.iterations)
     };
-    let sentences = [Seen::Poses, Seen::Points].map(|seen| {
+    let sentences = [MeasurementKind::Poses, MeasurementKind::Points].map(|seen| {
         let runs =
             found.runs.iter().filter(|run| run.measurement == seen && !run.offsets_in_truth && !run.noise);
         let words: Vec<String> = runs.map(words).collect();
@@ -189,7 +189,7 @@ fn offsets(found: &Reproduction) -> String {
     let held_out = |formulation: Formulation| {
         let run = found.runs.iter().find(|run| {
             run.formulation == formulation
-                && run.measurement == Seen::Poses
+                && run.measurement == MeasurementKind::Poses
                 && run.offsets_in_truth
                 && !run.noise
         });

@@ -1,24 +1,24 @@
 //! The tables of the report. Lengths in millimetres, as in the paper.
 
-use super::document::Table;
+use super::document::DocumentTable;
 use super::numbers::{four_decimals, mm, number, number_or_dash, percent, stated, yes_no};
 use crate::Formulation;
-use crate::{Reproduction, ScrewRow, Seen};
+use crate::{MeasurementKind, Reproduction, ScrewRow};
 
-pub(super) fn claims(found: &Reproduction) -> Table {
+pub(super) fn claims(found: &Reproduction) -> DocumentTable {
     statements(found, true, "Table 1. What the paper says.", "claim")
 }
 
-pub(super) fn left_out(found: &Reproduction) -> Table {
+pub(super) fn left_out(found: &Reproduction) -> DocumentTable {
     statements(found, false, "Table 2. What the paper leaves out.", "finding")
 }
 
-fn statements(found: &Reproduction, said_by_paper: bool, caption: &str, what: &str) -> Table {
+fn statements(found: &Reproduction, said_by_paper: bool, caption: &str, what: &str) -> DocumentTable {
     let row = |claim: &crate::Claim| {
         let cells = [&claim.claim, &claim.paper, &claim.measured, &claim.criterion];
         cells.into_iter().cloned().chain([yes_no(claim.holds)]).collect()
     };
-    Table {
+    DocumentTable {
         caption: caption.to_owned(),
         head: words(&[what, "the paper", "measured", "holds if", "holds"]),
         rows: found.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper).map(row).collect(),
@@ -26,7 +26,7 @@ fn statements(found: &Reproduction, said_by_paper: bool, caption: &str, what: &s
     }
 }
 
-pub(super) fn runs(found: &Reproduction) -> Table {
+pub(super) fn runs(found: &Reproduction) -> DocumentTable {
     let row = |run: &crate::Run| {
         vec![
             run.formulation.word().to_owned(),
@@ -43,7 +43,7 @@ pub(super) fn runs(found: &Reproduction) -> Table {
             number_or_dash(run.offset_error_max_deg),
         ]
     };
-    Table {
+    DocumentTable {
         caption: "Table 3. Runs of plain Gauss-Newton from the nominal screws, with joint offsets in the true robot or noise in the measurements, both or none. Rank is of the paper's own matrix, unknowns are those solved for. The held-out error is the RMS distance to the truth on configurations that were not measured; the screw error is the largest of any coordinate (m for v, no unit for ω), as it stands and with all joint offsets moved into the screws. Rows are the measurements fitted.".to_owned(),
         head: words(&[
             "formulation", "seen", "with", "converged", "rows", "iterations",
@@ -64,8 +64,8 @@ fn truth_words(offsets: bool, noise: bool) -> &'static str {
     }
 }
 
-pub(super) fn screws(found: &Reproduction) -> Table {
-    Table {
+pub(super) fn screws(found: &Reproduction) -> DocumentTable {
+    DocumentTable {
         caption: "Table 4. Screws beside Table II: v in mm, ω without unit. The last two columns are the largest differences from the prescribed screw.".to_owned(),
         head: words(&["joint", "screw", "vx", "vy", "vz", "ωx", "ωy", "ωz", "v off, mm", "ω off"]),
         rows: found.screws.iter().flat_map(screw_rows).collect(),
@@ -103,7 +103,7 @@ pub(super) fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     )
 }
 
-pub(super) fn point(found: &Reproduction) -> Table {
+pub(super) fn point(found: &Reproduction) -> DocumentTable {
     let point = &found.point;
     let row = |(name, position): (&str, &[f64; 3])| {
         let mut cells = vec![name.to_owned()];
@@ -113,7 +113,7 @@ pub(super) fn point(found: &Reproduction) -> Table {
     };
     let rows =
         [("nominal", &point.nominal), ("prescribed", &point.prescribed), ("from points", &point.from_points)];
-    Table {
+    DocumentTable {
         caption: "Table 5. The point P_c0 beside Table II, mm. The last column is the largest difference from the prescribed point.".to_owned(),
         head: words(&["point", "x", "y", "z", "off"]),
         rows: rows.into_iter().map(row).collect(),
@@ -121,12 +121,12 @@ pub(super) fn point(found: &Reproduction) -> Table {
     }
 }
 
-pub(super) fn offsets(found: &Reproduction) -> Table {
+pub(super) fn offsets(found: &Reproduction) -> DocumentTable {
     let row = |row: &crate::OffsetRow| {
         let numbers = [row.prescribed_deg, row.screw_offsets_deg, row.adjoint_offsets_deg];
         std::iter::once(row.joint.clone()).chain(numbers.map(four_decimals)).collect()
     };
-    Table {
+    DocumentTable {
         caption: "Table 6. Joint offsets, deg.".to_owned(),
         head: words(&["joint", "prescribed", "screw-offsets", "adjoint-offsets"]),
         rows: found.offsets.iter().map(row).collect(),
@@ -134,8 +134,8 @@ pub(super) fn offsets(found: &Reproduction) -> Table {
     }
 }
 
-pub(super) fn ranks(found: &Reproduction) -> Table {
-    let row = |spectrum: &crate::Spectrum| {
+pub(super) fn ranks(found: &Reproduction) -> DocumentTable {
+    let row = |spectrum: &crate::MatrixSpectrum| {
         let value = |k: usize| spectrum.singular_values.get(k).copied();
         vec![
             spectrum.matrix.clone(),
@@ -146,7 +146,7 @@ pub(super) fn ranks(found: &Reproduction) -> Table {
             number_or_dash(value(spectrum.rank)),
         ]
     };
-    Table {
+    DocumentTable {
         caption: "Table 7. Ranks: singular values above 1e-9 of the largest, and those on both sides of the gap as shares of the largest.".to_owned(),
         head: words(&["matrix", "at", "columns", "rank", "last above the gap", "first below"]),
         rows: found.spectra.iter().map(row).collect(),
@@ -154,7 +154,7 @@ pub(super) fn ranks(found: &Reproduction) -> Table {
     }
 }
 
-pub(super) fn efficiency(found: &Reproduction) -> Table {
+pub(super) fn efficiency(found: &Reproduction) -> DocumentTable {
     let row = |row: &crate::Efficiency| {
         vec![
             row.formulation.word().to_owned(),
@@ -169,7 +169,7 @@ pub(super) fn efficiency(found: &Reproduction) -> Table {
             four_decimals(row.ratio_sigma),
         ]
     };
-    Table {
+    DocumentTable {
         caption: "Table 8. Accuracy with noise. Error and bound are RMS over the fits that converged; ± is one standard deviation of the ratio by chance. Points have one residual only."
             .to_owned(),
         head: words(&[
@@ -189,13 +189,13 @@ pub(super) fn efficiency(found: &Reproduction) -> Table {
     }
 }
 
-pub(super) fn basin(found: &Reproduction) -> Table {
+pub(super) fn basin(found: &Reproduction) -> DocumentTable {
     let sizes = distinct(found.basin.iter().map(|row| (row.error_deg, row.error_mm)));
     let fit = |row: &crate::Basin| {
         (row.formulation, row.measurement, residual(row.measurement, &row.residual), row.method.clone())
     };
     let fits = distinct(found.basin.iter().map(fit));
-    let row = |chosen: &(Formulation, Seen, String, String)| {
+    let row = |chosen: &(Formulation, MeasurementKind, String, String)| {
         let here = || found.basin.iter().filter(|row| fit(row) == *chosen);
         let (formulation, seen, residual, method) = chosen;
         let trials = here().map(|row| row.trials).min().unwrap_or_default();
@@ -214,7 +214,7 @@ pub(super) fn basin(found: &Reproduction) -> Table {
     };
     let mut head = words(&["formulation", "seen", "residual", "method", "starts"]);
     head.extend(sizes.iter().map(|(deg, mm)| format!("{} deg, {} mm", stated(*deg), stated(*mm))));
-    Table {
+    DocumentTable {
         caption: "Table 9. Share of starts that reach the truth, by how far each axis and the tip is off."
             .to_owned(),
         head,
@@ -224,10 +224,10 @@ pub(super) fn basin(found: &Reproduction) -> Table {
 }
 
 /// The residual of poses; points have one only.
-fn residual(seen: Seen, word: &str) -> String {
+fn residual(seen: MeasurementKind, word: &str) -> String {
     match seen {
-        Seen::Poses => word.to_owned(),
-        Seen::Points => "–".to_owned(),
+        MeasurementKind::Poses => word.to_owned(),
+        MeasurementKind::Points => "–".to_owned(),
     }
 }
 

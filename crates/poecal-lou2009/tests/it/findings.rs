@@ -1,11 +1,11 @@
 //! Made-up findings of a reproduction: of the right shape, with numbers from formulas. They measure nothing.
 
 use poecal_lou2009::{
-    Basin, Claim, Efficiency, Formulation, Iteration, OffsetRow, PointRow, Reproduction, Run, ScrewRow, Seen,
-    Spectrum,
+    Basin, Claim, Efficiency, Formulation, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow, PointRow,
+    Reproduction, Run, ScrewRow,
 };
 
-const SEEN: [Seen; 2] = [Seen::Poses, Seen::Points];
+const SEEN: [MeasurementKind; 2] = [MeasurementKind::Poses, MeasurementKind::Points];
 
 /// Findings with entries of every kind.
 pub(crate) fn findings() -> Reproduction {
@@ -36,7 +36,7 @@ fn runs() -> Vec<Run> {
     for (k, formulation) in Formulation::ALL.into_iter().enumerate() {
         for measurement in SEEN {
             for (offsets_in_truth, noise) in [(false, false), (true, false), (false, true), (true, true)] {
-                let iterations = 4 + k + usize::from(measurement == Seen::Points);
+                let iterations = 4 + k + usize::from(measurement == MeasurementKind::Points);
                 let found = |j: usize| 3e-2 * 10_f64.powi(-(1_i32 << j.min(5))) / (1.0 + k as f64);
                 let floor = if noise { 9e-5 } else { 2e-16 * (1.0 + k as f64) };
                 let stuck = if offsets_in_truth { 0.06 } else { floor };
@@ -51,7 +51,7 @@ fn runs() -> Vec<Run> {
                     noise,
                     measurements: 20,
                     iterations,
-                    converged: k != 2 || measurement == Seen::Poses,
+                    converged: k != 2 || measurement == MeasurementKind::Poses,
                     parameters: [42, 42, 48, 48][k],
                     rank: [30, 42, 42, 42][k],
                     unknowns: [30, 42, 48, 48][k],
@@ -146,7 +146,7 @@ fn offset(joint: usize) -> OffsetRow {
     }
 }
 
-fn spectra() -> Vec<Spectrum> {
+fn spectra() -> Vec<MatrixSpectrum> {
     let cases = [
         ("screw-offsets, poses", "identified", 48, 42),
         ("adjoint-offsets, poses", "identified", 48, 30),
@@ -155,7 +155,7 @@ fn spectra() -> Vec<Spectrum> {
         ("adjoint, points", "nominal", 39, 25),
         ("adjoint, minimal basis, points", "identified", 27, 27),
     ];
-    let spectrum = |(matrix, at, columns, rank): (&str, &str, usize, usize)| Spectrum {
+    let spectrum = |(matrix, at, columns, rank): (&str, &str, usize, usize)| MatrixSpectrum {
         matrix: matrix.to_owned(),
         at: at.to_owned(),
         columns,

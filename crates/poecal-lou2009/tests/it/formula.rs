@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, Vector3, Vector6};
 use poecal::lie::{Pose, Twist};
 use poecal::robot::Robot;
 use poecal_lou2009::literal::AdjointErrors;
-use poecal_lou2009::{Formulation, Seen};
+use poecal_lou2009::{Formulation, MeasurementKind};
 
 /// Everything that stands in the POE formula: free twists `ξ_i`, joint values, `M` as its logarithm or `exp(Υ) M`, `P_c0`.
 #[derive(Clone)]
@@ -47,7 +47,7 @@ pub(crate) fn steps<'a>(
     robot: &'a Robot,
     errors: &'a AdjointErrors,
     formulation: Formulation,
-    seen: Seen,
+    seen: MeasurementKind,
 ) -> Vec<Step<'a>> {
     let mut steps: Vec<Step<'a>> = Vec::new();
     let joints = robot.joints.iter().enumerate();
@@ -76,7 +76,7 @@ pub(crate) fn steps<'a>(
             }));
         }
     }
-    for k in 0..if seen == Seen::Poses { 6 } else { 3 } {
+    for k in 0..if seen == MeasurementKind::Poses { 6 } else { 3 } {
         let (home, upsilon) = (robot.home, errors.upsilon.to_vector());
         steps.push(Box::new(move |at, step| {
             let mut at = at.clone();
@@ -85,7 +85,7 @@ pub(crate) fn steps<'a>(
             } else {
                 Pose::exp(&Twist::from_vector(&(upsilon + unit(k, step)))) * home
             };
-            if seen == Seen::Points {
+            if seen == MeasurementKind::Points {
                 at.point[k] += step;
             }
             at
@@ -95,7 +95,7 @@ pub(crate) fn steps<'a>(
 }
 
 /// Central differences of tenth order of the POE formula.
-pub(crate) fn differences(at: &Formula, steps: &[Step<'_>], seen: Seen) -> DMatrix<f64> {
+pub(crate) fn differences(at: &Formula, steps: &[Step<'_>], seen: MeasurementKind) -> DMatrix<f64> {
     const STEP: f64 = 0.01;
     let weights = [5.0 / 6.0, -5.0 / 21.0, 5.0 / 84.0, -5.0 / 504.0, 1.0 / 1260.0];
     let here = at.motion();
@@ -108,8 +108,8 @@ pub(crate) fn differences(at: &Formula, steps: &[Step<'_>], seen: Seen) -> DMatr
                     let moved = change(at, sign * STEP * (k + 1) as f64);
                     let motion = moved.motion();
                     let difference = match seen {
-                        Seen::Poses => (motion * moved.home * (here * at.home).inverse()).log(),
-                        Seen::Points => {
+                        MeasurementKind::Poses => (motion * moved.home * (here * at.home).inverse()).log(),
+                        MeasurementKind::Points => {
                             Twist::new(motion.act(&moved.point) - here.act(&at.point), Vector3::zeros())
                         }
                     };
@@ -120,5 +120,5 @@ pub(crate) fn differences(at: &Formula, steps: &[Step<'_>], seen: Seen) -> DMatr
         })
         .collect();
     let all = DMatrix::from_fn(6, columns.len(), |row, column| columns[column][row]);
-    all.rows(0, if seen == Seen::Poses { 6 } else { 3 }).into_owned()
+    all.rows(0, if seen == MeasurementKind::Poses { 6 } else { 3 }).into_owned()
 }

@@ -8,7 +8,7 @@ use poecal::lie::{Pose, Twist, hat};
 use poecal::parameters::{Columns, JointOffset, Parameter, ScrewAxis, TargetPlace};
 use poecal::robot::{Limits, Robot};
 use poecal::simulate::{random, random_chain};
-use poecal_lou2009::Seen;
+use poecal_lou2009::MeasurementKind;
 use poecal_lou2009::literal::{
     AdjointErrors, Literal, adjoint_jacobian, jacobian, point_rows, singular_values, stacked,
 };
@@ -102,7 +102,12 @@ fn closed_form_is_the_printed_integral() {
 }
 
 /// The adjoint formulation's matrix by theory.md §3 (12) and (12a), at errors that are not zero by (10b).
-fn telescoping(nominal: &Robot, errors: &AdjointErrors, values: &[f64], seen: Seen) -> DMatrix<f64> {
+fn telescoping(
+    nominal: &Robot,
+    errors: &AdjointErrors,
+    values: &[f64],
+    seen: MeasurementKind,
+) -> DMatrix<f64> {
     let robot = errors.apply(nominal);
     let prefixes = prefixes(&robot, values);
     let last = prefixes[prefixes.len() - 1];
@@ -110,9 +115,9 @@ fn telescoping(nominal: &Robot, errors: &AdjointErrors, values: &[f64], seen: Se
         .map(|(eta, pair)| (pair[0].adjoint() - pair[1].adjoint()) * eta.left_jacobian())
         .collect();
     // As many columns of the tool's own as rows.
-    let rows = if seen == Seen::Poses { 6 } else { 3 };
+    let rows = if seen == MeasurementKind::Poses { 6 } else { 3 };
     let mut all = DMatrix::zeros(rows, 6 * blocks.len() + rows);
-    if seen == Seen::Poses {
+    if seen == MeasurementKind::Poses {
         blocks.push(last.adjoint() * errors.upsilon.left_jacobian());
     } else {
         all.columns_mut(6 * blocks.len(), 3).copy_from(&last.rotation);
@@ -120,8 +125,8 @@ fn telescoping(nominal: &Robot, errors: &AdjointErrors, values: &[f64], seen: Se
     let at = point_rows(&last.act(&robot.home.translation));
     for (k, block) in blocks.iter().enumerate() {
         match seen {
-            Seen::Poses => all.columns_mut(6 * k, 6).copy_from(block),
-            Seen::Points => all.columns_mut(6 * k, 6).copy_from(&(at * block)),
+            MeasurementKind::Poses => all.columns_mut(6 * k, 6).copy_from(block),
+            MeasurementKind::Points => all.columns_mut(6 * k, 6).copy_from(&(at * block)),
         }
     }
     all
@@ -133,7 +138,7 @@ fn telescoping_jacobian_is_that_of_the_paper() {
     for robot in robots() {
         for errors in errors(&robot) {
             for values in configurations(&robot) {
-                for seen in [Seen::Poses, Seen::Points] {
+                for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
                     let literal = adjoint_jacobian(&robot, &errors, &values, false, seen);
                     let expected = telescoping(&robot, &errors, &values, seen);
                     // At a whole turn a joint's block vanishes: what it is a difference of sets the scale.
@@ -150,7 +155,7 @@ fn telescoping_jacobian_is_that_of_the_paper() {
 #[test]
 fn literal_jacobians_are_the_derivatives_of_the_formula() {
     for formulation in Formulation::ALL {
-        for seen in [Seen::Poses, Seen::Points] {
+        for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
             let mut worst: f64 = 0.0;
             for robot in robots() {
                 for values in configurations(&robot) {
@@ -187,7 +192,7 @@ fn columns_of_the_solver_are_the_blocks_of_the_paper_seen_at_the_target() {
     for robot in robots() {
         let estimate = Estimate::new(&robot, vec![robot.home], device());
         for values in configurations(&robot) {
-            let literal = jacobian(&robot, &values, Formulation::Adjoint, Seen::Poses);
+            let literal = jacobian(&robot, &values, Formulation::Adjoint, MeasurementKind::Poses);
             let packed = Packed::new(&robot, &values, values.len());
             let mut chain = Chain::default();
             chain.evaluate(&Linkage::new(&estimate), &packed, 0, 0);
@@ -206,7 +211,7 @@ fn columns_of_the_solver_are_the_blocks_of_the_paper_seen_at_the_target() {
                 }
             }
             // The solver moves a point along the target's own axes, the paper along those of the base at zero.
-            let points = jacobian(&robot, &values, Formulation::Adjoint, Seen::Points);
+            let points = jacobian(&robot, &values, Formulation::Adjoint, MeasurementKind::Points);
             let own = device().rotation * points.columns(points.ncols() - 3, 3) * robot.home.rotation;
             let mut twists = [(Vector3::zeros(), Vector3::zeros()); 3];
             TargetPlace { target: 0 }.target_twists(&chain, 0, &mut twists);
@@ -275,7 +280,7 @@ fn within_limits(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
 
 /// Rank and columns on 60 configurations. Prints the last singular value that counts and the first that does not, as shares of the
 /// largest.
-fn rank(robot: &Robot, formulation: Formulation, seen: Seen) -> (usize, usize) {
+fn rank(robot: &Robot, formulation: Formulation, seen: MeasurementKind) -> (usize, usize) {
     let length_m = robot.reach_m() / 3.0;
     let matrix = stacked(robot, &within_limits(robot, 60), formulation, seen, length_m);
     let (values, rank) = singular_values(&matrix);
@@ -297,10 +302,10 @@ fn ranks_of_the_elbow_are_those_of_the_theory() {
         (AdjointOffsets, (30, 48), (27, 45), (25, 45)),
     ];
     for (formulation, poses, points, points_at_nominal) in expected {
-        assert_eq!(rank(&tables::prescribed(), formulation, Seen::Poses), poses);
-        assert_eq!(rank(&tables::nominal(), formulation, Seen::Poses), poses);
-        assert_eq!(rank(&tables::prescribed(), formulation, Seen::Points), points);
-        assert_eq!(rank(&tables::nominal(), formulation, Seen::Points), points_at_nominal);
+        assert_eq!(rank(&tables::prescribed(), formulation, MeasurementKind::Poses), poses);
+        assert_eq!(rank(&tables::nominal(), formulation, MeasurementKind::Poses), poses);
+        assert_eq!(rank(&tables::prescribed(), formulation, MeasurementKind::Points), points);
+        assert_eq!(rank(&tables::nominal(), formulation, MeasurementKind::Points), points_at_nominal);
     }
 }
 
@@ -310,7 +315,7 @@ fn ranks_of_mixed_chains_are_those_of_the_theory() {
     for robot in robots().iter().filter(|robot| has_sliding_joint(robot)) {
         let p = robot.joints.iter().filter(|joint| joint.screw.is_prismatic()).count();
         let r = robot.joints.len() - p;
-        for (seen, tool) in [(Seen::Poses, 6), (Seen::Points, 3)] {
+        for (seen, tool) in [(MeasurementKind::Poses, 6), (MeasurementKind::Points, 3)] {
             for formulation in Formulation::ALL {
                 let joints = if formulation.has_free_screws() { 6 * r + 3 * p } else { 4 * r + 2 * p };
                 assert_eq!(rank(robot, formulation, seen).0, joints + tool);

@@ -2,11 +2,11 @@
 
 use crate::largest::larger;
 use poecal_lou2009::Formulation;
-use poecal_lou2009::{Options, Reproduction, Run, Seen, lou2009};
+use poecal_lou2009::{MeasurementKind, Reproduction, ReproductionOptions, Run, lou2009};
 
-const FEW: Options = Options { trials: 60, starts: 20, seed: 1 };
+const FEW: ReproductionOptions = ReproductionOptions { trials: 60, starts: 20, seed: 1 };
 
-fn exact(found: &Reproduction, formulation: Formulation, seen: Seen, offsets: bool) -> &Run {
+fn exact(found: &Reproduction, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> &Run {
     found
         .runs
         .iter()
@@ -36,13 +36,13 @@ fn figures_of_the_paper() {
         );
         assert!(run.converged && run.held_out_rms_m < 1e-9 && run.equivalent_screw_error_max < 1e-9);
     }
-    let poses = exact(&found, Formulation::Adjoint, Seen::Poses, false);
-    let points = exact(&found, Formulation::Adjoint, Seen::Points, false);
+    let poses = exact(&found, Formulation::Adjoint, MeasurementKind::Poses, false);
+    let points = exact(&found, Formulation::Adjoint, MeasurementKind::Points, false);
     assert!(poses.iterations <= 5 && points.iterations <= 7);
     assert!(poses.screw_error_max < 1e-9 && points.screw_error_max < 1e-9);
     assert_eq!((poses.rank, poses.parameters), (30, 42));
     assert_eq!((points.rank, points.parameters), (27, 39));
-    let original = exact(&found, Formulation::ScrewOffsets, Seen::Poses, true);
+    let original = exact(&found, Formulation::ScrewOffsets, MeasurementKind::Poses, true);
     assert_eq!((original.rank, original.parameters), (42, 48));
     assert!(original.offset_error_max_deg.unwrap() > 1.0);
     let worst = (0..3).map(|k| (found.point.from_points[k] - found.point.prescribed[k]).abs());
@@ -58,7 +58,7 @@ fn figures_of_the_paper() {
 #[test]
 fn adjoint_form_is_efficient_and_the_original_is_not() {
     let found = lou2009(&FEW).unwrap();
-    let ratio = |formulation: Formulation, seen: Seen, residual: &str| {
+    let ratio = |formulation: Formulation, seen: MeasurementKind, residual: &str| {
         let of = found.efficiency.iter().find(|it| {
             it.formulation == formulation
                 && it.measurement == seen
@@ -79,12 +79,12 @@ fn adjoint_form_is_efficient_and_the_original_is_not() {
             it.trials
         );
     }
-    for seen in [Seen::Poses, Seen::Points] {
+    for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         // Chance: 30 unknowns in 60 trials, a relative standard deviation of the RMS of 1 / √(2 · 30 · 60) = 1.7 %, times three.
         assert!((ratio(Formulation::Adjoint, seen, "tool") - 1.0).abs() < 0.05);
         assert!(ratio(Formulation::Screw, seen, "tool") > 1.1);
     }
-    assert!(ratio(Formulation::Adjoint, Seen::Poses, "spatial") > 1.5);
+    assert!(ratio(Formulation::Adjoint, MeasurementKind::Poses, "spatial") > 1.5);
 }
 
 #[test]
@@ -147,12 +147,12 @@ fn claims_tell_the_numbers_of_the_runs() {
         let near = |number: &f64| (number - value).abs() <= 0.51 * digits;
         assert!(told.iter().any(near), "{value} is not in {told:?}");
     };
-    let original = exact(&found, Formulation::ScrewOffsets, Seen::Poses, true);
+    let original = exact(&found, Formulation::ScrewOffsets, MeasurementKind::Poses, true);
     let numbers = told("With joint offsets, the original formulation");
     has(&numbers, original.offset_error_max_deg.unwrap(), 0.01);
     has(&numbers, 1e3 * original.screw_error_max_v_m, 0.1);
     has(&numbers, original.screw_error_max_omega, 1e-4);
-    let adjoint = exact(&found, Formulation::Adjoint, Seen::Poses, true);
+    let adjoint = exact(&found, Formulation::Adjoint, MeasurementKind::Poses, true);
     let numbers = told("Joint offsets need not");
     has(&numbers, 1e3 * adjoint.screw_error_max_v_m, 0.1);
     has(&numbers, adjoint.screw_error_max_omega, 1e-4);
@@ -174,8 +174,8 @@ fn lengths_and_directions_are_told_apart() {
     // From the estimates that the tables hold, with joint offsets neither in the truth nor in the formulation.
     let found = lou2009(&FEW).unwrap();
     for (seen, of) in [
-        (Seen::Poses, (|row| &row.from_poses) as fn(&poecal_lou2009::ScrewRow) -> &[f64; 6]),
-        (Seen::Points, |row| &row.from_points),
+        (MeasurementKind::Poses, (|row| &row.from_poses) as fn(&poecal_lou2009::ScrewRow) -> &[f64; 6]),
+        (MeasurementKind::Points, |row| &row.from_points),
     ] {
         let run = exact(&found, Formulation::Adjoint, seen, false);
         let largest = |part: std::ops::Range<usize>| {
@@ -210,7 +210,7 @@ fn lengths_and_directions_are_told_apart() {
 
 #[test]
 fn too_few_trials_tell_nothing() {
-    let found = lou2009(&Options { trials: 1, starts: 4, seed: 5 }).unwrap();
+    let found = lou2009(&ReproductionOptions { trials: 1, starts: 4, seed: 5 }).unwrap();
     let files = poecal_lou2009::report::reproduction_files(&found).unwrap();
     let (_, text) = files.iter().find(|(name, _)| name == "report.md").unwrap();
     assert!(text.contains("there are too few trials to decide"));
@@ -220,7 +220,7 @@ fn too_few_trials_tell_nothing() {
 
 #[test]
 fn another_seed_changes_everything_random() {
-    let few = |seed| lou2009(&Options { trials: 2, starts: 1, seed }).unwrap();
+    let few = |seed| lou2009(&ReproductionOptions { trials: 2, starts: 1, seed }).unwrap();
     let (a, b) = (few(1), few(2));
     for (a, b) in a.runs.iter().zip(&b.runs) {
         assert_ne!(a.trace[0].residual_rms_m, b.trace[0].residual_rms_m);

@@ -1,4 +1,4 @@
-//! What a calibration holds, and what is made of it when it is asked for.
+//! Contents of a calibration, converted on demand.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -16,8 +16,8 @@ use crate::robot::{Robot, RobotState};
 
 /// A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
 ///
-/// `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`; what is not asked for
-/// is not converted.
+/// `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`,
+/// converted on demand.
 #[pyclass(frozen, module = "poecal", name = "Calibration")]
 pub(crate) struct Calibration {
     /// The nominal robot, after whose file models are written.
@@ -26,15 +26,15 @@ pub(crate) struct Calibration {
     calibrated: OnceLock<Robot>,
 }
 
-/// What all else follows from.
+/// Source of all other contents.
 enum Found {
-    /// A calibration that was made just now.
+    /// A calibration of this process.
     Fit(Box<Fit>),
-    /// A calibration of files, or of a pickle.
+    /// A calibration from files, or from a pickle.
     Written(Box<Written>),
 }
 
-/// A calibration that was made just now. What it is written as is made when it is asked for.
+/// A calibration of this process; its file is made on demand.
 struct Fit {
     calibration: poecal::calibration::Calibration,
     data: Arc<MeasurementFile>,
@@ -45,16 +45,16 @@ struct Fit {
     summary: OnceLock<String>,
 }
 
-/// A calibration of files.
+/// A calibration from files.
 struct Written {
-    /// The calibrated robot with its targets, to the last digit as fitted.
+    /// The calibrated robot with its targets, exactly as fitted.
     robot: poecal::robot::Robot,
     file: CalibrationFile,
     residuals: Option<Residuals>,
     summary: String,
 }
 
-/// What rebuilds a calibration exactly.
+/// Pickled calibration.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct CalibrationState {
     nominal: RobotState,
@@ -64,11 +64,11 @@ pub(crate) struct CalibrationState {
     summary: String,
 }
 
-/// The name that stands for a file where there is none.
+/// Name for a missing file.
 const UNWRITTEN: &str = "calibration.json";
 
 impl Calibration {
-    /// A calibration that was made just now, of `data`.
+    /// A calibration of `data` made in this process.
     pub(crate) fn of_fit(
         nominal: Robot,
         calibration: poecal::calibration::Calibration,
@@ -88,7 +88,7 @@ impl Calibration {
         Calibration { nominal, found: Found::Fit(Box::new(fit)), calibrated: OnceLock::new() }
     }
 
-    /// A calibration of files.
+    /// A calibration from files.
     pub(super) fn written(
         nominal: Robot,
         robot: poecal::robot::Robot,
@@ -111,7 +111,7 @@ impl Calibration {
         })
     }
 
-    /// The calibration of a state.
+    /// The calibration from a state.
     pub(crate) fn of_state(state: CalibrationState) -> PyResult<Self> {
         let CalibrationState { nominal, robot, file, residuals, summary } = state;
         let file = CalibrationFile::parse(&file, UNWRITTEN).map_err(raise)?;
@@ -120,7 +120,7 @@ impl Calibration {
         Ok(Calibration::written(Robot::of_state(nominal)?, robot, file, residuals, summary))
     }
 
-    /// What `calibration.json` says.
+    /// The contents of `calibration.json`.
     pub(crate) fn file(&self) -> &CalibrationFile {
         match &self.found {
             Found::Fit(fit) => fit
@@ -130,7 +130,7 @@ impl Calibration {
         }
     }
 
-    /// The residuals of each row.
+    /// Residuals of each row.
     pub(super) fn residuals(&self) -> PyResult<&Residuals> {
         match &self.found {
             Found::Fit(fit) => {
@@ -143,7 +143,7 @@ impl Calibration {
         }
     }
 
-    /// The table of the program.
+    /// The program's table.
     pub(super) fn summary(&self) -> &str {
         match &self.found {
             Found::Fit(fit) => {
@@ -153,7 +153,7 @@ impl Calibration {
         }
     }
 
-    /// Seconds that the library took, if the calibration was made just now.
+    /// Time of the library in seconds, for a calibration of this process.
     pub(super) fn seconds(&self) -> Option<f64> {
         match &self.found {
             Found::Fit(fit) => Some(fit.took.as_secs_f64()),
@@ -177,7 +177,7 @@ impl Calibration {
         }
     }
 
-    /// The calibrated robot with its targets, to the last digit as fitted.
+    /// The calibrated robot with its targets, exactly as fitted.
     pub(super) fn as_fitted(&self) -> poecal::robot::Robot {
         match &self.found {
             Found::Fit(fit) => fit.calibration.robot_with_targets(),
@@ -185,7 +185,7 @@ impl Calibration {
         }
     }
 
-    /// The calibrated robot as its file says, which every prediction is made by.
+    /// The calibrated robot as in its file, which makes all predictions.
     pub(crate) fn calibrated(&self) -> PyResult<&Robot> {
         if let Some(robot) = self.calibrated.get() {
             return Ok(robot);
@@ -197,7 +197,7 @@ impl Calibration {
     }
 }
 
-/// A part of a file as Python's dicts and lists.
+/// A part of a file as Python dicts and lists.
 pub(super) fn part<'py>(py: Python<'py>, part: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = report::json(part).map_err(raise)?;
     py.import("json")?.call_method1("loads", (text,))

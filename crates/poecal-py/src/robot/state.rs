@@ -1,4 +1,4 @@
-//! A robot and its file, and what rebuilds them exactly.
+//! A robot and its file, and their pickled state.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ impl Robot {
         Robot { model: Arc::new(model), sha256: Arc::default() }
     }
 
-    /// A model of a file, with the file's checksum.
+    /// A model from a file, with the file's checksum.
     pub(super) fn of_file(model: Model) -> PyResult<Self> {
         let sha256 = Inputs::checksums([model.path.as_path()].into_iter()).map_err(raise)?;
         Ok(Robot { model: Arc::new(model), sha256: Arc::new(sha256) })
@@ -64,7 +64,7 @@ impl Robot {
         })
     }
 
-    /// The robot of a state.
+    /// The robot from a state.
     pub(crate) fn of_state(state: RobotState) -> PyResult<Self> {
         let RobotState { robot, path, source, sha256 } = state;
         let source = match source {
@@ -81,7 +81,7 @@ impl Robot {
     }
 }
 
-/// A robot and the file that it came from.
+/// A robot and its file.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct RobotState {
     robot: poecal::robot::Robot,

@@ -1,5 +1,5 @@
-//! From directions that are open to sentences: each rule states a cause that is seen in the configurations, and takes from what is open
-//! that which would be told if the quantities it names were known (theory.md §7 (36a)).
+//! Descriptions of undetermined and weakly determined directions. Each rule looks for one cause in the configurations, and explains the
+//! directions that would be determined if the quantities it names were known (theory.md §7 (36a)).
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -11,22 +11,22 @@ use super::subspace;
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, Unit};
 use crate::robot::JointKind;
 
-/// A joint that moved by less than this (20°; of a slide this share of the length that a radian counts) moved by little.
+/// Largest range of a joint with small motion: 20°, or of a prismatic joint this share of the length that a radian counts.
 const LITTLE_RAD: f64 = 0.35;
 const LITTLE_SLIDE: f64 = 0.2;
-/// Share (squared) of a direction that names what it belongs to.
+/// Smallest squared component of a direction that is named in its description.
 pub(super) const NOTABLE: f64 = 0.02;
 
-/// What is to be explained.
+/// Directions to be explained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Degree {
-    /// What is open.
-    Open,
-    /// So many directions above it: told, but hardly.
+    /// Undetermined ones.
+    Undetermined,
+    /// So many weakly determined ones above them.
     Weak(usize),
 }
 
-/// What is open, or weak, in sentences.
+/// Descriptions of the undetermined, or of the weakly determined, directions.
 pub(super) fn explain(
     setup: &Setup<'_>,
     excitation: &Excitation,
@@ -34,17 +34,17 @@ pub(super) fn explain(
     degree: Degree,
 ) -> Vec<Direction> {
     let (first, count) = match degree {
-        Degree::Open => (0, spectrum.open),
-        Degree::Weak(count) => (spectrum.open, count),
+        Degree::Undetermined => (0, spectrum.undetermined),
+        Degree::Weak(count) => (spectrum.undetermined, count),
     };
-    // Beside too few numbers it means nothing that others are weak.
+    // With fewer numbers than unknowns, weak directions mean nothing.
     let too_few = excitation.numbers < setup.layout.dim();
-    if count == 0 || too_few && degree != Degree::Open {
+    if count == 0 || too_few && degree != Degree::Undetermined {
         return Vec::new();
     }
     let space = spectrum.vectors.columns(first, count).into_owned();
-    let mut rules = Rules { setup, excitation, spectrum, degree, left: space, told: Vec::new() };
-    // What offsets do beside screws is structure, and told as such.
+    let mut rules = Rules { setup, excitation, spectrum, degree, unexplained: space, found: Vec::new() };
+    // Offsets beside screws are a structural kernel, reported as such.
     let offsets = rules.places(|parameter| matches!(parameter, Parameter::JointOffset(_)));
     rules.take(&offsets);
     rules.stood_still();
@@ -55,28 +55,28 @@ pub(super) fn explain(
     rules.small_motion();
     rules.dependent_motion();
     rules.others();
-    rules.told
+    rules.found
 }
 
-/// What is to be explained, and what has been told of it.
+/// Directions to be explained, and the descriptions found so far.
 pub(super) struct Rules<'a> {
     pub(super) setup: &'a Setup<'a>,
     pub(super) excitation: &'a Excitation,
     pub(super) spectrum: &'a Spectrum,
     pub(super) degree: Degree,
-    /// What is not explained yet.
-    pub(super) left: DMatrix<f64>,
-    pub(super) told: Vec<Direction>,
+    /// Directions that no rule has explained yet.
+    pub(super) unexplained: DMatrix<f64>,
+    pub(super) found: Vec<Direction>,
 }
 
 impl Rules<'_> {
-    /// Takes from what is left what is told if these directions are; how many dimensions that is.
+    /// Removes the dimensions that would be determined if these directions were known, and returns their number.
     pub(super) fn take(&mut self, directions: &[Vec<f64>]) -> usize {
-        if self.left.ncols() == 0 {
+        if self.unexplained.ncols() == 0 {
             return 0;
         }
-        let (left, taken) = subspace::without(&self.left, directions);
-        self.left = left;
+        let (left, taken) = subspace::without(&self.unexplained, directions);
+        self.unexplained = left;
         taken
     }
 
@@ -96,9 +96,9 @@ impl Rules<'_> {
         self.places(|parameter| joint_of(parameter).is_some_and(|joint| joints.contains(&joint)))
     }
 
-    pub(super) fn tell(&mut self, cause: Cause, joints: &[usize], directions: usize, description: String) {
+    pub(super) fn add(&mut self, cause: Cause, joints: &[usize], directions: usize, description: String) {
         let joints = joints.iter().map(|&joint| self.name(joint).to_owned()).collect();
-        self.told.push(Direction { description, joints, cause, directions });
+        self.found.push(Direction { description, joints, cause, directions });
     }
 
     pub(super) fn name(&self, joint: usize) -> &str {
@@ -109,10 +109,10 @@ impl Rules<'_> {
         join(&joints.iter().map(|&joint| self.name(joint).to_owned()).collect::<Vec<_>>())
     }
 
-    /// What to say of some quantities: that they are open in these words, or how well they are known.
+    /// Predicate of a description: `open` for undetermined directions, else the standard deviation along them.
     pub(super) fn degree_words(&self, open: &str, plural: bool, directions: &[Vec<f64>]) -> String {
         let Degree::Weak(count) = self.degree else { return open.to_owned() };
-        let first = self.spectrum.open;
+        let first = self.spectrum.undetermined;
         let sigma_m = directions
             .iter()
             .map(|direction| {
@@ -151,7 +151,7 @@ impl Rules<'_> {
     }
 
     fn stood_still(&mut self) {
-        // Each joint by itself, so that one is named only if it is its own stillness that hides something.
+        // Joint by joint, so that one is named only if its own stillness hides something.
         let still = (0..self.excitation.still.len()).filter(|&joint| self.excitation.still[joint]);
         let (mut joints, mut directions, mut all) = (Vec::new(), 0, 0);
         for joint in still {
@@ -174,12 +174,12 @@ impl Rules<'_> {
         let part = if directions < all { "part of " } else { "" };
         let words = self.degree_words(open, several, &self.screws(&joints));
         let description = format!("{} {what}: {part}{subject} {words}", self.names(&joints));
-        self.tell(Cause::StoodStill, &joints, directions, description);
+        self.add(Cause::StoodStill, &joints, directions, description);
     }
 
     fn too_few(&mut self) {
         let (numbers, unknowns) = (self.excitation.numbers, self.setup.layout.dim());
-        if self.left.ncols() == 0 || numbers >= unknowns {
+        if self.unexplained.ncols() == 0 || numbers >= unknowns {
             return;
         }
         let (rows, configurations) = (self.setup.rows.len(), self.excitation.configurations);
@@ -191,7 +191,7 @@ impl Rules<'_> {
             format!("too few rows: {numbers} numbers for {unknowns} unknowns")
         };
         let directions = self.take(&self.places(|_| true));
-        self.tell(Cause::TooFew, &[], directions, description);
+        self.add(Cause::TooFew, &[], directions, description);
     }
 
     fn point_on_axis(&mut self) {
@@ -226,10 +226,10 @@ impl Rules<'_> {
             self.names(&joints),
             rounded(away_m * 1e3)
         );
-        self.tell(Cause::PointOnAxis, &joints, directions, description);
+        self.add(Cause::PointOnAxis, &joints, directions, description);
     }
 
-    /// Unit vectors of what tilts a joint's axis; of a free screw all of it.
+    /// Unit vectors of the unknowns that tilt a joint's axis; of a free screw all of them.
     fn tilts(&self, joint: usize) -> Vec<Vec<f64>> {
         let mut tilts = Vec::new();
         for (parameter, places) in self.setup.layout.parameters() {
@@ -248,7 +248,7 @@ impl Rules<'_> {
             Turning::Not => Matrix3::identity().column_iter().map(|u| self.shift(&u.into_owned())).collect(),
             Turning::About(direction) => vec![self.shift(&direction)],
         };
-        let before = self.left.ncols();
+        let before = self.unexplained.ncols();
         let mut taken = self.take(&directions);
         if taken == 0 {
             return;
@@ -261,19 +261,22 @@ impl Rules<'_> {
             let tool = "the tool turned about one direction only: along it, its place on the last link and where the axes stand";
             (Cause::OneTurningDirection, format!("{tool} {words}"))
         };
-        // What else the joints hide by keeping the orientation has the same cause.
-        if cause == Cause::OneOrientation && self.left.ncols() > 0 && self.hidden_by_combination() >= before {
+        // Other directions that the joints hide by keeping the orientation have the same cause.
+        if cause == Cause::OneOrientation
+            && self.unexplained.ncols() > 0
+            && self.hidden_by_combination() >= before
+        {
             taken += self.take(&self.places(|_| true));
         }
         let turns = |&joint: &usize| {
             !self.excitation.still[joint] && self.setup.robot.joints[joint].kind == JointKind::Revolute
         };
         let joints: Vec<usize> = (0..self.excitation.still.len()).filter(turns).collect();
-        self.tell(cause, &joints, taken, description);
+        self.add(cause, &joints, taken, description);
     }
 
-    /// All axes shifted one way in the base and the tool by as much the other way on its link, along a direction given in the axes of
-    /// the last link: unseen if the link never turns that direction.
+    /// All axes shifted one way in the base, and the tool as much the other way on its link, along a direction in the axes of the last
+    /// link: without effect if the link never turns that direction.
     fn shift(&self, direction: &Vector3<f64>) -> Vec<f64> {
         let estimate = self.setup.estimate;
         let turn = estimate.base_from_axis.last().map_or_else(Matrix3::identity, |last| last.rotation);
@@ -319,7 +322,7 @@ impl Rules<'_> {
             let open = if subject.starts_with("only") { "are not determined" } else { "cannot be separated" };
             let words = self.degree_words(open, true, &screws);
             let description = format!("{}: {what}: {subject} {words}", self.names(group));
-            self.tell(Cause::MovedTogether, group, directions, description);
+            self.add(Cause::MovedTogether, group, directions, description);
         }
     }
 
@@ -347,7 +350,7 @@ impl Rules<'_> {
                 let part = if directions < screw.len() { "part of " } else { "" };
                 let words = self.degree_words("is lost in the noise", false, &screw);
                 let description = format!("{} moved by {by} only: {part}its screw {words}", self.name(joint));
-                self.tell(Cause::SmallMotion, &[joint], directions, description);
+                self.add(Cause::SmallMotion, &[joint], directions, description);
             }
         }
     }

@@ -6,10 +6,10 @@ use crate::estimate::Packed;
 use crate::robot::{JointKind, Limits, Robot};
 use crate::threads;
 
-/// Rows that one thread looks at together.
+/// Rows of one work item.
 const CHUNK: usize = 8192;
 
-/// The values of a joint that were sampled, beside those that it can take (radians; metres of a sliding joint).
+/// Sampled and allowed values of a joint (radians; metres of a prismatic joint).
 ///
 /// ```
 /// use poecal::{analysis::JointCoverage, robot::JointKind};
@@ -25,19 +25,19 @@ pub struct JointCoverage {
     pub sampled_min: f64,
     /// Largest value sampled.
     pub sampled_max: f64,
-    /// Share of that range, at its ends, that at most a fiftieth of the rows reach at each, beyond a gap of more than 15 % of the range: they
-    /// do not make it sampled.
+    /// Share of that range at its ends which at most a fiftieth of the rows reach, beyond a gap of more than 15 % of the range: it does not
+    /// count as sampled.
     #[serde(default)]
     pub stragglers: f64,
-    /// Smallest value that the model allows; null where it has no limits, or placeholders.
+    /// Smallest allowed value; null without limits, or with placeholders.
     pub limit_min: Option<f64>,
-    /// Largest value that the model allows.
+    /// Largest allowed value.
     pub limit_max: Option<f64>,
 }
 
 impl JointCoverage {
-    /// Share of the allowed range that was sampled, 0 to 1; of a revolute joint of at most a turn, where limits allow more or are missing,
-    /// since whole turns change no geometry. `None` of a sliding joint without limits.
+    /// Sampled share of the allowed range, 0 to 1 (theory.md §9, *Verdict*). A revolute joint is allowed at most one turn, also without
+    /// limits: whole turns change no geometry. `None` for a prismatic joint without limits.
     #[must_use]
     pub fn share(&self, kind: JointKind) -> Option<f64> {
         let turn = std::f64::consts::TAU;
@@ -50,10 +50,10 @@ impl JointCoverage {
         (allowed > 0.0).then(|| (sampled / allowed).min(1.0))
     }
 
-    /// Whether a value lies in the sampled range; of a revolute joint also after whole turns.
+    /// Whether a value is in the sampled range; for a revolute joint also after whole turns.
     #[must_use]
     pub fn contains(&self, kind: JointKind, value: f64) -> bool {
-        // Readings come rounded; what differs by less is the same configuration.
+        // Readings are rounded: smaller differences do not count.
         const ROUNDING: f64 = 1e-6;
         let (least, most) = (self.sampled_min - ROUNDING, self.sampled_max + ROUNDING);
         match kind {
@@ -66,7 +66,7 @@ impl JointCoverage {
     }
 }
 
-/// The coverage of each joint's range by some rows, from base to tip; nothing if there are no rows.
+/// Coverage of each joint's range by some rows, from base to tip; empty without rows.
 #[must_use]
 pub fn coverage(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<JointCoverage> {
     let ranges = ranges(robot.joints.len(), packed, rows);
@@ -92,7 +92,7 @@ pub fn coverage(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<JointCovera
         .collect()
 }
 
-/// The share of a joint's sampled range at its ends that only single rows reach: at most a fiftieth of them, beyond a gap.
+/// Share of a joint's sampled range that only stragglers reach: at each end at most a fiftieth of the rows, beyond a gap.
 fn stragglers(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
     const FEW: usize = 50;
     const GAP: f64 = 0.15;
@@ -101,7 +101,7 @@ fn stragglers(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
     if few == 0 {
         return 0.0;
     }
-    // Only the ends need be in order, and one more value at each.
+    // Only the ends have to be sorted, with one more value at each.
     values.select_nth_unstable_by(few, f64::total_cmp);
     values[..=few].sort_unstable_by(f64::total_cmp);
     let last = values.len() - 1 - few;

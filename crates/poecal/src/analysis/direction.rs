@@ -1,4 +1,4 @@
-//! Something that the measurements do not tell, and why.
+//! Directions of the unknowns that the measurements do not determine, and their causes.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub enum Cause {
     StoodStill,
     /// Fewer measured numbers than unknowns.
     TooFew,
-    /// Of a target seen as a point, and lying on the axis of a joint.
+    /// A target measured as a point lies on the axis of a joint.
     PointOnAxis,
     /// The tool kept one orientation.
     OneOrientation,
@@ -26,9 +26,9 @@ pub enum Cause {
     OneTurningDirection,
     /// Joints moved in a fixed relation only.
     MovedTogether,
-    /// A joint moved by little.
+    /// A joint moved little.
     SmallMotion,
-    /// Joints moved in combinations that hide something, though no simpler cause is seen.
+    /// Joints moved in combinations that hide something; no simpler cause was found.
     DependentMotion,
     /// A target was measured once, so that nothing checks it.
     SeenOnce,
@@ -38,7 +38,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// Whether other combinations of the same joint values would have told it.
+    /// Whether other combinations of the same joint values would have determined the direction.
     pub(super) fn is_combination(self) -> bool {
         match self {
             Cause::OneOrientation
@@ -66,20 +66,20 @@ impl Cause {
 /// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Point)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let structural = &calibration.identifiability.structural;
-/// // Points of a tracker that stands anywhere do not tell the base frame: a choice that changes no prediction.
+/// // Points of a tracker that stands anywhere do not determine the base frame: a choice that changes no prediction.
 /// assert!(structural.iter().any(|direction| direction.description.contains("base")));
 /// # Ok::<(), poecal::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Direction {
-    /// What it is, in words.
+    /// Description.
     pub description: String,
     /// The joints concerned.
     pub joints: Vec<String>,
-    /// Why.
+    /// Its cause.
     #[serde(default)]
     pub cause: Cause,
-    /// How many independent directions of the unknowns it accounts for.
+    /// Number of independent directions.
     #[serde(default = "one")]
     pub directions: usize,
 }

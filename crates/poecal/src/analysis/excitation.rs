@@ -1,4 +1,4 @@
-//! What the configurations did: which joints moved and how far, which only together, how the tool turned, what lies on an axis.
+//! Excitation by the configurations: ranges of joints, joints that moved together, turning of the tool, points on an axis.
 
 use std::collections::BTreeSet;
 
@@ -13,52 +13,52 @@ use crate::linalg;
 use crate::parameters::Parameter;
 use crate::robot::JointKind;
 
-/// Rows on which geometry is looked at.
+/// Rows of the subsample for the geometry.
 const SAMPLE: usize = 400;
-/// A joint whose values vary by no more stood still: encoders at rest jitter by some 1e-4 rad or 0.01 mm.
+/// Largest range of a joint that stood still: encoders at rest jitter by some 1e-4 rad or 0.01 mm.
 const STILL_RAD: f64 = 2.6e-3;
 const STILL_M: f64 = 1e-4;
-/// Joints move together if a combination of their values, each by its own spread, varies by less than this share of one spread.
+/// Joints moved together if a combination of their values, each scaled by its spread, varies by less than this share of one spread.
 const TOGETHER: f64 = 0.01;
-/// Axes within this sine of an angle (about 3°) are parallel: drawn so, but for errors of making.
+/// Sine of the angle (about 3°) within which axes are parallel: nominally so, but for manufacturing errors.
 const PARALLEL: f64 = 0.05;
-/// Orientations that vary by less than this variance (about 1°) about a direction are one.
+/// Variance (about 1°) about a direction below which orientations count as one.
 const ONE_ORIENTATION: f64 = 3e-4;
-/// A point is on an axis if it stays within this share of the length that a radian counts.
+/// A point lies on an axis within this share of the length that a radian counts.
 const ON_AXIS: f64 = 0.02;
 
-/// How the tool turned.
+/// Turning of the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Turning {
     /// Not at all.
     Not,
-    /// About one direction only, here in the axes of the last link.
+    /// About one direction only, in the axes of the last link.
     About(Vector3<f64>),
     /// Otherwise.
     Freely,
 }
 
-/// What the configurations did.
+/// Excitation by the configurations.
 pub(super) struct Excitation {
-    /// By how much each joint's value varies, radians or metres.
+    /// Range of each joint's value, radians or metres.
     pub(super) ranges: Vec<f64>,
     /// Which joints stood still.
     pub(super) still: Vec<bool>,
-    /// Groups of joints that moved together only.
+    /// Groups of joints that moved only together.
     pub(super) together: Vec<Vec<usize>>,
     /// How the tool turned.
     pub(super) turning: Turning,
     /// Mean rotation of the last link's frame in the device's axes.
     pub(super) mean_turn: Matrix3<f64>,
-    /// For each revolute joint whose axis goes through all targets at all times: how far they come from it, metres.
+    /// For each revolute joint whose axis always passes through all targets: their largest distance from it, metres.
     pub(super) on_axis_m: Vec<Option<f64>>,
-    /// For each pair of revolute joints, row by row of a square: whether their axes are always parallel.
+    /// For each pair of joints, row-major: whether both are revolute and their axes always parallel.
     parallel: Vec<bool>,
-    /// Number of measured numbers in configurations that differ; counted no further than there are enough.
+    /// Number of measured numbers in distinct configurations, counted up to the number of unknowns.
     pub(super) numbers: usize,
-    /// Number of configurations that differ, likewise.
+    /// Number of distinct configurations, likewise.
     pub(super) configurations: usize,
-    /// For each target, in how many different configurations it was seen, likewise.
+    /// For each target, the number of distinct configurations it was seen in, likewise.
     seen: Vec<usize>,
 }
 
@@ -126,7 +126,7 @@ impl Excitation {
         self.turning = turning(&self.mean_turn);
     }
 
-    /// Counts what is measured in different configurations, as far as it could be too little. Rows closer than a jitter are repeats.
+    /// Counts the numbers measured in distinct configurations, until there are enough. Rows within the jitter of encoders are repeats.
     fn count(&mut self, setup: &Setup<'_>) {
         let unknowns = setup.layout.dim();
         let step = |joint: usize| match setup.robot.joints.get(joint).map(|joint| joint.kind) {
@@ -150,7 +150,7 @@ impl Excitation {
         self.configurations = all.len();
     }
 
-    /// Targets among several that were seen once, which nothing checks.
+    /// Targets, of several, that were seen only once.
     pub(super) fn seen_once(&self, setup: &Setup<'_>) -> Vec<Direction> {
         let mut found = Vec::new();
         if self.seen.len() < 2 {
@@ -189,7 +189,7 @@ pub(super) fn target_name(setup: &Setup<'_>, target: usize) -> String {
     }
 }
 
-/// How rotations turn whose mean is this: a direction u stays where it is if `uᵀ(I - R̄ᵀR̄)u` vanishes.
+/// Turning of rotations with this mean R̄: a direction u is kept if `uᵀ(I - R̄ᵀR̄)u` vanishes (theory.md §7, `one_turning_direction`).
 fn turning(mean: &Matrix3<f64>) -> Turning {
     let spread = Matrix3::identity() - mean.transpose() * mean;
     let upper: Vec<f64> = (0..9).map(|k| spread[(k / 3, k % 3)]).collect();
@@ -201,7 +201,7 @@ fn turning(mean: &Matrix3<f64>) -> Turning {
     }
 }
 
-/// Groups of joints some combination of whose values stays the same while they move.
+/// Groups of joints with a combination of values that stays constant while they move.
 fn together(setup: &Setup<'_>, still: &[bool]) -> Vec<Vec<usize>> {
     let moved: Vec<usize> = (0..still.len()).filter(|&joint| !still[joint]).collect();
     let rows = sample_rows(setup.rows, 10 * SAMPLE);

@@ -1,4 +1,4 @@
-//! Rank judged against the noise, and what the data leave open, in words with joint names (theory.md §7 (36)).
+//! Rank judged against the noise, and undetermined directions described with joint names (theory.md §7 (36)).
 
 use super::causes::{Degree, explain};
 use super::direction::{Cause, Direction};
@@ -26,35 +26,35 @@ use crate::solve::Normal;
 pub struct Identifiability {
     /// Unknowns in the minimal basis: 4 a revolute joint, 2 a prismatic one, 6 a target frame, 3 a target point.
     pub parameters: usize,
-    /// Directions among them that the data determine against the noise.
+    /// Number of directions that the measurements determine against the noise.
     pub rank: usize,
-    /// How many unknowns the measurements tell beside what is believed of the drawing, `Σ_k λ_k / (λ_k + 1)` with λ_k the information
-    /// of measurements over that of the belief: a share of each, without a cliff.
-    pub told: f64,
+    /// Effective number of unknowns that the measurements determine beside the prior, `Σ_k λ_k / (λ_k + 1)` with λ_k the information of the
+    /// measurements over that of the prior: theory.md §6 (34).
+    pub effective_unknowns: f64,
     /// Largest singular value of the scaled Jacobian over the smallest that counts to the rank.
     pub condition: f64,
-    /// What these configurations leave open.
+    /// Directions that these configurations do not determine.
     pub unidentifiable: Vec<Direction>,
-    /// Directions that they determine weakly, hardly better than the nominal model.
+    /// Directions that they determine weakly, little better than the nominal model.
     pub weak: Vec<Direction>,
-    /// What no measurement of this kind could tell: it is a choice, is not among the parameters, and changes no prediction.
+    /// Directions that no measurement of this kind can determine: not among the parameters, and without effect on predictions.
     pub structural: Vec<Direction>,
-    /// The observability indices of the configurations.
+    /// Observability indices of the configurations.
     pub observability: Observability,
-    /// The information itself.
+    /// Eigenvalues of the information.
     pub spectrum: Spectrum,
 }
 
-/// The variance of whitened residuals that a fit leaves, its unknowns taken off: 1 if the noise is what it was taken to be.
+/// Variance `s²` of the whitened residuals, `2F / (m − n)` as in theory.md §7 (36): 1 if the noise is as stated.
 #[must_use]
 pub fn residual_variance(normal: &Normal) -> f64 {
     let residuals = normal.residuals as f64;
     normal.mean_square() * residuals / (residuals - normal.dim() as f64).max(1.0)
 }
 
-/// How many unknowns some of the residuals tell: `tr N⁻¹ N_part`, theory.md §6 (34).
+/// Effective number of unknowns determined by a part of the residuals, `tr(N⁻¹ N_part)`: theory.md §6 (34).
 #[must_use]
-pub fn unknowns_told(normal: &Normal, part: &Normal) -> f64 {
+pub fn effective_unknowns(normal: &Normal, part: &Normal) -> f64 {
     let n = normal.dim();
     let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
     let Some(factor) =
@@ -65,27 +65,29 @@ pub fn unknowns_told(normal: &Normal, part: &Normal) -> f64 {
     linalg::trace_of_quotient(&factor, &part.gram, n)
 }
 
-/// Judges the information (upper triangle of `N`, row-major) of a setup, with residuals of this variance: theory.md §7 (36).
+/// Identifiability from the information `N` (upper triangle, row-major) and the variance of the residuals: theory.md §7 (36).
 #[must_use]
 pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identifiability {
     let n = setup.layout.dim();
     let spectrum = Spectrum::new(gram, n, variance, setup.length_m);
     let values = &spectrum.values;
     let largest = values.last().copied().unwrap_or(0.0);
-    let condition = values.get(spectrum.open).map_or(f64::INFINITY, |&value| (largest / value).sqrt());
+    let condition =
+        values.get(spectrum.undetermined).map_or(f64::INFINITY, |&value| (largest / value).sqrt());
     let singular: Vec<f64> = {
         let least = rounding(values);
         values.iter().rev().map(|&value| if value > least { value.sqrt() } else { 0.0 }).collect()
     };
     let excitation = Excitation::new(setup);
-    let weak = (spectrum.open..n).take_while(|&k| spectrum.sigma_m(k) > WEAK * setup.length_m).count();
-    let unidentifiable = explain(setup, &excitation, &spectrum, Degree::Open);
+    let weak =
+        (spectrum.undetermined..n).take_while(|&k| spectrum.sigma_m(k) > WEAK * setup.length_m).count();
+    let unidentifiable = explain(setup, &excitation, &spectrum, Degree::Undetermined);
     let mut hardly = explain(setup, &excitation, &spectrum, Degree::Weak(weak));
     hardly.extend(excitation.seen_once(setup));
     Identifiability {
         parameters: n,
-        rank: n - spectrum.open,
-        told: (n - spectrum.open) as f64,
+        rank: n - spectrum.undetermined,
+        effective_unknowns: (n - spectrum.undetermined) as f64,
         condition,
         unidentifiable,
         weak: hardly,
@@ -95,7 +97,7 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
     }
 }
 
-/// The kernel that is known before anything is measured: theory.md §7 (35).
+/// The structural kernel, known before anything is measured: theory.md §7 (35).
 fn structural(setup: &Setup<'_>) -> Vec<Direction> {
     let joints = &setup.robot.joints;
     let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();

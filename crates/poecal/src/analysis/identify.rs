@@ -1,4 +1,4 @@
-//! What measuring some configurations would tell, before anything is measured.
+//! Identifiability of planned configurations, before anything is measured.
 
 use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
@@ -18,13 +18,14 @@ use crate::robot::Robot;
 use crate::simulate::{Kind, random_configuration};
 use crate::solve::LeastSquares;
 
-/// Configurations in which the expected error is looked at, and their seed.
+/// Number of random configurations for the expected error, and their seed.
 const CONFIGURATIONS: usize = 1000;
 const SEED: u64 = 1;
-/// A prediction is told if what is open, uncertain by what is plausible, moves it by no more than so many of its standard deviations.
-const OPEN_EFFECT: f64 = 1.0;
+/// A prediction is determined if undetermined directions, uncertain by [`PLAUSIBLE`], move it by at most so many of its standard
+/// deviations.
+const UNDETERMINED_EFFECT: f64 = 1.0;
 
-/// What is to be measured, and how well.
+/// A planned session: measurements and their noise.
 ///
 /// ```
 /// use poecal::{Kind, Session};
@@ -33,37 +34,37 @@ const OPEN_EFFECT: f64 = 1.0;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Session {
-    /// What the device will see of the tip.
+    /// Kind of the measurements of the tip.
     pub kind: Kind,
-    /// Its noise, each component.
+    /// Noise of each component.
     pub noise: Noise,
-    /// Whether it stands anywhere, instead of measuring in the robot's base frame.
+    /// Whether the device frame is unknown; otherwise measurements are in the robot's base frame.
     pub device_free: bool,
 }
 
 impl Default for Session {
-    /// Poses, 0.05 mm and 0.01°, anywhere.
+    /// Poses with 0.05 mm and 0.01°, device frame unknown.
     fn default() -> Self {
         let noise = Noise { position_m: 5e-5, rotation_rad: 0.01_f64.to_radians() };
         Session { kind: Kind::Pose, noise, device_free: true }
     }
 }
 
-/// The error of predicted tip positions that noise would leave, by the formal covariance at the nominal model: root mean square length
-/// of the error vector in one configuration.
+/// Expected error of predicted tip positions by noise alone, from the covariance at the nominal model: root mean square length of the error
+/// vector in one configuration (theory.md §7 (36c)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExpectedError {
-    /// Random configurations looked at, within the joints' limits (±π and ±0.5 m where there are none).
+    /// Number of random configurations within the joints' limits (±π and ±0.5 m without limits).
     pub configurations: usize,
-    /// Those among them whose prediction the measurements would tell; the others move with what is open.
-    pub told: usize,
-    /// Mean over those that are told, metres; `None` if none is.
+    /// Number of those whose prediction the measurements determine.
+    pub determined: usize,
+    /// Mean over these, metres; `None` if there are none.
     pub mean_m: Option<f64>,
-    /// Largest among them, metres.
+    /// Largest of these, metres.
     pub worst_m: Option<f64>,
 }
 
-/// What configurations would tell.
+/// Expected result of measuring some configurations.
 ///
 /// ```
 /// use poecal::{Kind, Session, Simulation, identify, simulate::elbow};
@@ -76,22 +77,22 @@ pub struct ExpectedError {
 pub struct Foresight {
     /// Number of configurations.
     pub count: usize,
-    /// What they would determine.
+    /// Identifiability.
     pub identifiability: Identifiability,
-    /// How much of each joint's range they sample.
+    /// Coverage of each joint's range.
     pub coverage: Vec<JointCoverage>,
-    /// The expected error of predictions over the joint range.
+    /// Expected error of predictions within the joint limits.
     pub expected: ExpectedError,
-    /// How many metres a radian counts.
+    /// Metres that a radian counts.
     pub length_m: f64,
 }
 
 /// Judges configurations (readings one after the other, in the order of [`Robot::reading_names`]; radians, metres) before they are
-/// measured: theory.md §7 (36), (36c). The robot is taken as its model has it, the noise as given.
+/// measured: theory.md §7 (36), (36c), with the nominal model and the stated noise.
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`] if there is no configuration, the number of readings does not fit the robot, or one is not finite;
-/// [`ErrorKind::Problem`] if the robot has more unknowns than a fit can bear.
+/// [`ErrorKind::Problem`] if the robot has more unknowns than one fit allows.
 ///
 /// ```
 /// use poecal::analysis::{Session, identify};
@@ -112,7 +113,7 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Fo
         );
         return Err(Error::new(ErrorKind::Problem, message));
     }
-    let data = imagined(robot, readings, session)?;
+    let data = predicted_data(robot, readings, session)?;
     let packed = Packed::of(robot, &data);
     let rows: Vec<u32> = data.all_rows();
     let length_m = radian_m(robot, &packed);
@@ -151,8 +152,8 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Fo
     })
 }
 
-/// The measurements that the model as it is would give.
-fn imagined(robot: &Robot, readings: &[f64], session: &Session) -> Result<Dataset> {
+/// The measurements that the nominal model predicts.
+fn predicted_data(robot: &Robot, readings: &[f64], session: &Session) -> Result<Dataset> {
     let mut data = Dataset::new(robot.reading_names());
     let width = data.reading_names().len();
     if readings.is_empty() || !readings.len().is_multiple_of(width.max(1)) {
@@ -180,7 +181,7 @@ fn imagined(robot: &Robot, readings: &[f64], session: &Session) -> Result<Datase
     Ok(data)
 }
 
-/// The formal error of predicted positions on random configurations: theory.md §7 (36c).
+/// Expected error of predicted positions in random configurations: theory.md §7 (36c).
 fn expected(setup: &Setup<'_>, found: &Identifiability) -> ExpectedError {
     let robot = setup.robot;
     let mut generator = ChaCha8Rng::seed_from_u64(SEED);
@@ -194,24 +195,24 @@ fn expected(setup: &Setup<'_>, found: &Identifiability) -> ExpectedError {
     let plausible_m = PLAUSIBLE * setup.length_m;
     let mut chain = Chain::default();
     let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); setup.layout.dim()];
-    let mut told = Vec::new();
+    let mut sigmas_m = Vec::new();
     for row in 0..packed.rows() {
         chain.evaluate(&linkage, &packed, row, 0);
         setup.layout.target_twists(&chain, 0, &mut twists);
-        let (mut variance, mut open) = (0.0, 0.0);
+        let (mut variance, mut undetermined) = (0.0, 0.0);
         for (k, vector) in spectrum.vectors.column_iter().enumerate() {
             let moved: Vector3<f64> = vector.iter().zip(&twists).map(|(part, (v, _))| v * *part).sum();
-            if k < spectrum.open {
-                open += moved.norm_squared() * plausible_m * plausible_m;
+            if k < spectrum.undetermined {
+                undetermined += moved.norm_squared() * plausible_m * plausible_m;
             } else {
                 variance += moved.norm_squared() * spectrum.sigma_m(k).powi(2);
             }
         }
-        if open <= variance * OPEN_EFFECT * OPEN_EFFECT {
-            told.push(variance.sqrt());
+        if undetermined <= variance * UNDETERMINED_EFFECT * UNDETERMINED_EFFECT {
+            sigmas_m.push(variance.sqrt());
         }
     }
-    let mean_m = (!told.is_empty()).then(|| told.iter().sum::<f64>() / told.len() as f64);
-    let worst_m = told.iter().copied().reduce(f64::max);
-    ExpectedError { configurations: CONFIGURATIONS, told: told.len(), mean_m, worst_m }
+    let mean_m = (!sigmas_m.is_empty()).then(|| sigmas_m.iter().sum::<f64>() / sigmas_m.len() as f64);
+    let worst_m = sigmas_m.iter().copied().reduce(f64::max);
+    ExpectedError { configurations: CONFIGURATIONS, determined: sigmas_m.len(), mean_m, worst_m }
 }

@@ -1,4 +1,4 @@
-//! How much each row decides its own prediction, and how far it is off when that is allowed for (theory.md §6 (34d), (34e)).
+//! Leverage and studentised residual of each row (theory.md §6 (34d), (34e)).
 
 use crate::estimate::Estimate;
 use crate::lanes::{self, Wide};
@@ -7,14 +7,14 @@ use crate::problem::{Problem, RowBlock};
 use crate::solve::Normal;
 use crate::threads;
 
-/// Rows that one thread takes at a time.
+/// Rows of one work item.
 const CHUNK: usize = 1024;
-/// Share of the largest diagonal element that rounding makes of the normal equations' small eigenvalues.
+/// Rounding of the normal equations, as a share of their largest diagonal element.
 const ROUNDING: f64 = 1e-13;
-/// What a row keeps of its own variance at least: one that decides its prediction alone leaves no residual to judge it by.
+/// Smallest share of its own variance that a row keeps: with leverage 1 there is no residual to judge it by.
 const LEAST_REDUNDANCY: f64 = 1e-3;
 
-/// What a row means to a fit, and the fit to it.
+/// Leverage and studentised residual of a row (theory.md §6 (34d), (34e)).
 ///
 /// ```
 /// let row = poecal::analysis::Influence { leverage: 0.1, studentized: 1.7 };
@@ -25,13 +25,13 @@ pub struct Influence {
     /// Mean variance of the row's prediction in units of its noise: for a row fitted with weight 1 the mean diagonal of its block of
     /// the hat matrix, from 0 to 1; for others it may exceed that.
     pub leverage: f64,
-    /// Length of the residual in units of its own standard deviation: the root of a χ² of as many degrees of freedom as the row has
+    /// Length of the residual in units of its own standard deviation: the root of a χ² with as many degrees of freedom as the row has
     /// numbers.
     pub studentized: f64,
 }
 
-/// Influence of some rows on a fit with this normal information; `weights` by which they were fitted, one a row (0: not fitted).
-/// `problem` is without weights. Residual components are divided by `scale(row, component)` first.
+/// Influence of some rows on a fit with this normal information: theory.md §6 (34d), (34e). `weights` are those of the fit, one a row (0:
+/// not fitted); `problem` is without weights. Residual components are first divided by `scale(row, component)`.
 #[must_use]
 pub fn influence(
     problem: &Problem<'_>,
@@ -45,7 +45,7 @@ pub fn influence(
     let shifts = problem.layout().shifts();
     let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
     let damping = (ROUNDING * largest).max(f64::MIN_POSITIVE);
-    // Of numbers that are not finite there is none, and no row means anything.
+    // If numbers are not finite there is no factor, and all influences are 0.
     let factor = linalg::cholesky(&normal.gram, n, damping).unwrap_or_default();
     let level = problem.level();
     threads::concat_chunks(rows, CHUNK, |part, rows| {

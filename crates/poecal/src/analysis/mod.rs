@@ -1,4 +1,4 @@
-//! What the measurements can tell and what they cannot. Nothing is printed here.
+//! Which unknowns the measurements determine: rank, undetermined directions, coverage, leverage.
 
 mod causes;
 mod coverage;
@@ -8,7 +8,7 @@ mod identifiability;
 mod identify;
 mod influence;
 mod observability;
-mod remainder;
+mod other_causes;
 mod setup;
 mod spectrum;
 mod subspace;
@@ -16,7 +16,7 @@ mod subspace;
 pub use coverage::{JointCoverage, coverage};
 pub(crate) use coverage::{inside, ranges};
 pub use direction::{Cause, Direction};
-pub use identifiability::{Identifiability, identifiability, residual_variance, unknowns_told};
+pub use identifiability::{Identifiability, effective_unknowns, identifiability, residual_variance};
 pub use identify::{ExpectedError, Foresight, Session, identify};
 pub use influence::{Influence, influence};
 pub use observability::Observability;

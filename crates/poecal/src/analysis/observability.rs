@@ -26,8 +26,8 @@ pub struct Observability {
 }
 
 impl Observability {
-    /// The indices of singular values, the largest first, seen in `count` configurations. Values that are not above zero make all
-    /// indices `None`.
+    /// Indices of singular values, largest first, from `count` configurations: theory.md §7 (36b). All are `None` if a value is not above
+    /// zero.
     #[must_use]
     pub fn new(singular_values: &[f64], count: usize) -> Self {
         let (Some(&most), Some(&least)) = (singular_values.first(), singular_values.last()) else {

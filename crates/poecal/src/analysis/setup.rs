@@ -1,31 +1,31 @@
-//! What an analysis looks at.
+//! Input of an analysis.
 
 use crate::estimate::{Estimate, Packed};
 use crate::measurement::{Dataset, Noise};
 use crate::problem::Layout;
 use crate::robot::Robot;
 
-/// What was measured and what is unknown: all that an analysis looks at.
+/// Input of an analysis: robot, measurements, unknowns.
 ///
 /// An example is [`super::identify`].
 #[derive(Clone, Copy, Debug)]
 pub struct Setup<'a> {
-    /// The robot, for its names and kinds.
+    /// The robot, for names and kinds of its joints.
     pub robot: &'a Robot,
     /// The measurements.
     pub data: &'a Dataset,
     /// Their joint values.
     pub packed: &'a Packed,
-    /// The rows that count.
+    /// The rows of the fit.
     pub rows: &'a [u32],
-    /// The estimate at which the information was taken.
+    /// The estimate at which the information was computed.
     pub estimate: &'a Estimate,
     /// The unknowns.
     pub layout: &'a Layout,
-    /// The noise by which rows are whitened that state none.
+    /// Noise of rows that state none.
     pub noise: Noise,
-    /// How many metres a radian counts.
+    /// Metres that a radian counts.
     pub length_m: f64,
-    /// Whether the device stands anywhere.
+    /// Whether the device frame is unknown.
     pub device_free: bool,
 }

@@ -4,11 +4,11 @@ use nalgebra::DMatrix;
 
 use crate::linalg;
 
-/// A direction counts as lying in a subspace's view if more than this share of it (as a cosine) can be seen there.
+/// Singular value of (36a) above which a direction counts.
 const VISIBLE: f64 = 0.1;
 
-/// The part of `space` that does not move along any of some directions, and how many dimensions are gone: what would be left open if
-/// the quantities along these directions were known. The directions need not be orthogonal, but of unit length.
+/// The part of `space` that would still be undetermined if the quantities along some directions (unit vectors, not necessarily orthogonal)
+/// were known, and the number of dimensions removed: theory.md §7 (36a).
 pub(super) fn without(space: &DMatrix<f64>, directions: &[Vec<f64>]) -> (DMatrix<f64>, usize) {
     let k = space.ncols();
     let basis = orthonormal(directions, space.nrows());
@@ -27,13 +27,12 @@ pub(super) fn without(space: &DMatrix<f64>, directions: &[Vec<f64>]) -> (DMatrix
     (space * vectors.columns(0, kept), k - kept)
 }
 
-/// Orthonormal vectors that span what some vectors do.
+/// Orthonormal basis of the span of some vectors (Gram-Schmidt, repeated once against rounding).
 fn orthonormal(vectors: &[Vec<f64>], n: usize) -> Vec<Vec<f64>> {
     const DEPENDENT: f64 = 1e-6;
     let mut basis: Vec<Vec<f64>> = Vec::new();
     for vector in vectors.iter().filter(|vector| vector.len() == n) {
         let mut rest = vector.clone();
-        // Twice is enough against rounding.
         for _ in 0..2 {
             for known in &basis {
                 let along: f64 = rest.iter().zip(known).map(|(a, b)| a * b).sum();
@@ -49,7 +48,7 @@ fn orthonormal(vectors: &[Vec<f64>], n: usize) -> Vec<Vec<f64>> {
     basis
 }
 
-/// A basis of the same space with as many zeros as elimination gives: directions that concern few unknowns each, of unit length.
+/// Basis of the same space with as many zeros as elimination gives: unit directions of few unknowns each.
 pub(super) fn sparse(space: &DMatrix<f64>) -> Vec<Vec<f64>> {
     let mut rows: Vec<Vec<f64>> =
         space.column_iter().map(|column| column.iter().copied().collect()).collect();
@@ -82,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_known_leaves_the_rest_open() {
+    fn known_directions_leave_the_others_undetermined() {
         // Open: e0 + e1 together, and e2.
         let half = 0.5f64.sqrt();
         let space = DMatrix::from_column_slice(4, 2, &[half, half, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);

@@ -1,4 +1,4 @@
-//! How far the three models are from what was measured.
+//! Errors of the three models.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::estimate::{Estimate, Packed, RowError, row_errors};
 use crate::measurement::Dataset;
 
-/// The three models that every result is stated for, as estimates.
+/// The three models of every result, as estimates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Models {
-    /// As delivered: only an unknown device frame is fitted.
+    /// Screws and targets nominal; only an unknown device frame is fitted.
     pub nominal: Estimate,
     /// Device frame and targets fitted, screws nominal.
     pub registered: Estimate,
@@ -37,7 +37,8 @@ pub struct Statistic {
 }
 
 impl Statistic {
-    /// Statistic of absolute errors; `None` without any.
+    /// Statistic of absolute errors, with the 95 % quantile by linear interpolation between order statistics: theory.md §9. `None` without
+    /// errors.
     #[must_use]
     pub fn of(mut errors: Vec<f64>) -> Option<Self> {
         if errors.is_empty() {
@@ -50,7 +51,7 @@ impl Statistic {
         let rank = 0.95 * (errors.len() - 1) as f64;
         let (_, &mut below, beyond) = errors.select_nth_unstable_by(rank.floor() as usize, f64::total_cmp);
         let above = beyond.iter().copied().min_by(f64::total_cmp).unwrap_or(below);
-        // Nothing of a number beyond, which may be infinite, where the rank is whole.
+        // A whole rank must not touch the next value, which may be infinite.
         let p95 = if rank.fract() == 0.0 { below } else { below + (above - below) * rank.fract() };
         Some(Statistic { mean, rms, p95, max })
     }
@@ -96,7 +97,7 @@ pub struct SetAccuracy {
     pub calibrated: ModelAccuracy,
 }
 
-/// Errors on the rows that were fitted and on those that were not.
+/// Errors on training and held-out rows.
 ///
 /// ```
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
@@ -108,13 +109,13 @@ pub struct SetAccuracy {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Accuracy {
-    /// On the rows that were fitted.
+    /// On the training rows.
     pub training: SetAccuracy,
-    /// On the rows that were not; null if none was held out.
+    /// On the held-out rows; null if there are none.
     pub held_out: Option<SetAccuracy>,
 }
 
-/// Errors of the three models on some rows (at least one).
+/// Errors of the three models on some rows (at least one): theory.md §9.
 #[must_use]
 pub fn set_accuracy(data: &Dataset, packed: &Packed, rows: &[u32], models: &Models) -> SetAccuracy {
     let of = |estimate: &Estimate| model_accuracy(&row_errors(data, packed, rows, estimate));
@@ -126,7 +127,7 @@ pub fn set_accuracy(data: &Dataset, packed: &Packed, rows: &[u32], models: &Mode
     }
 }
 
-/// Errors of one model from those of its rows.
+/// Statistics of one model's row errors.
 pub(super) fn model_accuracy(errors: &[RowError]) -> ModelAccuracy {
     let nothing = Statistic { mean: 0.0, rms: 0.0, p95: 0.0, max: 0.0 };
     ModelAccuracy {

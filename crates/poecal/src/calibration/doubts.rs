@@ -1,15 +1,15 @@
-//! Signs that the input is not what it seems: a fit can absorb mistakes, a registration cannot.
+//! Signs of mistakes in the input. A fit can absorb them, a registration cannot.
 
 use super::{DeviceFrameKnowledge, ModelAccuracy};
 use crate::measurement::Dataset;
 
-/// Registered error, as a share of the measurements' spread, beyond which the nominal model does not describe this data. Real robots
-/// stay below a hundredth, simulated errors of several degrees on every axis below a tenth.
+/// Registered error, as a share of the measurements' spread, above which the nominal model does not describe the data. Real robots stay
+/// below 0.01, simulated errors of several degrees on every axis below 0.1.
 const MISFIT: f64 = 0.15;
-/// Registered rotation error beyond which orientations mean something else than they are read as, degrees.
+/// Registered rotation error above which orientations are misread, degrees.
 const TURNED_DEG: f64 = 20.0;
 
-/// What the registered model's training errors say against the input.
+/// Doubts about the input, by the registered model's training errors.
 pub(super) fn doubts(
     data: &Dataset,
     rows: &[u32],

@@ -1,18 +1,18 @@
-//! The fit of the screws: from registration to the optimum, with re-weighting and, if need be, further starts.
+//! The fit of the screws: from registration to the optimum, with noise and prior weight re-estimated, and further starts if needed.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::found::{Fitted, Found, SolverReport};
+use super::found::{Fitted, OngoingFit, SolverReport};
 use super::noise::stated;
 use super::{
     CalibrationOptions, DeviceFrameKnowledge, Formulation, Minimum, NoiseSource, delivered, estimate_noise,
     row_errors,
 };
-use crate::analysis::unknowns_told;
+use crate::analysis::effective_unknowns;
 use crate::distributions::is_within_band;
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Estimate, Packed, sample_rows};
+use crate::estimate::{Estimate, Packed, position_rms_m, sample_rows};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::{DeviceFrame, Parameter, screw_axes};
@@ -22,26 +22,26 @@ use crate::simulate::random;
 use crate::solve::{LeastSquares, Normal, Options, Summary};
 use crate::start::target_parameters;
 
-/// Rows of the sample on which a fit of many rows begins: at least, for each unknown, and for the root of the number of rows, so
-/// that however many they are, one step with the first `JᵀJ` of all rows does about as well.
+/// A fit of many rows begins on a subsample: at least so many rows, for each unknown, and times the root of the number of rows. After that,
+/// one step with the first `JᵀJ` of all rows is about enough, however many they are.
 const SAMPLE: usize = 512;
 const SAMPLE_PER_UNKNOWN: usize = 10;
 const SAMPLE_PER_ROOT: usize = 7;
-/// Times as many rows as are in a sample, beyond which a fit begins on one.
+/// Ratio of all rows to those of the subsample above which a fit begins on one.
 const MANY: usize = 3;
-/// The optimum of a sample is an estimate: closer than a tenth of its own standard deviation need not be gone.
+/// The fit of the subsample stops within a tenth of a standard deviation.
 const SAMPLE_DECREMENT: f64 = 1e-2;
 /// Rows on which further starts are compared.
 const RESTART_SAMPLE: usize = 200;
-/// Root mean square position error, as a share of the arm's reach, above which a fit may have ended beside the optimum: real robots,
-/// gears and links giving, are left with a tenth of it, false optima with several times it.
+/// Root mean square position error, as a share of the arm's reach, above which a fit may have converged to a local minimum: real robots,
+/// with elastic gears and links, have a tenth of it, local minima several times as much.
 const SUSPICIOUS: f64 = 3e-3;
 
-/// Most times that noise and the weight of the prior are found anew. Two or three will do, but for data without noise: there each lowers
-/// what the prior leaves.
+/// Most rounds of re-estimating noise and the weight of the prior. Two or three are enough, but for data without noise: there each reduces
+/// the remaining pull of the prior.
 const RENEWALS: usize = 12;
 
-/// All screws and targets, and the device's frame but at the first place where it stood: what a fit frees where that one frame is settled.
+/// Free parameters of a fit: screws, targets, and the device frames but the first.
 pub(super) fn free_parameters(
     estimate: &Estimate,
     data: &Dataset,
@@ -55,9 +55,9 @@ pub(super) fn free_parameters(
     further.chain(joints).chain(target_parameters(data, rows)).collect()
 }
 
-/// One fit of all screws and targets from a start, the (first) device frame staying where it is: by the formulation and the solver that
-/// the options state, begun on a sample if the rows are many. A prior counts by its weight ([`Problem::with_prior`]). As [`minimize`]
-/// says, `JᵀJ` may be that of a state close by.
+/// One fit of all screws and targets from a start, the first device frame fixed, with the formulation and solver of the options; of many
+/// rows first on a subsample. The prior has a weight ([`Problem::with_prior`]). The returned `JᵀJ` may be frozen
+/// ([`crate::solve::minimize`]). Cost: theory.md §6 (27), (27a).
 #[allow(clippy::too_many_arguments)]
 pub fn fit_screws(
     data: &Dataset,
@@ -84,7 +84,7 @@ pub fn fit_screws(
         let (estimate, _, summary) = minimize(&problem(sample), start, &near);
         start = estimate;
         before = Some(summary);
-        // A sample's optimum is close to that of all rows: no belief in the start is needed to get there.
+        // The optimum of a subsample is close to that of all rows: almost no damping.
         solver.trust *= 1e3;
     }
     let (estimate, normal, mut summary) = minimize(&problem(rows.to_vec()), start, &solver);
@@ -114,72 +114,68 @@ fn predicted_reduction(normal: &Normal) -> f64 {
     normal.full_step().map_or(0.0, |step| normal.predicted_reduction(&step))
 }
 
-/// Whether stated noise explains a variance of the whitened residuals.
-pub(super) fn explains(variance: f64, freedom: f64) -> bool {
-    is_within_band(variance, freedom) == std::cmp::Ordering::Equal
-}
-
-/// Whether a position error is more than what the gears and links of a robot of this size leave.
+/// Whether a position error is larger than elastic gears and links of a robot of this size explain.
 pub(super) fn is_suspicious(rms_m: f64, length_m: f64) -> bool {
     rms_m >= SUSPICIOUS * 3.0 * length_m
 }
 
-/// What is fitted to what.
+/// A fit: robot, rows, weights, prior, options.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
     pub(super) robot: &'a Robot,
     pub(super) data: &'a Dataset,
     pub(super) packed: &'a Packed,
     pub(super) rows: &'a [u32],
-    /// Weights of all rows of the data, where they differ.
+    /// Weights of all rows of the data; `None` if all are 1.
     pub(super) weights: Option<&'a [f64]>,
     pub(super) length_m: f64,
-    /// What the drawing is worth, and by how much it counts: as much as the variance of the whitened residuals.
+    /// Prior, and its weight: the variance of the whitened residuals.
     pub(super) prior: Option<(&'a Prior, f64)>,
     pub(super) options: &'a CalibrationOptions,
 }
 
 impl Task<'_> {
-    /// The same with the prior counting so much.
-    pub(super) fn believing(&self, weight: f64) -> Self {
+    /// The same with another weight of the prior.
+    pub(super) fn with_prior_weight(&self, weight: f64) -> Self {
         Task { prior: self.prior.map(|(prior, _)| (prior, weight)), ..*self }
     }
 
-    /// Before the screws are fitted, an estimated noise is mostly what they will take in: the prior counts as beside what gears and
-    /// links will leave.
-    pub(super) fn beginning(&self, noise: Noise, source: NoiseSource) -> Self {
+    /// The prior's weight in the first fit. An estimated noise is then mostly error of the screws, so the prior counts as beside the usual
+    /// error of gears and links.
+    pub(super) fn with_first_prior_weight(&self, noise: Noise, source: NoiseSource) -> Self {
         let usual = 0.1 * SUSPICIOUS * 3.0 * self.length_m / noise.position_m;
         let is_open = source == NoiseSource::Estimated;
-        self.believing(if is_open { (usual * usual).min(1.0) } else { 1.0 })
+        self.with_prior_weight(if is_open { (usual * usual).min(1.0) } else { 1.0 })
     }
 
     /// The first fit from a registration.
-    pub(super) fn begin(&self, registered: &Estimate, noise: Noise) -> Found {
+    pub(super) fn first_fit(&self, registered: &Estimate, noise: Noise) -> OngoingFit {
         let mut start = registered.clone();
         start.recentre(self.data, self.packed, self.rows);
-        Found::new(self.fit(start, noise))
+        OngoingFit::new(self.fit(start, noise))
     }
 
-    /// How many unknowns the measurements tell and not the prior: theory.md §6 (34).
-    pub(super) fn told(&self, found: &Found) -> f64 {
+    /// Effective number of unknowns determined by the measurements rather than the prior: theory.md §6 (34).
+    pub(super) fn effective_unknowns(&self, found: &OngoingFit) -> f64 {
         let unknowns = found.normal.dim();
         let Some((prior, weight)) = self.prior else { return unknowns as f64 };
         let layout = self.problem(&found.estimate, Noise { position_m: 1.0, rotation_rad: 1.0 });
         let mut believed = Normal::new(unknowns);
         prior.add(&found.estimate, layout.layout(), weight, &mut believed);
-        unknowns as f64 - unknowns_told(&found.normal, &believed)
+        unknowns as f64 - effective_unknowns(&found.normal, &believed)
     }
 
-    /// Mean squared whitened residual, without what the prior adds.
-    fn mean_square(&self, found: &Found) -> f64 {
+    /// Mean squared whitened residual, without the prior's part of the cost.
+    fn mean_square(&self, found: &OngoingFit) -> f64 {
         let believed = self.prior.map_or(0.0, |(prior, weight)| weight * prior.cost(&found.estimate));
         2.0 * (found.normal.cost - believed).max(0.0) / found.normal.residuals.max(1) as f64
     }
 
-    /// The rest of the way: further starts if need be, and noise estimated anew unless its source says that it is known.
+    /// Completes a first fit: further starts if needed, then rounds with noise and prior weight re-estimated (noise only if its source is
+    /// the residuals).
     pub(super) fn complete(
         &self,
-        mut found: Found,
+        mut found: OngoingFit,
         registered: &Estimate,
         noise: Noise,
         source: NoiseSource,
@@ -187,31 +183,31 @@ impl Task<'_> {
         if let Some((better, tried)) = self.restart(registered, &found.estimate, noise) {
             found.report.restarts = tried;
             if let Some(better) = better {
-                found.follow(self.fit(better, noise));
+                found.update(self.fit(better, noise));
             }
         }
         let (mut task, mut noise, mut source) = (*self, noise, source);
         for _ in 0..RENEWALS {
-            let told = task.told(&found);
+            let unknowns = task.effective_unknowns(&found);
             let before = noise;
             let mut weight = 1.0;
             if source == NoiseSource::Estimated {
-                let by_rotations = task.told_by_rotations(&found, noise);
+                let by_rotations = task.determined_by_rotations(&found, noise);
                 let (data, packed, rows) = (self.data, self.packed, self.rows);
-                match estimate_noise(data, packed, rows, &found.estimate, told, by_rotations, noise) {
+                match estimate_noise(data, packed, rows, &found.estimate, unknowns, by_rotations, noise) {
                     Some(estimated) => noise = stated(self.options, estimated),
                     None => source = NoiseSource::Exact,
                 }
             }
             let mean_square = task.mean_square(&found);
             if source != NoiseSource::Estimated {
-                // Stated noise weighs the prior as long as it explains the residuals.
-                let freedom = (found.normal.residuals as f64 - told).max(1.0);
+                // Stated noise scales the prior as long as it explains the residuals.
+                let freedom = (found.normal.residuals as f64 - unknowns).max(1.0);
                 let variance = mean_square * found.normal.residuals as f64 / freedom;
-                weight =
-                    if source != NoiseSource::Exact && explains(variance, freedom) { 1.0 } else { variance };
+                let explains = source != NoiseSource::Exact && is_within_band(variance, freedom).is_eq();
+                weight = if explains { 1.0 } else { variance };
             }
-            // What the measurements tell of the axes tells how good the drawing is.
+            // The axes' deviations estimate how good the nominal model is.
             weight /= task.prior.map_or(1.0, |(prior, _)| prior.looseness(&found.estimate));
             let change =
                 (noise.position_m * before.rotation_rad / (noise.rotation_rad * before.position_m)).ln();
@@ -219,20 +215,21 @@ impl Task<'_> {
             let fits = source != NoiseSource::Estimated
                 || noise == before
                 || change.abs() < 0.02 && mean_square.ln().abs() < 0.5;
-            task = task.believing(weight);
+            task = task.with_prior_weight(weight);
             if fits && (weighed || !(weight.is_finite() && weight > 0.0)) {
                 break;
             }
             let estimate = found.estimate.clone();
-            found.follow(task.fit(estimate, noise));
+            found.update(task.fit(estimate, noise));
         }
         task.finish(found, noise, source)
     }
 
-    /// How many unknowns rotations tell rather than positions, where few rows make that matter.
-    pub(super) fn told_by_rotations(&self, found: &Found, noise: Noise) -> Option<f64> {
+    /// Effective number of unknowns determined by the rotation residuals, `tr(N⁻¹ N_R)`: theory.md §6 (34). Only for few rows, where it
+    /// matters.
+    pub(super) fn determined_by_rotations(&self, found: &OngoingFit, noise: Noise) -> Option<f64> {
         const FEW: usize = 300;
-        // Positions as good as not measured; what is left is the information of rotations.
+        // With positions practically unmeasured, the information of rotations remains.
         const UNMEASURED_M: f64 = 1e9;
         let turns = |row: &u32| self.data.observations[*row as usize].measurement.sees_orientation();
         if self.rows.len() > FEW || !self.rows.iter().any(turns) {
@@ -241,20 +238,20 @@ impl Task<'_> {
         let rotations = Noise { position_m: UNMEASURED_M, ..noise };
         let seen = Task { prior: None, ..*self };
         let part = seen.problem(&found.estimate, rotations).normal(&found.estimate);
-        Some(unknowns_told(&found.normal, &part))
+        Some(effective_unknowns(&found.normal, &part))
     }
 
-    /// What a fit at its optimum comes to.
-    pub(super) fn finish(&self, found: Found, noise: Noise, source: NoiseSource) -> Result<Fitted> {
+    /// The result of a fit at its optimum, with its information in the minimal basis where possible.
+    pub(super) fn finish(&self, found: OngoingFit, noise: Noise, source: NoiseSource) -> Result<Fitted> {
         let mut found = found;
         let mut normal = self.problem(&found.estimate, noise).normal(&found.estimate);
-        // The optimum moved with the last noise.
+        // The last change of the noise moved the optimum.
         if predicted_reduction(&normal) > self.options.solver.decrement * normal.mean_square() {
             let start = found.estimate.clone();
-            found.follow(self.minimize(&self.problem(&start, noise), start, &self.options.solver));
+            found.update(self.minimize(&self.problem(&start, noise), start, &self.options.solver));
             normal = self.problem(&found.estimate, noise).normal(&found.estimate);
         }
-        let Found { mut estimate, mut report, .. } = found;
+        let OngoingFit { mut estimate, mut report, .. } = found;
         if !normal.cost.is_finite() {
             return Err(Error::new(
                 ErrorKind::Solver,
@@ -272,7 +269,7 @@ impl Task<'_> {
         Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
     }
 
-    /// One fit; with weights it goes straight to all rows, since it begins near their optimum.
+    /// One fit. With weights it begins near the optimum, and on all rows.
     pub(super) fn fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
         if self.weights.is_some() {
             return self.minimize(&self.problem(&start, noise), start, &self.options.solver);
@@ -280,18 +277,18 @@ impl Task<'_> {
         fit_screws(self.data, self.packed, self.rows, start, noise, self.length_m, self.prior, self.options)
     }
 
-    /// Minimises by the formulation of the options.
+    /// Minimises with the formulation of the options.
     fn minimize(&self, problem: &Problem<'_>, start: Estimate, options: &Options) -> Minimum {
         (self.options.formulation.minimize)(problem, start, options)
     }
 
-    /// What is free.
+    /// The free parameters.
     fn free(&self, estimate: &Estimate) -> Vec<Parameter> {
         let joints = (self.options.formulation.joint_parameters)(&estimate.kinds);
         free_parameters(estimate, self.data, self.rows, joints)
     }
 
-    /// The problem of these rows with these weights.
+    /// The problem of these rows and weights.
     pub(super) fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
         let free = self.free(estimate);
         let problem = Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m);
@@ -302,13 +299,13 @@ impl Task<'_> {
         }
     }
 
-    /// Whether a position error is more than what a robot's gears and links leave.
+    /// [`is_suspicious`] for this robot.
     pub(super) fn is_suspicious(&self, rms_m: f64) -> bool {
         is_suspicious(rms_m, self.length_m)
     }
 
-    /// Further starts, when what the fit leaves is more than a robot's own errors: random screws around the registered ones, on a
-    /// sample of the rows. Returns a start that ends clearly lower, if one does, and how many were tried.
+    /// Further starts if the error suggests a local minimum: random screws around the registered ones, on a subsample. Returns a clearly
+    /// better start, if one was found, and the number of starts.
     fn restart(
         &self,
         registered: &Estimate,
@@ -347,9 +344,7 @@ impl Task<'_> {
 
     /// Root mean square distance from prediction to measurement, metres.
     fn position_rms(&self, estimate: &Estimate) -> f64 {
-        let errors = row_errors(self.data, self.packed, self.rows, estimate);
-        let sum: f64 = errors.iter().map(|e| e.position_m.norm_squared()).sum();
-        (sum / errors.len().max(1) as f64).sqrt()
+        position_rms_m(&row_errors(self.data, self.packed, self.rows, estimate))
     }
 
     /// The estimate with every axis tilted by about `scale` radians and shifted by as much of the arm's length.

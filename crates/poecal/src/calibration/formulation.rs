@@ -1,4 +1,4 @@
-//! Another way to write the fit and to minimise it: given from outside, for comparison.
+//! Formulations: other parameterisations, residuals and methods, given from outside for comparison.
 
 use crate::estimate::Estimate;
 use crate::measurement::PoseResidual;
@@ -7,14 +7,13 @@ use crate::problem::Problem;
 use crate::robot::JointKind;
 use crate::solve::{Normal, Options, Summary, minimize};
 
-/// What one minimisation gives: the state, its normal information, and what was done.
+/// Result of one minimisation: estimate, normal information, summary.
 pub type Minimum = (Estimate, Normal, Summary);
 
-/// How a formulation minimises a problem from a start.
+/// Minimises a problem from a start.
 pub type Minimize = fn(&Problem<'_>, Estimate, &Options) -> Minimum;
 
-/// A way to write the unknowns of the joints and the errors of measured frames, and to minimise. What is delivered is judged in the
-/// minimal basis, whatever the way.
+/// Parameterisation of the joints, residual of measured frames, and method. The result is always judged in the minimal basis.
 ///
 /// ```
 /// use poecal::{Formulation, JointKind};
@@ -24,17 +23,17 @@ pub type Minimize = fn(&Problem<'_>, Estimate, &Options) -> Minimum;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Formulation {
-    /// Its words in `calibration.json`.
+    /// Its description in `calibration.json`.
     pub words: FormulationWords,
-    /// The unknowns of joints of some kinds, in the order of the chain.
+    /// Parameters of joints of these kinds, in the order of the chain.
     pub joint_parameters: fn(&[JointKind]) -> Vec<Parameter>,
-    /// Residual of measured frames, if not at the target.
+    /// Residual of measured frames; `None`: at the target.
     pub pose_residual: Option<&'static dyn PoseResidual>,
     /// Minimises a problem from a start.
     pub minimize: Minimize,
 }
 
-/// What a fit says of its formulation.
+/// Description of a formulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FormulationWords {
     /// Parameterisation of joint errors.
@@ -43,7 +42,7 @@ pub struct FormulationWords {
     pub pose_residual: &'static str,
     /// Method of the solver.
     pub method: &'static str,
-    /// What that does to the result.
+    /// Its effect on the result.
     pub note: Option<&'static str>,
 }
 
@@ -59,8 +58,7 @@ impl Default for FormulationWords {
 }
 
 impl Default for Formulation {
-    /// Each screw moves as a rigid body in the minimal basis (lou2009 16 to 18), errors of frames are written at the target, steps are
-    /// damped.
+    /// Each screw moves as a rigid body in the minimal basis (lou2009 16 to 18), residuals of frames are at the target, steps are damped.
     fn default() -> Self {
         Formulation {
             words: FormulationWords::default(),

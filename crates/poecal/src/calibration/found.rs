@@ -1,4 +1,4 @@
-//! What a fit comes to.
+//! Result of a fit.
 
 use super::NoiseSource;
 use crate::estimate::Estimate;
@@ -6,14 +6,14 @@ use crate::measurement::Noise;
 use crate::problem::Layout;
 use crate::solve::{Normal, Summary, Termination};
 
-/// The minimisation: steps, end, convergence.
+/// Report of the minimisation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverReport {
     /// Iterations of the full fit, re-weighted rounds included.
     pub iterations: usize,
-    /// Why it ended.
+    /// Reason of its end.
     pub termination: Termination,
-    /// Further starts that were tried.
+    /// Number of further starts.
     pub restarts: usize,
     /// Mean square whitened residual by iteration.
     pub trace: Vec<f64>,
@@ -22,15 +22,15 @@ pub struct SolverReport {
     pub joint_offsets: Option<Vec<f64>>,
 }
 
-/// A fit under way.
-pub(super) struct Found {
+/// A fit in progress.
+pub(super) struct OngoingFit {
     pub(super) estimate: Estimate,
     pub(super) normal: Normal,
     pub(super) report: SolverReport,
 }
 
-impl Found {
-    /// What one minimisation found.
+impl OngoingFit {
+    /// Begins with one minimisation.
     pub(super) fn new((estimate, normal, summary): (Estimate, Normal, Summary)) -> Self {
         let report = SolverReport {
             iterations: summary.iterations,
@@ -39,11 +39,11 @@ impl Found {
             trace: summary.trace,
             joint_offsets: None,
         };
-        Found { estimate, normal, report }
+        OngoingFit { estimate, normal, report }
     }
 
-    /// What one more minimisation made of it.
-    pub(super) fn follow(&mut self, (estimate, normal, summary): (Estimate, Normal, Summary)) {
+    /// Continues with another minimisation.
+    pub(super) fn update(&mut self, (estimate, normal, summary): (Estimate, Normal, Summary)) {
         (self.estimate, self.normal) = (estimate, normal);
         self.report.iterations += summary.iterations;
         self.report.termination = summary.termination;

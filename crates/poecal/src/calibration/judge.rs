@@ -1,10 +1,11 @@
-//! A finished calibration judged on measurements that it did not see.
+//! A finished calibration judged by other measurements.
 
 use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy};
-use super::expectation::{Kept, KeptPart, Promise};
-use super::promised::{InSampledRange, ROUNDING, Seen, promised};
+use super::coverage_check::{
+    CoverageCheck, InSampledRange, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING, coverage_checks,
+};
 use super::verdict::Level;
 use super::{DeviceFrameKnowledge, delivered, measurements_words, radian_m};
 use crate::error::{Error, ErrorKind, Result};
@@ -15,12 +16,12 @@ use crate::problem::MOST_UNKNOWNS;
 use crate::robot::Robot;
 use crate::start::{Registration, free_parameters, register};
 
-/// Share of the errors inside their 95 % bounds that a promise asks for at least.
+/// Least share of the errors inside their 95 % bounds.
 const INSIDE: f64 = 0.8;
-/// Most times the expected error that the error may be.
+/// Largest ratio of the error to the expected error.
 const TIMES: f64 = 2.0;
 
-/// What is judged, and what of it is found anew from the measurements that judge it.
+/// A calibration to be judged, and the parts of it to be refitted to the judging measurements.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, Subject, calibrate, judge};
@@ -37,7 +38,7 @@ const TIMES: f64 = 2.0;
 ///     noise: calibration.noise,
 ///     refit_frame: false,
 ///     refit_tool: false,
-///     promise: None,
+///     uncertainty: None,
 /// };
 /// let judgement = judge(&subject, &made.data)?;
 /// assert!(judgement.calibrated.position_mm.max < 1e-6);
@@ -50,33 +51,33 @@ pub struct Subject<'a> {
     pub calibrated: &'a Robot,
     /// The nominal robot.
     pub nominal: &'a Robot,
-    /// Where the calibration found the measuring device.
+    /// Device frame of the calibration.
     pub base_from_device: Pose,
-    /// The same for each further place that it stood at when the judging measurements were taken.
+    /// Those of further stations, in the order of the judging measurements.
     pub further_base_from_device: &'a [Pose],
     /// What was known of the device's frame.
     pub frame: DeviceFrameKnowledge,
-    /// Noise by which positions and rotations are weighted where something is found anew.
+    /// Noise by which positions and rotations are weighted in a refit.
     pub noise: Noise,
-    /// Find the device's frame anew.
+    /// Refit the device frame.
     pub refit_frame: bool,
-    /// Find every target that was measured anew.
+    /// Refit every measured target.
     pub refit_tool: bool,
-    /// What the calibration promises of its predictions. Of what is found anew it promises what the screws leave.
-    pub promise: Option<Promise<'a>>,
+    /// Predicted uncertainty of the calibration; of refitted parts, only the screws' part of it counts.
+    pub uncertainty: Option<PredictedUncertainty<'a>>,
 }
 
-/// What was found anew from the judging measurements themselves.
+/// A part that was refitted to the judging measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Refitted {
-    /// Where the measuring device stands.
+    /// Device frame.
     DeviceFrame,
-    /// The targets' places, and their orientations where measured.
+    /// Places of the targets, and their orientations where measured.
     Tool,
 }
 
-/// How good a calibration is on measurements that it did not see.
+/// Errors of a calibration on other measurements.
 ///
 /// ```
 /// use poecal::calibration::{Judgement, ModelAccuracy, Statistic};
@@ -89,21 +90,20 @@ pub enum Refitted {
 pub struct Judgement {
     /// Number of measurements.
     pub count: usize,
-    /// What was found anew from them.
+    /// Refitted parts.
     pub refitted: Vec<Refitted>,
     /// Errors of the calibrated model.
     pub calibrated: ModelAccuracy,
-    /// Errors of the nominal screws with the same found anew; none unless that takes in all that the nominal model cannot know, the
-    /// tool and a device frame that was unknown.
+    /// Errors of the nominal model with the same refit; `None` unless tool and an unknown device frame were both refitted.
     pub nominal: Option<ModelAccuracy>,
-    /// Whether the errors are what the calibration promised, if it promised something.
-    pub promised: Option<Kept>,
-    /// The same of the rows inside the range that was sampled for the calibration; none if there is no such row, or no promise.
+    /// Coverage of the predicted bounds, if there are any.
+    pub promised: Option<CoverageCheck>,
+    /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
     pub in_sampled_range: Option<InSampledRange>,
 }
 
-/// Judges a calibration by measurements. The readings must be those of the robot, and every target must be one of its targets unless
-/// the tool is found anew.
+/// Judges a calibration by measurements: theory.md §9, *Coverage*. The readings must be those of the robot, and every target one of its
+/// targets unless the tool is refitted.
 ///
 /// # Errors
 /// [`ErrorKind::Problem`] if there are fewer measured numbers than unknowns to be refitted, or none at all.
@@ -118,18 +118,18 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     }
     let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
     let nominal = (frame_is_common && subject.refit_tool)
-        .then(|| model_accuracy(&seen(subject, subject.nominal, data).errors));
-    let seen = seen(subject, subject.calibrated, data);
-    let promised = subject
-        .promise
-        .and_then(|promise| promised(&promise, subject.calibrated, subject.refit_tool, data, &seen));
+        .then(|| model_accuracy(&judged_rows(subject, subject.nominal, data).errors));
+    let rows = judged_rows(subject, subject.calibrated, data);
+    let promised = subject.uncertainty.and_then(|predicted| {
+        coverage_checks(&predicted, subject.calibrated, subject.refit_tool, data, &rows)
+    });
     let (promised, in_sampled_range) = promised.map_or((None, None), |(all, some)| (Some(all), some));
-    let calibrated = model_accuracy(&seen.errors);
+    let calibrated = model_accuracy(&rows.errors);
     Ok(Judgement { count: data.len(), refitted, calibrated, nominal, promised, in_sampled_range })
 }
 
-/// Joint values, and the errors of a robot's screws with device frame and targets found anew as asked.
-fn seen(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> Seen {
+/// Errors of a robot's predictions, with device frame and targets refitted as asked.
+fn judged_rows(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> JudgedRows {
     let packed = Packed::of(robot, data);
     let rows: Vec<u32> = data.all_rows();
     let mut estimate = delivered(robot, data);
@@ -154,10 +154,10 @@ fn seen(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> Seen {
         free = free_parameters(&registration, &rows);
     }
     let errors = row_errors(data, &packed, &rows, &estimate);
-    Seen { packed, estimate, errors, free }
+    JudgedRows { packed, estimate, errors, free }
 }
 
-/// Refuses measurements that cannot determine what is found anew, and none at all.
+/// Refuses measurements that cannot determine the refitted unknowns, and empty ones.
 fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     let frame = if subject.refit_frame { 6 * data.station_count() } else { 0 };
     let targets = data.frames(&data.all_rows()).into_iter().map(|is_frame| if is_frame { 6 } else { 3 });
@@ -186,9 +186,8 @@ fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
 }
 
 impl Judgement {
-    /// Why the measurements do not show the calibration to be as good as this; none if they do. *Good* is a promise kept by all rows,
-    /// *inside the sampled range* one kept by those inside it: at least 80 % of the errors inside their 95 % bounds, and the error (RMS) at most
-    /// twice the expected one.
+    /// Why the measurements do not confirm this level; `None` if they do. *Good* requires it of all rows, *use inside the sampled range* of
+    /// the rows inside it: at least 80 % of the errors inside their 95 % bounds, and the error (RMS) at most twice the expected one.
     #[must_use]
     pub fn falls_short(&self, required: Level) -> Option<String> {
         let (which, found) = match required {
@@ -211,8 +210,8 @@ impl Judgement {
             .map(|(part, found)| ("rotation", part, found.rms, "deg"));
         let position = ("position", kept.position_mm, errors.position_mm.rms, "mm");
         std::iter::once(position).chain(rotation).find_map(|(what, part, rms, unit)| {
-            let KeptPart { expected_rms, inside_bound95 } = part;
-            // Of exact data nothing but rounding is left.
+            let PartCoverage { expected_rms, inside_bound95 } = part;
+            // Exact data leave only rounding.
             if rms <= ROUNDING * 1e6 {
                 None
             } else if inside_bound95 < INSIDE {

@@ -1,8 +1,8 @@
-//! From a robot and measurements to a calibrated robot: the steps by name, and nothing computed here.
+//! From a robot and measurements to a calibrated robot: the steps by name.
 
 mod accuracy;
+mod coverage_check;
 mod doubts;
-mod expectation;
 mod fit;
 mod formulation;
 mod found;
@@ -11,7 +11,6 @@ mod moves;
 mod noise;
 mod noise_doubts;
 mod options;
-mod promised;
 mod repeatability;
 mod result;
 mod robust;
@@ -23,14 +22,13 @@ mod trust;
 mod verdict;
 
 pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
-pub use expectation::{Kept, KeptPart, Promise};
+pub use coverage_check::{CoverageCheck, InSampledRange, PartCoverage, PredictedUncertainty};
 pub use fit::fit_screws;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
 pub use found::SolverReport;
 pub use judge::{Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
 pub use options::{CalibrationOptions, DeviceFrameKnowledge};
-pub use promised::InSampledRange;
 pub use repeatability::{RepeatedPose, repeatability};
 pub use result::{CalibratedStation, CalibratedTarget, Calibration};
 pub(crate) use robust::RowInfluence;
@@ -60,10 +58,10 @@ pub fn calibrate(robot: &Robot, data: &Dataset, options: &CalibrationOptions) ->
     calibrate_with_progress(robot, data, options, &mut |_| {})
 }
 
-/// What a calibration is doing.
+/// A step of a calibration, for progress messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Finding the device's frame and the targets.
+    /// Fitting device frame and targets.
     Registration,
     /// Fitting the screws.
     Fit,
@@ -75,7 +73,7 @@ impl Stage {
     /// All stages in order.
     pub const ALL: [Stage; 3] = [Stage::Registration, Stage::Fit, Stage::Analysis];
 
-    /// What to tell a user.
+    /// Message for users.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -86,7 +84,7 @@ impl Stage {
     }
 }
 
-/// [`calibrate`], telling each stage as it begins.
+/// [`calibrate`], reporting each stage as it begins.
 ///
 /// # Errors
 /// As [`calibrate`].
@@ -106,7 +104,7 @@ pub fn calibrate_with_progress(
     Ok(threads::in_pool(rows, || prepared.assess(registered, fit)))
 }
 
-/// The data with the errors of measured frames written in this way.
+/// The data with the residual of measured frames replaced.
 fn written<'a>(data: &'a Dataset, pose_residual: Option<&'static dyn PoseResidual>) -> Cow<'a, Dataset> {
     if data.pose_residual == pose_residual {
         return Cow::Borrowed(data);

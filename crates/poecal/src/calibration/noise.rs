@@ -1,4 +1,4 @@
-//! The noise by which residuals are whitened, where nobody has stated it.
+//! Noise by which residuals are whitened: stated or estimated.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use super::CalibrationOptions;
 use crate::estimate::{Estimate, Packed, map_squares};
 use crate::measurement::{Dataset, Noise, Observation};
 
-/// Where the noise came from.
+/// Source of the noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NoiseSource {
@@ -16,17 +16,17 @@ pub enum NoiseSource {
     Rows,
     /// It was estimated from the residuals of the fit.
     Estimated,
-    /// The residual is rounding error: the measurements are exact, and the noise is only what weighted them.
+    /// The residuals are rounding errors: the measurements are exact, and the noise only weights them.
     Exact,
 }
 
-/// Below this (1 nm, 1 nrad) residuals are rounding, and their ratio says nothing.
+/// Below this (1 nm, 1 nrad) residuals are rounding, and their ratio means nothing.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// Residuals, beyond a part's own unknowns, that it takes to estimate a noise.
+/// Least number of residuals, beyond a part's own unknowns, for an estimate of its noise.
 const REDUNDANT: f64 = 6.0;
 
-/// The stated noise, or 1 mm and 1 mrad to start with.
+/// The stated noise; otherwise 1 mm and 1 mrad to begin with.
 pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Noise, NoiseSource) {
     let source = if options.sigma_position_m.is_some() && options.sigma_rotation_rad.is_some() {
         NoiseSource::Given
@@ -44,7 +44,7 @@ pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
     };
     let mut noise = Noise { position_m: 1e-3, rotation_rad: 1e-3 };
     if source == NoiseSource::Rows {
-        // What stands for rows that state none, of which there are none: the usual one, for people.
+        // No row uses this; it is the value that users see.
         let usual = |of: fn(&Observation) -> Option<f64>, other: f64| {
             let stated: Vec<f64> = data.observations.iter().filter_map(of).collect();
             let squares: f64 = stated.iter().map(|sigma| sigma * sigma).sum();
@@ -66,7 +66,7 @@ pub(super) fn is_stated(data: &Dataset, options: &CalibrationOptions) -> [bool; 
     ]
 }
 
-/// A noise with the parts that the user has stated put in their place.
+/// Estimated noise, with the parts that the user stated in their place.
 pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
     Noise {
         position_m: options.sigma_position_m.unwrap_or(found.position_m),
@@ -74,9 +74,8 @@ pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
     }
 }
 
-/// Position and rotation noise as the residuals of an estimate show them, each component's variance separately, with the unknowns
-/// taken off in proportion. What a row states is left out; a part that was hardly measured keeps `before`. `None` if the residuals are
-/// only rounding. theory.md §6 (34).
+/// Noise of positions and of rotations from the residuals of an estimate, each variance corrected for the unknowns: theory.md §6 (34). Rows
+/// that state their noise do not count; a part with few measurements keeps `before`. `None` if the residuals are only rounding.
 #[must_use]
 pub fn estimate_noise(
     data: &Dataset,
@@ -84,7 +83,7 @@ pub fn estimate_noise(
     rows: &[u32],
     estimate: &Estimate,
     unknowns: f64,
-    told_by_rotations: Option<f64>,
+    determined_by_rotations: Option<f64>,
     before: Noise,
 ) -> Option<Noise> {
     let squares = map_squares(data, packed, rows, estimate, |_, squares| squares);
@@ -102,18 +101,18 @@ pub fn estimate_noise(
             }
         }
     }
-    // Each target's orientation (3 unknowns) is told by rotations alone; all other unknowns are shared in proportion.
+    // Each target's orientation (3 unknowns) is determined by rotations alone; all other unknowns are shared in proportion.
     let turned = 3 * data.frames(rows).iter().filter(|&&is_frame| is_frame).count();
     let total = (position.count + rotation.count + stated) as f64;
     let others = ((unknowns - turned as f64).max(0.0) / (total - turned as f64).max(1.0)).min(1.0);
-    let (position_m, rotation_rad) = match told_by_rotations {
-        Some(told) if stated == 0 => {
-            (position.less(unknowns - told, 0.0), rotation.less(told, turned as f64))
+    let (position_m, rotation_rad) = match determined_by_rotations {
+        Some(of_rotations) if stated == 0 => {
+            (position.less(unknowns - of_rotations, 0.0), rotation.less(of_rotations, turned as f64))
         }
         _ => (position.deviation(0, others), rotation.deviation(turned, others)),
     };
-    let mut told = [position_m, rotation_rad].into_iter().flatten().peekable();
-    if told.peek().is_some() && told.all(|deviation| deviation < ROUNDING) {
+    let mut estimated = [position_m, rotation_rad].into_iter().flatten().peekable();
+    if estimated.peek().is_some() && estimated.all(|deviation| deviation < ROUNDING) {
         return None;
     }
     Some(Noise {
@@ -122,7 +121,7 @@ pub fn estimate_noise(
     })
 }
 
-/// The residuals that one noise explains.
+/// Residuals of one noise.
 #[derive(Default)]
 struct Share {
     squares: f64,
@@ -130,14 +129,13 @@ struct Share {
 }
 
 impl Share {
-    /// Their standard deviation with so many unknowns taken off; `None` where too little is left beyond `own` to tell.
+    /// Standard deviation, corrected for so many unknowns; `None` if too few residuals remain beyond `own`.
     fn less(&self, unknowns: f64, own: f64) -> Option<f64> {
         let redundancy = (self.count as f64 - unknowns).max(1.0);
         (self.count as f64 - own >= REDUNDANT).then(|| (self.squares / redundancy).sqrt())
     }
 
-    /// Their standard deviation with `own` unknowns and a share `others` of the rest taken off; `None` where too little is left to
-    /// tell.
+    /// Standard deviation, corrected for `own` unknowns and a share `others` of the rest; `None` if too few residuals remain.
     fn deviation(&self, own: usize, others: f64) -> Option<f64> {
         let left = self.count.saturating_sub(own) as f64;
         let redundancy = (left * (1.0 - others)).max(1.0);

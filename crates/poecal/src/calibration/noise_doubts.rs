@@ -1,26 +1,24 @@
-//! Stated noise against what the fit leaves.
+//! Stated noise compared with the residuals.
 
 use std::cmp::Ordering;
 
 use crate::uncertainty::{Part, Remainder};
 
-/// What speaks against the stated noise.
+/// Contradiction between residuals and stated noise.
 pub(super) struct NoiseDoubt {
-    /// In a sentence.
+    /// As a sentence.
     pub(super) statement: String,
-    /// Whether what the fit leaves is so much less or more that the noise cannot be in the unit that it is read in.
+    /// Whether the ratio is so large or small that the noise must be in another unit.
     pub(super) is_absurd: bool,
 }
 
-/// Times that residuals may be larger than the noise of a good instrument: robots leave that. Times that they may be smaller: data sheets
-/// are careful.
+/// Largest ratio of residuals to stated noise: robots explain that. Largest ratio of stated noise to residuals: data sheets are cautious.
 const MORE: f64 = 30.0;
 const LESS: f64 = 4.0;
-/// Correlation of what is left in rows that follow each other from which on it is said.
+/// Correlation of residuals of consecutive rows above which it is reported.
 const IN_TIME: f64 = 0.5;
 
-/// What of the stated noise the residuals contradict, and whether they hang together in time (theory.md §9 (41)): by the correlation of those
-/// that follow each other.
+/// Contradictions between residuals and stated noise, and correlation in time (theory.md §9 (41)).
 pub(super) fn noise_doubts(remainder: &Remainder, lag_one: Option<f64>) -> Vec<NoiseDoubt> {
     let mut doubts: Vec<NoiseDoubt> = [
         ("position", &remainder.position, 1e3, "mm"),
@@ -44,7 +42,7 @@ pub(super) fn noise_doubts(remainder: &Remainder, lag_one: Option<f64>) -> Vec<N
 fn of_part(what: &str, part: &Part, unit: f64, name: &str) -> Option<NoiseDoubt> {
     let (variance, square) = part.stated?;
     let (stated, ratio) = (variance.sqrt(), square.sqrt());
-    // Exact data with a stated noise are a test, and no mistake.
+    // Exact data with a stated noise are a test, not a mistake.
     if ratio < 1e-6 {
         return None;
     }

@@ -1,4 +1,4 @@
-//! How to calibrate.
+//! Options of a calibration.
 
 use crate::robot::Tolerance;
 use crate::solve;
@@ -14,14 +14,14 @@ use super::{Formulation, Robust};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum DeviceFrameKnowledge {
-    /// The device stands anywhere: its frame is found (and is exactly redundant with the screws, docs/theory.md §8).
+    /// The device frame is unknown and is fitted (exactly redundant with the screws, docs/theory.md §8).
     #[default]
     Unknown,
     /// Measurements are in the robot's base frame, as in lou2009.
     Base,
 }
 
-/// How to calibrate.
+/// Options of a calibration.
 ///
 /// ```
 /// use poecal::calibration::CalibrationOptions;
@@ -36,22 +36,22 @@ pub struct CalibrationOptions {
     pub sigma_position_m: Option<f64>,
     /// Standard deviation of each measured rotation component, radians; estimated from the data if absent.
     pub sigma_rotation_rad: Option<f64>,
-    /// Share of the configurations held out where the data do not say (0 to below 1).
+    /// Share of the configurations held out, 0 to below 1, if rows do not state their set.
     pub held_out: f64,
-    /// Seed of that choice and of restarts.
+    /// Seed of that choice and of further starts.
     pub seed: u64,
     /// Parameterisation, residual and method of the fit. All but the default are for comparison.
     pub formulation: Formulation,
-    /// Prior: the standard deviations of the axes from nominal, for a joint whose model states its own tolerance that one. It decides
-    /// where the measurements determine little. `None` is no prior. Other formulations than the default have none.
+    /// Prior: standard deviations of the axes from nominal; a joint's own tolerance precedes. It decides where the measurements determine
+    /// little. `None` is no prior. Formulations other than the default have none.
     pub tolerance: Option<Tolerance>,
     /// How to treat outliers.
     pub robust: Robust,
     /// Options of the solver.
     pub solver: solve::Options,
-    /// Whether mistakes in the input are looked for where the fit leaves room for them; that can take some tenths of a second.
+    /// Whether mistakes in the input are searched for where the residuals leave room for them; takes some tenths of a second.
     pub diagnose: bool,
-    /// Most further starts if the fit seems to have converged to a local minimum.
+    /// Most further starts if the fit may have converged to a local minimum.
     pub restarts: usize,
 }
 
@@ -74,9 +74,9 @@ impl Default for CalibrationOptions {
 }
 
 impl CalibrationOptions {
-    /// The tolerance that counts in the fit: none with formulations that are there for comparison.
+    /// The tolerance of the fit: `None` with formulations for comparison.
     #[must_use]
-    pub(in crate::calibration) fn believed(&self) -> Option<Tolerance> {
+    pub(in crate::calibration) fn tolerance_in_fit(&self) -> Option<Tolerance> {
         self.tolerance.filter(|_| self.formulation == Formulation::default())
     }
 }

@@ -1,4 +1,4 @@
-//! Configurations that were measured several times: how well the robot came back, and how far from where a model says.
+//! Pose accuracy and repeatability of configurations that were measured several times (ISO 9283).
 
 use nalgebra::Vector3;
 
@@ -6,11 +6,11 @@ use super::{Calibration, RowError, row_errors};
 use crate::estimate::{Estimate, turn_to_first};
 use crate::measurement::Dataset;
 
-/// Rows of one configuration from which on its scatter is stated; ISO 9283 asks for 30.
+/// Fewest rows of one configuration; ISO 9283 asks for 30.
 const ROWS: usize = 3;
-/// Readings (radians, metres) that differ by no more are of one configuration: what encoders of a robot that came back differ by.
+/// Readings (radians, metres) within this belong to one configuration: encoder differences of a robot that returned.
 const SAME: f64 = 1e-4;
-/// Standard deviations that are added to the mean distance, as in ISO 9283.
+/// Standard deviations added to the mean distance, as in ISO 9283.
 const DEVIATIONS: f64 = 3.0;
 
 /// One target in one configuration that was measured at least three times (theory.md §9 (46)).
@@ -24,15 +24,15 @@ const DEVIATIONS: f64 = 3.0;
 pub struct RepeatedPose {
     /// Its rows.
     pub rows: Vec<u32>,
-    /// Length of the mean of what was measured less what the nominal, registered and calibrated model predict, metres.
+    /// Length of the mean error of the nominal, registered and calibrated model: A of theory.md §9 (46), metres.
     pub accuracy_m: [f64; 3],
-    /// Mean distance of the measured positions from their mean, and three standard deviations of it, metres; by the calibrated model's
-    /// predictions, where readings differ.
+    /// Mean distance of the position errors from their mean, plus three standard deviations: R of theory.md §9 (46), metres, by the
+    /// calibrated model.
     pub repeatability_m: f64,
 }
 
-/// Every configuration and target with three rows or more, in the order measured. Readings that differ by less than 0.0001 rad or 0.1 mm are
-/// of one configuration; what they differ by is allowed for, since errors are taken from each row's own prediction.
+/// Every target and configuration with three rows or more, in the order measured: theory.md §9 (46). Readings within 0.0001 rad or 0.1 mm
+/// are one configuration; errors are from each row's own prediction, which allows for the difference.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate, repeatability};
@@ -64,7 +64,7 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
     poses.collect()
 }
 
-/// Rows of one target whose readings are those of the group's first row, at least [`ROWS`] each.
+/// Rows of one target and configuration (the readings of the group's first row), at least [`ROWS`].
 fn groups(data: &Dataset) -> Vec<Vec<u32>> {
     data.alike(&data.all_rows(), SAME, ROWS, |row| data.observations[row as usize].target)
 }
@@ -74,7 +74,7 @@ fn mean(errors: &[RowError]) -> Vector3<f64> {
     errors.iter().map(|error| error.position_m).sum::<Vector3<f64>>() / errors.len().max(1) as f64
 }
 
-/// Mean distance from the mean, and three standard deviations of that distance.
+/// Mean distance from the mean, plus three standard deviations of it: R of theory.md §9 (46).
 fn scatter(errors: &[RowError]) -> f64 {
     let middle = mean(errors);
     let distances: Vec<f64> = errors.iter().map(|error| (error.position_m - middle).norm()).collect();

@@ -1,4 +1,4 @@
-//! What a calibration comes to.
+//! Result of a calibration.
 
 use std::sync::Arc;
 
@@ -30,13 +30,13 @@ use crate::threads;
 pub struct CalibratedTarget {
     /// Its name; `None` is the tip itself.
     pub name: Option<String>,
-    /// Whether its orientation was measured; if not, only the position means something.
+    /// Whether its orientation was measured; otherwise only the position means something.
     pub is_frame: bool,
     /// `tip_from_target` in the calibrated robot.
     pub tip_from_target: Pose,
 }
 
-/// A place that the measuring device stood at, as calibrated.
+/// A station of the device, as calibrated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibratedStation {
     /// Its name, if the measurements name it.
@@ -69,9 +69,9 @@ pub struct Calibration {
     pub frame: DeviceFrameKnowledge,
     /// How the fit was written and minimised.
     pub formulation: Formulation,
-    /// `base_from_device`; of the first place, if the device stood at several.
+    /// `base_from_device`, of the first station.
     pub base_from_device: Pose,
-    /// All places that the device stood at, in the order of [`Dataset::stations`]; at least one.
+    /// All stations, in the order of [`Dataset::stations`]; at least one.
     pub stations: Vec<CalibratedStation>,
     /// The three models.
     pub models: Models,
@@ -81,19 +81,19 @@ pub struct Calibration {
     pub solver: SolverReport,
     /// Which unknowns the measurements determine.
     pub identifiability: Identifiability,
-    /// How far the result can be trusted.
+    /// Uncertainty, cross-validation, corrections.
     pub trust: Trust,
-    /// Whether it is good to use, and where.
+    /// Verdict with its reasons.
     pub verdict: Verdict,
     /// Noise by which residuals were whitened where a row stated none.
     pub noise: Noise,
-    /// Where that noise came from.
+    /// Source of that noise.
     pub noise_source: NoiseSource,
-    /// What was done about outliers, and what the fit says of each row.
+    /// Outliers, and the judgement of each row.
     pub robustness: Robustness,
-    /// What makes the result doubtful, a sentence each.
+    /// Warnings, a sentence each.
     pub warnings: Vec<String>,
-    /// Mistakes that the measurements show, fitted and held out: named, not corrected.
+    /// Mistakes found in all rows: named, not corrected.
     pub diagnosis: Vec<Diagnosis>,
     /// Rows fitted.
     pub fit_rows: Vec<u32>,
@@ -104,7 +104,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Joint values of measurements: those at hand, if they are the ones that were calibrated by.
+    /// Joint values of measurements; the stored ones for the data of the calibration.
     pub(crate) fn packed(&self, data: &Dataset) -> Arc<Packed> {
         if self.packed.is_of(&self.nominal, data) {
             return Arc::clone(&self.packed);
@@ -112,16 +112,15 @@ impl Calibration {
         Arc::new(Packed::of(&self.nominal, data))
     }
 
-    /// The calibrated robot with the named targets in its tip frame, as models of it are written.
+    /// The calibrated robot with the named targets in its tip frame, as written to model files.
     #[must_use]
     pub fn robot_with_targets(&self) -> Robot {
         let named = |target: &CalibratedTarget| Some((target.name.clone()?, target.tip_from_target));
         Robot { targets: self.targets.iter().filter_map(named).collect(), ..self.robot.clone() }
     }
 
-    /// Solves the least-squares problem of a finished calibration once more, from the nominal model to the optimum (where the device stands
-    /// anywhere, from the registered one): packing of the readings and minimisation, with the noise that was found and all fitted rows at
-    /// their full weight. It is what solvers are compared by.
+    /// Solves the least-squares problem of a finished calibration again, from the nominal (with an unknown device frame, the registered)
+    /// model to the optimum: packing and minimisation, with the final noise and all fitted rows at full weight. For comparisons of solvers.
     #[must_use]
     pub fn solve_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
         threads::in_pool(data.len(), || self.solved_again(data, options))
@@ -135,14 +134,15 @@ impl Calibration {
             DeviceFrameKnowledge::Unknown => self.models.registered.clone(),
         };
         let base_free = self.frame == DeviceFrameKnowledge::Unknown;
-        let prior = options.believed().map(|tolerance| Prior::new(&self.nominal, tolerance, base_free));
+        let prior =
+            options.tolerance_in_fit().map(|tolerance| Prior::new(&self.nominal, tolerance, base_free));
         let looseness = |prior: &Prior| prior.looseness(&self.models.calibrated);
         let prior = prior.as_ref().map(|prior| (prior, 1.0 / looseness(prior)));
         fit_screws(data, &packed, &self.fit_rows, start, self.noise, length_m, prior, options).2
     }
 }
 
-/// The places that the device stood at.
+/// The stations of the device.
 pub(super) fn stations(data: &Dataset, estimate: &Estimate) -> Vec<CalibratedStation> {
     let of = |station| CalibratedStation {
         name: data.stations.get(station).cloned().flatten(),
@@ -151,8 +151,8 @@ pub(super) fn stations(data: &Dataset, estimate: &Estimate) -> Vec<CalibratedSta
     (0..data.station_count()).map(of).collect()
 }
 
-/// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (with points alone its
-/// orientation keeps the nominal relation to the last joint); otherwise the tip keeps its whole nominal relation to the last joint.
+/// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (measured as points, with its
+/// nominal orientation to the last joint); otherwise the tip keeps its nominal pose on the last joint.
 pub(super) fn place_tip(
     robot: &Robot,
     data: &Dataset,

@@ -1,4 +1,4 @@
-//! Which rows are fitted and which are held out.
+//! Training and held-out rows.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -8,15 +8,14 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::{Dataset, Set};
 use crate::simulate::random;
 
-/// The option that names measurements to judge by.
+/// Option that names measurements for validation.
 const VALIDATE: &str = "--validate";
 
-/// Rows to fit and rows held out, each in the order of the data. Where a row states its set, that holds (and rows that state none
-/// are then fitted); otherwise a seeded share of the *configurations* is held out, so that several targets seen in one
-/// configuration never stand on both sides.
+/// Training and held-out rows, each in the order of the data. Sets stated by rows hold (rows without one are fitted); otherwise a seeded
+/// share of the *configurations* is held out, so that targets of one configuration are never in both sets.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] if the share is not in `[0, 1)`, [`ErrorKind::Problem`] if nothing is left to fit.
+/// [`ErrorKind::Option`] if the share is not in `[0, 1)`, [`ErrorKind::Problem`] if no row is left to fit.
 pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u32>, Vec<u32>)> {
     if !(0.0..1.0).contains(&options.held_out) {
         return Err(Error::new(
@@ -33,7 +32,7 @@ pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u
     } else {
         random_share(data, options)
     };
-    let (kept_back, fitted): (Vec<u32>, Vec<u32>) = (0..count).partition(|&row| held_out[row as usize]);
+    let (held_out_count, fitted): (Vec<u32>, Vec<u32>) = (0..count).partition(|&row| held_out[row as usize]);
     if fitted.is_empty() {
         return Err(Error::new(
             ErrorKind::Problem,
@@ -41,14 +40,14 @@ pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u
         ));
     }
     if stated {
-        refuse_copies(data, &held_out, kept_back.len())?;
+        refuse_copies(data, &held_out, held_out_count.len())?;
     }
-    Ok((fitted, kept_back))
+    Ok((fitted, held_out_count))
 }
 
-/// Refuses rows to judge by of which half or more are fitted rows over again: their errors would promise what nobody knows.
-fn refuse_copies(data: &Dataset, held_out: &[bool], kept_back: usize) -> Result<()> {
-    // Numbers that were written in another unit come back with other last digits.
+/// Refuses held-out rows of which half or more are copies of fitted rows: their errors would be too small.
+fn refuse_copies(data: &Dataset, held_out: &[bool], held_out_count: usize) -> Result<()> {
+    // Numbers converted from another unit differ in the last digits.
     const SAME: f64 = 1e-9;
     let pose = |row: u32| data.observations[row as usize].measurement.pose();
     let is_held_out = |row: &u32| held_out[*row as usize];
@@ -68,11 +67,13 @@ fn refuse_copies(data: &Dataset, held_out: &[bool], kept_back: usize) -> Result<
                 .filter_map(|row| Some((row, *fitted.iter().find(|&&other| is_copy(row, other))?))),
         );
     }
-    let Some(&(row, other)) = copies.first().filter(|_| 2 * copies.len() >= kept_back) else { return Ok(()) };
+    let Some(&(row, other)) = copies.first().filter(|_| 2 * copies.len() >= held_out_count) else {
+        return Ok(());
+    };
     Err(Error::new(
         ErrorKind::Problem,
         format!(
-            "found {} of {kept_back} held-out rows that repeat fitted rows ({} as {}), expected rows that were not fitted: judge by \
+            "found {} of {held_out_count} held-out rows that repeat fitted rows ({} as {}), expected rows that were not fitted: judge by \
              others, or fit all rows and let a share be held out (--held-out)",
             copies.len(),
             data.place(row),
@@ -81,8 +82,8 @@ fn refuse_copies(data: &Dataset, held_out: &[bool], kept_back: usize) -> Result<
     ))
 }
 
-/// Where rows state which of them are held out, a share of them has no meaning, unless it is none: then every row is fitted, but for
-/// those of `--validate`. `stated_by` is what stated it, for the message. Tells whether it is stated.
+/// Applies the stated sets. If rows state their set, `held_out` must be absent or 0; 0 fits all rows but those of `--validate`. `stated_by`
+/// names the source in the message. Returns whether sets are stated.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if a share above 0 is asked for as well.
@@ -98,7 +99,7 @@ pub fn settle_sets(data: &mut Dataset, held_out: Option<f64>, stated_by: &str) -
             );
             return Err(Error::new(ErrorKind::Option, message));
         }
-        // Beside --validate nothing else is held out anyway.
+        // With --validate nothing else is held out.
         Some(_) if stated_by != VALIDATE => {
             data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
         }
@@ -107,9 +108,9 @@ pub fn settle_sets(data: &mut Dataset, held_out: Option<f64>, stated_by: &str) -
     Ok(true)
 }
 
-/// A seeded share of the configurations (rows with the same readings, but for what encoders jitter by, are one).
+/// A seeded share of the configurations (rows whose readings agree within encoder jitter are one).
 fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
-    // Named by its first row, so that the choice does not depend on the values of the readings.
+    // Keyed by the first row, so that the choice does not depend on the values of the readings.
     let mut configurations = data.all_rows();
     let mut configuration = configurations.clone();
     for group in data.grouped(&configurations) {
@@ -118,7 +119,7 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     configurations.retain(|&row| configuration[row as usize] == row);
     let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
     random::shuffle(&mut generator, &mut configurations);
-    // At least one stays fitted, so that a share too large is refused for what is missing then.
+    // At least one stays fitted: a share too large is then refused by the count of numbers.
     let most = configurations.len().saturating_sub(1);
     let count = ((options.held_out * configurations.len() as f64).round() as usize).min(most);
     let mut chosen = vec![false; data.len()];

@@ -1,13 +1,13 @@
-//! Several places that the measuring device stood at: what is refused before anything is fitted.
+//! Checks of several stations before a fit.
 
 use super::{CalibrationOptions, DeviceFrameKnowledge, measurements_words};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
 
-/// Rows that a device frame is found from, at least: three points.
+/// Fewest rows that determine a device frame: three points.
 const FEWEST_ROWS: usize = 3;
 
-/// Refuses places of the device whose frame cannot be found, and several where all are said to be the base.
+/// Refuses stations whose frame cannot be determined, and several stations if measurements are in the base frame.
 pub(super) fn check_stations(
     data: &Dataset,
     [fitted, held_out]: [&[u32]; 2],

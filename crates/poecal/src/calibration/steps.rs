@@ -1,11 +1,11 @@
-//! The steps of a calibration, each from what the ones before it found.
+//! The steps of a calibration, each from the results of those before.
 
 use std::sync::Arc;
 
 use super::doubts::doubts;
 use super::fit::{self, Task};
 use super::found::Fitted;
-use super::moves::{Doubtful, FramesApart, Looked, Moved, frames_apart, moved};
+use super::moves::{ChangeSearch, FrameSearch, FramesApart, Moved, frames_apart, moved};
 use super::noise_doubts::noise_doubts;
 use super::result::{place_tip, stations};
 use super::robust::{self, RobustFit};
@@ -13,9 +13,9 @@ use super::stations::check_stations;
 use super::trust::{Finished, trust};
 use super::verdict::{Grounds, verdict};
 use super::{
-    Accuracy, Calibration, CalibrationOptions, DeviceFrameKnowledge, Kept, Level, Models, NoiseSource,
-    Promise, Robustness, Trust, delivered, estimate_noise, measurements_words, noise, radian_m, set_accuracy,
-    split_rows,
+    Accuracy, Calibration, CalibrationOptions, CoverageCheck, DeviceFrameKnowledge, Level, Models,
+    NoiseSource, PredictedUncertainty, Robustness, Trust, delivered, estimate_noise, measurements_words,
+    noise, radian_m, set_accuracy, split_rows,
 };
 use crate::analysis::{Identifiability, Setup, identifiability};
 use crate::error::{Error, ErrorKind, Result};
@@ -29,12 +29,12 @@ use crate::robot::{JointKind, Robot};
 use crate::start::{Registration, register, register_again};
 use crate::uncertainty::{PriorInformation, Remainder, View, remainder};
 
-/// By how much the noise of rotations is taken larger than it is where tool and frame are to be the best for positions.
+/// Factor on the noise of rotations where tool and frame are registered for the best positions.
 const POSITIONS_FIRST: f64 = 100.0;
-/// Share of the information of normal noise that the robust losses use.
+/// Efficiency of the robust losses under normal noise.
 const EFFICIENCY: f64 = 0.95;
 
-/// Data and rows, ready to be fitted.
+/// Data and rows, ready for a fit.
 pub(super) struct Prepared<'a> {
     robot: &'a Robot,
     data: &'a Dataset,
@@ -42,14 +42,14 @@ pub(super) struct Prepared<'a> {
     packed: Packed,
     delivered: Estimate,
     length_m: f64,
-    /// What the drawing is worth, if it counts in the fit.
+    /// Prior of the fit.
     prior: Option<Prior>,
     fit_rows: Vec<u32>,
     held_out_rows: Vec<u32>,
 }
 
 impl<'a> Prepared<'a> {
-    /// Splits the rows and packs the readings; refuses what cannot be fitted.
+    /// Splits the rows and packs the readings; refuses problems that cannot be fitted.
     pub(super) fn new(robot: &'a Robot, data: &'a Dataset, options: &'a CalibrationOptions) -> Result<Self> {
         let (fit_rows, held_out_rows) = split_rows(data, options)?;
         check_stations(data, [&fit_rows, &held_out_rows], options)?;
@@ -57,7 +57,7 @@ impl<'a> Prepared<'a> {
         let packed = Packed::of(robot, data);
         let (delivered, length_m) = (delivered(robot, data), radian_m(robot, &packed));
         let base_free = options.frame == DeviceFrameKnowledge::Unknown;
-        let prior = options.believed().map(|tolerance| Prior::new(robot, tolerance, base_free));
+        let prior = options.tolerance_in_fit().map(|tolerance| Prior::new(robot, tolerance, base_free));
         Ok(Prepared { robot, data, options, packed, delivered, length_m, prior, fit_rows, held_out_rows })
     }
 
@@ -77,7 +77,7 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// Device frame and targets with nominal screws, and the noise that this leaves, if none is stated.
+    /// Device frame and targets with nominal screws, and the noise estimated from their residuals unless stated.
     pub(super) fn register(&self) -> (Estimate, Noise, NoiseSource) {
         let (mut noise, source) = noise::first_guess(self.data, self.options);
         let (mut registered, _) = register(&self.registration(&self.fit_rows, noise, true), &self.delivered);
@@ -91,7 +91,7 @@ impl<'a> Prepared<'a> {
         (registered, noise, source)
     }
 
-    /// The screws.
+    /// Fits the screws.
     pub(super) fn fit(&self, registered: &Estimate, noise: Noise, source: NoiseSource) -> Result<RobustFit> {
         let task = Task {
             robot: self.robot,
@@ -106,7 +106,7 @@ impl<'a> Prepared<'a> {
         robust::fit(&task, &self.registration(&self.fit_rows, noise, true), registered, source)
     }
 
-    /// Everything that is said of a fit.
+    /// Judges a fit.
     pub(super) fn assess(self, registered: Estimate, fit: RobustFit) -> Calibration {
         let RobustFit { fitted, loss, judged } = fit;
         let kept = if loss.is_some() {
@@ -117,7 +117,7 @@ impl<'a> Prepared<'a> {
         let models = self.models(registered, &fitted, &kept, loss.is_some());
         let accuracy = self.accuracy(&models);
         let (mut trust, remainder) = self.trust(&fitted, &models, &kept, loss.is_some());
-        trust.held_out = self.promise_kept(&trust, &models.calibrated);
+        trust.held_out = self.held_out_coverage(&trust, &models.calibrated);
         let identifiability = self.identifiability(&fitted, &remainder);
         let apart = self.frames_apart(&fitted, &accuracy);
         let diagnosis = match &apart {
@@ -161,7 +161,7 @@ impl<'a> Prepared<'a> {
             mistakes: &mistakes,
         });
         if verdict.level == Level::DoNotUse || diagnosis.iter().any(Diagnosis::is_of_input) {
-            // A joint is not to blame for what is wrong with the input.
+            // Mistakes in the input are not the fault of a joint.
             trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
         }
         let frames = self.data.frames(&self.fit_rows);
@@ -191,9 +191,9 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// The three models, of which the first two are registered by the rows that a robust fit believes; the third keeps the nominal base.
+    /// The three models; the first two are registered by the rows that a robust fit keeps, the third in the nominal base frame.
     fn models(&self, registered: Estimate, fitted: &Fitted, kept: &[u32], is_robust: bool) -> Models {
-        // As well as tool and frame do it for positions: orientations decide what these leave open.
+        // Positions decide tool and frame; orientations decide only the directions that positions do not determine.
         let Noise { position_m, rotation_rad } = fitted.noise;
         let positions = Noise { position_m, rotation_rad: POSITIONS_FIRST * rotation_rad };
         let again =
@@ -238,10 +238,10 @@ impl<'a> Prepared<'a> {
             device_free: self.device_free(),
         };
         let found = identifiability(&setup, &fitted.normal.gram, remainder.variance);
-        Identifiability { told: remainder.effective_unknowns, ..found }
+        Identifiability { effective_unknowns: remainder.effective_unknowns, ..found }
     }
 
-    /// Whatever the unknowns and the loss of the fit were: what is delivered is judged in the minimal basis, by the rows that it believes.
+    /// Judges the result in the minimal basis and by the kept rows, whatever the parameterisation and loss of the fit.
     fn trust(&self, fitted: &Fitted, models: &Models, kept: &[u32], is_robust: bool) -> (Trust, Remainder) {
         let (layout, normal) = if fitted.layout.is_minimal() && !is_robust {
             (fitted.layout.clone(), fitted.normal.clone())
@@ -277,53 +277,54 @@ impl<'a> Prepared<'a> {
         (found, remainder)
     }
 
-    /// Mistakes in all rows, those held out too: what is shifted shows best where no row is missing. After a robust fit first in the rows
-    /// that it believes, since single wrong ones hide what is wrong with all.
+    /// Mistakes in all rows, held-out ones too: shifted rows show best in an unbroken series. After a robust fit first in the kept rows,
+    /// since single wrong ones hide mistakes in all.
     fn diagnosis(&self, data: &Dataset, calibrated: &Estimate, believed: Option<&[u32]>) -> Vec<Diagnosis> {
         if !self.options.diagnose {
             return Vec::new();
         }
-        let options = forensics::Options { device_free: self.device_free(), calibrated: Some(calibrated) };
+        let options =
+            forensics::DiagnosisOptions { device_free: self.device_free(), calibrated: Some(calibrated) };
         let in_all = || forensics::diagnose(self.robot, data, &data.all_rows(), &options);
         let Some(believed) = believed else { return in_all() };
         let mut found = forensics::diagnose(self.robot, data, believed, &options);
         if !found.iter().any(Diagnosis::is_of_input) {
-            // A shift of rows, or exchanged names, may be what made the fit disbelieve rows.
+            // Shifted rows or exchanged names may be why the fit rejected rows.
             let known: Vec<DiagnosisKind> = found.iter().map(|it| it.kind).collect();
             found.extend(in_all().into_iter().filter(|it| !known.contains(&it.kind)));
         }
         found
     }
 
-    /// Whether the rows that were held out are missed by what is promised.
-    fn promise_kept(&self, trust: &Trust, calibrated: &Estimate) -> Option<Kept> {
+    /// Coverage on the held-out rows.
+    fn held_out_coverage(&self, trust: &Trust, calibrated: &Estimate) -> Option<CoverageCheck> {
         let uncertainty = trust.uncertainty.as_ref().filter(|_| !self.held_out_rows.is_empty())?;
         let targets: Vec<usize> = (0..self.data.targets.len()).collect();
-        let promise = Promise { uncertainty, targets: &targets, coverage: &trust.coverage };
+        let predicted = PredictedUncertainty { uncertainty, targets: &targets, coverage: &trust.coverage };
         let errors = row_errors(self.data, &self.packed, &self.held_out_rows, calibrated);
-        Some(promise.kept_in(self.robot, self.data, &self.packed, &self.held_out_rows, &errors))
+        Some(predicted.check(self.robot, self.data, &self.packed, &self.held_out_rows, &errors))
     }
 
-    /// What makes the input doubtful.
+    /// Doubts about the input.
     fn input_doubts(&self, accuracy: &Accuracy, moved: Option<&Moved>) -> Vec<String> {
-        // Frames that differ make any model misfit.
+        // Different device frames make any model misfit.
         if moved.is_some_and(Moved::is_of_frames) {
             return Vec::new();
         }
         doubts(self.data, &self.fit_rows, &accuracy.training.registered, self.options.frame)
     }
 
-    /// Device frames that differ, where a fit with one leaves more than a robot's own errors.
+    /// Different device frames, if a fit with one has larger errors than a robot's own.
     fn frames_apart(&self, fitted: &Fitted, accuracy: &Accuracy) -> Option<FramesApart> {
         let left_m = 1e-3 * accuracy.training.calibrated.position_mm.rms;
         if !self.device_free() || !fit::is_suspicious(left_m, self.length_m) {
             return None;
         }
-        frames_apart(&self.doubtful(fitted, left_m))
+        frames_apart(&self.frame_search(fitted, left_m))
     }
 
-    fn doubtful(&self, fitted: &Fitted, left_m: f64) -> Doubtful<'_> {
-        Doubtful {
+    fn frame_search(&self, fitted: &Fitted, left_m: f64) -> FrameSearch<'_> {
+        FrameSearch {
             robot: self.robot,
             data: self.data,
             packed: &self.packed,
@@ -335,19 +336,25 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// What moved within the session. Rows that were drawn to be held out belong to it as well; those that are stated to be may be of
-    /// another.
+    /// Change point or drift of the session. Rows held out by chance belong to it as well; rows with a stated set may belong to another.
     fn moved(&self, calibrated: &Estimate, fitted: &Fitted, is_robust: bool) -> Option<Moved> {
         let is_stated = self.data.observations.iter().any(|row| row.set.is_some());
         let rows = if is_stated { self.fit_rows.clone() } else { self.data.all_rows() };
         let (data, packed, device_free) = (self.data, &self.packed, self.device_free());
-        // Least squares take a part of a move into the screws; a robust loss leaves it whole.
-        let again = (device_free && !is_robust).then(|| self.doubtful(fitted, f64::INFINITY));
-        moved(&Looked { data, packed, estimate: calibrated, rows: &rows, device_free, again: again.as_ref() })
+        // Least squares take a part of a move into the screws; a robust loss does not.
+        let again = (device_free && !is_robust).then(|| self.frame_search(fitted, f64::INFINITY));
+        moved(&ChangeSearch {
+            data,
+            packed,
+            estimate: calibrated,
+            rows: &rows,
+            device_free,
+            again: again.as_ref(),
+        })
     }
 }
 
-/// Refuses problems with fewer measured numbers than unknowns that data of this kind could determine.
+/// Refuses problems with fewer measured numbers than unknowns that data of this kind can determine.
 fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
     let screws: usize =
         robot.joints.iter().map(|joint| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum();
@@ -393,7 +400,7 @@ fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
     Ok(())
 }
 
-/// Unknowns of further device frames, if there are any, as part of a list.
+/// Unknowns of further device frames as part of a list, if there are any.
 fn of_devices(unknowns: usize) -> String {
     if unknowns > 0 { format!(", {unknowns} of further device frames") } else { String::new() }
 }

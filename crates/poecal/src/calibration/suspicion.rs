@@ -1,5 +1,6 @@
-//! A joint's correction, and whether the joint is suspicious: the correction stands out, or what the fit leaves follows its position.
+//! Corrections of joints, and suspicious joints: the correction stands out, or the residuals follow the joint's position.
 
+use crate::distributions::median;
 use crate::robot::JointKind;
 use crate::solve::Normal;
 use crate::uncertainty::{Pattern, View, strongest_pattern};
@@ -11,26 +12,26 @@ pub struct JointCorrection {
     pub tilt_rad: f64,
     /// Distance of the calibrated axis from the nominal joint's origin, metres.
     pub shift_m: f64,
-    /// Root mean square error to expect of the direction, radians; `None` where the data do not tell it.
+    /// Expected root mean square error of the direction, radians; `None` where it is not determined.
     pub sigma_tilt_rad: Option<f64>,
-    /// Root mean square error to expect of the axis' place at the joint, metres.
+    /// Expected root mean square error of the axis' place at the joint, metres; `None` where it is not determined.
     pub sigma_shift_m: Option<f64>,
-    /// Root mean square position error if this screw alone stayed nominal, tool and device frame found anew, metres.
+    /// Root mean square position error with this screw alone nominal, tool and device frame refitted, metres.
     pub left_nominal_rms_m: f64,
-    /// What speaks against the joint: a correction beyond those of the others, or residuals that follow its position.
+    /// Why the joint is suspicious, if it is.
     pub suspicious: Option<String>,
 }
 
-/// Multiple of the other joints' median correction from which one stands out, and multiple of its standard deviation.
+/// Ratio to the other joints' median, and to its own standard deviation, above which a correction stands out.
 const STANDS_OUT: f64 = 5.0;
 const SIGMAS: f64 = 3.0;
-/// Other joints that it takes to speak of a median.
+/// Fewest other joints for a median.
 const FEWEST: usize = 2;
-/// Corrections that are no concern: a tenth of a degree, half a millimetre.
+/// Corrections that are of no concern: a tenth of a degree, half a millimetre.
 const LEAST_TILT_RAD: f64 = 2e-3;
 const LEAST_SHIFT_M: f64 = 5e-4;
 
-/// What speaks against each joint, in words (theory.md §9 (44)).
+/// Suspicions of each joint, in words (theory.md §9 (44)).
 pub(super) fn suspicions(
     view: &View<'_>,
     normal: &Normal,
@@ -50,12 +51,10 @@ pub(super) fn suspicions(
     words.into_iter().map(|parts| (!parts.is_empty()).then(|| parts.join("; "))).collect()
 }
 
-/// Whether a joint's axis is farther from the drawing than those of the other joints of its kind.
+/// Whether a joint's axis is farther from nominal than those of the other joints of its kind.
 fn stands_out(correction: &JointCorrection, others: &[&JointCorrection]) -> Vec<String> {
     let median = |of: fn(&JointCorrection) -> f64| {
-        let mut values: Vec<f64> = others.iter().map(|it| of(it)).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().filter(|_| values.len() >= FEWEST)
+        median(others.iter().map(|it| of(it))).filter(|_| others.len() >= FEWEST)
     };
     let mut parts = Vec::new();
     let mut judge = |value: f64, sigma: Option<f64>, least: f64, others: Option<f64>, words: String| {

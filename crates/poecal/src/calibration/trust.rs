@@ -1,14 +1,13 @@
-//! How far a calibration can be trusted: cross-validation, uncertainty of predictions and of each screw, and what each joint's correction
-//! is worth.
+//! How far a calibration can be trusted: cross-validation, uncertainty of predictions and of each screw, and the effect of each correction.
 
 use nalgebra::Matrix3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::suspicion::{JointCorrection, suspicions};
-use super::{Kept, Models, row_errors};
+use super::{CoverageCheck, Models, row_errors};
 use crate::analysis::{JointCoverage, PLAUSIBLE, coverage};
-use crate::estimate::{Estimate, Packed, sample_rows};
+use crate::estimate::{Estimate, Packed, position_rms_m, sample_rows};
 use crate::gauge::{Deviation, screw_deviations};
 use crate::problem::Layout;
 use crate::robot::{Joint, JointKind, Robot};
@@ -20,28 +19,28 @@ use crate::uncertainty::{
     cross_validate, discrepancy,
 };
 
-/// Random configurations by which the joint range is judged.
+/// Number of random configurations within the joint range.
 const CONFIGURATIONS: usize = 400;
-/// Parts into which each joint's range is divided.
+/// Number of parts of each joint's range.
 const PARTS: usize = 6;
-/// Targets over which expected errors are taken, at most.
+/// Most targets over which expected errors are taken.
 const MOST_TARGETS: usize = 12;
-/// Rows on which the worth of each joint's correction is judged.
-const WORTH_SAMPLE: usize = 300;
+/// Rows by which the effect of each correction is computed.
+const EFFECT_SAMPLE: usize = 300;
 
 /// Expected errors of predicted positions, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// Root mean square distance.
     pub sigma_m: f64,
-    /// Mean of the distances that are not exceeded in 95 % of all cases.
+    /// Mean of the 95 % bounds.
     pub bound_m: f64,
-    /// The largest of those.
+    /// Largest of these.
     pub worst_bound_m: f64,
 }
 
 impl Expected {
-    /// From covariances of positions, and how well these are known.
+    /// From covariances of positions, `sqrt(mean tr P_p)` and bounds: theory.md §9 (40).
     fn of(errors: &[Matrix3<f64>], quantile: Quantile) -> Self {
         let count = errors.len().max(1) as f64;
         let bounds = errors.iter().map(|covariance| quantile.bound(covariance));
@@ -53,14 +52,14 @@ impl Expected {
     }
 }
 
-/// A part of a joint's range, and what to expect there when the other joints are anywhere in theirs.
+/// Expected error in a part of a joint's range, with the other joints anywhere in theirs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RangePart {
     /// Index of the joint.
     pub joint: usize,
     /// From and to, radians or metres.
     pub range: [f64; 2],
-    /// Root mean square distance to expect, metres.
+    /// Expected root mean square distance, metres.
     pub sigma_m: f64,
 }
 
@@ -76,27 +75,27 @@ pub struct RangePart {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trust {
-    /// What of each joint's range was sampled.
+    /// Sampled part of each joint's range.
     pub coverage: Vec<JointCoverage>,
-    /// Parts left out in turn; none if the rows are too few.
+    /// Cross-validation; `None` with too few rows.
     pub cross_validation: Option<CrossValidation>,
-    /// Covariance of the unknowns, and what the model does not describe.
+    /// Covariance of the unknowns, and model error.
     pub uncertainty: Option<Uncertainty>,
-    /// The spread of predictions as drawing rows anew shows it; none if they are too few.
+    /// Bootstrap of predictions; `None` with too few rows.
     pub bootstrap: Option<Bootstrap>,
-    /// What to expect in the configurations that were measured.
+    /// Expected error in the measured configurations.
     pub measured: Option<Expected>,
-    /// What to expect in configurations anywhere within the limits.
+    /// Expected error anywhere within the limits.
     pub range: Option<Expected>,
-    /// The same by parts of each joint's range.
+    /// Expected error by parts of each joint's range.
     pub parts: Vec<RangePart>,
-    /// Whether the errors of the rows that were held out are what is promised; none if none were.
-    pub held_out: Option<Kept>,
-    /// Each joint's correction.
+    /// Coverage on the held-out rows; `None` without any.
+    pub held_out: Option<CoverageCheck>,
+    /// Correction of each joint.
     pub joints: Vec<JointCorrection>,
 }
 
-/// What a finished fit hands over.
+/// A finished fit.
 pub(super) struct Finished<'a> {
     pub(super) view: View<'a>,
     pub(super) layout: &'a Layout,
@@ -107,13 +106,15 @@ pub(super) struct Finished<'a> {
     pub(super) seed: u64,
 }
 
-/// All of it.
+/// Judges a finished fit.
 pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let view = &finished.view;
     let cross_validation = cross_validate(view, finished.seed);
     let found = discrepancy(view, finished.normal, finished.remainder, cross_validation.as_ref());
     let uncertainty = uncertainty(finished, &found);
-    let sampled = sampled_values(view, view.rows);
+    let sample = sample_rows(view.rows, CONFIGURATIONS);
+    let sampled: Vec<f64> =
+        sample.iter().flat_map(|&row| view.packed.joint_values(row as usize).iter().copied()).collect();
     let coverage = coverage(view.robot, view.packed, view.rows);
     let ranges = ranges(view.robot, &coverage);
     let anywhere = anywhere(view.robot, &ranges, finished.seed);
@@ -151,14 +152,8 @@ fn uncertainty(finished: &Finished<'_>, found: &Discrepancy) -> Option<Uncertain
     Uncertainty::new(&finished.view, finished.layout.clone(), &normal.gram, found)
 }
 
-/// Joint values of at most some hundred of the rows.
-fn sampled_values(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
-    let sample = sample_rows(rows, CONFIGURATIONS);
-    sample.iter().flat_map(|&row| view.packed.joint_values(row as usize).iter().copied()).collect()
-}
-
-/// The ranges in which joints may be used: the limits; of a revolute joint a turn about the middle of what was sampled, where the limits
-/// allow more or are missing, and of a sliding joint without limits what was sampled.
+/// Usable range of each joint: its limits; of a revolute joint at most a turn, about the middle of the sampled range; of a prismatic joint
+/// without limits the sampled range.
 fn ranges(robot: &Robot, coverage: &[JointCoverage]) -> Vec<[f64; 2]> {
     let half_turn = std::f64::consts::PI;
     let of = |(joint, coverage): (&Joint, &JointCoverage)| {
@@ -173,7 +168,7 @@ fn ranges(robot: &Robot, coverage: &[JointCoverage]) -> Vec<[f64; 2]> {
     robot.joints.iter().zip(coverage).map(of).collect()
 }
 
-/// Random readings that keep all joints within their ranges, as joint values: joints of one reading move together.
+/// Joint values of random readings that keep all joints in their ranges: joints of one reading move together.
 fn anywhere(robot: &Robot, ranges: &[[f64; 2]], seed: u64) -> Vec<f64> {
     let indices = robot.reading_indices();
     let readings = indices.iter().max().map_or(0, |last| last + 1);
@@ -226,14 +221,14 @@ fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[Vec<Matrix3<f64>>]
     parts
 }
 
-/// Each joint's correction with its uncertainty and its worth.
+/// Correction of each joint with its uncertainty and effect.
 fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<JointCorrection> {
     let view = &finished.view;
     let calibrated = &finished.models.calibrated;
     let deviations =
         screw_deviations(calibrated, view.robot, finished.layout, view.length_m, finished.base_free);
     let nominal: Vec<_> = view.robot.joints.iter().map(|joint| joint.screw).collect();
-    let rows = sample_rows(view.rows, WORTH_SAMPLE);
+    let rows = sample_rows(view.rows, EFFECT_SAMPLE);
     let mut joints: Vec<JointCorrection> = deviations
         .into_iter()
         .enumerate()
@@ -242,14 +237,12 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
             let mut screws = calibrated.screws();
             screws[joint] = nominal[joint];
             let left = registered_again(finished, &rows, &calibrated.with_screws(&screws));
-            let errors = row_errors(view.data, view.packed, &rows, &left);
-            let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
             JointCorrection {
                 tilt_rad: deviation.tilt_rad,
                 shift_m: deviation.shift_m,
                 sigma_tilt_rad,
                 sigma_shift_m,
-                left_nominal_rms_m: (squares / rows.len().max(1) as f64).sqrt(),
+                left_nominal_rms_m: position_rms_m(&row_errors(view.data, view.packed, &rows, &left)),
                 suspicious: None,
             }
         })
@@ -259,24 +252,24 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
     joints
 }
 
-/// Standard deviations of tilt and shift; none where they are hardly less than what a drawing leaves open.
+/// Standard deviations of tilt and shift; `None` where they exceed half of the uncertainty of a nominal model.
 fn sigmas(
     deviation: &Deviation,
     uncertainty: Option<&Uncertainty>,
     length_m: f64,
 ) -> (Option<f64>, Option<f64>) {
-    const TOLD: f64 = 0.5;
+    const DETERMINED: f64 = 0.5;
     let of = |rows: &[Vec<f64>; 3], most: f64| {
         let variance: f64 = rows.iter().map(|row| uncertainty.map_or(0.0, |it| it.variance(row))).sum();
-        Some(variance.sqrt()).filter(|sigma| uncertainty.is_some() && *sigma < TOLD * most)
+        Some(variance.sqrt()).filter(|sigma| uncertainty.is_some() && *sigma < DETERMINED * most)
     };
     let tilt = of(&deviation.tilt_by_step, PLAUSIBLE);
     let shift = of(&deviation.shift_by_step, PLAUSIBLE * length_m);
-    // One without the other means little: the place of an axis of unknown direction.
+    // The place of an axis of unknown direction means little.
     if tilt.is_some() && shift.is_some() { (tilt, shift) } else { (None, None) }
 }
 
-/// Tool and device frame found anew for an estimate's screws.
+/// An estimate with tool and device frame refitted.
 fn registered_again(finished: &Finished<'_>, rows: &[u32], start: &Estimate) -> Estimate {
     let view = &finished.view;
     let registration = Registration {

@@ -1,4 +1,4 @@
-//! Whether a calibration is good to use, and where: a level with its reasons, by fixed rules (docs/theory.md §9).
+//! Verdict: a level with its reasons, by fixed rules (docs/theory.md §9, *Verdict*).
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use super::{Accuracy, Robustness, SolverReport};
 use crate::analysis::{Direction, Identifiability};
 use crate::robot::Robot;
 
-/// How far a calibration may be used.
+/// Level of a verdict.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
 )]
@@ -23,7 +23,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// What to tell a user.
+    /// Message for users.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl Level {
     }
 }
 
-/// A level and why it is not a better one; what speaks for the level, if it is the best.
+/// A level, and the reasons against a better one; for the best level, the reasons for it.
 ///
 /// ```
 /// use poecal::calibration::{Level, Verdict};
@@ -55,33 +55,33 @@ impl Level {
 pub struct Verdict {
     /// How far it may be used.
     pub level: Level,
-    /// Sentences with the figures that decided.
+    /// Sentences with the deciding figures.
     pub reasons: Vec<String>,
 }
 
-/// Share of the error on unfitted rows that must be gone for a calibration to be worth anything.
+/// Least relative reduction of the error on held-out rows.
 const WORTH: f64 = 0.02;
-/// Calibrated error over the reach beyond which no rigid robot is described: gears and links leave a tenth of it.
+/// Calibrated error over the reach above which no rigid robot is described: elastic gears and links have a tenth of it.
 const TOO_LARGE: f64 = 1e-2;
-/// Residuals for each unknown below which a fit mostly describes itself.
+/// Residuals per unknown below which a fit mostly reproduces its data.
 const REDUNDANCY: f64 = 1.5;
-/// Residuals for each unknown below which nothing independent is left to test a fit by.
+/// Residuals per unknown below which a fit cannot be tested.
 const TESTED: f64 = 3.0;
-/// Share of suspected rows from which a session as a whole is doubtful.
+/// Share of suspected rows above which the whole session is doubtful.
 const SUSPECTED: f64 = 0.2;
-/// Distance of an axis from the drawing, as a share of the reach and as an angle, that no robot of that drawing has.
+/// Distance of an axis from nominal, as a share of the reach and as an angle, that no robot of that model has.
 const ANOTHER_SHARE: f64 = 0.1;
 const ANOTHER_RAD: f64 = 0.35;
-/// Axes that are named for it.
+/// Most axes named for it.
 const MOST_NAMED: usize = 3;
-/// Share of its range through which a joint must have moved.
+/// Least share of its range through which a joint must have moved.
 const COVERED: f64 = 0.5;
-/// Multiple of the random cross-validation's error that the worst block may have.
+/// Largest ratio of the worst block's error to that of random folds.
 const BLOCKS: f64 = 2.0;
-/// Multiple of the error to expect where it was measured that may be expected anywhere.
+/// Largest ratio of the expected error anywhere to that at measured configurations.
 const RANGE: f64 = 2.0;
 
-/// What a verdict is made of.
+/// Input of a verdict.
 pub(super) struct Grounds<'a> {
     pub(super) accuracy: &'a Accuracy,
     pub(super) solver: &'a SolverReport,
@@ -90,14 +90,14 @@ pub(super) struct Grounds<'a> {
     pub(super) robot: &'a Robot,
     pub(super) robustness: &'a Robustness,
     pub(super) rows: usize,
-    /// Numbers measured in different configurations.
+    /// Numbers measured in distinct configurations.
     pub(super) numbers: usize,
-    /// Whether a joint's zero is known to be another.
+    /// Whether the zero of a joint was found to be another.
     pub(super) has_other_zeros: bool,
-    /// What speaks against the stated noise.
+    /// Contradictions between residuals and stated noise.
     pub(super) noise: &'a [NoiseDoubt],
     pub(super) reach_m: f64,
-    /// What was found wrong with the input, a sentence each.
+    /// Mistakes in the input, a sentence each.
     pub(super) mistakes: &'a [String],
 }
 
@@ -126,7 +126,7 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
             grounds.numbers
         ));
     }
-    // Rows that are named as grossly wrong say nothing of the robot.
+    // Suspected rows do not count.
     let (accuracy, robustness) = (grounds.accuracy, grounds.robustness);
     let (set, name) = match &accuracy.held_out {
         Some(set) => (robustness.held_out_rest.as_ref().unwrap_or(set), "held-out"),
@@ -149,7 +149,7 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
     reasons
 }
 
-/// Axes that ended where no axis of this robot can be. A joint whose zero is another turns all later ones.
+/// Axes farther from nominal than any axis of this robot. The zero of a joint turns all later axes.
 fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
     if grounds.has_other_zeros {
         return Vec::new();
@@ -170,8 +170,8 @@ fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
         .collect()
 }
 
-/// Directions left open, but for those of joints that one reading moves: no configuration can part them, and no prediction does.
-fn open_directions(grounds: &Grounds<'_>) -> usize {
+/// Undetermined directions, but for those of joints of one reading: no configuration separates them, and no prediction does.
+fn undetermined_directions(grounds: &Grounds<'_>) -> usize {
     let reading = |name: &String| {
         grounds.robot.joints.iter().find(|joint| joint.name == *name).map(|joint| joint.reading.name.as_str())
     };
@@ -213,7 +213,7 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
             ));
         }
     }
-    let open = open_directions(grounds);
+    let open = undetermined_directions(grounds);
     if open > 0 {
         let is = if open == 1 { "is" } else { "are" };
         reasons.push(format!("{open} of {unknowns} unknowns {is} not determined by these configurations"));

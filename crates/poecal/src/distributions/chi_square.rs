@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 const MEDIANS: [f64; 6] = [0.4549, 1.3863, 2.3660, 3.3567, 4.3515, 5.3481];
 
 /// The median for 1 to 6 degrees of freedom.
-pub(crate) fn median(freedom: usize) -> f64 {
+pub(crate) fn chi_square_median(freedom: usize) -> f64 {
     MEDIANS[freedom.clamp(1, 6) - 1]
 }
 

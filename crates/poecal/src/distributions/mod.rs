@@ -1,7 +1,21 @@
-//! Distributions of squares: quantiles of χ² and F.
+//! Medians, and distributions of squares: quantiles of χ² and F.
 
 mod beta;
 mod chi_square;
 
 pub(crate) use beta::f_quantile;
-pub(crate) use chi_square::{is_within_band, median, upper_quantile};
+pub(crate) use chi_square::{chi_square_median, is_within_band, upper_quantile};
+
+use nalgebra::Vector3;
+
+/// The median, of an even number of values the larger of the middle two; `None` without values.
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    let half = values.len() / 2;
+    (half < values.len()).then(|| *values.select_nth_unstable_by(half, f64::total_cmp).1)
+}
+
+/// The median of each coordinate, which a few wrong points do not change; zero without points.
+pub(crate) fn median_point(points: &[Vector3<f64>]) -> Vector3<f64> {
+    Vector3::from_fn(|k, _| median(points.iter().map(|point| point[k])).unwrap_or(0.0))
+}

@@ -14,6 +14,7 @@ pub use packing::{Packed, sample_rows};
 pub use predictions::row_errors;
 pub(crate) use predictions::{map_squares, turn_to_first};
 pub use row_error::RowError;
+pub(crate) use row_error::position_rms_m;
 pub use sight::Sight;
 
 use std::collections::BTreeMap;

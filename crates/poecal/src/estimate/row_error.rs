@@ -16,3 +16,9 @@ pub struct RowError {
     /// Rotation vector, radians, if orientation was measured.
     pub rotation_rad: Option<Vector3<f64>>,
 }
+
+/// Root mean square length of position errors, metres: theory.md §9. 0 without errors.
+pub(crate) fn position_rms_m(errors: &[RowError]) -> f64 {
+    let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
+    (squares / errors.len().max(1) as f64).sqrt()
+}

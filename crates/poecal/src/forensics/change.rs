@@ -1,4 +1,4 @@
-//! What undoes a supposed mistake: a change of readings or measurements, row by row.
+//! Changes of readings or measurements that undo a hypothetical mistake.
 
 use std::collections::BTreeMap;
 
@@ -18,24 +18,24 @@ pub(super) enum Change {
     Combine { column: usize, own: f64, other: usize, factor: f64 },
     /// A number added to a column, radians or metres.
     Add(usize, f64),
-    /// Each reading goes with the measurement so many rows later: of the same target, or whatever target that row names.
+    /// Each reading paired with the measurement so many rows later in the same stream.
     Shift(i32, Stream),
     /// Positions times a factor.
     Resize(f64),
-    /// Parts of the quaternion that stand in the places x, y, z, w.
+    /// Parts of the quaternion to be taken as x, y, z, w.
     Quaternion([usize; 4]),
     /// Poses inverted.
     Invert,
     /// Orientations inverted, positions kept.
     Transpose,
-    /// Other orientations, a row.
+    /// Orientations replaced, one for each row.
     Turn(Vec<Option<Matrix3<f64>>>),
-    /// Positions mirrored, and orientations with them or not.
+    /// Positions mirrored; orientations too if true.
     Mirror(Matrix3<f64>, bool),
 }
 
 impl Change {
-    /// The data as they would be without the mistake. Rows that a shift leaves without a partner are dropped.
+    /// The data with the change. Rows without a partner after a shift are dropped.
     pub(super) fn apply(&self, data: &Dataset) -> Dataset {
         if let Change::Shift(by, stream) = self {
             return shifted(data, *by, *stream);
@@ -116,23 +116,23 @@ impl Change {
     }
 }
 
-/// Which rows a shift counts.
+/// Rows that a shift counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stream {
     /// Those of the same target.
     Target,
-    /// All: the target's name stays with the reading.
+    /// All rows: the target's name stays with the reading.
     File,
 }
 
-/// A data set without rows for the same readings and targets.
+/// An empty data set with the same readings and targets.
 pub(super) fn like(data: &Dataset) -> Dataset {
     let mut empty = Dataset::new(data.reading_names().to_vec());
     empty.targets.clone_from(&data.targets);
     empty
 }
 
-/// Adds a row; one that a change has made not finite tells nothing and is left out.
+/// Adds a row, unless the change made it not finite.
 pub(super) fn push(data: &mut Dataset, readings: &[f64], observation: Observation) {
     data.push_observation(readings, observation).ok();
 }

@@ -1,55 +1,54 @@
-//! Which meaning of angles makes the orientations follow the arm.
+//! Convention of angles with which the orientations follow the arm.
 
 use nalgebra::Matrix3;
 
 use super::DiagnosisKind;
 use super::change::{Change, like, push};
 use super::euler::Reinterpretation;
+use super::fitter::Fitter;
 use super::hypotheses::Hypothesis;
-use super::session::Session;
 use crate::estimate::{Chain, Linkage};
 use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement};
 use crate::start::mean_rotation;
 
-/// Meanings that are judged in full.
+/// Conventions that are tested as hypotheses.
 const CANDIDATES: usize = 3;
-/// Elements of rotations that differ by rounding only.
+/// Largest difference of rotations that are the same but for rounding.
 const SAME: f64 = 1e-9;
-/// Rows of each target whose orientations are tried as the target's own.
+/// Rows of each target whose orientations are tried as the target's.
 const GUESSES: usize = 6;
 
-/// What an orientation says of a target's orientation on the last link, a row.
-struct Seen {
+/// A row's orientation relative to the last link.
+struct MeasuredOrientation {
     row: usize,
     target: usize,
     link_from_device: Matrix3<f64>,
     turned: Matrix3<f64>,
 }
 
-/// The meanings of the angles that fit best, judged by rotations alone: the device's frame and the arm's pose are those that the
-/// positions give.
-pub(super) fn conventions(session: &Session<'_>, data: &Dataset) -> Vec<Hypothesis> {
+/// The best conventions of the angles, judged by rotations alone, with device frame and arm as the positions give them.
+pub(super) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<Hypothesis> {
     let mut points = like(data);
     for (row, seen) in data.observations.iter().enumerate() {
         let position = seen.measurement.pose().translation;
         let measurement = Measurement::Point(PointMeasurement { position });
         push(&mut points, data.readings(row), Observation { measurement, ..*seen });
     }
-    let (estimate, _) = session.registered(&points);
+    let (estimate, _) = fitter.registered(&points);
     let linkage = Linkage::new(&estimate);
-    let packed = session.packed(data);
+    let packed = fitter.packed(data);
     let mut chain = Chain::default();
     let mut seen = Vec::new();
     for (row, observation) in data.observations.iter().enumerate() {
         if let Some(turned) = observation.measurement.residual_model().orientation() {
             chain.evaluate(&linkage, &packed, row, observation);
             let link_from_device = chain.target.rotation.transpose();
-            seen.push(Seen { row, target: observation.target, link_from_device, turned });
+            seen.push(MeasuredOrientation { row, target: observation.target, link_from_device, turned });
         }
     }
     let all = Reinterpretation::all().into_iter().enumerate();
-    let mut judged: Vec<Judged> =
-        all.map(|(rank, meaning)| (meant(&seen, &meaning), (rank, meaning))).collect();
+    let mut judged: Vec<ScoredConvention> =
+        all.map(|(rank, meaning)| (scored(&seen, &meaning), (rank, meaning))).collect();
     judged.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
     let judged = distinct(judged);
     let turns = |rotations: Vec<Matrix3<f64>>| {
@@ -60,16 +59,17 @@ pub(super) fn conventions(session: &Session<'_>, data: &Dataset) -> Vec<Hypothes
     judged.into_iter().map(|((_, rotations), (_, one))| hypothesis(one, turns(rotations))).collect()
 }
 
-/// How far the orientations meant are from ones that follow the arm, these orientations, and what makes them: its rank and meaning.
-type Judged = ((f64, Vec<Matrix3<f64>>), (usize, Reinterpretation));
+/// Mean squared distance of the orientations from the arm's, the orientations, and the rank and convention that give them.
+type ScoredConvention = ((f64, Vec<Matrix3<f64>>), (usize, Reinterpretation));
 
-/// The best meanings that give different orientations. Of those that give the same, the first in the order of all is named: the one
-/// that is read from the usual columns.
-fn distinct(judged: Vec<Judged>) -> Vec<Judged> {
-    let mut kept: Vec<Judged> = Vec::new();
+/// The best conventions with different orientations. Of equivalent ones the first in the order of all is named, which is read from the
+/// usual columns.
+fn distinct(judged: Vec<ScoredConvention>) -> Vec<ScoredConvention> {
+    let mut kept: Vec<ScoredConvention> = Vec::new();
     for one in judged {
         let rotations = &one.0.1;
-        let same = |other: &Judged| rotations.iter().zip(&other.0.1).all(|(a, b)| (a - b).amax() < SAME);
+        let same =
+            |other: &ScoredConvention| rotations.iter().zip(&other.0.1).all(|(a, b)| (a - b).amax() < SAME);
         match kept.iter().position(same) {
             Some(at) if one.1.0 < kept[at].1.0 => kept[at] = one,
             None if kept.len() < CANDIDATES => kept.push(one),
@@ -79,9 +79,9 @@ fn distinct(judged: Vec<Judged>) -> Vec<Judged> {
     kept
 }
 
-/// The orientations meant, and their mean squared chordal distance from ones that follow the arm. Of the two sets of angles that a
-/// rotation has, that is taken which follows the arm better.
-fn meant(seen: &[Seen], meaning: &Reinterpretation) -> (f64, Vec<Matrix3<f64>>) {
+/// The orientations in a convention, and their mean squared chordal distance from ones that follow the arm. Of the two sets of angles of a
+/// rotation the better one counts.
+fn scored(seen: &[MeasuredOrientation], meaning: &Reinterpretation) -> (f64, Vec<Matrix3<f64>>) {
     let pairs: Vec<[Matrix3<f64>; 2]> = seen.iter().map(|one| meaning.rotations(&one.turned)).collect();
     let relative = |k: usize, branch: usize| seen[k].link_from_device * pairs[k][branch];
     let mut branches = vec![0; seen.len()];
@@ -94,7 +94,7 @@ fn meant(seen: &[Seen], meaning: &Reinterpretation) -> (f64, Vec<Matrix3<f64>>) 
             if second < first { (second, 1) } else { (first, 0) }
         };
         let away = |mean: &Matrix3<f64>| members.iter().map(|&k| nearest(k, mean).0).sum::<f64>();
-        // A few rows say where the target may be turned to, the best of these where it is.
+        // Candidates from a few rows; the best of these begins the mean.
         let guesses = members.iter().take(GUESSES).flat_map(|&k| [relative(k, 0), relative(k, 1)]);
         let Some(guess) = guesses.min_by(|a, b| away(a).total_cmp(&away(b))) else { continue };
         let mean = mean_rotation(members.iter().map(|&k| relative(k, nearest(k, &guess).1)));

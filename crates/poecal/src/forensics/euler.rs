@@ -1,18 +1,18 @@
-//! Orientations whose three numbers were read as angles of one kind and meant as angles of another.
+//! Orientations whose three angles were read in another convention than meant.
 
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
 
 use crate::lie::rotation;
 
-/// A meaning of three angles.
+/// A convention of three angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Angles {
-    /// Turns about these axes (0 = x), each as it stands after the turns before: `R = R_i(a) R_j(b) R_k(c)`.
+    /// Turns about moving axes (0 = x): `R = R_i(a) R_j(b) R_k(c)`.
     Intrinsic([usize; 3]),
-    /// Turns about these axes as they stand in the device: `R = R_k(c) R_j(b) R_i(a)`.
+    /// Turns about the device's axes: `R = R_k(c) R_j(b) R_i(a)`.
     Extrinsic([usize; 3]),
-    /// Axis times angle.
+    /// Rotation vector: axis times angle.
     RotationVector,
 }
 
@@ -33,7 +33,7 @@ const SEQUENCES: [[usize; 3]; 12] = [
 ];
 
 impl Angles {
-    /// Every meaning, the usual ones first.
+    /// All conventions, the usual ones first.
     pub(super) fn all() -> impl Iterator<Item = Angles> {
         let turns = SEQUENCES.into_iter().flat_map(|axes| [Angles::Extrinsic(axes), Angles::Intrinsic(axes)]);
         turns.chain([Angles::RotationVector])
@@ -52,7 +52,7 @@ impl Angles {
         }
     }
 
-    /// Three angles of a rotation, the middle one within ±90° (or from 0 to 180° where the first axis comes again).
+    /// Three angles of a rotation, the middle one within ±90° (from 0 to 180° where the first axis is also the last).
     pub(super) fn of(self, r: &Matrix3<f64>) -> [f64; 3] {
         match self {
             Angles::Intrinsic(axes) => intrinsic(axes, r),
@@ -64,7 +64,7 @@ impl Angles {
         }
     }
 
-    /// As words: `extrinsic xyz`.
+    /// In words: `extrinsic xyz`.
     pub(super) fn words(self) -> String {
         let name =
             |axes: [usize; 3]| -> String { axes.iter().map(|&axis| ['x', 'y', 'z'][axis % 3]).collect() };
@@ -91,7 +91,7 @@ impl Angles {
         }
     }
 
-    /// The columns that are read so without a mapping.
+    /// Columns that are read in this convention without a mapping.
     pub(super) fn columns(self) -> Option<[&'static str; 3]> {
         match self {
             Angles::Extrinsic([0, 1, 2]) => Some(["roll", "pitch", "yaw"]),
@@ -101,10 +101,10 @@ impl Angles {
     }
 }
 
-/// `a, b, c` with `R = R_i(a) R_j(b) R_k(c)`: the first axis is undone, and the rest read off.
+/// Angles `a, b, c` with `R = R_i(a) R_j(b) R_k(c)`.
 fn intrinsic([i, j, k]: [usize; 3], r: &Matrix3<f64>) -> [f64; 3] {
     let (repeated, third) = if i == k { (true, 3 - i - j) } else { (false, k) };
-    // Whether i, j, third stand as x, y, z do or the other way round.
+    // Whether i, j, third are a cyclic permutation of x, y, z.
     let sign = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
     let (a, b) = if repeated {
         let a = r[(j, i)].atan2(-sign * r[(third, i)]);
@@ -118,23 +118,23 @@ fn intrinsic([i, j, k]: [usize; 3], r: &Matrix3<f64>) -> [f64; 3] {
     [a, b, rest[(last, next)].atan2(rest[(next, next)])]
 }
 
-/// Angles read as of one kind, meant as another.
+/// Angles read in one convention, meant in another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reinterpretation {
     pub(super) read: Angles,
     pub(super) meant: Angles,
-    /// By which the angles are to be multiplied.
+    /// Factor on the angles.
     pub(super) factor: f64,
 }
 
 impl Reinterpretation {
-    /// Every pair of meanings that differ, and angles of one meaning in radians read as degrees, or the other way round.
+    /// All pairs of different conventions, and angles of one convention with the wrong unit.
     pub(super) fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for read in Angles::all() {
             for meant in Angles::all() {
-                // Read as extrinsic or intrinsic alike: the angles of one are those of the other backwards, so that half of the
-                // pairs of each say the same. Those read as extrinsic, as files usually are, stand for both.
+                // The angles of an extrinsic convention are those of an intrinsic one backwards, so that half of the pairs are equivalent.
+                // Those read as extrinsic, as in most files, represent both.
                 if read == meant || matches!((read, meant), (Angles::Intrinsic(_), Angles::Intrinsic(_))) {
                     continue;
                 }
@@ -163,7 +163,7 @@ impl Reinterpretation {
     }
 }
 
-/// An angle brought within ±180°.
+/// An angle wrapped to ±180°.
 fn wrapped(angle: f64) -> f64 {
     angle - (angle / (2.0 * PI)).round() * 2.0 * PI
 }

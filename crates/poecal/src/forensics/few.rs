@@ -1,40 +1,40 @@
-//! Sessions of many targets: what is fitted sees a few of them, and the others are placed by what those say.
+//! Data with many targets: a few are fitted, and the others placed by their rows.
 
 use std::borrow::Cow;
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::change::push;
-use super::session::{SAMPLE, Session};
+use super::fitter::{Fitter, SAMPLE};
 use crate::estimate::{Chain, Estimate, Linkage};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Observation};
 use crate::start::mean_rotation;
 
-/// Targets up to which all are fitted together: each adds unknowns, and a sample has few rows of each of many.
+/// Most targets that are all fitted together: each adds unknowns, and a subsample has few rows of each.
 pub(super) const TARGETS: usize = 12;
-/// Targets that are fitted together at most, where fewer have too few rows for a sample.
+/// Most targets that are fitted together where fewer have too few rows for a subsample.
 const MOST_TARGETS: usize = 24;
 
-/// The rows of a few targets, which are numbered anew.
-pub(super) struct Few<'a, 'd> {
-    pub(super) session: Cow<'d, Session<'a>>,
+/// The rows of a few targets, renumbered.
+pub(super) struct FewTargets<'a, 'd> {
+    pub(super) fitter: Cow<'d, Fitter<'a>>,
     pub(super) data: Cow<'d, Dataset>,
-    /// The targets by their numbers in all data; none if they are all.
+    /// Their numbers among all targets; `None` if they are all.
     kept: Option<Vec<usize>>,
 }
 
-impl<'a, 'd> Few<'a, 'd> {
-    /// The targets with the most rows, or all if they are few.
-    pub(super) fn of(session: &'d Session<'a>, all: &'d Dataset) -> Self {
+impl<'a, 'd> FewTargets<'a, 'd> {
+    /// The targets with the most rows; all of them if they are few.
+    pub(super) fn of(fitter: &'d Fitter<'a>, all: &'d Dataset) -> Self {
         if all.targets.len() <= TARGETS {
-            return Few { session: Cow::Borrowed(session), data: Cow::Borrowed(all), kept: None };
+            return FewTargets { fitter: Cow::Borrowed(fitter), data: Cow::Borrowed(all), kept: None };
         }
-        Few::with(session, all, &[])
+        FewTargets::with(fitter, all, &[])
     }
 
     /// These targets, and others with the most rows.
-    pub(super) fn with(session: &'d Session<'a>, all: &'d Dataset, these: &[usize]) -> Self {
+    pub(super) fn with(fitter: &'d Fitter<'a>, all: &'d Dataset, these: &[usize]) -> Self {
         let mut counts = vec![0_usize; all.targets.len()];
         all.observations.iter().for_each(|row| counts[row.target] += 1);
         let mut kept: Vec<usize> = (0..counts.len()).collect();
@@ -48,14 +48,14 @@ impl<'a, 'd> Few<'a, 'd> {
         let enough = enough.count().clamp(TARGETS, MOST_TARGETS);
         kept.truncate(enough);
         kept.sort_unstable();
-        let mut start = session.start.clone();
-        start.base_from_target = kept.iter().map(|&target| session.start.base_from_target[target]).collect();
-        let session = Cow::Owned(Session { start, ..session.clone() });
+        let mut start = fitter.start.clone();
+        start.base_from_target = kept.iter().map(|&target| fitter.start.base_from_target[target]).collect();
+        let fitter = Cow::Owned(Fitter { start, ..fitter.clone() });
         let data = Cow::Owned(reduced(all, &kept).0);
-        Few { session, data, kept: Some(kept) }
+        FewTargets { fitter, data, kept: Some(kept) }
     }
 
-    /// The same targets' rows of data that were changed.
+    /// The rows of these targets in changed data.
     pub(super) fn among(&self, changed: Dataset) -> Dataset {
         match &self.kept {
             Some(kept) => reduced(&changed, kept).0,
@@ -63,7 +63,7 @@ impl<'a, 'd> Few<'a, 'd> {
         }
     }
 
-    /// The number that a target has among these.
+    /// The new number of a target.
     pub(super) fn number(&self, target: usize) -> Option<usize> {
         match &self.kept {
             Some(kept) => kept.binary_search(&target).ok(),
@@ -71,7 +71,7 @@ impl<'a, 'd> Few<'a, 'd> {
         }
     }
 
-    /// The rows of all data that are among these, in their order.
+    /// The rows of these targets among all data.
     pub(super) fn rows(&self, all: &Dataset) -> Vec<usize> {
         match &self.kept {
             Some(kept) => reduced(all, kept).1,
@@ -79,14 +79,14 @@ impl<'a, 'd> Few<'a, 'd> {
         }
     }
 
-    /// An estimate of these targets with all others where their rows see them on average (theory.md §6 (32)).
-    pub(super) fn placed(&self, session: &Session<'_>, all: &Dataset, found: &Estimate) -> Estimate {
+    /// An estimate of these targets, with all others at the mean place of their rows (theory.md §6 (32)).
+    pub(super) fn placed(&self, fitter: &Fitter<'_>, all: &Dataset, found: &Estimate) -> Estimate {
         let Some(kept) = &self.kept else { return found.clone() };
-        let mut estimate = session.start.clone();
+        let mut estimate = fitter.start.clone();
         estimate.base_from_axis.clone_from(&found.base_from_axis);
         estimate.joint_offset.clone_from(&found.joint_offset);
         estimate.device_from_base = found.device_from_base;
-        place(session, all, &mut estimate);
+        place(fitter, all, &mut estimate);
         for (&target, pose) in kept.iter().zip(&found.base_from_target) {
             estimate.base_from_target[target] = *pose;
         }
@@ -94,7 +94,7 @@ impl<'a, 'd> Few<'a, 'd> {
     }
 }
 
-/// Rows of these targets, numbered in their order, and which rows they are.
+/// The rows of these targets, renumbered, and their places in all data.
 fn reduced(all: &Dataset, kept: &[usize]) -> (Dataset, Vec<usize>) {
     let mut numbers = vec![None; all.targets.len()];
     kept.iter().enumerate().for_each(|(number, &target)| numbers[target] = Some(number));
@@ -110,11 +110,11 @@ fn reduced(all: &Dataset, kept: &[usize]) -> (Dataset, Vec<usize>) {
     (few, rows)
 }
 
-/// Puts each target where its rows see it on average.
-fn place(session: &Session<'_>, all: &Dataset, estimate: &mut Estimate) {
+/// Puts each target at the mean place of its rows.
+fn place(fitter: &Fitter<'_>, all: &Dataset, estimate: &mut Estimate) {
     let mut places = vec![(0_usize, Vector3::zeros()); estimate.base_from_target.len()];
     let mut turns: Vec<Vec<Matrix3<f64>>> = vec![Vec::new(); places.len()];
-    for_links(session, all, estimate, |row, link| {
+    for_links(fitter, all, estimate, |row, link| {
         let (target, seen) = (all.observations[row].target, &all.observations[row].measurement);
         let model = seen.residual_model();
         let (count, sum) = &mut places[target];
@@ -133,14 +133,14 @@ fn place(session: &Session<'_>, all: &Dataset, estimate: &mut Estimate) {
     }
 }
 
-/// Gives for each row what brings a measurement to where the target was at zero joint values, in the base frame.
+/// Calls `each` with the transformation of every row from measurement to the target at zero joint values, in the base frame.
 pub(super) fn for_links(
-    session: &Session<'_>,
+    fitter: &Fitter<'_>,
     all: &Dataset,
     estimate: &Estimate,
     mut each: impl FnMut(usize, &Pose),
 ) {
-    let packed = session.packed(all);
+    let packed = fitter.packed(all);
     let linkage = Linkage::new(estimate);
     let mut chain = Chain::default();
     for (row, seen) in all.observations.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The mistakes that are tried, each with what would undo it and what to tell.
+//! Hypothetical mistakes, each with the change that undoes it and advice.
 
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
@@ -8,15 +8,15 @@ use super::change::{Change, Stream};
 use crate::measurement::Dataset;
 use crate::robot::{JointKind, Robot};
 
-/// A supposed mistake.
+/// A hypothetical mistake.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hypothesis {
     pub(super) kind: DiagnosisKind,
-    /// What undoes it: one change after the other.
+    /// Changes that undo it, one after the other.
     pub(super) changes: Vec<Change>,
-    /// What is done, as the subject of a sentence.
+    /// The change, as the subject of a sentence.
     pub(super) action: String,
-    /// What the user should look at.
+    /// Advice.
     pub(super) advice: String,
 }
 
@@ -31,7 +31,7 @@ impl Hypothesis {
         self.changes.iter().map(factor).product()
     }
 
-    /// The data as they would be without the mistake.
+    /// The data with the mistake undone.
     pub(super) fn apply(&self, data: &Dataset) -> Dataset {
         let mut changes = self.changes.iter();
         let Some(first) = changes.next() else { return data.clone() };
@@ -39,13 +39,13 @@ impl Hypothesis {
     }
 }
 
-/// Columns of readings with their names and kinds; a follower counts with its leader.
-pub(super) struct Columns {
+/// Names and kinds of the readings; a mimic joint counts with its leader.
+pub(super) struct ReadingColumns {
     pub(super) names: Vec<String>,
     pub(super) kinds: Vec<JointKind>,
 }
 
-impl Columns {
+impl ReadingColumns {
     pub(super) fn new(robot: &Robot) -> Self {
         let names = robot.reading_names();
         let kind = |name: &String| {
@@ -53,7 +53,7 @@ impl Columns {
             joint.map_or(JointKind::Revolute, |joint| joint.kind)
         };
         let kinds = names.iter().map(kind).collect();
-        Columns { names, kinds }
+        ReadingColumns { names, kinds }
     }
 
     fn of(&self, kind: JointKind) -> Vec<usize> {
@@ -61,8 +61,8 @@ impl Columns {
     }
 }
 
-/// Units of joints: degrees for radians and millimetres for metres, of all joints and of single ones.
-pub(super) fn joint_units(columns: &Columns) -> Vec<Hypothesis> {
+/// Units of readings: degrees for radians and millimetres for metres, of all joints or of single ones.
+pub(super) fn joint_units(columns: &ReadingColumns) -> Vec<Hypothesis> {
     let mut all = Vec::new();
     for (kind, factor, large, small) in [
         (JointKind::Revolute, 180.0 / PI, "degrees", "radians"),
@@ -89,8 +89,8 @@ pub(super) fn joint_units(columns: &Columns) -> Vec<Hypothesis> {
     all
 }
 
-/// A joint that counts the other way.
-pub(super) fn joint_signs(columns: &Columns) -> Vec<Hypothesis> {
+/// One joint with the wrong sign.
+pub(super) fn joint_signs(columns: &ReadingColumns) -> Vec<Hypothesis> {
     let one = |(column, name): (usize, &String)| {
         Hypothesis::new(
             DiagnosisKind::JointSign,
@@ -103,11 +103,11 @@ pub(super) fn joint_signs(columns: &Columns) -> Vec<Hypothesis> {
 }
 
 /// Two joint columns exchanged.
-pub(super) fn joint_exchanges(columns: &Columns) -> Vec<Hypothesis> {
+pub(super) fn joint_exchanges(columns: &ReadingColumns) -> Vec<Hypothesis> {
     let mut all = Vec::new();
     for (b, second) in columns.names.iter().enumerate() {
         for (a, first) in columns.names.iter().enumerate().take(b) {
-            // A slide in the place of an axis would be another unit besides.
+            // Exchanging a prismatic and a revolute joint would change units too.
             if columns.kinds[a] == columns.kinds[b] {
                 all.push(Hypothesis::new(
                     DiagnosisKind::JointsSwapped,
@@ -121,9 +121,9 @@ pub(super) fn joint_exchanges(columns: &Columns) -> Vec<Hypothesis> {
     all
 }
 
-/// A turning joint whose readings are the sum or the difference of its own and those of the turning joint before it, as where a
-/// controller states the third axis relative to the horizontal.
-pub(super) fn joint_couplings(columns: &Columns) -> Vec<Hypothesis> {
+/// A revolute joint's readings as sum or difference with those of the revolute joint before it, as where a controller states the third axis
+/// relative to the horizontal.
+pub(super) fn joint_couplings(columns: &ReadingColumns) -> Vec<Hypothesis> {
     let turning = columns.of(JointKind::Revolute);
     let mut all = Vec::new();
     for (&before, &column) in turning.iter().zip(turning.iter().skip(1)) {
@@ -134,11 +134,11 @@ pub(super) fn joint_couplings(columns: &Columns) -> Vec<Hypothesis> {
     all
 }
 
-fn coupling(columns: &Columns, column: usize, other: usize, own: f64, factor: f64) -> Hypothesis {
+fn coupling(columns: &ReadingColumns, column: usize, other: usize, own: f64, factor: f64) -> Hypothesis {
     let (name, before) = (columns.names[column].as_str(), columns.names[other].as_str());
     let signed = |value: f64| if value < 0.0 { "-" } else { "" };
     let joined = if factor < 0.0 { "less" } else { "plus" };
-    // As a key of TOML: what is not of plain letters and digits stands in quotes.
+    // A TOML key that is not plain letters and digits is quoted.
     let key = |name: &str| {
         let is_plain =
             name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-');
@@ -162,7 +162,7 @@ fn coupling(columns: &Columns, column: usize, other: usize, own: f64, factor: f6
     )
 }
 
-/// Measurements that belong to readings some rows before or after.
+/// Measurements paired with readings of rows before or after.
 pub(super) fn row_shifts(targets: usize) -> Vec<Hypothesis> {
     let one = |stream: Stream, by: i32| {
         let rows = if by.abs() == 1 { "1 row".to_owned() } else { format!("{} rows", by.abs()) };
@@ -215,7 +215,7 @@ pub(super) fn position_units() -> Vec<Hypothesis> {
     .collect()
 }
 
-/// Quaternions in another order, and poses the other way round.
+/// Quaternions in another order, and inverted poses.
 pub(super) fn pose_forms() -> Vec<Hypothesis> {
     let order = |places, was, read| {
         Hypothesis::new(
@@ -240,7 +240,7 @@ pub(super) fn pose_forms() -> Vec<Hypothesis> {
     ]
 }
 
-/// Coordinates of a left-handed frame. Where the device may stand anywhere, mirrored points are the same whichever axis it is.
+/// Coordinates of a left-handed frame. With an unknown device frame, mirrored points are the same for every axis.
 pub(super) fn mirrors(device_free: bool, turned: bool) -> Vec<Hypothesis> {
     let negated = |axis: usize| {
         let mut signs = Vector3::new(1.0, 1.0, 1.0);

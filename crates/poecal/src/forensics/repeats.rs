@@ -1,31 +1,31 @@
-//! Rows that stand in the data more than once, and rows that contradict each other.
+//! Rows that repeat or contradict each other.
 
+use super::fitter::Fitter;
 use super::judge::short;
-use super::session::Session;
 use super::unnamed::{self, contradiction_m};
 use super::{Diagnosis, DiagnosisKind};
 use crate::measurement::Dataset;
 
-/// Rows of one configuration before a row that it is compared with: a robot may stand still for thousands.
+/// Most rows of one configuration with which a row is compared: a robot may stand still for thousands.
 const NEAR: usize = 100;
-/// Pairs that a statement names.
+/// Most pairs in a statement.
 const NAMED: usize = 3;
 
-/// Two rows of one target with the same readings: an earlier and a later one.
+/// An earlier and a later row of one target with the same readings.
 type Pair = (u32, u32);
 
-/// What rows of one configuration show.
+/// Findings on rows of one configuration.
 pub(super) struct Repeats {
-    /// Rows that repeat another to the last digit.
+    /// Rows that repeat others to the last digit.
     pub(super) repeated: Option<Diagnosis>,
-    /// Rows that contradict another.
+    /// Rows that contradict others.
     pub(super) contradicting: Option<Diagnosis>,
-    /// Why they do, if they are of several targets.
+    /// Their cause, if they are of several targets.
     pub(super) unnamed: Option<Diagnosis>,
 }
 
-/// Looks at the rows of each configuration.
-pub(super) fn diagnose(session: &Session<'_>, data: &Dataset, rows: &[u32]) -> Repeats {
+/// Compares the rows of each configuration.
+pub(super) fn diagnose(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> Repeats {
     let target = |row: u32| data.observations[row as usize].target;
     let seen = |row: u32| &data.observations[row as usize].measurement;
     let mut repeats = data.repeated(rows);
@@ -38,7 +38,7 @@ pub(super) fn diagnose(session: &Session<'_>, data: &Dataset, rows: &[u32]) -> R
             let near = &group[k.saturating_sub(NEAR)..k];
             if let Some(&first) = near.iter().find(|&&first| seen(first) == seen(row)) {
                 repeated.push((first, row));
-            } else if let Some(apart_m) = contradiction_m(session, seen(group[0]), seen(row)) {
+            } else if let Some(apart_m) = contradiction_m(fitter, seen(group[0]), seen(row)) {
                 furthest_m = furthest_m.max(apart_m);
                 contradicting.push((group[0], row));
             }
@@ -49,7 +49,7 @@ pub(super) fn diagnose(session: &Session<'_>, data: &Dataset, rows: &[u32]) -> R
     let groups = repeats.iter().flat_map(|group| group.chunk_by(same));
     Repeats {
         repeated: repetition(data, &repeated),
-        unnamed: if contradicting.is_empty() { None } else { unnamed::diagnose(session, data, groups) },
+        unnamed: if contradicting.is_empty() { None } else { unnamed::diagnose(fitter, data, groups) },
         contradicting: contradiction(data, &contradicting, furthest_m * 1e3),
     }
 }
@@ -94,7 +94,7 @@ fn contradiction(data: &Dataset, contradicting: &[Pair], furthest_mm: f64) -> Op
     })
 }
 
-/// The first few pairs of rows by name.
+/// The first pairs of rows by name.
 fn pairs(data: &Dataset, pairs: &[(u32, u32)], word: &str) -> String {
     let named = pairs.iter().take(NAMED);
     let named: Vec<String> =

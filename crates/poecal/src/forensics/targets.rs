@@ -5,33 +5,33 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::few::{Few, TARGETS, for_links};
+use super::few::{FewTargets, TARGETS, for_links};
+use super::fitter::{Fitter, SHORT, Score, sampled, taken};
 use super::judge::{CALIBRATED_SHARE, short};
-use super::session::{SHORT, Score, Session, sampled, taken};
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::{Estimate, row_errors};
 use crate::measurement::Dataset;
 
-/// How many times nearer to their places in the model two targets must be when exchanged.
+/// Least ratio of two targets' distances from their nominal places before and after the exchange.
 const NEARER: f64 = 3.0;
-/// Rounds in which rows are given to the target that they fit better, and the model is fitted anew.
+/// Most rounds of reassigning rows and refitting.
 const ROUNDS: usize = 6;
-/// By how much the exchange must lower the error of the rows concerned, and of all rows.
+/// Least reduction of the error of the rows concerned, and of all rows.
 const ROW_GAIN: f64 = 5.0;
 const GAIN: f64 = 1.5;
-/// Targets of many whose names are compared with each other: those that have moved furthest.
+/// Most targets whose names are compared: those that are farthest from nominal.
 const MOVED: usize = 200;
-/// Pairs of targets that are tried, and rows that say which.
+/// Most pairs of targets that are tested, and most rows that vote for them.
 const PAIRS: usize = 15;
 const SUSPECTS: usize = 500;
-/// Rows that a statement names.
+/// Most rows in a statement.
 const NAMED: usize = 5;
 
-/// Two targets that the model knows, and that lie where it has the other: their names are exchanged in all rows.
-pub(super) fn names(session: &Session<'_>, data: &Dataset, found: &Estimate) -> Option<Diagnosis> {
-    let of_model: BTreeSet<&String> = session.robot.targets.iter().map(|(name, _)| name).collect();
+/// Two targets of the model at each other's places: their names are exchanged in all rows.
+pub(super) fn names(fitter: &Fitter<'_>, data: &Dataset, found: &Estimate) -> Option<Diagnosis> {
+    let of_model: BTreeSet<&String> = fitter.robot.targets.iter().map(|(name, _)| name).collect();
     let known = |target: usize| data.targets.get(target)?.as_ref().filter(|name| of_model.contains(name));
-    let nominal = |target: usize| session.start.base_from_target.get(target).map(|pose| pose.translation);
+    let nominal = |target: usize| fitter.start.base_from_target.get(target).map(|pose| pose.translation);
     let place = |target: usize| found.base_from_target.get(target).map(|pose| pose.translation);
     let moved = furthest(data.targets.len(), |target| Some((nominal(target)? - place(target)?).norm()));
     for (k, &b) in moved.iter().enumerate() {
@@ -57,7 +57,7 @@ pub(super) fn names(session: &Session<'_>, data: &Dataset, found: &Estimate) -> 
     None
 }
 
-/// The targets that are furthest from where they should be, in their order.
+/// The targets that are farthest from nominal, in their order.
 fn furthest(count: usize, moved_m: impl Fn(usize) -> Option<f64>) -> Vec<usize> {
     let mut targets: Vec<usize> = (0..count).collect();
     if count > MOVED {
@@ -69,22 +69,22 @@ fn furthest(count: usize, moved_m: impl Fn(usize) -> Option<f64>) -> Vec<usize> 
     targets
 }
 
-/// Two targets whose names are exchanged in some rows. `rows` are those of `all` in the data.
+/// Two targets with exchanged names in some rows. `rows` are those of `all` in the data.
 pub(super) fn rows(
-    session: &Session<'_>,
+    fitter: &Fitter<'_>,
     data: &Dataset,
     all: &Dataset,
     rows: &[u32],
     base: &Score,
 ) -> Option<Diagnosis> {
-    let found = pairs(session, all).into_iter().filter_map(|pair| {
+    let found = pairs(fitter, all).into_iter().filter_map(|pair| {
         if all.targets.len() <= TARGETS {
-            return exchanged(session, all, pair, base);
+            return exchanged(fitter, all, pair, base);
         }
-        let few = Few::with(session, all, &[pair.0, pair.1]);
+        let few = FewTargets::with(fitter, all, &[pair.0, pair.1]);
         let numbers = (few.number(pair.0)?, few.number(pair.1)?);
-        let base = few.session.judged(&sampled(&few.data)).1;
-        let (error, _, concerned, before, after) = exchanged(&few.session, &few.data, numbers, &base)?;
+        let base = few.fitter.judged(&sampled(&few.data)).1;
+        let (error, _, concerned, before, after) = exchanged(&few.fitter, &few.data, numbers, &base)?;
         let rows = few.rows(all);
         let concerned = concerned.into_iter().filter_map(|row| rows.get(row).copied()).collect();
         Some((error, pair, concerned, before, after))
@@ -111,7 +111,7 @@ pub(super) fn rows(
     })
 }
 
-/// Where some of the rows of a pair of targets stand: from a row on, up to a row, or here and there.
+/// Place of some of a pair's rows: from a row on, up to a row, or single rows.
 fn where_words(data: &Dataset, rows: &[u32], pair: (usize, usize), concerned: &[u32]) -> String {
     let own = |row: &u32| [pair.0, pair.1].contains(&data.observations[*row as usize].target);
     let own: Vec<u32> = rows.iter().copied().filter(own).collect();
@@ -125,8 +125,8 @@ fn where_words(data: &Dataset, rows: &[u32], pair: (usize, usize), concerned: &[
     }
 }
 
-/// The pairs of targets that may be exchanged: all of few targets, and of many those that single rows speak for.
-fn pairs(session: &Session<'_>, all: &Dataset) -> Vec<(usize, usize)> {
+/// Pairs of targets that may be exchanged: all pairs of few targets, of many those with the most votes of single rows.
+fn pairs(fitter: &Fitter<'_>, all: &Dataset) -> Vec<(usize, usize)> {
     let count = all.targets.len();
     if count * count.saturating_sub(1) / 2 <= PAIRS {
         return (0..count).flat_map(|b| (0..b).map(move |a| (a, b))).collect();
@@ -134,24 +134,19 @@ fn pairs(session: &Session<'_>, all: &Dataset) -> Vec<(usize, usize)> {
     let mut votes: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for range in starts(all) {
         let part = taken(all, &range.map(|row| row as u32).collect::<Vec<_>>());
-        let few = Few::of(session, &part);
-        let (estimate, _) = few.session.judged(&sampled(&few.data));
-        vote(session, all, &few.placed(session, &part, &estimate), &mut votes);
+        let few = FewTargets::of(fitter, &part);
+        let (estimate, _) = few.fitter.judged(&sampled(&few.data));
+        vote(fitter, all, &few.placed(fitter, &part, &estimate), &mut votes);
     }
     let mut pairs: Vec<((usize, usize), f64)> = votes.into_iter().collect();
     pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
     pairs.into_iter().take(PAIRS).map(|(pair, _)| pair).collect()
 }
 
-/// Adds for each row that fits another target better by how much that lowers its squared error; the worst rows have a vote.
-fn vote(
-    session: &Session<'_>,
-    all: &Dataset,
-    estimate: &Estimate,
-    votes: &mut BTreeMap<(usize, usize), f64>,
-) {
+/// Votes of the worst rows: for each that fits another target better, the reduction of its squared error.
+fn vote(fitter: &Fitter<'_>, all: &Dataset, estimate: &Estimate, votes: &mut BTreeMap<(usize, usize), f64>) {
     let mut seen = Vec::with_capacity(all.len());
-    for_links(session, all, estimate, |row, link| {
+    for_links(fitter, all, estimate, |row, link| {
         let place = link.act(&all.observations[row].measurement.residual_model().position());
         seen.push((row, place));
     });
@@ -171,7 +166,7 @@ fn vote(
     }
 }
 
-/// Rows from which models are made: all, the first half, and the second.
+/// Rows of the first models: all, the first half, and the second.
 fn starts(all: &Dataset) -> [Range<usize>; 3] {
     let half = all.len() / 2;
     [0..all.len(), 0..half, half..all.len()]
@@ -180,13 +175,13 @@ fn starts(all: &Dataset) -> [Range<usize>; 3] {
 /// Error after the exchange, the pair, its rows, and their errors before and after.
 type Exchange = (f64, (usize, usize), Vec<usize>, f64, f64);
 
-/// The rows of a pair that fit better exchanged, found from models of all rows, of the first half and of the second.
-fn exchanged(session: &Session<'_>, all: &Dataset, pair: (usize, usize), base: &Score) -> Option<Exchange> {
+/// The rows of a pair that fit better exchanged, from first models of all rows and of either half.
+fn exchanged(fitter: &Fitter<'_>, all: &Dataset, pair: (usize, usize), base: &Score) -> Option<Exchange> {
     let best = starts(all)
         .into_iter()
         .filter_map(|range| {
             let part: Vec<u32> = range.map(|row| row as u32).collect();
-            settled(session, all, &taken(all, &part), pair, base.calibrated.total_m)
+            reassigned(fitter, all, &taken(all, &part), pair, base.calibrated.total_m)
         })
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (error, concerned, before, after, rest) = best;
@@ -194,36 +189,36 @@ fn exchanged(session: &Session<'_>, all: &Dataset, pair: (usize, usize), base: &
         && before > ROW_GAIN * after
         && after < ROW_GAIN * rest
         && base.calibrated.total_m > GAIN * error
-        && error < CALIBRATED_SHARE * session.reach_m();
+        && error < CALIBRATED_SHARE * fitter.reach_m();
     plausible.then_some((error, pair, concerned, before, after))
 }
 
-/// Error of all rows, the rows that are exchanged, their error before and after, and the error of the others.
-type Settled = (f64, Vec<usize>, f64, f64, f64);
+/// Error of all rows, exchanged rows, their error before and after, and the error of the others.
+type Reassigned = (f64, Vec<usize>, f64, f64, f64);
 
-/// Gives rows to the target that they fit better and fits anew, until nothing changes.
-fn settled(
-    session: &Session<'_>,
+/// Reassigns rows to the target that they fit better and refits, until nothing changes.
+fn reassigned(
+    fitter: &Fitter<'_>,
     all: &Dataset,
     first: &Dataset,
     pair: (usize, usize),
     base_m: f64,
-) -> Option<Settled> {
+) -> Option<Reassigned> {
     let exchanged = with_exchanged(all, pair, |_| true);
-    let mut estimate = session.roughly_registered(&sampled(first)).0;
+    let mut estimate = fitter.roughly_registered(&sampled(first)).0;
     let mut swapped = vec![false; all.len()];
-    let packed = session.packed(all);
+    let packed = fitter.packed(all);
     let errors = |data: &Dataset, estimate: &Estimate| -> Vec<f64> {
         let errors = row_errors(data, &packed, &data.all_rows(), estimate);
-        errors.iter().map(|error| session.squared_m2(error)).collect()
+        errors.iter().map(|error| fitter.squared_m2(error)).collect()
     };
     let mut least = base_m;
     for _ in 0..ROUNDS {
         let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
         let next: Vec<bool> = kept.iter().zip(&other).map(|(kept, other)| other < kept).collect();
         let data = sampled(&with_exchanged(all, pair, |row| next[row]));
-        let registered = session.roughly_registered(&data).0;
-        let (calibrated, misfit) = session.calibrated(&data, &registered, SHORT);
+        let registered = fitter.roughly_registered(&data).0;
+        let (calibrated, misfit) = fitter.calibrated(&data, &registered, SHORT);
         estimate = calibrated;
         let unchanged = next == swapped;
         swapped = next;
@@ -234,7 +229,7 @@ fn settled(
     }
     let members = all.observations.iter().filter(|row| row.target == pair.0 || row.target == pair.1).count();
     let chosen = swapped.iter().filter(|swapped| **swapped).count();
-    // Which of the two names is right cannot be seen: the fewer rows are those that were exchanged.
+    // The data do not show which of the two names is right: the smaller set of rows counts as exchanged.
     if 2 * chosen > members {
         let turned = all.observations.iter().map(|row| row.target == pair.0 || row.target == pair.1);
         swapped.iter_mut().zip(turned).for_each(|(swapped, member)| *swapped = member && !*swapped);
@@ -250,7 +245,7 @@ fn settled(
     error.is_finite().then_some((error, concerned, before, after, rest))
 }
 
-/// The data with the targets of a pair exchanged in some rows.
+/// The data with a pair of targets exchanged in some rows.
 fn with_exchanged(all: &Dataset, pair: (usize, usize), which: impl Fn(usize) -> bool) -> Dataset {
     let mut data = all.clone();
     for (row, observation) in data.observations.iter_mut().enumerate() {

@@ -1,46 +1,47 @@
-//! Several targets under one name: rows of one configuration that show places which keep their distances.
+//! Several targets under one name: rows of one configuration at several places that keep their distances.
 
 use nalgebra::Vector3;
 
+use super::fitter::Fitter;
 use super::judge::short;
-use super::session::Session;
 use super::{Diagnosis, DiagnosisKind};
+use crate::distributions::median;
 use crate::lie::rotation;
 use crate::measurement::{Dataset, Measurement};
 
-/// Rows of one configuration contradict each other when they lie further apart than this share of the reach, or are turned by more
-/// than this angle (radians): a hundred times what a robot repeats to.
+/// Distance (share of the reach) and angle (radians) above which rows of one configuration contradict each other: a hundred times a robot's
+/// repeatability.
 const CONTRADICTION_SHARE: f64 = 5e-3;
 const CONTRADICTION_RAD: f64 = 0.035;
-/// Fewest configurations that show the same places.
+/// Fewest configurations with the same places.
 const FEWEST: usize = 3;
-/// Their share of the configurations that show more than one place.
+/// Their least share of the configurations with several places.
 const SHARE: f64 = 2.0 / 3.0;
-/// How far a distance may be from the usual one, as a share of it.
+/// Largest deviation of a distance from the usual one, as a share of it.
 const TOLERANCE: f64 = 0.1;
 
-/// The places of a configuration, in the order of their first rows.
+/// Places of one configuration, in the order of their first rows.
 struct Places {
     rows: Vec<u32>,
     first: Vec<Vector3<f64>>,
-    /// Distances between any two, sorted.
+    /// Distances between all pairs, sorted.
     distances: Vec<f64>,
 }
 
-/// Whether the contradicting rows of configurations, a group of one target each, are of several targets.
+/// Diagnosis of contradicting rows, grouped by configuration and target, as rows of several targets.
 pub(super) fn diagnose<'a>(
-    session: &Session<'_>,
+    fitter: &Fitter<'_>,
     data: &Dataset,
     groups: impl Iterator<Item = &'a [u32]>,
 ) -> Option<Diagnosis> {
     let several: Vec<Places> =
-        groups.map(|rows| places(session, data, rows)).filter(|places| places.first.len() > 1).collect();
+        groups.map(|rows| places(fitter, data, rows)).filter(|places| places.first.len() > 1).collect();
     let count = usual(several.iter().map(|places| places.first.len()).collect())?;
     let alike: Vec<&Places> = several.iter().filter(|places| places.first.len() == count).collect();
     let pairs = count * (count - 1) / 2;
     let at = |pair: usize| move |places: &&Places| places.distances.get(pair).copied().unwrap_or(0.0);
     let distances: Vec<f64> =
-        (0..pairs).map(|pair| usual_number(alike.iter().map(at(pair)).collect())).collect();
+        (0..pairs).map(|pair| median(alike.iter().map(at(pair))).unwrap_or(0.0)).collect();
     let keeps = |places: &&&Places| {
         places
             .distances
@@ -76,12 +77,12 @@ pub(super) fn diagnose<'a>(
     })
 }
 
-/// The places that the rows of a configuration show: rows of one place do not contradict its first.
-fn places(session: &Session<'_>, data: &Dataset, rows: &[u32]) -> Places {
+/// Places of the rows of a configuration: rows that do not contradict a place's first row belong to it.
+fn places(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> Places {
     let mut first: Vec<&Measurement> = Vec::new();
     for seen in rows.iter().filter_map(|&row| data.observations.get(row as usize)) {
         let seen = &seen.measurement;
-        if first.len() < MOST && first.iter().all(|first| contradiction_m(session, first, seen).is_some()) {
+        if first.len() < MOST && first.iter().all(|first| contradiction_m(fitter, first, seen).is_some()) {
             first.push(seen);
         }
     }
@@ -94,10 +95,10 @@ fn places(session: &Session<'_>, data: &Dataset, rows: &[u32]) -> Places {
     Places { rows: rows.to_vec(), first, distances }
 }
 
-/// Places of a configuration that are told apart.
+/// Number of different places.
 const MOST: usize = 12;
 
-/// Whether the second place is where the first one is, shifted by the same vector everywhere, and seen later: the device was moved.
+/// Whether the second place is the first, shifted by the same vector everywhere and measured later: then the device was moved.
 fn is_shift(alike: &[&Places]) -> bool {
     let shift = |places: &&Places| match places.first.as_slice() {
         [first, second, ..] => second - first,
@@ -113,23 +114,17 @@ fn is_shift(alike: &[&Places]) -> bool {
     is_same && !alike.iter().all(in_one_go)
 }
 
-/// The most frequent number, the larger of equally frequent ones.
+/// The most frequent number, of equally frequent ones the larger.
 fn usual(mut numbers: Vec<usize>) -> Option<usize> {
     numbers.sort_unstable();
     numbers.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first().copied()
 }
 
-/// The median.
-fn usual_number(mut numbers: Vec<f64>) -> f64 {
-    numbers.sort_unstable_by(f64::total_cmp);
-    numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// How far two measurements of one configuration are apart, metres, if that is more than a robot's repeatability.
-pub(super) fn contradiction_m(session: &Session<'_>, a: &Measurement, b: &Measurement) -> Option<f64> {
+/// Distance of two measurements of one configuration, metres, if it exceeds a robot's repeatability.
+pub(super) fn contradiction_m(fitter: &Fitter<'_>, a: &Measurement, b: &Measurement) -> Option<f64> {
     let (first, second) = (a.pose(), b.pose());
     let apart_m = (first.translation - second.translation).norm();
     let both = a.sees_orientation() && b.sees_orientation();
     let turn = if both { rotation::log(&(first.rotation * second.rotation.transpose())).norm() } else { 0.0 };
-    (apart_m > CONTRADICTION_SHARE * session.reach_m() || turn > CONTRADICTION_RAD).then_some(apart_m)
+    (apart_m > CONTRADICTION_SHARE * fitter.reach_m() || turn > CONTRADICTION_RAD).then_some(apart_m)
 }

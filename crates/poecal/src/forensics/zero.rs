@@ -1,55 +1,60 @@
-//! A joint's zero that is somewhere else: found by fitting that joint's offset from several starts.
+//! The zero of a joint elsewhere: a fit of its offset from several starts.
 
 use std::f64::consts::FRAC_PI_4;
 
 use super::DiagnosisKind;
 use super::change::Change;
-use super::hypotheses::{Columns, Hypothesis};
-use super::session::Session;
+use super::fitter::Fitter;
+use super::hypotheses::{Hypothesis, ReadingColumns};
 use crate::measurement::Dataset;
 use crate::robot::JointKind;
 
-/// Offsets below this are what a calibration is for: radians, and share of the reach for slides.
+/// Smallest gross offset: radians, and share of the reach for prismatic joints. A calibration corrects smaller ones.
 const LEAST_RAD: f64 = 0.052;
 const LEAST_SHARE: f64 = 0.01;
-/// Starts, the best of eight, from which an offset is fitted.
+/// Number of starts, the best of eight, from which an offset is fitted.
 const FITTED_STARTS: usize = 3;
 
-/// The best offset of each joint, where it is gross.
-pub(super) fn joint_zeros(session: &Session<'_>, columns: &Columns, data: &Dataset) -> Vec<Hypothesis> {
-    let robot = session.robot;
+/// The best offset of each joint, if it is gross.
+pub(super) fn joint_zeros(fitter: &Fitter<'_>, columns: &ReadingColumns, data: &Dataset) -> Vec<Hypothesis> {
+    let robot = fitter.robot;
     let own = |column: &usize| {
         let name = &columns.names[*column];
         robot.joints.iter().filter(|joint| joint.reading.name == *name).count() == 1
     };
     (0..columns.names.len())
         .filter(own)
-        .filter_map(|column| joint_zero(session, columns, data, column))
+        .filter_map(|column| joint_zero(fitter, columns, data, column))
         .collect()
 }
 
-fn joint_zero(session: &Session<'_>, columns: &Columns, data: &Dataset, column: usize) -> Option<Hypothesis> {
+fn joint_zero(
+    fitter: &Fitter<'_>,
+    columns: &ReadingColumns,
+    data: &Dataset,
+    column: usize,
+) -> Option<Hypothesis> {
     let name = columns.names.get(column)?;
-    let joint = session.robot.joints.iter().position(|joint| joint.reading.name == *name)?;
-    let multiplier = session.robot.joints.get(joint)?.reading.multiplier;
+    let joint = fitter.robot.joints.iter().position(|joint| joint.reading.name == *name)?;
+    let multiplier = fitter.robot.joints.get(joint)?.reading.multiplier;
     let turns = columns.kinds.get(column) == Some(&JointKind::Revolute);
     let starts: Vec<f64> =
         if turns { (-3..=4).map(|k| f64::from(k) * FRAC_PI_4).collect() } else { vec![0.0] };
     let rough = |by: f64| {
-        let (estimate, misfit) = session.roughly_registered(&Change::Add(column, by).apply(data));
+        let (estimate, misfit) = fitter.roughly_registered(&Change::Add(column, by).apply(data));
         (misfit.total_m, by, estimate)
     };
     let mut rough: Vec<_> = starts.into_iter().map(rough).collect();
     rough.sort_by(|a, b| a.0.total_cmp(&b.0));
     let fitted = rough.into_iter().take(FITTED_STARTS).map(|(_, start, estimate)| {
-        let (rest, misfit) = session.offset(&Change::Add(column, start).apply(data), &estimate, joint);
+        let (rest, misfit) = fitter.offset(&Change::Add(column, start).apply(data), &estimate, joint);
         (misfit.total_m, start + rest / multiplier)
     });
     let (_, by) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (gross, words) = if turns {
         (by.abs() > LEAST_RAD, format!("{:.1} deg", by.to_degrees()))
     } else {
-        (by.abs() > LEAST_SHARE * session.reach_m(), format!("{:.1} mm", by * 1e3))
+        (by.abs() > LEAST_SHARE * fitter.reach_m(), format!("{:.1} mm", by * 1e3))
     };
     (gross && by.is_finite()).then(|| {
         Hypothesis::new(

@@ -1,18 +1,17 @@
-//! Text in cells of the CSV files that are written here, such that a spreadsheet shows it and does not run it, and that it reads back
-//! the same.
+//! Text cells of CSV output, protected from being run by a spreadsheet and read back the same.
 
 use std::borrow::Cow;
 
-/// What goes before a text that a spreadsheet would run.
+/// Prefix of a text that a spreadsheet would run.
 const MARK: char = '\'';
 
-/// Whether a cell that begins so would be run, or taken for something else than what it says.
+/// Whether a cell with this beginning would be run or misread.
 fn is_run(c: char) -> bool {
     matches!(c, '=' | '+' | '-' | '@' | '\t' | '\r' | '\n')
 }
 
-/// A text as a cell: one that a spreadsheet would run, or that begins with an apostrophe, has an apostrophe before it; numbers stay as
-/// they are. Quoted where it must be.
+/// A text as a cell: one that a spreadsheet would run, or that begins with an apostrophe, gets an apostrophe in front; numbers do not.
+/// Quoted where necessary.
 pub(in crate::io) fn cell(text: &str) -> Cow<'_, str> {
     let is_marked = text.starts_with(MARK) || text.starts_with(is_run) && !is_number(text);
     let padded = text.starts_with(char::is_whitespace) || text.ends_with(char::is_whitespace);
@@ -24,7 +23,7 @@ pub(in crate::io) fn cell(text: &str) -> Cow<'_, str> {
     if is_marked { format!("{MARK}{text}").into() } else { text.into() }
 }
 
-/// The text of a cell, without the apostrophe that [`cell`] puts before it.
+/// The text of a cell, without the apostrophe of [`cell`].
 pub(in crate::io) fn plain(text: &str) -> &str {
     match text.strip_prefix(MARK) {
         Some(rest) if rest.starts_with(|c| c == MARK || is_run(c)) => rest,

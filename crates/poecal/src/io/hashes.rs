@@ -1,4 +1,4 @@
-//! Checksums of input files, by which a reader can tell that a result came from the files at hand.
+//! Checksums of input files, to identify the inputs of a result.
 
 use std::fmt::Write as _;
 use std::io::{self, Read};
@@ -6,17 +6,17 @@ use std::path::Path;
 
 use sha2::{Digest as _, Sha256};
 
-use super::disk::{self, FoundKind};
+use super::disk::{self, ObjectKind};
 use super::source::is_standard_input;
 use crate::error::{Error, ErrorKind, Result};
 
-/// SHA-256 of a file, as hexadecimal digits; none of what can be read only once, such as a pipe.
+/// SHA-256 of a file, as hexadecimal digits; `None` for input that can be read only once, such as a pipe.
 ///
 /// # Errors
 /// [`ErrorKind::File`] if it cannot be read.
 pub(super) fn sha256(path: &Path) -> Result<Option<String>> {
     let disk = disk::here();
-    if is_standard_input(path) || disk.follow(path).is_ok_and(|found| found.kind != FoundKind::File) {
+    if is_standard_input(path) || disk.follow(path).is_ok_and(|found| found.kind != ObjectKind::File) {
         return Ok(None);
     }
     let read = || {
@@ -31,7 +31,7 @@ pub(super) fn sha256(path: &Path) -> Result<Option<String>> {
     })
 }
 
-/// Something that is read, and the checksum of what has been read of it.
+/// A reader that computes the checksum of what it has read.
 pub(super) struct Hashing<R> {
     source: R,
     hasher: Sha256,
@@ -42,7 +42,7 @@ impl<R: Read> Hashing<R> {
         Hashing { source, hasher: Sha256::new() }
     }
 
-    /// SHA-256 of what has been read, as hexadecimal digits.
+    /// SHA-256 of the bytes read so far, as hexadecimal digits.
     pub(super) fn sha256(&self) -> String {
         let mut digits = String::with_capacity(64);
         for byte in self.hasher.clone().finalize() {

@@ -1,19 +1,19 @@
-//! What a text looks like that is not what was asked for: tables given as models, models given as tables.
+//! Recognises tables given as models, and models given as tables.
 
 use std::path::Path;
 
 use crate::error::{Error, ErrorKind, first_few};
 
-/// What a model is.
+/// Expected models.
 const MODEL: &str =
     "expected a robot model: URDF, a calibration.json, or TOML that begins with poecal_robot = 1";
-/// What columns of DH tables are called, case ignored; some stand for each other.
+/// Column names of DH tables, case ignored, by groups of synonyms.
 const DH_COLUMNS: [&str; 12] =
     ["a", "alpha", "d", "theta", "r", "α", "θ", "a_i", "alpha_i", "d_i", "theta_i", "a(i-1)"];
 /// Columns that only measurements have.
 const MEASURED: [&str; 10] = ["x", "y", "z", "qx", "qy", "qz", "qw", "target", "id", "set"];
 
-/// The error of a model's text that is a table, `None` of all others.
+/// The error for a model's text that is a table; `None` for others.
 pub(super) fn table_for_model(text: &str, path: &Path) -> Option<Error> {
     let (index, line) =
         text.trim_start_matches('\u{feff}').lines().enumerate().find(|(_, line)| has_content(line))?;
@@ -35,7 +35,7 @@ pub(super) fn table_for_model(text: &str, path: &Path) -> Option<Error> {
     Some(Error::new(ErrorKind::Syntax, message).at_line(path, index + 1))
 }
 
-/// The error of a header that is the beginning of a model.
+/// The error for a header that is the beginning of a model.
 pub(super) fn model_for_table(line: &str, path: &Path, number: usize) -> Option<Error> {
     let line = line.trim();
     let form = if line.starts_with("<?xml") || line.starts_with("<robot") || line.starts_with("<!--") {
@@ -58,7 +58,7 @@ fn has_content(line: &str) -> bool {
     !line.is_empty() && !line.starts_with('#')
 }
 
-/// The cells of a line that begins a table, names without units; `None` of a line that TOML, XML or JSON could have.
+/// The cells of a table's first line, without units; `None` for a line of TOML, XML or JSON.
 fn cells(line: &str) -> Option<Vec<&str>> {
     let line = line.trim();
     let key = line.split('=').next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Mimic joints: following leaders to the joint that is read.
+//! Mimic joints, resolved to their readings.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ pub(super) struct Mimic {
     pub(super) offset: f64,
 }
 
-/// The reading of a joint, through as many leaders as there are. `None` if the leaders run in a circle.
+/// The reading of a joint, through any number of leaders. `None` for a circle of leaders.
 pub(super) fn reading<E>(
     joint: &str,
     mut mimic_of: impl FnMut(&str) -> Result<Option<Mimic>, E>,

@@ -1,4 +1,4 @@
-//! Robot models of any form: which reader a file needs, and conversion between the forms.
+//! Robot models of any form: choice of the reader, and conversion.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use super::{looks_like, robot_toml, source_text};
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Robot;
 
-/// What a model was read from.
+/// Source of a model.
 ///
 /// ```
 /// use poecal::{Model, ModelSource, simulate::elbow};
@@ -18,15 +18,15 @@ use crate::robot::Robot;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelSource {
-    /// A URDF text, which can be written back with other values.
+    /// A URDF text, into which other values can be written.
     Urdf(Box<UrdfDocument>),
     /// A TOML model.
     Toml,
-    /// A `calibration.json`, of which the model is the calibrated robot.
+    /// A `calibration.json`; the model is the calibrated robot.
     Calibration(Box<CalibrationFile>),
 }
 
-/// A robot and the file it came from.
+/// A robot and its source.
 ///
 /// ```no_run
 /// use poecal::io::model::{Model, ModelFormat, convert};
@@ -39,13 +39,13 @@ pub enum ModelSource {
 pub struct Model {
     /// The robot.
     pub robot: Robot,
-    /// What it was read from.
+    /// Its source.
     pub source: ModelSource,
-    /// The file, as the user named it.
+    /// File name as given by the user.
     pub path: PathBuf,
 }
 
-/// The forms of a robot model that can be written.
+/// Forms of robot models for output.
 ///
 /// ```
 /// use poecal::io::model::ModelFormat;
@@ -60,7 +60,7 @@ pub enum ModelFormat {
 }
 
 impl ModelFormat {
-    /// The form that a file's extension names.
+    /// The form of a file's extension.
     #[must_use]
     pub fn of_path(path: impl AsRef<Path>) -> Option<Self> {
         match path.as_ref().extension()?.to_str()?.to_ascii_lowercase().as_str() {
@@ -80,11 +80,11 @@ impl ModelFormat {
 }
 
 impl Model {
-    /// Reads a robot model: by the file's extension, or else by how its text begins. `selection` is for URDF.
+    /// Reads a robot model, with the form by the file's extension, else by the beginning of the text. `selection` is for URDF.
     ///
     /// # Errors
     /// [`ErrorKind::File`] if the file cannot be read; [`ErrorKind::Option`] if a chain is selected in a model that has only one;
-    /// else as the reader of its form.
+    /// otherwise as the reader of its form.
     pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
         Model::parse(
@@ -94,7 +94,7 @@ impl Model {
         )
     }
 
-    /// A robot model from its text; `path` is what messages call it, and its extension says which form it has, as for a file.
+    /// A robot model from its text; messages call it `path`, whose extension gives the form, as for a file.
     ///
     /// ```
     /// use poecal::io::model::{Model, ModelSource};
@@ -167,15 +167,15 @@ fn refuse_selection(path: &Path, selection: &ChainSelection) -> Result<()> {
 pub struct Converted {
     /// The whole text.
     pub text: String,
-    /// What could not be carried, or had to be added, a sentence each.
+    /// Losses and additions, a sentence each.
     pub notes: Vec<String>,
 }
 
 /// Writes a model in another form, reads it back and compares forward kinematics on 1,000 configurations.
 ///
 /// # Errors
-/// [`ErrorKind::Export`] if the form cannot hold the model, or what was read back differs by more than 1e-12 m or rad (of a robot
-/// larger than 1 m: 1e-12 of its size).
+/// [`ErrorKind::Export`] if the form cannot hold the model, or the text read back differs by more than 1e-12 m or rad (for robots larger
+/// than 1 m, 1e-12 of the size).
 pub fn convert(model: &Model, to: ModelFormat) -> Result<Converted> {
     let robot = &model.robot;
     let (converted, again) = match to {
@@ -214,7 +214,7 @@ fn export(model: &Model, message: String) -> Error {
     Error::new(ErrorKind::Export, message).in_file(&model.path)
 }
 
-/// Compares the forward kinematics of a model and of what was read back.
+/// Compares the forward kinematics of a model and of its text read back.
 fn verify(model: &Model, again: &Robot) -> Result<()> {
     if again.reading_names() != model.robot.reading_names() {
         return Err(export(model, "the converted model has other joints, expected the same".to_owned()));

@@ -1,4 +1,4 @@
-//! Files by what they are, whatever the path that names them.
+//! Identity of files named by different paths.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use super::disk::{self, Disk};
 use crate::error::{Error, ErrorKind, Result};
 
-/// The one path of the file that a path leads to. One that leads nowhere stays as it is, for reading it to complain about.
+/// Canonical path of an existing file. Others stay as they are, for the reader's error.
 #[must_use]
 pub fn actual(path: &Path) -> PathBuf {
     disk::here().actual(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Whether two paths lead to one file, by links or second names too.
+/// Whether two paths lead to the same file, also by links.
 pub(super) fn are_same(disk: &dyn Disk, one: &Path, other: &Path) -> bool {
     let (Ok(one_found), Ok(other_found)) = (disk.follow(one), disk.follow(other)) else { return false };
     match (one_found.identity, other_found.identity) {
@@ -21,7 +21,7 @@ pub(super) fn are_same(disk: &dyn Disk, one: &Path, other: &Path) -> bool {
     }
 }
 
-/// Refuses a measurement file that is named twice: the same rows twice are not more data.
+/// Refuses a measurement file that is named twice: its rows would count twice.
 ///
 /// # Errors
 /// [`ErrorKind::Option`].
@@ -37,7 +37,7 @@ pub fn refuse_repeats(paths: &[PathBuf]) -> Result<()> {
     }
 }
 
-/// Refuses a file that is to judge a fit and is fitted as well.
+/// Refuses a file for both fit and validation.
 ///
 /// # Errors
 /// [`ErrorKind::Option`].

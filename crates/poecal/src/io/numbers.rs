@@ -1,6 +1,6 @@
 //! Numbers in model files.
 
-/// No length of a robot (metres) and no angle (radians) comes near this; larger numbers are slips.
+/// Larger lengths (metres) or angles (radians) in a model are mistakes.
 pub const LARGEST_NUMBER: f64 = 1e6;
 
 /// The shortest decimal that reads back as the same number.
@@ -9,7 +9,7 @@ pub(super) fn shortest(number: f64) -> String {
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
-/// Appends the shortest decimal that reads back as the same number; the fast way for tables.
+/// Appends the shortest decimal that reads back as the same number; faster, for tables.
 pub(super) fn push_number(out: &mut String, number: f64) {
     let mut buffer = zmij::Buffer::new();
     // Adding zero makes negative zero positive.
@@ -17,8 +17,8 @@ pub(super) fn push_number(out: &mut String, number: f64) {
     out.push_str(text.strip_suffix(".0").unwrap_or(text));
 }
 
-/// Numbers freed of the rounding of products: what is within 1e-15 of a number with twelve decimals becomes that one, as 0.2025
-/// for 0.20249999999999999 and 0 for 6e-17.
+/// Removes the rounding of products: a number within 1e-15 of one with twelve decimals becomes that one, 0.2025 for 0.20249999999999999 and
+/// 0 for 6e-17.
 pub(super) fn tidy<const N: usize>(numbers: [f64; N]) -> [f64; N] {
     numbers.map(|number| {
         let rounded = (number * 1e12).round() / 1e12;

@@ -10,7 +10,7 @@ use crate::estimate::Packed;
 use crate::lie::Pose;
 use crate::uncertainty::PredictedError;
 
-/// The frame in which poses are predicted.
+/// Frame of predicted poses.
 ///
 /// ```
 /// use poecal::PredictionFrame;
@@ -82,7 +82,7 @@ pub fn predict(
     Ok(out)
 }
 
-/// Predicted poses as numbers.
+/// Predicted poses.
 ///
 /// ```
 /// use poecal::io::model::{Model, ModelSource};
@@ -94,9 +94,9 @@ pub fn predict(
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Predicted {
-    /// Pose of the tip, or of the target, in the frame asked for, a configuration each.
+    /// Pose of the tip or target in the chosen frame, one for each configuration.
     pub poses: Vec<Pose>,
-    /// The error to expect of each, and whether every joint is within the range that was sampled; if asked for.
+    /// Predicted uncertainty of each, and whether every joint is inside the sampled range; if asked for.
     pub doubts: Option<Vec<(PredictedError, bool)>>,
 }
 
@@ -123,12 +123,11 @@ pub fn predicted(
     Ok(Predicted { poses, doubts })
 }
 
-/// Root mean square distance and angle to expect, the distance not exceeded in 95 % of all cases, and whether every joint is within the range
-/// that was sampled.
+/// Expected root mean square distance and angle, 95 % bound of the distance, and whether every joint is inside the sampled range.
 const UNCERTAINTY_COLUMNS: &str =
     ",sigma_position[m],sigma_rotation[rad],bound95_position[m],inside_sampled_range";
 
-/// What to expect of each predicted row.
+/// Predicted uncertainty of each row.
 fn doubts(model: &Model, readings: &[f64], target: Option<&str>) -> Result<Vec<(PredictedError, bool)>> {
     let ModelSource::Calibration(file) = &model.source else {
         let message = "found a robot model without uncertainty, expected a calibration.json for \

@@ -1,4 +1,4 @@
-//! Proof that two robots are the same: forward kinematics compared on random configurations.
+//! Comparison of two robots' forward kinematics on random configurations.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -15,7 +15,7 @@ use crate::simulate::Configurations;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Of the tip's place, metres.
+    /// Of the tip's position, metres.
     pub position_m: f64,
     /// Of the tip's orientation, radians.
     pub rotation_rad: f64,
@@ -28,17 +28,17 @@ impl Difference {
         Reference::new(robot, count).difference(other)
     }
 
-    /// Whether neither exceeds its bound; not a number exceeds any.
+    /// Whether neither exceeds its bound; NaN does.
     #[must_use]
     pub fn is_within(&self, position_m: f64, rotation_rad: f64) -> bool {
         self.position_m <= position_m && self.rotation_rad <= rotation_rad
     }
 }
 
-/// A robot's tip poses on random configurations, which any number of robots may be compared with.
+/// A robot's tip poses on random configurations, for comparison with any number of robots.
 pub(super) struct Reference<'a> {
     robot: &'a Robot,
-    /// Readings of one configuration after the other.
+    /// Readings of all configurations.
     readings: Vec<f64>,
     poses: Vec<Pose>,
 }
@@ -54,7 +54,7 @@ impl<'a> Reference<'a> {
         Reference { robot, readings, poses }
     }
 
-    /// Whether it is of this very robot.
+    /// Whether they are of this very robot.
     pub(super) fn is_of(&self, robot: &Robot) -> bool {
         std::ptr::eq(self.robot, robot)
     }
@@ -72,7 +72,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// The larger number, or NaN if either is: a difference that is no number must not pass.
+/// The larger number, or NaN if either is NaN.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }

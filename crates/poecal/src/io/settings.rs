@@ -1,4 +1,4 @@
-//! Settings files: the options of a command as TOML, so that they need not be typed each time (docs/file-formats.md, "Settings").
+//! Settings files: options of a command as TOML (docs/file-formats.md, "Settings").
 
 use std::path::{Path, PathBuf};
 
@@ -8,10 +8,10 @@ use toml::de::{DeTable, DeValue};
 use super::source_text::{self, position};
 use crate::error::{Error, ErrorKind, Result, nearest_or_all};
 
-/// The key that says of which version the file is.
+/// Key with the version of the file.
 const VERSION_KEY: &str = "poecal_settings";
 
-/// The value of a setting.
+/// Value of a setting.
 ///
 /// ```
 /// use poecal::io::settings::{SettingValue, Settings};
@@ -22,9 +22,9 @@ const VERSION_KEY: &str = "poecal_settings";
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SettingValue {
-    /// A text or a number, as it would be typed.
+    /// Text or number, as typed.
     One(String),
-    /// Several of them.
+    /// List of these.
     Many(Vec<String>),
     /// `true` or `false`.
     Switch(bool),
@@ -41,9 +41,9 @@ pub enum SettingValue {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// What is set.
+    /// Key.
     pub key: String,
-    /// To what.
+    /// Value.
     pub value: SettingValue,
     /// Line of the value, from 1.
     pub line: usize,
@@ -64,14 +64,14 @@ pub struct Setting {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// The file, as the user named it.
+    /// File name as given by the user.
     pub path: PathBuf,
-    /// What it says, in the order of its lines.
+    /// The settings, in the order of their lines.
     pub entries: Vec<Setting>,
 }
 
 impl Settings {
-    /// Reads a settings file, which may have these keys.
+    /// Reads a settings file that may have these keys.
     ///
     /// # Errors
     /// [`ErrorKind::File`] if it cannot be read, else as [`Settings::parse`].
@@ -84,7 +84,7 @@ impl Settings {
         )
     }
 
-    /// Settings from their text; `path` is what messages call it.
+    /// Settings from their text; messages call it `path`.
     ///
     /// # Errors
     /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, is not of this version, or has a key that is not known
@@ -131,7 +131,7 @@ impl Settings {
         Ok(Settings { path: path.to_path_buf(), entries })
     }
 
-    /// A complaint about one of the settings, at its place.
+    /// An error at one of the settings.
     #[must_use]
     pub fn error(&self, entry: &Setting, message: impl Into<String>) -> Error {
         Error::new(ErrorKind::Option, message).at(&self.path, entry.line, entry.column)
@@ -150,7 +150,7 @@ fn setting(value: &Spanned<DeValue>) -> Option<SettingValue> {
     }
 }
 
-/// A text or a number as it would be typed.
+/// Text or number, as typed.
 fn plain(value: &Spanned<DeValue>) -> Option<String> {
     match value.get_ref() {
         DeValue::String(text) => Some(text.to_string()),

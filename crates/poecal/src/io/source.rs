@@ -1,21 +1,21 @@
-//! Inputs, opened: files and standard input, of a size that can be worked on, and no archive or workbook.
+//! Opens inputs, files and standard input: of limited size, and no archive or workbook.
 
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
-use super::disk::{self, FoundKind};
+use super::disk::{self, ObjectKind};
 use crate::error::{Error, ErrorKind, Result};
 
 /// The path that means standard input.
 pub(super) const STANDARD_INPUT: &str = "-";
-/// Bytes of a text that is held whole, at most.
+/// Largest text that is held whole, bytes.
 pub(super) const LARGEST_TEXT: u64 = 256 << 20;
-/// Bytes of a table, at most.
+/// Largest table, bytes.
 pub(super) const LARGEST_TABLE: u64 = 4 << 30;
-/// Bytes by which other forms than text are known.
+/// Number of bytes by which other formats are recognised.
 const HEAD: u64 = 8;
 
-/// What other files begin with, and what to do about them.
+/// First bytes of other formats, with advice.
 const FORMS: [(&[u8], &str); 7] = [
     (b"PK\x03\x04", "a ZIP archive or a workbook such as .xlsx; save the table as `CSV UTF-8`"),
     (b"\xd0\xcf\x11\xe0", "a workbook of the old .xls form; save the table as `CSV UTF-8`"),
@@ -26,24 +26,24 @@ const FORMS: [(&[u8], &str); 7] = [
     (b"%PDF-", "a PDF document; it is the numbers that are needed, as text"),
 ];
 
-/// An input that is read. It gives an error instead of more than its largest size.
+/// An input. Beyond its largest size it gives an error.
 pub(super) struct Input {
     head: Cursor<Vec<u8>>,
     rest: io::Take<Box<dyn Read + Send>>,
     largest: u64,
 }
 
-/// Opens a file, or standard input for `-`; `expected` says what it should be.
+/// Opens a file, or standard input for `-`; `expected` describes it in messages.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if it is a directory, missing or unreadable, or of a form that is no text.
+/// [`ErrorKind::File`] if it is a directory, missing, unreadable, or of a form that is no text.
 pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
     let error = |message: String| Error::new(ErrorKind::File, message).in_file(path);
     let opened = if is_standard_input(path) {
         disk::here().standard_input()
     } else {
         let disk = disk::here();
-        if disk.follow(path).is_ok_and(|found| found.kind == FoundKind::Folder) {
+        if disk.follow(path).is_ok_and(|found| found.kind == ObjectKind::Folder) {
             return Err(error(format!("found a directory, expected {expected}")));
         }
         disk.open(path)
@@ -60,7 +60,7 @@ pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
     if let Some((_, form)) = FORMS.iter().find(|(start, _)| head.starts_with(start)) {
         return Err(error(format!("found {form}, expected {expected}")));
     }
-    // One byte more than there may be shows that there are more.
+    // One byte more than allowed shows that the file is too large.
     Ok(Input { head: Cursor::new(head), rest: rest.take(largest - HEAD + 1), largest })
 }
 

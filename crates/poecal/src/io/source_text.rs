@@ -1,4 +1,4 @@
-//! Text files: reading them whole, and turning byte offsets into lines and columns.
+//! Text files read whole, and byte offsets as lines and columns.
 
 use std::io::Read as _;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use super::source;
 use crate::error::{Error, ErrorKind, Result};
 
-/// The text of a file. `expected` names what the file should be, for the messages.
+/// The text of a file; `expected` describes it in messages.
 ///
 /// # Errors
 /// [`ErrorKind::File`] if it is a directory, missing, unreadable, too large, empty or not UTF-8.
@@ -14,7 +14,7 @@ pub(super) fn read(path: &Path, expected: &str) -> Result<String> {
     read_up_to(path, expected, source::LARGEST_TEXT)
 }
 
-/// [`read()`], of a file that may be larger than others.
+/// [`read()`], with another largest size.
 pub(super) fn read_up_to(path: &Path, expected: &str, largest: u64) -> Result<String> {
     let file_error = |message: String| Error::new(ErrorKind::File, message).in_file(path);
     let mut bytes = Vec::new();

@@ -13,7 +13,7 @@ pub use pose::Pose;
 pub use screw::Screw;
 pub use twist::{TargetTwist, Twist};
 
-/// The skew-symmetric matrix `â` with `â b = a × b`.
+/// The skew-symmetric matrix `â` with `â b = a × b`: theory.md §1.
 ///
 /// ```
 /// use nalgebra::Vector3;

@@ -57,32 +57,32 @@ impl Pose {
         Pose::new(Matrix3::identity(), translation)
     }
 
-    /// The pose of a URDF `<origin xyz rpy>` (metres, radians).
+    /// The pose of a URDF `<origin xyz rpy>` (metres, radians), by [`rotation::from_rpy`].
     #[must_use]
     pub fn from_xyz_rpy(xyz: [f64; 3], rpy: [f64; 3]) -> Self {
         Pose::new(rotation::from_rpy(rpy[0], rpy[1], rpy[2]), Vector3::from(xyz))
     }
 
-    /// The pose of a position (metres) and a quaternion `(x, y, z, w)`, which is normalised.
+    /// The pose of a position (metres) and a quaternion `(x, y, z, w)`, which is normalised, by [`rotation::from_quaternion_xyzw`].
     #[must_use]
     pub fn from_position_quaternion(position: [f64; 3], xyzw: [f64; 4]) -> Self {
         Pose::new(rotation::from_quaternion_xyzw(&Vector4::from(xyzw)), Vector3::from(position))
     }
 
-    /// The quaternion `[x, y, z, w]` of the rotation, `w ≥ 0`.
+    /// The quaternion `[x, y, z, w]` of the rotation, `w ≥ 0`, by [`rotation::to_quaternion_xyzw`].
     #[must_use]
     pub fn quaternion_xyzw(&self) -> [f64; 4] {
         rotation::to_quaternion_xyzw(&self.rotation).into()
     }
 
-    /// `T⁻¹ = (Rᵀ, -Rᵀp)`.
+    /// `T⁻¹ = (Rᵀ, -Rᵀp)`, as theory.md §1 has `T = (R, p)`.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let transposed = self.rotation.transpose();
         Pose::new(transposed, -(transposed * self.translation))
     }
 
-    /// `R x + p`.
+    /// `R x + p`: theory.md §1.
     #[must_use]
     pub fn act(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.rotation * point + self.translation
@@ -98,7 +98,7 @@ impl Pose {
         adjoint
     }
 
-    /// `Ad_T ξ` without forming the matrix: `(R v + p × R ω; R ω)`.
+    /// `Ad_T ξ` without the matrix, `(R v + p × R ω; R ω)`: theory.md §1 (2).
     #[must_use]
     pub fn transform(&self, twist: &Twist) -> Twist {
         let w = self.rotation * twist.w;
@@ -126,7 +126,7 @@ impl Pose {
         Twist::new(v_inverse * self.translation, w)
     }
 
-    /// The same pose with a rotation matrix freed of accumulated rounding.
+    /// The same pose with a rotation matrix freed of accumulated rounding, by [`rotation::orthonormalized`].
     #[must_use]
     pub fn orthonormalized(&self) -> Self {
         Pose::new(rotation::orthonormalized(&self.rotation), self.translation)

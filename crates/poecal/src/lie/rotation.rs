@@ -81,7 +81,7 @@ pub fn from_quaternion_xyzw(q: &Vector4<f64>) -> Matrix3<f64> {
     )
 }
 
-/// Rotation about a coordinate axis (0 = x, 1 = y, 2 = z) by an angle in radians.
+/// Rotation about a coordinate axis (0 = x, 1 = y, 2 = z) by an angle in radians: theory.md §1 (2a).
 #[must_use]
 pub fn about(axis: usize, angle_rad: f64) -> Matrix3<f64> {
     let (s, c) = angle_rad.sin_cos();
@@ -92,7 +92,7 @@ pub fn about(axis: usize, angle_rad: f64) -> Matrix3<f64> {
     }
 }
 
-/// Rotation of URDF's fixed-axis angles, `R = Rz(yaw) Ry(pitch) Rx(roll)`, radians.
+/// Rotation of URDF's fixed-axis angles, `R = Rz(yaw) Ry(pitch) Rx(roll)`, radians (docs/conventions.md).
 ///
 /// ```
 /// use poecal::lie::rotation::{from_rpy, to_rpy};
@@ -104,8 +104,8 @@ pub fn from_rpy(roll: f64, pitch: f64, yaw: f64) -> Matrix3<f64> {
     about(2, yaw) * about(1, pitch) * about(0, roll)
 }
 
-/// URDF angles `[roll, pitch, yaw]` of a rotation. At `pitch = ±π/2`, where roll and yaw are not unique, and near it, the three
-/// still compose to `R` to rounding: roll is read off after yaw has been undone.
+/// URDF angles `[roll, pitch, yaw]` of a rotation, the inverse of [`from_rpy`]. At and near `pitch = ±π/2`, where roll and yaw are not
+/// unique, the three still compose to `R` to rounding: roll is found after yaw has been undone.
 #[must_use]
 pub fn to_rpy(r: &Matrix3<f64>) -> [f64; 3] {
     let horizontal = r[(0, 0)].hypot(r[(1, 0)]);

@@ -21,14 +21,14 @@ pub struct Screw {
 }
 
 impl Screw {
-    /// The axis along `direction` (any length but zero) through `point` (metres).
+    /// The axis along `direction` (any length but zero) through `point` (metres): theory.md §2 (5).
     #[must_use]
     pub fn revolute(direction: &Vector3<f64>, point: &Vector3<f64>) -> Self {
         let w = direction.normalize();
         Screw { v: -w.cross(point), w }
     }
 
-    /// The sliding direction `direction` (any length but zero).
+    /// The sliding direction `direction` (any length but zero): theory.md §2 (5).
     #[must_use]
     pub fn prismatic(direction: &Vector3<f64>) -> Self {
         Screw { v: direction.normalize(), w: Vector3::zeros() }
@@ -80,7 +80,7 @@ impl Screw {
         if self.is_prismatic() { self.v } else { self.w }
     }
 
-    /// The point of the axis nearest to `point`; for a sliding direction, `point` itself.
+    /// The point of the axis nearest to `point`, `ω × v + ω (ω·p)` by theory.md §2 (5); for a sliding direction, `point` itself.
     #[must_use]
     pub fn nearest_point(&self, point: &Vector3<f64>) -> Vector3<f64> {
         if self.is_prismatic() {

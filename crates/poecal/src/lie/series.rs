@@ -6,7 +6,7 @@
 /// Squared angle below which the Taylor series are used (an angle of 0.1 rad).
 pub const SWITCH: f64 = 1e-2;
 
-/// `sin θ / θ` of `θ²`.
+/// `sin θ / θ` of `θ²`: the first coefficient of theory.md §1 (2a).
 ///
 /// ```
 /// assert_eq!(poecal::lie::series::sinc(0.0), 1.0);
@@ -24,7 +24,7 @@ pub fn sinc(angle_squared: f64) -> f64 {
     }
 }
 
-/// `(1 - cos θ) / θ²` of `θ²`.
+/// `(1 - cos θ) / θ²` of `θ²`: the second coefficient of theory.md §1 (2a).
 ///
 /// ```
 /// assert_eq!(poecal::lie::series::cosc(0.0), 0.5);
@@ -43,7 +43,7 @@ pub fn cosc(angle_squared: f64) -> f64 {
     }
 }
 
-/// `(θ - sin θ) / θ³` of `θ²`.
+/// `(θ - sin θ) / θ³` of `θ²`: the third coefficient of theory.md §1 (2a).
 ///
 /// ```
 /// assert!((poecal::lie::series::sincc(0.0) - 1.0 / 6.0).abs() < 1e-16);
@@ -92,7 +92,7 @@ const fn arcsine() -> [f64; 12] {
     out
 }
 
-/// `(1 - (θ/2) cot(θ/2)) / θ²` of `θ²`: the second coefficient of the inverse left Jacobian, defined up to θ < 2π.
+/// `(1 - (θ/2) cot(θ/2)) / θ²` of `θ²`, up to θ < 2π: the coefficient of `ω̂²` in `V⁻¹`, theory.md §1 (2a).
 ///
 /// ```
 /// assert!((poecal::lie::series::cotc(0.0) - 1.0 / 12.0).abs() < 1e-16);

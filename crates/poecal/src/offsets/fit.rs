@@ -4,7 +4,7 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 
 use nalgebra::{DMatrix, Matrix3, Matrix3x6, Vector3, Vector6};
 
-use super::{End, Options};
+use super::{End, OffsetOptions};
 use crate::lie::{Pose, Screw, Twist, hat};
 use crate::linalg;
 use crate::robot::{Joint, JointKind, Robot};
@@ -17,7 +17,7 @@ const NAMED: f64 = 1e-3;
 
 /// Offsets (radians, metres) and the motion of the nominal robot in the base frame.
 #[derive(Clone, Debug)]
-pub(super) struct State {
+pub(super) struct OffsetState {
     pub(super) offsets: Vec<f64>,
     pub(super) base: Pose,
 }
@@ -26,7 +26,7 @@ pub(super) struct State {
 pub(super) struct Comparison<'a> {
     pub(super) nominal: &'a Robot,
     pub(super) actual: &'a Robot,
-    pub(super) options: &'a Options,
+    pub(super) options: &'a OffsetOptions,
     /// Metres that a radian counts.
     pub(super) length_m: f64,
     offsets_free: bool,
@@ -66,12 +66,12 @@ impl Normal {
 }
 
 impl<'a> Comparison<'a> {
-    pub(super) fn new(nominal: &'a Robot, actual: &'a Robot, options: &'a Options) -> Self {
+    pub(super) fn new(nominal: &'a Robot, actual: &'a Robot, options: &'a OffsetOptions) -> Self {
         Comparison { nominal, actual, options, length_m: nominal.arm_m() / 3.0, offsets_free: true }
     }
 
     /// The best state that is reached from no offsets and from those in closed form; angles are in (-π, π].
-    pub(super) fn best(&self) -> State {
+    pub(super) fn best(&self) -> OffsetState {
         let mut starts = vec![self.sequential(End::Kept), self.unmoved()];
         if self.options.base == End::Free {
             starts.push(self.sequential(End::Free));
@@ -80,24 +80,25 @@ impl<'a> Comparison<'a> {
     }
 
     /// The best state in which all offsets are zero.
-    pub(super) fn best_without_offsets(&self) -> State {
+    pub(super) fn best_without_offsets(&self) -> OffsetState {
         let base_only = Comparison { offsets_free: false, ..*self };
-        let by_first_screws = State { base: base_only.sequential(self.options.base).base, ..self.unmoved() };
+        let by_first_screws =
+            OffsetState { base: base_only.sequential(self.options.base).base, ..self.unmoved() };
         base_only.best_of(vec![self.unmoved(), by_first_screws])
     }
 
-    fn unmoved(&self) -> State {
-        State { offsets: vec![0.0; self.nominal.joints.len()], base: Pose::identity() }
+    fn unmoved(&self) -> OffsetState {
+        OffsetState { offsets: vec![0.0; self.nominal.joints.len()], base: Pose::identity() }
     }
 
-    fn best_of(&self, starts: Vec<State>) -> State {
+    fn best_of(&self, starts: Vec<OffsetState>) -> OffsetState {
         let ends = starts.into_iter().map(|start| self.refine(start));
         let best = ends.min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
         best.unwrap_or_else(|| self.unmoved())
     }
 
     /// The joints that have a part in open directions.
-    pub(super) fn undetermined(&self, state: &State) -> Vec<usize> {
+    pub(super) fn undetermined(&self, state: &OffsetState) -> Vec<usize> {
         let normal = self.normal(state);
         let open = normal.open();
         let part =
@@ -106,7 +107,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// Screws and home pose of the nominal robot with offsets and base motion.
-    pub(super) fn moved(&self, state: &State) -> (Vec<Screw>, Pose) {
+    pub(super) fn moved(&self, state: &OffsetState) -> (Vec<Screw>, Pose) {
         let mut motion = state.base;
         let mut screws = Vec::with_capacity(self.nominal.joints.len());
         for (joint, &offset) in self.nominal.joints.iter().zip(&state.offsets) {
@@ -118,7 +119,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// Descends, makes open offsets as small as they can be, and descends again until nothing moves.
-    fn refine(&self, start: State) -> State {
+    fn refine(&self, start: OffsetState) -> OffsetState {
         let mut state = start;
         if self.dim() == 0 {
             return state;
@@ -135,7 +136,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// Levenberg-Marquardt, and undamped steps at its end, where differences of the cost are rounding.
-    fn descend(&self, start: State) -> State {
+    fn descend(&self, start: OffsetState) -> OffsetState {
         let mut state = start;
         let mut normal = self.normal(&state);
         let mut damping = 1e-3 * normal.largest();
@@ -168,7 +169,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// The step in open directions that makes the offsets smallest; the base is free to follow.
-    fn open_step(&self, state: &State) -> Vec<f64> {
+    fn open_step(&self, state: &OffsetState) -> Vec<f64> {
         let n = self.dim();
         let mut step = vec![0.0; n];
         let normal = self.normal(state);
@@ -214,7 +215,7 @@ impl<'a> Comparison<'a> {
         scales
     }
 
-    fn retract(&self, state: &State, step: &[f64]) -> State {
+    fn retract(&self, state: &OffsetState, step: &[f64]) -> OffsetState {
         let mut next = state.clone();
         let units: Vec<f64> = step.iter().zip(self.scales()).map(|(step, scale)| step / scale).collect();
         let mut base = units.as_slice();
@@ -236,7 +237,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// The residuals of the joints in order, then of the home pose, each with the number of joints that move it.
-    fn blocks(&self, state: &State) -> (Vec<Screw>, Vec<(usize, Block)>) {
+    fn blocks(&self, state: &OffsetState) -> (Vec<Screw>, Vec<(usize, Block)>) {
         let (screws, home) = self.moved(state);
         let mut blocks = Vec::new();
         for (index, (screw, joint)) in screws.iter().zip(&self.actual.joints).enumerate() {
@@ -257,11 +258,11 @@ impl<'a> Comparison<'a> {
         (screws, blocks)
     }
 
-    fn cost(&self, state: &State) -> f64 {
+    fn cost(&self, state: &OffsetState) -> f64 {
         self.blocks(state).1.iter().map(|(_, (residual, _))| residual.norm_squared()).sum()
     }
 
-    fn normal(&self, state: &State) -> Normal {
+    fn normal(&self, state: &OffsetState) -> Normal {
         let (screws, blocks) = self.blocks(state);
         let scales = self.scales();
         let n = scales.len();

@@ -10,7 +10,7 @@ pub use prediction::TipError;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::robot::{JointKind, Robot};
-use fit::{Comparison, State};
+use fit::{Comparison, OffsetState};
 use prediction::Predictions;
 
 /// The robot without offsets that is exactly `robot` with `offsets` added to its joint values (radians, metres; one a joint):
@@ -82,12 +82,12 @@ impl End {
 /// Options of [`explain`].
 ///
 /// ```
-/// use poecal::offsets::{End, Options};
-/// let options = Options { tip: End::Free, ..Options::default() };
+/// use poecal::offsets::{End, OffsetOptions};
+/// let options = OffsetOptions { tip: End::Free, ..OffsetOptions::default() };
 /// assert_eq!((options.base, options.configurations), (End::Kept, 1000));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
+pub struct OffsetOptions {
     /// The base frame: free where the actual robot's is a choice.
     pub base: End,
     /// The tip frame: free where the tool was changed or refitted.
@@ -98,18 +98,18 @@ pub struct Options {
     pub seed: u64,
 }
 
-impl Default for Options {
+impl Default for OffsetOptions {
     fn default() -> Self {
-        Options { base: End::Kept, tip: End::Kept, configurations: 1000, seed: 1 }
+        OffsetOptions { base: End::Kept, tip: End::Kept, configurations: 1000, seed: 1 }
     }
 }
 
 /// Difference of a joint's screw that offsets do not explain.
 ///
 /// ```
-/// use poecal::offsets::{Options, explain};
+/// use poecal::offsets::{OffsetOptions, explain};
 /// let robot = poecal::simulate::scara();
-/// let explanation = explain(&robot, &robot, &Options::default())?;
+/// let explanation = explain(&robot, &robot, &OffsetOptions::default())?;
 /// // A sliding joint has a direction and no place.
 /// assert!(explanation.joints[2].shift_m.is_none() && explanation.joints[2].tilt_rad < 1e-15);
 /// # Ok::<(), poecal::Error>(())
@@ -125,9 +125,9 @@ pub struct JointRemainder {
 /// Difference of the home pose that offsets do not explain.
 ///
 /// ```
-/// use poecal::offsets::{Options, explain};
+/// use poecal::offsets::{OffsetOptions, explain};
 /// let robot = poecal::simulate::scara();
-/// let home = explain(&robot, &robot, &Options::default())?.home.ok_or("the tip is kept")?;
+/// let home = explain(&robot, &robot, &OffsetOptions::default())?.home.ok_or("the tip is kept")?;
 /// assert!(home.position_m < 1e-15 && home.rotation_rad < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -142,10 +142,10 @@ pub struct HomeRemainder {
 /// The offsets with which one robot comes nearest to another, and the remaining differences.
 ///
 /// ```
-/// use poecal::offsets::{Options, explain, into_screws};
+/// use poecal::offsets::{OffsetOptions, explain, into_screws};
 /// use poecal::simulate::elbow;
 /// let offsets = [0.1, -0.2, 3.0, 0.0, 0.4, -2.5];
-/// let explanation = explain(&elbow(), &into_screws(&elbow(), &offsets)?, &Options::default())?;
+/// let explanation = explain(&elbow(), &into_screws(&elbow(), &offsets)?, &OffsetOptions::default())?;
 /// assert!(explanation.offsets.iter().zip(&offsets).all(|(found, put_in)| (found - put_in).abs() < 1e-12));
 /// assert!(explanation.without_offsets.rms_m > 0.1 && explanation.with_offsets.rms_m < 1e-12);
 /// # Ok::<(), poecal::Error>(())
@@ -153,7 +153,7 @@ pub struct HomeRemainder {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
     /// How the robots were compared.
-    pub options: Options,
+    pub options: OffsetOptions,
     /// Offset of each joint's value, radians in (-π, π] or metres.
     pub offsets: Vec<f64>,
     /// Joints (by index) whose offsets are not determined, alone or in combination; theirs are the smallest that explain as much.
@@ -178,7 +178,7 @@ pub struct Explanation {
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if the robots do not have the same joints: number, names in order, kinds and readings.
-pub fn explain(nominal: &Robot, actual: &Robot, options: &Options) -> Result<Explanation> {
+pub fn explain(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Result<Explanation> {
     check_same_joints(nominal, actual)?;
     let comparison = Comparison::new(nominal, actual, options);
     let found = comparison.best();
@@ -202,7 +202,7 @@ pub fn explain(nominal: &Robot, actual: &Robot, options: &Options) -> Result<Exp
 
 fn remainder(
     comparison: &Comparison<'_>,
-    found: &State,
+    found: &OffsetState,
     tip: End,
 ) -> (Vec<JointRemainder>, Option<HomeRemainder>) {
     let (screws, home) = comparison.moved(found);

@@ -4,7 +4,7 @@ use nalgebra::{Matrix4, Vector3};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::{End, Options};
+use super::{End, OffsetOptions};
 use crate::lie::{Pose, rotation};
 use crate::linalg;
 use crate::robot::Robot;
@@ -13,9 +13,9 @@ use crate::simulate::random_configuration;
 /// Distance and angle between the tips of two robots, over random configurations.
 ///
 /// ```
-/// use poecal::offsets::{Options, explain};
+/// use poecal::offsets::{OffsetOptions, explain};
 /// let robot = poecal::simulate::scara();
-/// let error = explain(&robot, &robot, &Options::default())?.without_offsets;
+/// let error = explain(&robot, &robot, &OffsetOptions::default())?.without_offsets;
 /// assert!(error.max_m < 1e-15 && error.max_rad < 1e-15);
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -39,7 +39,7 @@ pub(super) struct Predictions {
 }
 
 impl Predictions {
-    pub(super) fn new(nominal: &Robot, actual: &Robot, options: &Options) -> Self {
+    pub(super) fn new(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(options.seed);
         let readings: Vec<Vec<f64>> =
             (0..options.configurations).map(|_| random_configuration(nominal, &mut generator)).collect();

@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 
 use super::End;
-use super::fit::{Comparison, State};
+use super::fit::{Comparison, OffsetState};
 use crate::lie::{Pose, Screw, hat};
 
 /// Sine of an angle, or share of the arm's length, below which a motion does not determine an offset.
@@ -13,7 +13,7 @@ const LEAST_MOTION: f64 = 1e-3;
 impl Comparison<'_> {
     /// Each offset turns the next screw that it moves as near as possible to the actual one; a free base first takes the first screw
     /// there.
-    pub(super) fn sequential(&self, base: End) -> State {
+    pub(super) fn sequential(&self, base: End) -> OffsetState {
         let base = match base {
             End::Kept => Pose::identity(),
             End::Free => self.base_by_first_screws(),
@@ -27,7 +27,7 @@ impl Comparison<'_> {
             offsets.push(offset);
             motion = about.exp(offset) * motion;
         }
-        State { offsets, base }
+        OffsetState { offsets, base }
     }
 
     /// The motion that takes the first screw to the actual one, with the rotation about it and the shift along it that fit the next screws.

@@ -77,7 +77,7 @@ impl Identify {
             identifiability: IdentifiabilityEntry::of(&found.identifiability),
             expected_error: ExpectedEntry {
                 configurations: found.expected.configurations,
-                told: found.expected.told,
+                told: found.expected.determined,
                 position_mean_mm: found.expected.mean_m.map(|mean| mean * 1e3),
                 position_worst_mm: found.expected.worst_m.map(|worst| worst * 1e3),
             },

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::table::{STATISTICS, line, number};
-use crate::calibration::{Judgement, KeptPart, ModelAccuracy, Refitted, Statistic};
+use crate::calibration::{Judgement, ModelAccuracy, PartCoverage, Refitted, Statistic};
 
 /// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
 /// `measurements` name the files.
@@ -19,23 +19,23 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
         out.push('\n');
         block(&mut out, "rotation, deg", judgement, |model| model.rotation_deg);
     }
-    if let Some(kept) = &judgement.promised {
+    if let Some(check) = &judgement.promised {
         out.push('\n');
-        promise(&mut out, "position", &kept.position_mm, "mm", judgement.calibrated.position_mm.rms);
-        if let (Some(part), Some(found)) = (&kept.rotation_deg, judgement.calibrated.rotation_deg) {
-            promise(&mut out, "rotation", part, "deg", found.rms);
+        coverage(&mut out, "position", &check.position_mm, "mm", judgement.calibrated.position_mm.rms);
+        if let (Some(part), Some(found)) = (&check.rotation_deg, judgement.calibrated.rotation_deg) {
+            coverage(&mut out, "rotation", part, "deg", found.rms);
         }
         line(&mut out, "sampled range", &range_words(judgement));
     }
     out
 }
 
-fn promise(out: &mut String, what: &str, kept: &KeptPart, unit: &str, found: f64) {
+fn coverage(out: &mut String, what: &str, check: &PartCoverage, unit: &str, found: f64) {
     let words = format!(
         "{what}: {:.1} % of the errors are inside their 95 % bounds; {} {unit} (RMS), expected {} with measurement noise",
-        100.0 * kept.inside_bound95,
+        100.0 * check.inside_bound95,
         number(found),
-        number(kept.expected_rms)
+        number(check.expected_rms)
     );
     line(out, "coverage", &words);
 }

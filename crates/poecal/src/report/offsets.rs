@@ -16,11 +16,11 @@ use crate::text::visible;
 ///
 /// ```
 /// use poecal::io::model::{Model, ModelSource};
-/// use poecal::offsets::{Options, explain, into_screws};
+/// use poecal::offsets::{OffsetOptions, explain, into_screws};
 /// use poecal::report::Offsets;
 /// let robot = poecal::simulate::scara();
 /// let actual = into_screws(&robot, &[0.0, 0.5f64.to_radians(), 0.0012, 0.0])?;
-/// let explanation = explain(&robot, &actual, &Options::default())?;
+/// let explanation = explain(&robot, &actual, &OffsetOptions::default())?;
 /// let model = |robot, path: &str| Model { robot, source: ModelSource::Toml, path: path.into() };
 /// let why = ["as asked", "as asked"];
 /// let offsets = Offsets::new(&model(robot, "scara.toml"), &model(actual, "actual.toml"), &explanation, why);

@@ -110,7 +110,7 @@ impl Default for Simulation {
 pub struct Simulated {
     /// The nominal robot.
     pub nominal: Robot,
-    /// The robot that was measured.
+    /// The actual robot.
     pub actual: Robot,
     /// `device_from_base` of the truth.
     pub device_from_base: Pose,

@@ -2,6 +2,7 @@
 
 use super::registration::{Registration, free_parameters};
 use super::stations::register;
+use crate::distributions::median;
 use crate::estimate::Estimate;
 use crate::problem::Problem;
 use crate::solve::{Options, minimize};
@@ -62,8 +63,6 @@ fn least_distances(problem: &Registration<'_>, start: Estimate) -> (Estimate, f6
 fn distances(problem: &Problem<'_>, estimate: &Estimate, rows: &[u32]) -> (Vec<f64>, f64) {
     let mut distances = Vec::with_capacity(rows.len());
     problem.for_rows(estimate, rows, |_, _, e| distances.push(e.iter().map(|e| e * e).sum::<f64>().sqrt()));
-    let mut sorted = distances.clone();
-    sorted.sort_by(f64::total_cmp);
-    let median = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let median = median(distances.iter().copied()).unwrap_or(0.0);
     (distances, median)
 }

@@ -108,7 +108,7 @@ impl Uncertainty {
         errors.map(|[position, rotation]| PredictedError { position, rotation, quantiles }).collect()
     }
 
-    /// Factors by which 95 % bounds exceed those of a known covariance, of positions and of rotations.
+    /// Factors by which 95 % bounds exceed those of a known covariance, of positions and of rotations: theory.md §9, below (40).
     #[must_use]
     pub fn quantiles(&self) -> [Quantile; 2] {
         self.discrepancy.freedom.map(Quantile::new)

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::view::View;
 use crate::analysis::{ranges, residual_variance};
-use crate::estimate::{Chain, Linkage, sample_rows};
+use crate::estimate::{Chain, Linkage, position_rms_m, sample_rows};
 use crate::linalg;
 use crate::robot::JointKind;
 use crate::solve::Normal;
@@ -53,9 +53,7 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
         ShapeSums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
     let mut sums = vec![empty; joints];
     let errors = view.errors(&rows, view.estimate);
-    let rms_m = (errors.iter().map(|error| error.position_m.norm_squared()).sum::<f64>()
-        / errors.len().max(1) as f64)
-        .sqrt();
+    let rms_m = position_rms_m(&errors);
     let mut squares = 0.0;
     let linkage = Linkage::new(view.estimate);
     let mut chain = Chain::default();

@@ -1,5 +1,5 @@
 //! Uncertainty of predictions when device frame and targets are refitted from the very rows that are predicted
-//! (theory.md §9, *A promise kept?*).
+//! (theory.md §9, *Coverage*).
 
 use nalgebra::DMatrix;
 
@@ -33,7 +33,7 @@ pub struct Refit<'a> {
 
 impl Uncertainty {
     /// The uncertainty of predictions after a refit, with the targets of its rows: the covariance `(I - P)(A Σ Aᵀ + D)(I - P)ᵀ` of
-    /// theory.md §9, *A promise kept?*. It is written as a covariance of more unknowns: the refitted ones follow the errors of the kept
+    /// theory.md §9, *Coverage*. It is written as a covariance of more unknowns: the refitted ones follow the errors of the kept
     /// ones. `None` if the refitted unknowns are not determined.
     #[must_use]
     pub fn refitted(&self, refit: &Refit<'_>) -> Option<Uncertainty> {

@@ -3,7 +3,7 @@
 use crate::common::with_threads;
 use crate::trials::some;
 use poecal::calibration::{CalibrationOptions, calibrate};
-use poecal::io::residuals::{Residuals, Rows};
+use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::simulate::{Kind, Simulation, elbow};
 
 /// Few rows; and enough of them for a fit, which keeps three tenths back, to begin on a sample and to sort and sum the rows in several
@@ -21,7 +21,7 @@ fn calibrations_with_one_thread_and_with_two_are_bit_identical() {
                 with_threads(threads, || {
                     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
                     let mut rows = Vec::new();
-                    Rows::Of(&made.data, &calibration).write_to(&mut rows).unwrap();
+                    ResidualRows::Of(&made.data, &calibration).write_to(&mut rows).unwrap();
                     assert!(rows == Residuals::of(&made.data, &calibration).text().into_bytes());
                     (format!("{calibration:?}"), rows)
                 })

@@ -7,7 +7,7 @@ use crate::trials::{some, trials};
 use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
 use poecal::estimate::Packed;
-use poecal::forensics::{Diagnosis, DiagnosisKind, Options, diagnose};
+use poecal::forensics::{Diagnosis, DiagnosisKind, DiagnosisOptions, diagnose};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement};
 use poecal::simulate::{Kind, Simulation, elbow};
 use poecal::start::{Registration, register};
@@ -30,7 +30,12 @@ const KINDS: [DiagnosisKind; 12] = [
 
 fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
     let rows: Vec<u32> = data.all_rows();
-    diagnose(&session.robot, data, &rows, &Options { device_free: session.device_free, ..Options::default() })
+    diagnose(
+        &session.robot,
+        data,
+        &rows,
+        &DiagnosisOptions { device_free: session.device_free, ..DiagnosisOptions::default() },
+    )
 }
 
 /// Root mean square position error of the nominal robot with device and targets found, metres.
@@ -228,7 +233,8 @@ fn a_clean_calibration_has_no_mistake() {
     let made = simulation.run(&poecal::simulate::elbow(), poecal::simulate::Kind::Point).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let rows: Vec<u32> = made.data.all_rows();
-    let options = Options { calibrated: Some(&calibration.models.calibrated), ..Options::default() };
+    let options =
+        DiagnosisOptions { calibrated: Some(&calibration.models.calibrated), ..DiagnosisOptions::default() };
     assert_eq!(diagnose(&made.nominal, &made.data, &rows, &options), []);
 }
 

@@ -49,7 +49,7 @@ fn assert_size_by_least_squares(robot: &Robot, data: &Dataset) {
     let options = CalibrationOptions { robust: Robust::Off, ..Default::default() };
     let found = calibrate(robot, data, &options).unwrap();
     let far = |it: &String| -> Option<f64> {
-        it.split("the measurements lie ").nth(1)?.split(' ').next()?.parse().ok()
+        it.split("the measurements are shifted by ").nth(1)?.split(' ').next()?.parse().ok()
     };
     let far = found.warnings.iter().find_map(far).unwrap_or_else(|| panic!("{}", said(&found)));
     assert!((far - 5.0).abs() < 0.2, "{far} mm");
@@ -65,7 +65,7 @@ fn a_device_moved_late_is_named_and_not_called_gross_rows() {
             let data = changed(&made, |row| if row < from { Pose::identity() } else { shift(moved) });
             let found = fit(&made.nominal, &data);
             assert_size_by_least_squares(&made.nominal, &data);
-            let words = format!("from row {} on the measurements lie ", from + 1);
+            let words = format!("from row {} on the measurements are shifted by ", from + 1);
             assert!(says(&found, &words), "{kind:?} {count}: {}", said(&found));
             assert!(says(&found, "instrument"), "{}", said(&found));
             assert!(!says(&found, "outlier"), "{}", said(&found));
@@ -179,12 +179,12 @@ fn a_knocked_nest_is_named_with_target_and_row() {
                 if target == 1 && row >= from { knock } else { Vector3::zeros() }
             });
             let found = fit(&made.nominal, &data);
-            let statement = found.warnings.iter().find(|it| it.contains("target `middle` lies"));
+            let statement = found.warnings.iter().find(|it| it.contains("target `middle` is shifted"));
             let statement = statement.unwrap_or_else(|| panic!("{kind:?} {count} {share}: {}", said(&found)));
             let number = |after: &str| -> f64 {
                 statement.split(after).nth(1).unwrap().split(' ').next().unwrap().parse().unwrap()
             };
-            let (row, far) = (number("from row "), number("lies "));
+            let (row, far) = (number("from row "), number("is shifted by "));
             // The first row of this target after the knock.
             let first = (from..).find(|row| row % 3 == 1).unwrap() + 1;
             assert_eq!(row as usize, first, "{statement}");

@@ -7,7 +7,7 @@ use crate::trials::trials;
 use nalgebra::Vector3;
 use poecal::ErrorKind;
 use poecal::lie::{Pose, Screw, rotation};
-use poecal::offsets::{End, Explanation, Options, explain, into_screws};
+use poecal::offsets::{End, Explanation, OffsetOptions, explain, into_screws};
 use poecal::robot::{Joint, JointKind, Reading, Robot};
 use poecal::simulate::{
     Simulation, elbow, gantry, random, random_chain, random_configuration, random_twist, scara, seven_axis,
@@ -74,7 +74,7 @@ fn offsets_become_screws_and_offsets_again() {
             let mut generator = ChaCha8Rng::seed_from_u64(seed as u64);
             let offsets = random_offsets(robot, angle_deg, &mut generator);
             let actual = into_screws(robot, &offsets).unwrap();
-            let found = explain(robot, &actual, &Options::default()).unwrap();
+            let found = explain(robot, &actual, &OffsetOptions::default()).unwrap();
             let identity = Pose::identity();
             let same = difference(robot, &offsets, [&identity; 2], &actual, &mut generator);
             let back = into_screws(robot, &found.offsets).unwrap();
@@ -113,7 +113,7 @@ fn free_base_and_tip_are_found_too() {
                 joint.frame = base * joint.frame;
             }
             actual.home = base * actual.home * Pose::exp(&random_twist(1.0, 0.3, &mut generator));
-            let options = Options { base: End::Free, tip: End::Free, ..Options::default() };
+            let options = OffsetOptions { base: End::Free, tip: End::Free, ..OffsetOptions::default() };
             let found = explain(robot, &actual, &options).unwrap();
             let ends = [&found.base_motion, &found.tip_motion];
             let predicted = difference(robot, &found.offsets, ends, &actual, &mut generator);
@@ -138,13 +138,13 @@ fn what_cannot_be_told_is_named_and_as_small_as_possible() {
     let joints = vec![Joint::revolute("a", axis), Joint::revolute("b", axis), Joint::revolute("c", arm)];
     let robot = Robot::new("coaxial", joints, Pose::from_translation(Vector3::new(0.8, 0.1, 0.2))).unwrap();
     let actual = into_screws(&robot, &[0.3, 0.1, -0.7]).unwrap();
-    let found = explain(&robot, &actual, &Options::default()).unwrap();
+    let found = explain(&robot, &actual, &OffsetOptions::default()).unwrap();
     assert_eq!(found.undetermined, [0, 1]);
     let half = [found.offsets[0] - 0.2, found.offsets[1] - 0.2, found.offsets[2] + 0.7];
     assert!(half.iter().all(|error| error.abs() < EXACT), "{:?}", found.offsets);
     assert!(remainder(&found) < EXACT && found.with_offsets.max_m < EXACT);
     // The tool was found anew: what the last joint's offset does, the tip can do.
-    let options = Options { tip: End::Free, ..Options::default() };
+    let options = OffsetOptions { tip: End::Free, ..OffsetOptions::default() };
     let found = explain(&elbow(), &into_screws(&elbow(), &[0.1; 6]).unwrap(), &options).unwrap();
     assert_eq!(found.undetermined, [5]);
     assert!(found.home.is_none() && found.offsets[5].abs() < EXACT && found.with_offsets.max_m < EXACT);
@@ -163,7 +163,7 @@ fn what_cannot_be_told_is_named_and_as_small_as_possible() {
     let mut actual = into_screws(&rounded, &[0.02, 0.01, -0.03]).unwrap();
     actual.joints[1].screw =
         actual.joints[1].screw.transformed(&Pose::from_xyz_rpy([0.0; 3], [0.0, 0.002, 0.0]));
-    let found = explain(&rounded, &actual, &Options::default()).unwrap();
+    let found = explain(&rounded, &actual, &OffsetOptions::default()).unwrap();
     println!("nearly coaxial: {:?}", found.offsets);
     assert_eq!(found.undetermined, [0, 1]);
     assert!((found.offsets[0] - 0.015).abs() < 0.001 && (found.offsets[1] - 0.015).abs() < 0.001);
@@ -185,7 +185,7 @@ fn screw_errors_remain_and_hardly_move_the_offsets() {
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
             let offsets = random_offsets(&robot, 2.0, &mut generator);
             let actual = error.perturbed(&into_screws(&robot, &offsets).unwrap(), &mut generator);
-            let found = explain(&robot, &actual, &Options::default()).unwrap();
+            let found = explain(&robot, &actual, &OffsetOptions::default()).unwrap();
             worst = larger(worst, offset_error(&found, &offsets));
             let tilts = found.joints.iter().map(|joint| joint.tilt_rad);
             let rms = (tilts.map(|tilt| tilt * tilt).sum::<f64>() / offsets.len() as f64).sqrt();
@@ -211,7 +211,8 @@ fn the_least_minimum_is_found_beside_screw_errors_of_one_degree() {
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
             let offsets = random_offsets(&robot, 170.0, &mut generator);
             let actual = error.perturbed(&into_screws(&robot, &offsets).unwrap(), &mut generator);
-            let options = Options { base: end, tip: end, configurations: 1, ..Options::default() };
+            let options =
+                OffsetOptions { base: end, tip: end, configurations: 1, ..OffsetOptions::default() };
             let found = explain(&robot, &actual, &options).unwrap();
             let joints = found.joints.iter().map(|joint| (joint.tilt_rad, joint.shift_m.unwrap_or(0.0)));
             let home = found.home.iter().map(|home| (home.rotation_rad, home.position_m));
@@ -231,7 +232,7 @@ fn a_screw_error_that_no_offset_can_make_is_the_remainder() {
     let mut actual = elbow();
     let tilt = Pose::from_xyz_rpy([0.0; 3], [0.001, 0.0, 0.0]);
     actual.joints[0].screw = actual.joints[0].screw.transformed(&tilt);
-    let found = explain(&elbow(), &actual, &Options::default()).unwrap();
+    let found = explain(&elbow(), &actual, &OffsetOptions::default()).unwrap();
     assert!((found.joints[0].tilt_rad - 0.001).abs() < 1e-9, "{:?}", found.joints[0]);
     assert!(found.offsets.iter().all(|offset| offset.abs() < 1e-9));
     assert!(found.joints[1..].iter().all(|joint| joint.tilt_rad < 1e-9));
@@ -241,7 +242,8 @@ fn a_screw_error_that_no_offset_can_make_is_the_remainder() {
 fn offsets_of_half_a_turn_are_positive() {
     let mut offsets = [0.0; 6];
     offsets[3] = -PI;
-    let found = explain(&elbow(), &into_screws(&elbow(), &offsets).unwrap(), &Options::default()).unwrap();
+    let found =
+        explain(&elbow(), &into_screws(&elbow(), &offsets).unwrap(), &OffsetOptions::default()).unwrap();
     assert!((found.offsets[3].abs() - PI).abs() < EXACT && found.offsets[3] > -PI, "{:?}", found.offsets);
 }
 
@@ -264,13 +266,13 @@ fn mimic_joints_frames_limits_and_targets() {
         );
         assert_eq!((joint.limits, &joint.reading), (before.limits, &before.reading));
     }
-    assert!(offset_error(&explain(&robot, &actual, &Options::default()).unwrap(), &offsets) < EXACT);
+    assert!(offset_error(&explain(&robot, &actual, &OffsetOptions::default()).unwrap(), &offsets) < EXACT);
 }
 
 #[test]
 fn robots_that_are_not_one_are_refused() {
     let message = |nominal: &Robot, actual: &Robot| {
-        let error = explain(nominal, actual, &Options::default()).unwrap_err();
+        let error = explain(nominal, actual, &OffsetOptions::default()).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Option);
         error.to_string()
     };

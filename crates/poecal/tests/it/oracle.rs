@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::trials::trials;
 use nalgebra::Vector3;
-use poecal::calibration::{CalibrationOptions, Level, Promise, Robust, Subject, calibrate, judge};
+use poecal::calibration::{
+    CalibrationOptions, Level, PredictedUncertainty, Robust, Subject, calibrate, judge,
+};
 use poecal::measurement::{Dataset, Measurement, PointMeasurement};
 use poecal::simulate::{Kind, Simulation, elbow, random};
 use rand_chacha::ChaCha8Rng;
@@ -174,7 +176,7 @@ fn dataset(rows: &[Row]) -> Dataset {
     data
 }
 
-/// The level, and of a promise whether it was broken: fewer than 80 % of the errors inside, or more than twice the expected error.
+/// The level, and whether predicted bounds were exceeded: fewer than 80 % of the errors inside, or more than twice the expected error.
 type Outcome = (Level, Option<bool>);
 
 fn session(seed: u64) -> (String, bool, Option<Outcome>) {
@@ -205,7 +207,7 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
     let Ok(found) = calibrate(&made.nominal, &dataset(&fitted), &options) else {
         return (words, is_stated, None);
     };
-    let promise = found.trust.uncertainty.as_ref().map(|uncertainty| Promise {
+    let predicted = found.trust.uncertainty.as_ref().map(|uncertainty| PredictedUncertainty {
         uncertainty,
         targets: &[0],
         coverage: &found.trust.coverage,
@@ -219,7 +221,7 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
         noise: found.noise,
         refit_frame: false,
         refit_tool: false,
-        promise,
+        uncertainty: predicted,
     };
     let judgement = judge(&subject, &dataset(&rows[200..])).unwrap();
     let broken = judgement.promised.map(|kept| {

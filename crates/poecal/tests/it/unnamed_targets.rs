@@ -1,7 +1,7 @@
 //! Several targets without names, and what looks like them.
 
 use nalgebra::Vector3;
-use poecal::forensics::{Options, diagnose};
+use poecal::forensics::{DiagnosisOptions, diagnose};
 use poecal::lie::Pose;
 use poecal::measurement::{Dataset, Measurement, PointMeasurement};
 use poecal::simulate::{Kind, Simulation, elbow};
@@ -17,7 +17,7 @@ fn statements(seen: impl Fn(usize, Pose) -> Vec<Vector3<f64>>) -> Vec<String> {
         }
     }
     let rows: Vec<u32> = data.all_rows();
-    let found = diagnose(&made.nominal, &data, &rows, &Options::default());
+    let found = diagnose(&made.nominal, &data, &rows, &DiagnosisOptions::default());
     found.into_iter().map(|it| format!("{:?}: {}", it.kind, it.statement)).collect()
 }
 

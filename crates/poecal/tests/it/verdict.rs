@@ -87,7 +87,9 @@ fn a_device_that_was_moved_is_named_with_its_place() {
 #[test]
 fn noise_in_a_wrong_unit_is_doubted() {
     let made = session(80, 9);
-    for (factor, words) in [(1e-3, "times the noise"), (1e3, "times less than the noise"), (1.0, "")] {
+    for (factor, words) in
+        [(1e-3, "times the stated noise"), (1e3, "times smaller than the stated noise"), (1.0, "")]
+    {
         let options = CalibrationOptions {
             sigma_position_m: Some(5e-5 * factor),
             sigma_rotation_rad: Some(1.7e-4),

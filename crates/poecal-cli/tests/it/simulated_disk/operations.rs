@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use poecal::io::disk::{Disk, Found, FoundKind, Lock, Output};
+use poecal::io::disk::{Disk, Lock, Object, ObjectKind, Output};
 
 use super::disk::{Chance, Content, Node, SimulatedDisk, error, whole};
 
@@ -77,19 +77,19 @@ impl Drop for Held {
 }
 
 impl Disk for SimulatedDisk {
-    fn look(&self, path: &Path) -> io::Result<Found> {
+    fn look(&self, path: &Path) -> io::Result<Object> {
         let mut state = self.state();
         state.begin()?;
         match state.tree.get(&whole(path)) {
-            Some(Node::Folder) => Ok(Found { kind: FoundKind::Folder, identity: None, is_mine: true }),
+            Some(Node::Folder) => Ok(Object { kind: ObjectKind::Folder, identity: None, is_mine: true }),
             Some(Node::File(number)) => {
-                Ok(Found { kind: FoundKind::File, identity: Some((1, *number as u64)), is_mine: true })
+                Ok(Object { kind: ObjectKind::File, identity: Some((1, *number as u64)), is_mine: true })
             }
             None => Err(error(ErrorKind::NotFound)),
         }
     }
 
-    fn follow(&self, path: &Path) -> io::Result<Found> {
+    fn follow(&self, path: &Path) -> io::Result<Object> {
         self.look(path)
     }
 

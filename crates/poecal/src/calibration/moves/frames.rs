@@ -1,43 +1,43 @@
-//! Device frames that differ by so much that no one model describes the rows: of files that were measured from different places and
-//! fitted as if from one, and of the two parts of a session.
+//! Device frames that differ so much that no single model describes the rows: of files measured from different stations and fitted as from
+//! one, and of two parts of a session.
 
 use super::super::{CalibrationOptions, delivered, fit_screws, row_errors};
-use super::{Moved, Parts};
-use crate::estimate::{Estimate, Packed};
+use super::{ChangeKind, Moved};
+use crate::estimate::{Estimate, Packed, position_rms_m};
 use crate::measurement::{Dataset, Noise};
 use crate::problem::Prior;
 use crate::robot::Robot;
 use crate::start::{Registration, register};
 
-/// Files whose frames are looked for, at most, and rows that each has at least.
+/// Most files whose frames are compared, and fewest rows of each.
 const MOST_FILES: usize = 20;
 const FEWEST_ROWS: usize = 4;
-/// Rows in which two parts are looked for, at least; the first and the last of so many parts are taken for rows of one frame each.
+/// Fewest rows of a session in two parts; the first and the last of so many parts are assumed to have one frame each.
 const FEWEST_TO_PART: usize = 32;
 const PARTS: usize = 4;
-/// How many times less a fit with a frame for each must leave.
+/// Least ratio by which a fit with separate frames must reduce the error.
 const BETTER: f64 = 3.0;
 
-/// Rows with device frames of their own.
+/// Result of a fit with separate device frames.
 pub(in crate::calibration) struct FramesApart {
-    /// What it is, and what to do.
+    /// Description and advice.
     statement: String,
-    /// The data with a place of the device for each frame.
+    /// The data with a station for each frame.
     pub(in crate::calibration) data: Dataset,
-    /// What a fit of these finds.
+    /// Estimate by these data.
     pub(in crate::calibration) estimate: Estimate,
 }
 
 impl FramesApart {
-    /// What is said of it.
+    /// As a warning.
     pub(in crate::calibration) fn moved(&self) -> Moved {
-        Moved { statement: self.statement.clone(), is_grave: true, parts: Parts::Frames }
+        Moved { statement: self.statement.clone(), is_grave: true, kind: ChangeKind::Frames }
     }
 }
 
-/// A session that one device frame may not describe.
+/// A fit with one device frame, to be compared with one of several frames.
 #[derive(Clone, Copy)]
-pub(in crate::calibration) struct Doubtful<'a> {
+pub(in crate::calibration) struct FrameSearch<'a> {
     pub(in crate::calibration) robot: &'a Robot,
     pub(in crate::calibration) data: &'a Dataset,
     pub(in crate::calibration) packed: &'a Packed,
@@ -46,19 +46,19 @@ pub(in crate::calibration) struct Doubtful<'a> {
     pub(in crate::calibration) noise: Noise,
     pub(in crate::calibration) length_m: f64,
     pub(in crate::calibration) options: &'a CalibrationOptions,
-    /// What is left now, root mean square, metres.
+    /// Its root mean square position error, metres.
     pub(in crate::calibration) left_m: f64,
 }
 
-/// Fits with a device frame for each file, or for each part of the session, and compares what that leaves with what is left now.
-pub(in crate::calibration) fn frames_apart(doubtful: &Doubtful<'_>) -> Option<FramesApart> {
-    if doubtful.data.station_count() > 1 {
+/// Fits with a device frame for each file, or for each part of the session, and compares the errors (theory.md §9, *Change points*).
+pub(in crate::calibration) fn frames_apart(search: &FrameSearch<'_>) -> Option<FramesApart> {
+    if search.data.station_count() > 1 {
         return None;
     }
-    doubtful.files_apart().or_else(|| doubtful.parts_apart())
+    search.files_apart().or_else(|| search.parts_apart())
 }
 
-impl Doubtful<'_> {
+impl FrameSearch<'_> {
     fn files_apart(&self) -> Option<FramesApart> {
         let data = self.by_file()?;
         let names: Vec<String> = data.files.iter().map(|path| path.display().to_string()).collect();
@@ -76,7 +76,7 @@ impl Doubtful<'_> {
         Some(FramesApart { statement, data, estimate })
     }
 
-    /// The data with a place of the device for each file; none unless several files have rows enough.
+    /// The data with a station for each file; `None` unless several files have enough rows.
     fn by_file(&self) -> Option<Dataset> {
         let files = self.data.files.len();
         if !(2..=MOST_FILES).contains(&files) {
@@ -99,7 +99,7 @@ impl Doubtful<'_> {
         let mut at = self.parted(&first, &last);
         let mut data = self.in_parts(at);
         let (mut estimate, mut own_m) = self.fitted(&data);
-        // Screws that fit tell the rows about the place apart.
+        // Registrations of the two parts may overlap; fitted screws find the row exactly.
         let better = self.parted(&estimate.seen_from(0), &estimate.seen_from(1));
         if better != at {
             at = better;
@@ -117,7 +117,7 @@ impl Doubtful<'_> {
         Some(FramesApart { statement, data, estimate })
     }
 
-    /// How far the device was moved before a row, by a fit with a frame for the rows before and one for the others, metres.
+    /// Distance by which the device was moved before a row, from a fit with separate frames before and after it, metres.
     pub(in crate::calibration) fn moved_m(&self, first: u32) -> Option<f64> {
         let at = self.rows.partition_point(|&row| row < first);
         if self.data.station_count() > 1 || at < FEWEST_ROWS || self.rows.len() - at < FEWEST_ROWS {
@@ -127,14 +127,14 @@ impl Doubtful<'_> {
         own_m.is_finite().then(|| self.far_m(at, &estimate))
     }
 
-    /// How far the frame after the fitted row of this index is from that before, where the robot is, metres.
+    /// Distance between the frames before and after the fitted row of this index, at the robot, metres.
     fn far_m(&self, at: usize, estimate: &Estimate) -> f64 {
         let [before, after] = [0, 1].map(|station| *estimate.device(station));
         let middle = before.inverse().act(&self.data.mean_position(&self.rows[..at]));
         (after.act(&middle) - before.act(&middle)).norm()
     }
 
-    /// The data with a place of the device for the rows before the fitted one of this index, and another from there on.
+    /// The data with one station before the fitted row of this index, and another from there on.
     fn in_parts(&self, at: usize) -> Dataset {
         let mut apart = self.data.clone();
         apart.stations = vec![Some("before".to_owned()), Some("after".to_owned())];
@@ -144,7 +144,7 @@ impl Doubtful<'_> {
         apart
     }
 
-    /// From where on the second of two estimates is the better one: by ratios of errors, so that no row decides alone.
+    /// First row from which on the second of two estimates is better: by logarithms of errors, so that no single row decides.
     fn parted(&self, first: &Estimate, second: &Estimate) -> usize {
         let errors = [first, second].map(|it| row_errors(self.data, self.packed, self.rows, it));
         let log = |error: &super::RowError| error.position_m.norm().max(f64::MIN_POSITIVE).ln();
@@ -172,22 +172,20 @@ impl Doubtful<'_> {
         register(&registration, &delivered(self.robot, data)).0
     }
 
-    /// A fit, and the root mean square of what it leaves, metres.
+    /// A fit, and its root mean square position error, metres.
     fn fitted(&self, data: &Dataset) -> (Estimate, f64) {
         let mut start = self.registered(data, self.rows);
         start.recentre(data, self.packed, self.rows);
         let (packed, options) = (self.packed, self.options);
-        let prior = options.believed().map(|tolerance| Prior::new(self.robot, tolerance, true));
+        let prior = options.tolerance_in_fit().map(|tolerance| Prior::new(self.robot, tolerance, true));
         let prior = prior.as_ref().map(|prior| (prior, 1.0));
         let (noise, length_m) = (self.noise, self.length_m);
         let (estimate, ..) = fit_screws(data, packed, self.rows, start, noise, length_m, prior, options);
-        let errors = row_errors(data, packed, self.rows, &estimate);
-        let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
-        let own_m = (squares / self.rows.len().max(1) as f64).sqrt();
+        let own_m = position_rms_m(&row_errors(data, packed, self.rows, &estimate));
         (estimate, own_m)
     }
 
-    /// What is left, in words, if it is so much less that it is no chance.
+    /// Comparison of the errors in words, if the reduction is significant.
     fn better(&self, own_m: f64) -> Option<String> {
         let is_better = BETTER * own_m <= self.left_m;
         is_better.then(|| {

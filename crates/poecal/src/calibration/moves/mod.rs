@@ -1,54 +1,53 @@
-//! What moved within a session that should have stood still: the measuring device, one target on the arm, or all of it slowly
-//! (theory.md §9, *Moved*).
+//! Change points and drift within a session: the device or a target was moved, or either moved slowly (theory.md §9, *Change points*).
 
 mod frames;
 mod series;
 
-pub(super) use frames::{Doubtful, FramesApart, frames_apart};
+pub(super) use frames::{FrameSearch, FramesApart, frames_apart};
 
 use nalgebra::Vector3;
 
 use super::{Robustness, RowError};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, sample_rows};
 use crate::measurement::Dataset;
-use series::{Change, Series};
+use series::{Series, SeriesChange};
 
-/// Rows that are looked at, at most: a change shows in fewer, and its place is then known to a few rows.
+/// Most rows of the search: with fewer a change still shows, and its place is known to a few rows.
 const MOST_ROWS: usize = 20_000;
-/// Share of the suspected rows that a change explains, from which on it is what they are.
+/// Least share of the suspected rows that a change explains if it is their cause.
 const EXPLAINED: f64 = 0.8;
 
-/// What moved.
+/// A change point, drift, or difference of device frames.
 pub(super) struct Moved {
-    /// What it is, from where on, how far, and what to do.
+    /// What moved, from which row on, how far, and what to do.
     pub(super) statement: String,
-    /// Whether the result is not to be used.
+    /// Whether the result must not be used.
     pub(super) is_grave: bool,
-    parts: Parts,
+    kind: ChangeKind,
 }
 
-/// What a change parts.
-enum Parts {
-    /// Device frames that no one model describes.
+/// Kind of a change.
+enum ChangeKind {
+    /// Different device frames.
     Frames,
-    /// The rows before and after a step.
-    Sides([Vec<u32>; 2]),
-    /// Nothing: it is steady.
-    None,
+    /// A step between two rows.
+    Step([Vec<u32>; 2]),
+    /// A drift.
+    Drift,
 }
 
 impl Moved {
-    /// Whether it is device frames that differ by so much that no one model describes the rows.
+    /// Whether device frames differ so much that no single model describes the rows.
     pub(super) fn is_of_frames(&self) -> bool {
-        matches!(self.parts, Parts::Frames)
+        matches!(self.kind, ChangeKind::Frames)
     }
 
-    /// Whether rows that are suspected to be grossly wrong are those on one side of the change.
+    /// Whether the suspected rows are those on one side of the change.
     pub(super) fn explains(&self, robustness: &Robustness) -> bool {
-        match &self.parts {
-            Parts::Frames => true,
-            Parts::None => false,
-            Parts::Sides(sides) => {
+        match &self.kind {
+            ChangeKind::Frames => true,
+            ChangeKind::Drift => false,
+            ChangeKind::Step(sides) => {
                 let within = |side: &Vec<u32>| {
                     robustness.suspects().filter(|row| side.binary_search(row).is_ok()).count()
                 };
@@ -59,62 +58,62 @@ impl Moved {
     }
 }
 
-/// A finished fit and the rows that are looked at, in the order in which they were measured.
+/// A finished fit, and the rows to be searched in the order measured.
 #[derive(Clone, Copy)]
-pub(super) struct Looked<'a> {
+pub(super) struct ChangeSearch<'a> {
     pub(super) data: &'a Dataset,
     pub(super) packed: &'a Packed,
     pub(super) estimate: &'a Estimate,
     pub(super) rows: &'a [u32],
-    /// Whether the device may stand anywhere.
+    /// Whether the device frame is unknown.
     pub(super) device_free: bool,
-    /// How to fit once more, with a device frame for each side of a step, if that tells better how far it is.
-    pub(super) again: Option<&'a Doubtful<'a>>,
+    /// A fit with a device frame for each side of a step, for a better estimate of the distance.
+    pub(super) again: Option<&'a FrameSearch<'a>>,
 }
 
-/// What a series of errors is of.
+/// MovedObject of a series of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Subject {
-    /// The device, at one of the places where it stood.
+enum MovedObject {
+    /// The device at one station.
     Device(usize),
-    /// A target on the arm.
+    /// A target.
     Target(usize),
 }
 
-/// The change that explains most of the squared errors, if one is no chance.
-pub(super) fn moved(looked: &Looked<'_>) -> Option<Moved> {
-    let rows = sample_rows(looked.rows, MOST_ROWS);
-    let errors = super::row_errors(looked.data, looked.packed, &rows, looked.estimate);
-    let mut found: Option<(Subject, Vec<u32>, Change)> = None;
-    let mut consider = |subject: Subject, series: Series| {
-        let change = series.change(matches!(subject, Subject::Device(_)));
+/// The change that explains most of the squared errors, if it is significant.
+pub(super) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
+    let rows = sample_rows(search.rows, MOST_ROWS);
+    let errors = super::row_errors(search.data, search.packed, &rows, search.estimate);
+    let mut found: Option<(MovedObject, Vec<u32>, SeriesChange)> = None;
+    let mut consider = |subject: MovedObject, series: Series| {
+        let change = series.change(matches!(subject, MovedObject::Device(_)));
         if let Some(change) = change
             && found.as_ref().is_none_or(|(_, _, best)| change.explained > best.explained)
         {
             found = Some((subject, series.rows, change));
         }
     };
-    for station in 0..looked.data.station_count() {
-        consider(Subject::Device(station), of_device(looked, &rows, &errors, station));
+    for station in 0..search.data.station_count() {
+        consider(MovedObject::Device(station), of_device(search, &rows, &errors, station));
     }
-    for (target, series) in of_targets(looked, &rows, &errors).into_iter().enumerate() {
-        consider(Subject::Target(target), series);
+    for (target, series) in of_targets(search, &rows, &errors).into_iter().enumerate() {
+        consider(MovedObject::Target(target), series);
     }
     let (subject, rows, change) = found?;
-    Some(looked.moved(subject, &rows, &change))
+    Some(search.moved(subject, &rows, &change))
 }
 
-/// Errors of the rows seen from one place, in the device's axes.
-fn of_device(looked: &Looked<'_>, rows: &[u32], errors: &[RowError], station: usize) -> Series {
+/// Errors of the rows of one station, in the device's axes.
+fn of_device(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError], station: usize) -> Series {
     let own = rows.iter().zip(errors);
-    let own = own.filter(|(row, _)| looked.data.observations[**row as usize].station == station);
+    let own = own.filter(|(row, _)| search.data.observations[**row as usize].station == station);
     let (rows, values): (Vec<u32>, Vec<Vector3<f64>>) =
         own.map(|(&row, error)| (row, error.position_m)).unzip();
-    let configurations = rows.iter().map(|&row| shapes(looked.packed, row as usize)).collect();
+    let configurations = rows.iter().map(|&row| shapes(search.packed, row as usize)).collect();
     Series { rows, values, configurations }
 }
 
-/// What varies with the joint values themselves, so that it is not taken for a change with time.
+/// Functions of the joint values, so that errors of the robot are not taken for a drift.
 fn shapes(packed: &Packed, row: usize) -> Vec<f64> {
     let values = packed.joint_values(row).iter().zip(packed.row(row)).zip(packed.turns());
     let mut shapes = vec![1.0];
@@ -129,14 +128,14 @@ fn shapes(packed: &Packed, row: usize) -> Vec<f64> {
     shapes
 }
 
-/// Errors of the rows of each target, in its own axes, which go with the last link.
-fn of_targets(looked: &Looked<'_>, rows: &[u32], errors: &[RowError]) -> Vec<Series> {
-    let mut series: Vec<Series> = vec![Series::default(); looked.data.targets.len()];
-    let linkage = Linkage::new(looked.estimate);
+/// Errors of the rows of each target, in the axes of the last link.
+fn of_targets(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError]) -> Vec<Series> {
+    let mut series: Vec<Series> = vec![Series::default(); search.data.targets.len()];
+    let linkage = Linkage::new(search.estimate);
     let mut chain = Chain::default();
     for (&row, error) in rows.iter().zip(errors) {
-        let seen = &looked.data.observations[row as usize];
-        chain.evaluate(&linkage, looked.packed, row as usize, seen);
+        let seen = &search.data.observations[row as usize];
+        chain.evaluate(&linkage, search.packed, row as usize, seen);
         if let Some(own) = series.get_mut(seen.target) {
             own.rows.push(row);
             own.values.push(chain.target.rotation.transpose() * error.position_m);
@@ -145,8 +144,8 @@ fn of_targets(looked: &Looked<'_>, rows: &[u32], errors: &[RowError]) -> Vec<Ser
     series
 }
 
-impl Looked<'_> {
-    fn moved(&self, subject: Subject, rows: &[u32], change: &Change) -> Moved {
+impl ChangeSearch<'_> {
+    fn moved(&self, subject: MovedObject, rows: &[u32], change: &SeriesChange) -> Moved {
         let (data, far_mm) = (self.data, 1e3 * change.distance_m);
         let Some(at) = change.at else {
             let (first, last) = (rows.first().copied().unwrap_or(0), rows.last().copied().unwrap_or(0));
@@ -156,15 +155,15 @@ impl Looked<'_> {
                 data.place(first),
                 data.place(last)
             );
-            return Moved { statement, is_grave: change.distance_m > change.left_m, parts: Parts::None };
+            return Moved { statement, is_grave: change.distance_m > change.left_m, kind: ChangeKind::Drift };
         };
         let place = data.place(rows[at]);
         let statement = match subject {
-            Subject::Device(_) => {
+            MovedObject::Device(_) => {
                 let again = self.again.and_then(|again| again.moved_m(rows[at]));
                 self.device_words(rows, at, again.map_or(far_mm, |far_m| 1e3 * far_m), &place)
             }
-            Subject::Target(target) => match data.targets.get(target).and_then(Option::as_deref) {
+            MovedObject::Target(target) => match data.targets.get(target).and_then(Option::as_deref) {
                 Some(name) if data.targets.len() > 1 => format!(
                     "from {place} on target `{name}` is shifted by {far_mm:.2} mm on the arm, and no other target is: \
                      its nest seems to have been knocked; give it another name from there on, or leave these rows out"
@@ -176,10 +175,10 @@ impl Looked<'_> {
             },
         };
         let (before, after) = rows.split_at(at);
-        Moved { statement, is_grave: true, parts: Parts::Sides([before.to_vec(), after.to_vec()]) }
+        Moved { statement, is_grave: true, kind: ChangeKind::Step([before.to_vec(), after.to_vec()]) }
     }
 
-    /// The words for a device that was moved; at the first row of a file, that is what two files do not share.
+    /// Description of a moved device; at the first row of a file, of files without a common device frame.
     fn device_words(&self, rows: &[u32], at: usize, far_mm: f64, place: &str) -> String {
         let data = self.data;
         let file = |index: usize| {

@@ -1,53 +1,54 @@
-//! Errors in the order in which they were measured, and the change that explains most of them.
+//! Change-point test: a step or drift of the mean error along the row order (theory.md §9, *Change points*).
 
 use nalgebra::Vector3;
 
+use crate::distributions::{median, median_point};
 use crate::linalg;
 
-/// Share of the rows, and number of them, that each side of a step has at least. Single regions of the workspace, measured one after the
-/// other, may err by twice what is usual.
+/// Least share of the rows, and least number, on each side of a step. Single regions of the workspace, measured one after the other, may
+/// have twice the usual error.
 const LEAST_SHARE: f64 = 0.1;
 const LEAST_ROWS: usize = 4;
-/// A step is larger than so many times what is left of each component, and explains so much more than chance.
+/// Least step over the residual standard deviation of a component, and least explained squares over its variance.
 const STEP_SIGMAS: f64 = 3.0;
 const STEP_CHANCE: f64 = 40.0;
-/// The same of a drift, for which no place is chosen.
+/// The same of a drift, which has no free place.
 const DRIFT_SIGMAS: f64 = 1.5;
 const DRIFT_CHANCE: f64 = 25.0;
 /// Changes below this are rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
-/// Errors count up to so many times their median while the place of a step is looked for.
+/// Errors are limited to so many times their median while the place of a step is searched for.
 const FAR: f64 = 20.0;
-/// What is beyond so many times the median beside a step is left out, up to a share of the rows.
+/// Errors beyond so many times the median beside a step are excluded, up to a share of the rows.
 const WRONG: f64 = 8.0;
 const MOST_WRONG: f64 = 0.15;
-/// Rows for each shape of the configuration that a drift is told from.
+/// Rows for each function of the configuration that a drift is separated from.
 const ROWS_PER_SHAPE: usize = 2;
 
-/// Vectors in the order of time.
+/// Errors in the order of time.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Series {
     pub(super) rows: Vec<u32>,
-    /// Errors, metres, in axes in which what moved moved them all alike.
+    /// Errors, metres, in axes in which a move shifts them alike.
     pub(super) values: Vec<Vector3<f64>>,
-    /// What of each row's configuration may itself go with time; empty where no drift is looked for.
+    /// Functions of each row's configuration that may vary with time; empty where no drift is searched for.
     pub(super) configurations: Vec<Vec<f64>>,
 }
 
 /// A step or a drift.
 #[derive(Clone, Debug)]
-pub(super) struct Change {
-    /// First row after the step, as an index into the series; none of a drift.
+pub(super) struct SeriesChange {
+    /// First row after the step, as an index into the series; `None` for a drift.
     pub(super) at: Option<usize>,
-    /// How far, metres: of a drift, from the first row to the last.
+    /// Distance, metres; of a drift from the first row to the last.
     pub(super) distance_m: f64,
     /// Sum of squares that it explains, square metres.
     pub(super) explained: f64,
-    /// Root mean square error that it leaves, metres.
+    /// Remaining root mean square error, metres.
     pub(super) left_m: f64,
 }
 
-/// A model of the series, and what it explains.
+/// A model of the series, and the squares that it explains.
 struct Explained {
     at: usize,
     change: Vector3<f64>,
@@ -55,8 +56,8 @@ struct Explained {
 }
 
 impl Series {
-    /// The step, or the drift if it `may_drift`, that explains most, if that is no chance.
-    pub(super) fn change(&self, may_drift: bool) -> Option<Change> {
+    /// The step (or, if `may_drift`, the drift) that explains most, if it is significant: theory.md §9, *Change points*.
+    pub(super) fn change(&self, may_drift: bool) -> Option<SeriesChange> {
         let kept = self.without_wrong()?;
         let values: Vec<Vector3<f64>> = kept.iter().map(|&index| self.values[index]).collect();
         let count = values.len() as f64;
@@ -71,7 +72,7 @@ impl Series {
             let is_drift = beyond.explained > DRIFT_CHANCE * left
                 && steady.change.norm() > DRIFT_SIGMAS * left.sqrt()
                 && steady.change.norm() > ROUNDING_M;
-            return is_drift.then(|| Change {
+            return is_drift.then(|| SeriesChange {
                 at: None,
                 distance_m: steady.change.norm(),
                 explained: steady.explained,
@@ -82,7 +83,7 @@ impl Series {
         let is_step = step.explained > STEP_CHANCE * left
             && step.change.norm() > STEP_SIGMAS * left.sqrt()
             && step.change.norm() > ROUNDING_M;
-        is_step.then(|| Change {
+        is_step.then(|| SeriesChange {
             at: Some(kept[step.at]),
             distance_m: step.change.norm(),
             explained: step.explained,
@@ -90,10 +91,10 @@ impl Series {
         })
     }
 
-    /// Indices of what is not plainly wrong beside a step; none if too few are left.
+    /// Indices without gross errors; `None` if too few remain.
     fn without_wrong(&self) -> Option<Vec<usize>> {
         let count = self.values.len();
-        let far = FAR * median(self.values.iter().map(Vector3::norm));
+        let far = FAR * median(self.values.iter().map(Vector3::norm))?;
         let near: Vec<Vector3<f64>> = self
             .values
             .iter()
@@ -101,9 +102,9 @@ impl Series {
             .collect();
         let step = strongest_step(&near)?;
         let (before, after) = self.values.split_at(step.at);
-        let middles = [middle(before), middle(after)];
+        let middles = [median_point(before), median_point(after)];
         let aside = |index: usize| (self.values[index] - middles[usize::from(index >= step.at)]).norm();
-        let wrong = WRONG * median((0..count).map(aside));
+        let wrong = WRONG * median((0..count).map(aside))?;
         let kept: Vec<usize> = (0..count).filter(|&index| aside(index) <= wrong).collect();
         if (count - kept.len()) as f64 > MOST_WRONG * count as f64 {
             return Some((0..count).collect());
@@ -111,7 +112,7 @@ impl Series {
         Some(kept)
     }
 
-    /// What a steady change explains that the configurations, which may go with time themselves, do not.
+    /// Squares that a drift explains beyond the configurations, which may vary with time.
     fn beyond_configurations(
         &self,
         kept: &[usize],
@@ -134,9 +135,10 @@ impl Series {
             }
         }
         let factor = linalg::cholesky(&gram, n, 1e-9 * values.len() as f64)?;
-        let told = linalg::cholesky_solve(&factor, &pull);
-        let own =
-            |(shape, time): (&&[f64], &f64)| time - shape.iter().zip(&told).map(|(a, b)| a * b).sum::<f64>();
+        let coefficients = linalg::cholesky_solve(&factor, &pull);
+        let own = |(shape, time): (&&[f64], &f64)| {
+            time - shape.iter().zip(&coefficients).map(|(a, b)| a * b).sum::<f64>()
+        };
         let own: Vec<f64> = shapes.iter().zip(&times).map(own).collect();
         let squares: f64 = own.iter().map(|time| time * time).sum();
         let sum: Vector3<f64> = own.iter().zip(values).map(|(&time, value)| (value - mean) * time).sum();
@@ -150,7 +152,7 @@ fn time(index: usize, count: usize) -> f64 {
     index as f64 / (count.max(2) - 1) as f64 - 0.5
 }
 
-/// The change that is the same from each row to the next.
+/// A linear drift, by least squares.
 fn steady(values: &[Vector3<f64>]) -> Explained {
     let times = || (0..values.len()).map(|index| time(index, values.len()));
     let squares: f64 = times().map(|time| time * time).sum();
@@ -159,7 +161,7 @@ fn steady(values: &[Vector3<f64>]) -> Explained {
     Explained { at: 0, change, explained: change.norm_squared() * squares }
 }
 
-/// The change of mean that explains most, of all places that leave enough on both sides.
+/// The step that explains most, of all places with enough rows on both sides.
 fn strongest_step(values: &[Vector3<f64>]) -> Option<Explained> {
     let count = values.len();
     let total: Vector3<f64> = values.iter().sum();
@@ -179,15 +181,4 @@ fn strongest_step(values: &[Vector3<f64>]) -> Option<Explained> {
         }
     }
     best
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// The median of each component.
-fn middle(values: &[Vector3<f64>]) -> Vector3<f64> {
-    Vector3::from_fn(|k, _| median(values.iter().map(|value| value[k])))
 }

@@ -1,4 +1,4 @@
-//! Rows of one configuration: what they have in common is the robot until shown otherwise.
+//! Rows of one configuration: a common error is the robot's until shown otherwise.
 
 use nalgebra::Vector3;
 
@@ -6,27 +6,26 @@ use super::super::row_errors;
 use crate::estimate::{Estimate, Packed};
 use crate::measurement::Dataset;
 
-/// A row is suspected beyond so many times that bound: what real robots leave has heavier tails than noise, and no row of these is
-/// wrong.
+/// Factor on the bound of normal noise above which a row is suspected: errors of real robots have heavier tails than noise.
 pub(super) const TAILS: f64 = 2.0;
-/// A row is off like the others of its configuration if it differs from their mean by less than this share of its own error.
+/// A row has the error of its configuration if it differs from the others' mean by less than this share of its own length.
 const SHARE: f64 = 0.5;
-/// Configurations whose rows are off alike are suspected beyond so many times the bound of normal noise: gears and links give by less.
+/// The same factor for configurations with a common error: elastic gears and links cause less.
 const COMMON_TAILS: f64 = 8.0;
 
-/// Configurations that were measured several times, or with several targets.
+/// Configurations measured several times, or with several targets.
 pub(in crate::calibration) struct Configurations {
     /// Those of two rows or more.
     groups: Vec<Vec<u32>>,
-    /// Rows for each configuration and target of the fit, on average.
+    /// Mean number of fitted rows per configuration and target.
     pub(in crate::calibration) repeats: f64,
 }
 
 impl Configurations {
-    /// Of the data, and of the rows that are fitted.
+    /// Groups the data, and counts the fitted rows.
     pub(in crate::calibration) fn new(data: &Dataset, fitted: &[u32]) -> Self {
         let target = |row: u32| data.observations[row as usize].target;
-        // Of rows of one target in one configuration the first counts.
+        // Of several rows of a target in one configuration the first counts.
         let over_again: usize = data
             .grouped(fitted)
             .into_iter()
@@ -42,7 +41,7 @@ impl Configurations {
         Configurations { groups, repeats: fitted.len() as f64 / distinct.max(1) as f64 }
     }
 
-    /// For each row of the data the share of its length that counts: less where the other rows of its configuration are off alike.
+    /// For each row of the data the share of its length that counts: less where the other rows of its configuration have the same error.
     pub(in crate::calibration) fn shares(
         &self,
         data: &Dataset,

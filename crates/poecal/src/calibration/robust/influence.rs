@@ -1,4 +1,4 @@
-//! What each row means to a finished calibration.
+//! Influence of each row on a finished calibration.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::parameters::{Parameter, screw_axes};
 use crate::problem::Problem;
 use crate::solve::{LeastSquares, Normal};
 
-/// What each of these rows means to a finished calibration, and how far it is off when that is allowed for (theory.md §6 (34d), (34e)).
+/// Leverage and studentised residual of these rows in a finished calibration (theory.md §6 (34d), (34e)).
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate, row_influence};
@@ -33,7 +33,7 @@ pub fn row_influence(calibration: &Calibration, data: &Dataset, rows: &[u32]) ->
     RowInfluence::new(calibration, data).of(rows)
 }
 
-/// [`row_influence`] for some rows after the other.
+/// [`row_influence`] in parts.
 pub(crate) struct RowInfluence<'a> {
     calibration: &'a Calibration,
     data: Cow<'a, Dataset>,
@@ -41,7 +41,7 @@ pub(crate) struct RowInfluence<'a> {
     weights: Vec<f64>,
     free: Vec<Parameter>,
     length_m: f64,
-    /// Of the fitted rows; none if there is no row.
+    /// Normal information of the fitted rows; `None` without rows.
     normal: Option<Normal>,
 }
 
@@ -63,7 +63,7 @@ impl<'a> RowInfluence<'a> {
         made
     }
 
-    /// The joint values of the data.
+    /// Joint values of the data.
     pub(crate) fn packed(&self) -> &Packed {
         &self.packed
     }
@@ -73,7 +73,7 @@ impl<'a> RowInfluence<'a> {
         Problem::new(&self.data, &self.packed, rows.to_vec(), self.free.clone(), noise, self.length_m)
     }
 
-    /// Of these rows.
+    /// Influence of these rows.
     pub(crate) fn of(&self, rows: &[u32]) -> Vec<Influence> {
         let (Some(normal), false) = (&self.normal, rows.is_empty()) else { return Vec::new() };
         let Calibration { fit_rows, models, robustness, .. } = self.calibration;

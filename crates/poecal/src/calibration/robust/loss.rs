@@ -1,10 +1,10 @@
-//! Losses that bound what a single row can do (theory.md §6 (34b)).
+//! Losses that bound the effect of a single row (theory.md §6 (34b)).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A loss of robust estimation, by the length of a row's whitened residual. Its constant makes it 95 % as efficient as least squares
-/// on normal noise of that many components.
+/// Loss of robust estimation, a function of the length of a row's whitened residual. Its constant gives 95 % efficiency under normal noise
+/// of that many components.
 ///
 /// ```
 /// use poecal::calibration::Loss;
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Loss {
-    /// Linear beyond a bound: one optimum, and every row has some influence.
+    /// Linear beyond a bound: one minimum, and every row has some influence.
     Huber,
     /// The influence of a row decreases with its residual, but never vanishes.
     Cauchy,
@@ -29,7 +29,7 @@ const CAUCHY: [f64; 6] = [2.385, 2.549, 2.666, 2.752, 2.815, 2.862];
 const TUKEY: [f64; 6] = [4.685, 5.123, 5.490, 5.810, 6.096, 6.356];
 
 impl Loss {
-    /// The weight of a row whose whitened residual of `components` numbers (1 to 6) has this length.
+    /// Weight of a row whose whitened residual of `components` numbers (1 to 6) has this length: theory.md §6 (34b).
     #[must_use]
     pub fn weight(self, length: f64, components: usize) -> f64 {
         let constants = match self {
@@ -56,7 +56,7 @@ impl Loss {
     }
 }
 
-/// Which loss a calibration is to use.
+/// Loss of a calibration.
 ///
 /// ```
 /// assert_eq!(poecal::calibration::Robust::default(), poecal::calibration::Robust::Auto);

@@ -1,5 +1,4 @@
-//! Fits that a few grossly wrong rows cannot spoil: iteratively reweighted least squares, and when it is called for (theory.md §6,
-//! *Outliers*).
+//! Robust fits: iteratively reweighted least squares, and the decision for or against them (theory.md §6, *Outliers*).
 
 mod alike;
 mod influence;
@@ -15,7 +14,7 @@ pub(super) use rows::registrable;
 pub use rows::{Robustness, RowJudgement};
 
 use super::fit::Task;
-use super::found::{Fitted, Found};
+use super::found::{Fitted, OngoingFit};
 use super::noise::{NoiseSource, stated};
 use super::{CalibrationOptions, estimate_noise};
 use crate::error::Result;
@@ -25,24 +24,24 @@ use crate::parameters::Parameter;
 use crate::solve;
 use crate::start::{Registration, register_robustly};
 use crate::uncertainty::{PriorInformation, View, leave_clusters_out};
-use rows::{Bounds, Judged, is_judgeable, judge_rows};
-use scale::{Parts, Scale, parts, settle};
+use rows::{Bounds, RowJudgements, is_judgeable, judge_rows};
+use scale::{RowParts, Scale, parts, settle};
 
 /// Most reweightings with one loss.
 const REWEIGHTINGS: usize = 60;
 /// Iterations between two reweightings.
 const ITERATIONS: usize = 6;
-/// Weights that change by no more than this have settled.
+/// Largest change of settled weights.
 const SETTLED: f64 = 1e-3;
 
-/// A fit, by which loss it was made, and what it says of every row of the data.
+/// A fit with its loss and the judgement of every row of the data.
 pub(super) struct RobustFit {
     pub(super) fitted: Fitted,
     pub(super) loss: Option<Loss>,
-    pub(super) judged: Judged,
+    pub(super) judged: RowJudgements,
 }
 
-/// Fits as the options ask: by least squares, by a robust loss, or by Tukey's where least squares shows outliers.
+/// Fits as the options ask: by least squares, by a robust loss, or by Tukey's where least squares show outliers.
 pub(super) fn fit(
     task: &Task<'_>,
     registration: &Registration<'_>,
@@ -55,12 +54,12 @@ pub(super) fn fit(
     let ordinary = |found| ordinary(task, configurations, found, registered, noise, source);
     match task.options.robust {
         Robust::Off => {
-            let found = task.beginning(noise, source).begin(registered, noise);
+            let found = task.with_first_prior_weight(noise, source).first_fit(registered, noise);
             ordinary(found)
         }
         Robust::Loss(loss) => attempt(loss, None),
         Robust::Auto => {
-            let found = task.beginning(noise, source).begin(registered, noise);
+            let found = task.with_first_prior_weight(noise, source).first_fit(registered, noise);
             if !shows_outliers(task, configurations, &found, noise, source) {
                 return ordinary(found);
             }
@@ -70,7 +69,7 @@ pub(super) fn fit(
             }
             let plain = ordinary(found)?;
             let tried = if tried.is_suspicious(task) {
-                // What looked like outliers may have been a fit beside the optimum: further starts come first.
+                // Apparent outliers may come from a local minimum: further starts come first.
                 if !plain.is_evident(task) {
                     return Ok(plain);
                 }
@@ -78,7 +77,7 @@ pub(super) fn fit(
             } else {
                 tried
             };
-            // A row that bends the fit may be the only one that tells something: the others are asked.
+            // A row with much influence may be the only one that determines something: cross-validation by the other rows decides.
             Ok(if tried.is_evident(task) && tried.predicts_better(task, &plain) { tried } else { plain })
         }
     }
@@ -90,19 +89,19 @@ impl RobustFit {
         task.rows.iter().any(|&row| self.judged.rows[row as usize].suspected)
     }
 
-    /// Whether it predicts parts of the rows that are left out better than another fit, by a loss that gross rows cannot decide.
+    /// Whether it predicts held-out clusters of rows better than another fit, by a bounded loss.
     fn predicts_better(&self, task: &Task<'_>, other: &RobustFit) -> bool {
         let scale = self.judged.scale();
         let Noise { position_m, rotation_rad } = self.fitted.noise;
         let noise = Noise { position_m: scale[0] * position_m, rotation_rad: scale[1] * rotation_rad };
-        match (self.left_out_loss(task, noise), other.left_out_loss(task, noise)) {
+        match (self.cross_validated_loss(task, noise), other.cross_validated_loss(task, noise)) {
             (Some(own), Some(others)) => own < others,
             _ => true,
         }
     }
 
     /// Mean bounded loss of the rows of each cluster of configurations by the fit of the others, in units of this noise.
-    fn left_out_loss(&self, task: &Task<'_>, noise: Noise) -> Option<f64> {
+    fn cross_validated_loss(&self, task: &Task<'_>, noise: Noise) -> Option<f64> {
         let Fitted { estimate, layout, noise: own, .. } = &self.fitted;
         let prior =
             PriorInformation::new(task.prior.map(|(prior, _)| prior), estimate, layout, task.length_m);
@@ -132,7 +131,7 @@ impl RobustFit {
         })
     }
 
-    /// Whether the rows in the middle are missed by more than gears and links explain.
+    /// Whether the robust scale of position errors is larger than elastic gears and links explain.
     fn is_suspicious(&self, task: &Task<'_>) -> bool {
         let parts = parts(task.data, task.packed, task.rows, &self.fitted.estimate, self.fitted.noise);
         let scale = Scale::of(parts.iter(), self.fitted.normal.dim() as f64);
@@ -140,27 +139,26 @@ impl RobustFit {
     }
 }
 
-/// Least squares to the end.
+/// Completes a fit by least squares.
 fn ordinary(
     task: &Task<'_>,
     configurations: &Configurations,
-    found: Found,
+    found: OngoingFit,
     registered: &Estimate,
     noise: Noise,
     source: NoiseSource,
 ) -> Result<RobustFit> {
-    let fitted = task.beginning(noise, source).complete(found, registered, noise, source)?;
+    let fitted = task.with_first_prior_weight(noise, source).complete(found, registered, noise, source)?;
     let weights = vec![1.0; task.data.len()];
     let judged = judge_rows(task, configurations, &fitted, &weights, None);
     Ok(RobustFit { fitted, loss: None, judged })
 }
 
-/// Whether some residual of a least squares fit is longer than normal noise, as its middle shows it, would make one row of a thousand
-/// such data sets. That costs little, and only begs the question.
+/// Cheap screening: does any residual exceed the 1/1000 quantile at the robust scale? If so, a robust fit decides.
 fn shows_outliers(
     task: &Task<'_>,
     configurations: &Configurations,
-    found: &Found,
+    found: &OngoingFit,
     noise: Noise,
     source: NoiseSource,
 ) -> bool {
@@ -169,7 +167,7 @@ fn shows_outliers(
     if !is_judgeable(parts.iter(), unknowns) {
         return false;
     }
-    let (_, scale) = settle(&mut parts, unknowns, noise, open(task, source));
+    let (_, scale) = settle(&mut parts, unknowns, noise, estimated(task, source));
     let bounds = Bounds::new(task.rows.len(), 1.0);
     let shares = configurations.shares(task.data, task.packed, &found.estimate);
     task.rows.iter().zip(&parts).any(|(&row, part)| {
@@ -178,13 +176,13 @@ fn shows_outliers(
     })
 }
 
-/// The options by which noise is estimated, if it is.
-fn open<'a>(task: &Task<'a>, source: NoiseSource) -> Option<&'a CalibrationOptions> {
+/// The options if the noise is to be estimated.
+fn estimated<'a>(task: &Task<'a>, source: NoiseSource) -> Option<&'a CalibrationOptions> {
     (source == NoiseSource::Estimated).then_some(task.options)
 }
 
-/// A robust fit: from a robust registration by Huber's loss, which has no false optimum of its own, and from there by the loss asked
-/// for. `other` is a further start, used if the middle of the rows is missed by much.
+/// A robust fit: from a robust registration by Huber's loss, which adds no local minima, then by `loss`. `other` is a further start, tried
+/// if the robust scale is suspicious.
 fn attempt(
     task: &Task<'_>,
     configurations: &Configurations,
@@ -210,7 +208,7 @@ fn attempt(
     best.end(task, loss, source)
 }
 
-/// A fit under reweighting.
+/// A fit by reweighting.
 struct Reweighted<'c> {
     configurations: &'c Configurations,
     estimate: Estimate,
@@ -236,20 +234,22 @@ impl<'c> Reweighted<'c> {
         }
     }
 
-    /// Standard deviation of a position component as the middle of the rows shows it.
+    /// Robust standard deviation of a position component.
     fn position_m(&self) -> f64 {
         self.scale.0[0] * self.noise.position_m
     }
 
-    /// Unknowns beside as many numbers as there are rows: what is repeated tells nothing new.
+    /// Number of unknowns, times the mean number of repeats: repeated rows add no information.
     fn unknowns(&self, task: &Task<'_>) -> f64 {
         self.configurations.repeats * task.problem(&self.estimate, self.noise).layout().dim() as f64
     }
 
-    /// The task with the prior counting as much as the residuals really are.
-    fn believing<'t>(&self, task: &Task<'t>, source: NoiseSource) -> Task<'t> {
+    /// The task with the prior weighted by the robust scale.
+    fn with_prior_weight<'t>(&self, task: &Task<'t>, source: NoiseSource) -> Task<'t> {
         let variance = if source == NoiseSource::Estimated { 1.0 } else { self.scale.0[0].powi(2) };
-        task.believing(variance / task.prior.map_or(1.0, |(prior, _)| prior.looseness(&self.estimate)))
+        task.with_prior_weight(
+            variance / task.prior.map_or(1.0, |(prior, _)| prior.looseness(&self.estimate)),
+        )
     }
 
     /// Reweights until the weights have settled.
@@ -261,12 +261,15 @@ impl<'c> Reweighted<'c> {
         for _ in 0..REWEIGHTINGS {
             let mut parts = parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
             let unknowns = self.unknowns(task);
-            (self.noise, self.scale) = settle(&mut parts, unknowns, self.noise, open(task, source));
+            (self.noise, self.scale) = settle(&mut parts, unknowns, self.noise, estimated(task, source));
             if self.reweight(task, &parts, loss) < SETTLED {
                 break;
             }
-            let weighted =
-                Task { weights: Some(&self.weights), options: &quick, ..self.believing(task, source) };
+            let weighted = Task {
+                weights: Some(&self.weights),
+                options: &quick,
+                ..self.with_prior_weight(task, source)
+            };
             let (estimate, _, summary) = weighted.fit(self.estimate.clone(), self.noise);
             self.iterations += summary.iterations;
             self.trace.extend(summary.trace);
@@ -274,8 +277,8 @@ impl<'c> Reweighted<'c> {
         }
     }
 
-    /// Weights of the fitted rows by their residuals; returns the largest change.
-    fn reweight(&mut self, task: &Task<'_>, parts: &[Parts], loss: Loss) -> f64 {
+    /// Updates the weights of the fitted rows; returns the largest change.
+    fn reweight(&mut self, task: &Task<'_>, parts: &[RowParts], loss: Loss) -> f64 {
         let mut change: f64 = 0.0;
         let shares = self.configurations.shares(task.data, task.packed, &self.estimate);
         for (&row, part) in task.rows.iter().zip(parts) {
@@ -287,11 +290,11 @@ impl<'c> Reweighted<'c> {
         change
     }
 
-    /// The last word: noise from the rows that are not suspected, weights by it, and the fit with these to the end.
+    /// Completes the fit: noise from the rows that are not suspected, weights by it, and a fit with these to the optimum.
     fn end(mut self, task: &Task<'_>, loss: Loss, source: NoiseSource) -> Result<RobustFit> {
         let bounds = Bounds::suspected(task.rows.len());
         let mut source = source;
-        let mut found: Option<Found> = None;
+        let mut found: Option<OngoingFit> = None;
         for _ in 0..ITERATIONS {
             let mut parts = parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
             let unknowns = self.unknowns(task);
@@ -309,10 +312,11 @@ impl<'c> Reweighted<'c> {
             if source == NoiseSource::Estimated {
                 let before = self.noise;
                 let of_kept = Task { rows: &kept, ..*task };
-                let told = found.as_ref().map_or(unknowns, |found| of_kept.told(found));
-                let by_rotations = found.as_ref().and_then(|found| of_kept.told_by_rotations(found, before));
+                let unknowns = found.as_ref().map_or(unknowns, |found| of_kept.effective_unknowns(found));
+                let by_rotations =
+                    found.as_ref().and_then(|found| of_kept.determined_by_rotations(found, before));
                 let (data, packed) = (task.data, task.packed);
-                match estimate_noise(data, packed, &kept, &self.estimate, told, by_rotations, before) {
+                match estimate_noise(data, packed, &kept, &self.estimate, unknowns, by_rotations, before) {
                     Some(noise) => self.noise = stated(task.options, noise),
                     None => source = NoiseSource::Exact,
                 }
@@ -324,18 +328,18 @@ impl<'c> Reweighted<'c> {
             if change < SETTLED && found.is_some() {
                 break;
             }
-            let weighted = Task { weights: Some(&self.weights), ..self.believing(task, source) };
+            let weighted = Task { weights: Some(&self.weights), ..self.with_prior_weight(task, source) };
             let renewed = weighted.fit(self.estimate, self.noise);
             self.estimate = renewed.0.clone();
             match &mut found {
-                Some(found) => found.follow(renewed),
-                None => found = Some(Found::new(renewed)),
+                Some(found) => found.update(renewed),
+                None => found = Some(OngoingFit::new(renewed)),
             }
         }
-        let weighted = Task { weights: Some(&self.weights), ..self.believing(task, source) };
+        let weighted = Task { weights: Some(&self.weights), ..self.with_prior_weight(task, source) };
         let mut found = match found {
             Some(found) => found,
-            None => Found::new(weighted.fit(self.estimate, self.noise)),
+            None => OngoingFit::new(weighted.fit(self.estimate, self.noise)),
         };
         found.report.iterations += self.iterations;
         found.report.trace.splice(0..0, self.trace);

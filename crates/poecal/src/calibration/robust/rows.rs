@@ -1,7 +1,7 @@
-//! What each row means to the fit, and which rows are suspected (theory.md §6 (34d) to (34f)).
+//! Judgement of each row, and which rows are suspected (theory.md §6 (34d) to (34f)).
 
 use super::alike::TAILS;
-use super::{Configurations, Loss, Parts, Scale, parts};
+use super::{Configurations, Loss, RowParts, Scale, parts};
 use crate::analysis::influence;
 use crate::calibration::SetAccuracy;
 use crate::calibration::fit::Task;
@@ -9,10 +9,10 @@ use crate::calibration::found::Fitted;
 use crate::distributions;
 use crate::measurement::Dataset;
 
-/// Probability that clean, normal data show a row beyond the bound of normal noise.
+/// Probability that normal data have a row beyond the bound.
 const FAMILY: f64 = 1e-3;
 
-/// What a fit says of one row.
+/// Judgement of one row.
 ///
 /// ```
 /// use poecal::calibration::RowJudgement;
@@ -21,14 +21,13 @@ const FAMILY: f64 = 1e-3;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowJudgement {
-    /// The weight that the row had in the fit, 0 to 1; of a row that was held out, the weight that it would have had (1 without a
-    /// robust loss).
+    /// Weight in the fit, 0 to 1; of a held-out row the weight that it would have had (1 without a robust loss).
     pub weight: f64,
-    /// Whether it is suspected to be grossly wrong.
+    /// Whether it is suspected of a gross error.
     pub suspected: bool,
 }
 
-/// What a calibration did about outliers, and what it says of each row.
+/// Treatment of outliers, and the judgement of each row.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate};
@@ -41,24 +40,23 @@ pub struct RowJudgement {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robustness {
-    /// The loss of the fit; none: least squares.
+    /// Loss of the fit; `None`: least squares.
     pub loss: Option<Loss>,
     /// One for each row of the data.
     pub rows: Vec<RowJudgement>,
-    /// How many times the calibration's noise the residuals in the middle really are, positions and rotations: the scale that rows are
-    /// judged by.
+    /// Robust scale of the residuals over the calibration's noise, positions and rotations: the unit by which rows are judged.
     pub scale: [f64; 2],
-    /// Errors on the fitted rows without those suspected; none if none is.
+    /// Errors on the fitted rows without suspected ones; `None` if none is suspected.
     pub training_rest: Option<SetAccuracy>,
-    /// Errors on the rows held out without those suspected; none if none is, or none is left.
+    /// The same on held-out rows; `None` if none is suspected, or none remains.
     pub held_out_rest: Option<SetAccuracy>,
 }
 
 impl Robustness {
-    /// Puts together what a fit by this loss says of the rows that were fitted and held out; `accuracy` gives the errors on some rows.
+    /// Collects the judgement of training and held-out rows; `accuracy` gives the errors on some rows.
     pub(in crate::calibration) fn new(
         loss: Option<Loss>,
-        Judged { rows, scale }: Judged,
+        RowJudgements { rows, scale }: RowJudgements,
         [fitted, held_out]: [&[u32]; 2],
         accuracy: impl Fn(&[u32]) -> SetAccuracy,
     ) -> Self {
@@ -87,7 +85,7 @@ impl Robustness {
         rows.iter().copied().filter(|&row| !suspected(row)).collect()
     }
 
-    /// A sentence about the outliers among the fitted rows and those held out, if there are any.
+    /// A sentence about the outliers among training and held-out rows, if there are any.
     pub(in crate::calibration) fn warning(&self, fit_rows: &[u32], held_out_rows: &[u32]) -> Option<String> {
         let suspected = |rows: &[u32]| rows.len() - self.rest(rows).len();
         let (fitted, held_out) = (suspected(fit_rows), suspected(held_out_rows));
@@ -113,17 +111,17 @@ impl Robustness {
     }
 }
 
-/// Lengths of residuals that noise does not reach, by the number of a row's components.
+/// Bounds of a residual's length, by the number of its components.
 pub(super) struct Bounds([f64; 6]);
 
 impl Bounds {
-    /// The length that normal noise exceeds in one of a thousand sets of so many rows, times a factor (theory.md §6 (34f)).
+    /// Length that normal noise exceeds in one of a thousand sets of so many rows, times a factor (theory.md §6 (34f)).
     pub(super) fn new(rows: usize, factor: f64) -> Self {
         let probability = FAMILY / rows.max(1) as f64;
         Bounds([1, 2, 3, 4, 5, 6].map(|dof| factor * distributions::upper_quantile(probability, dof).sqrt()))
     }
 
-    /// Beyond these a row is suspected.
+    /// Bounds above which a row is suspected.
     pub(super) fn suspected(rows: usize) -> Self {
         Bounds::new(rows, TAILS)
     }
@@ -133,32 +131,32 @@ impl Bounds {
     }
 }
 
-/// Whether there are numbers enough to tell a scale by: twice the unknowns. Fewer leave residuals that show the fit, not the noise.
-pub(super) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a Parts>, unknowns: f64) -> bool {
+/// Whether there are numbers enough for a robust scale: twice the unknowns. Residuals of fewer show the fit, not the noise.
+pub(super) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowParts>, unknowns: f64) -> bool {
     parts.flatten().map(|part| part.components).sum::<usize>() as f64 >= 2.0 * unknowns
 }
 
-/// Every row of the data judged, with the scale that they were judged by.
-pub(in crate::calibration) struct Judged {
+/// Judgement of every row of the data, with its scale.
+pub(in crate::calibration) struct RowJudgements {
     pub(in crate::calibration) rows: Vec<RowJudgement>,
     scale: Scale,
 }
 
-impl Judged {
-    /// How many times the noise of the fit the residuals in the middle are, positions and rotations.
+impl RowJudgements {
+    /// Robust scale over the noise of the fit, positions and rotations.
     pub(super) fn scale(&self) -> [f64; 2] {
         self.scale.0
     }
 }
 
-/// Judges every row of the data by a fit with these weights. Rows held out count with weight 0.
+/// Judges every row of the data by a fit with these weights; held-out rows have weight 0.
 pub(super) fn judge_rows(
     task: &Task<'_>,
     configurations: &Configurations,
     fitted: &Fitted,
     weights: &[f64],
     loss: Option<Loss>,
-) -> Judged {
+) -> RowJudgements {
     let all: Vec<u32> = (0..u32::try_from(task.data.len()).unwrap_or(u32::MAX)).collect();
     let mut is_fitted = vec![false; all.len()];
     task.rows.iter().for_each(|&row| is_fitted[row as usize] = true);
@@ -166,8 +164,8 @@ pub(super) fn judge_rows(
     let parts = parts(task.data, task.packed, &all, &fitted.estimate, fitted.noise);
     let unknowns = configurations.repeats * fitted.normal.dim() as f64;
     let shares = configurations.shares(task.data, task.packed, &fitted.estimate);
-    let judge = |scale: Scale| -> Judged {
-        // Influence is worked out only where it may matter: of rows that decide most of their own prediction little can be said.
+    let judge = |scale: Scale| -> RowJudgements {
+        // Influence is computed only where it may matter: rows with a leverage near 1 have no residual to judge them by.
         let lengths = parts.iter().map(|row| scale.length(row));
         let near: Vec<u32> = all
             .iter()
@@ -202,30 +200,30 @@ pub(super) fn judge_rows(
             rows[row as usize].suspected =
                 shares[row as usize] * influence.studentized > bounds.of(components);
         }
-        Judged { rows, scale }
+        RowJudgements { rows, scale }
     };
     let of_fit = || task.rows.iter().map(|&row| (row, &parts[row as usize]));
     let scale = Scale::of(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
     if !is_judgeable(of_fit().map(|(_, part)| part), unknowns) {
         let rows = weights.iter().map(|&weight| RowJudgement { weight, suspected: false }).collect();
-        return Judged { rows, scale };
+        return RowJudgements { rows, scale };
     }
     let judged = judge(scale);
     if !judged.rows.iter().any(|row| row.suspected) {
         return judged;
     }
-    // Suspected rows widen the scale that they are judged by: once more without them.
+    // Suspected rows widen their own scale: judge once more without them.
     let kept = of_fit().filter(|(row, _)| !judged.rows[*row as usize].suspected);
     judge(Scale::of(kept.map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise))
 }
 
-/// The scale of one number of a row's residual.
+/// Scale of one component of a row's residual.
 pub(super) fn component_scale(data: &Dataset, scale: [f64; 2], row: u32, component: usize) -> f64 {
     let turns = data.observations[row as usize].measurement.residual_model().rotation_row();
     scale[usize::from(component >= turns)]
 }
 
-/// The rows by which devices and targets are registered for the table: without those suspected, unless that would leave too few.
+/// Rows for registering device and targets: without suspected ones, unless too few remain.
 pub(in crate::calibration) fn registrable(robustness: &[RowJudgement], rows: &[u32]) -> Vec<u32> {
     let kept: Vec<u32> = rows.iter().copied().filter(|&row| !robustness[row as usize].suspected).collect();
     if kept.len() * 2 > rows.len() { kept } else { rows.to_vec() }

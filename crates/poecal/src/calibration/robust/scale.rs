@@ -1,14 +1,14 @@
-//! Robust scale: the noise that the middle of the rows shows, whatever the worst half does (theory.md §6 (34a)).
+//! Robust scale: the noise by the median of the rows (theory.md §6 (34a)).
 
 use crate::calibration::CalibrationOptions;
 use crate::calibration::noise::{ROUNDING, stated};
-use crate::distributions;
+use crate::distributions::{chi_square_median, median};
 use crate::estimate::{Estimate, Packed, map_squares};
 use crate::measurement::{Dataset, Noise};
 
 /// Squared whitened residual of one part of a row, position or rotation.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Part {
+pub(super) struct RowPart {
     pub(super) squares: f64,
     pub(super) components: usize,
     /// Whether the row states this part's noise.
@@ -16,20 +16,20 @@ pub(super) struct Part {
 }
 
 /// Position and rotation of a row.
-pub(super) type Parts = [Part; 2];
+pub(super) type RowParts = [RowPart; 2];
 
-/// The parts of some rows, whitened by the noise.
+/// Whitened parts of some rows.
 pub(super) fn parts(
     data: &Dataset,
     packed: &Packed,
     rows: &[u32],
     estimate: &Estimate,
     noise: Noise,
-) -> Vec<Parts> {
+) -> Vec<RowParts> {
     map_squares(data, packed, rows, estimate, |observation, squares| {
         let whitened = observation.whitened(squares.map(|(squares, _)| squares), noise);
         let stated = [observation.sigma_position_m, observation.sigma_rotation_rad];
-        [0, 1].map(|side| Part {
+        [0, 1].map(|side| RowPart {
             squares: whitened[side],
             components: squares[side].1,
             stated: stated[side].is_some(),
@@ -37,35 +37,35 @@ pub(super) fn parts(
     })
 }
 
-/// How many times the noise the residuals of each part really are.
+/// Robust scale over the noise, positions and rotations.
 #[derive(Clone, Copy)]
 pub(super) struct Scale(pub(super) [f64; 2]);
 
 impl Scale {
-    /// Of these rows, with the unknowns taken off in proportion; 1 for a part that no row has.
-    pub(super) fn of<'a>(rows: impl Iterator<Item = &'a Parts> + Clone, unknowns: f64) -> Self {
+    /// Scale of these rows, corrected for the unknowns in proportion: theory.md §6 (34a). 1 for a part that no row has.
+    pub(super) fn of<'a>(rows: impl Iterator<Item = &'a RowParts> + Clone, unknowns: f64) -> Self {
         let count: usize = rows.clone().flatten().map(|part| part.components).sum();
         let left = (1.0 - unknowns / count.max(1) as f64).max(0.05);
         Scale([0, 1].map(|side| median_scale(rows.clone().map(|row| &row[side]), left).unwrap_or(1.0)))
     }
 
-    /// Exact data leave rounding, which is no scale to judge by.
+    /// Floor for exact data, whose rounding is no scale.
     pub(super) fn at_least_rounding(self, noise: Noise) -> Self {
         let [position, rotation] = self.0;
         Scale([position.max(ROUNDING / noise.position_m), rotation.max(ROUNDING / noise.rotation_rad)])
     }
 
-    /// Length of a row's residual in units of the scaled noise, and of how many numbers it is.
-    pub(super) fn length(&self, row: &Parts) -> (f64, usize) {
+    /// Length of a row's residual in units of the scaled noise, and its number of components.
+    pub(super) fn length(&self, row: &RowParts) -> (f64, usize) {
         let squares: f64 = row.iter().zip(self.0).map(|(part, scale)| part.squares / (scale * scale)).sum();
         (squares.sqrt(), row.iter().map(|part| part.components).sum())
     }
 }
 
-/// Takes the noise of rows that state none, where the user states none, from the middle of those rows; `parts` follow. Returns it
-/// with the scale of all rows then.
+/// Replaces the noise of rows that state none, unless the user states it, by their robust scale, and rescales `parts`. Returns the noise
+/// and the scale of all rows.
 pub(super) fn settle(
-    parts: &mut [Parts],
+    parts: &mut [RowParts],
     unknowns: f64,
     noise: Noise,
     options: Option<&CalibrationOptions>,
@@ -90,16 +90,9 @@ pub(super) fn settle(
     (settled, Scale::of(parts.iter(), unknowns).at_least_rounding(settled))
 }
 
-/// Root of the median of squares over the median of χ², with only a share `left` of the rows' freedom left by the fit.
-fn median_scale<'a>(rows: impl Iterator<Item = &'a Part>, left: f64) -> Option<f64> {
-    let mut squares: Vec<f64> = rows
-        .filter(|part| part.components > 0)
-        .map(|part| part.squares / distributions::median(part.components))
-        .collect();
-    if squares.is_empty() {
-        return None;
-    }
-    let middle = squares.len() / 2;
-    let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
-    Some((*median / left).sqrt())
+/// Root of the median of squares over the median of χ²; `left` is the redundant share of the rows.
+fn median_scale<'a>(rows: impl Iterator<Item = &'a RowPart>, left: f64) -> Option<f64> {
+    let measured = rows.filter(|part| part.components > 0);
+    let median = median(measured.map(|part| part.squares / chi_square_median(part.components)))?;
+    Some((median / left).sqrt())
 }

@@ -1,4 +1,4 @@
-//! What judging a calibration by other measurements needs of its file.
+//! Data of a calibration file that its judgement needs.
 
 use super::{CalibrationFile, FrameWord};
 use crate::calibration::DeviceFrameKnowledge;
@@ -6,11 +6,11 @@ use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
 
-/// Rotation noise that counts where the calibration saw positions alone, degrees.
+/// Rotation noise if the calibration measured positions alone, degrees.
 const UNSEEN_ROTATION_DEG: f64 = 0.05;
 
 impl CalibrationFile {
-    /// What was known of the device's frame.
+    /// Knowledge of the device frame.
     #[must_use]
     pub fn frame(&self) -> DeviceFrameKnowledge {
         match self.measurement_frame.known {
@@ -19,10 +19,10 @@ impl CalibrationFile {
         }
     }
 
-    /// The noise that the calibration was weighted by, in metres and radians.
+    /// Noise of the calibration, metres and radians.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if the file has been changed into no noise.
+    /// [`ErrorKind::Model`] if the file holds no valid noise.
     pub fn noise(&self) -> Result<Noise> {
         let rotation_deg = self.noise.sigma_rotation_deg.unwrap_or(UNSEEN_ROTATION_DEG);
         for (key, sigma) in [("position_mm", self.noise.sigma_position_mm), ("rotation_deg", rotation_deg)] {
@@ -36,18 +36,17 @@ impl CalibrationFile {
         Ok(Noise { position_m: self.noise.sigma_position_mm / 1e3, rotation_rad: rotation_deg.to_radians() })
     }
 
-    /// Root mean square position error on the rows held out, or if there were none on those fitted, millimetres.
+    /// Root mean square position error on held-out rows, otherwise on training rows, millimetres.
     #[must_use]
     pub fn own_position_rms_mm(&self) -> f64 {
         let accuracy = &self.accuracy;
         accuracy.held_out.as_ref().unwrap_or(&accuracy.training).calibrated.position_mm.rms
     }
 
-    /// `base_from_device` of each place that the device stood at when some measurements were taken, by the instruments' names.
+    /// `base_from_device` of each station of some measurements, by the names of the instruments.
     ///
     /// # Errors
-    /// [`ErrorKind::Problem`] if the calibration does not know one of them, [`ErrorKind::Model`] if the file has been changed into no
-    /// calibration.
+    /// [`ErrorKind::Problem`] if the calibration does not know one of them, [`ErrorKind::Model`] if the file holds no valid pose.
     pub fn devices_of(&self, data: &Dataset) -> Result<Vec<Pose>> {
         const REFIT: &str = "or refit the frames with --refit-frame";
         let stations = data.station_count();
@@ -88,7 +87,7 @@ impl CalibrationFile {
             .collect()
     }
 
-    /// Refuses measurements of targets that the calibration does not know, or of orientations of those it knows as points only.
+    /// Refuses measurements of unknown targets, or of orientations of targets that were calibrated as points.
     ///
     /// # Errors
     /// [`ErrorKind::Problem`].

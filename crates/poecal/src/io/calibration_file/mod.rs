@@ -1,4 +1,4 @@
-//! `calibration.json`: a finished calibration as a file, versioned, with everything that a prediction needs.
+//! `calibration.json`: a finished calibration as a versioned file, sufficient for predictions.
 
 mod judging;
 mod outliers;
@@ -26,11 +26,11 @@ use crate::robot::{Joint, JointKind, Limits, Reading, Robot};
 use nalgebra::Vector3;
 use refusal::refusal;
 
-/// Version word of the file; readers refuse others.
+/// Version of the file; readers refuse others.
 pub const SCHEMA: &str = "poecal-calibration-1";
 
 impl CalibrationFile {
-    /// The file of a finished calibration. `inputs` are named as the user named them.
+    /// File of a finished calibration, with the user's names of the inputs.
     #[must_use]
     pub fn new(calibration: &Calibration, data: &Dataset, inputs: Inputs) -> Self {
         let robot = &calibration.robot;
@@ -118,7 +118,7 @@ impl CalibrationFile {
         }
     }
 
-    /// The text of the file, with a line break at its end.
+    /// The text of the file, with a final line break.
     ///
     /// # Errors
     /// [`ErrorKind::Export`] if a number is not finite.
@@ -132,12 +132,12 @@ impl CalibrationFile {
     /// The calibrated robot, with its named targets.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if the file has been changed into no robot.
+    /// [`ErrorKind::Model`] if the file holds no valid robot.
     pub fn robot(&self) -> Result<Robot> {
         self.robot_of(|joint| &joint.screw, &self.robot.base_from_tip_at_zero)
     }
 
-    /// The robot as delivered, with the calibrated targets.
+    /// The nominal robot, with the calibrated targets.
     ///
     /// # Errors
     /// As [`CalibrationFile::robot`].
@@ -161,7 +161,7 @@ impl CalibrationFile {
     /// `base_from_device` of the calibration.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if the file has been changed into no pose.
+    /// [`ErrorKind::Model`] if the file holds no valid pose.
     pub fn base_from_device(&self) -> Result<Pose> {
         self.measurement_frame.base_from_device.pose()
     }
@@ -173,7 +173,7 @@ impl CalibrationFile {
         serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
     }
 
-    /// The targets' names with their entries.
+    /// Names of the targets with their entries.
     #[must_use]
     pub fn targets(&self) -> &BTreeMap<String, TargetEntry> {
         &self.targets
@@ -187,7 +187,7 @@ impl From<&Diagnosis> for DiagnosisEntry {
 }
 
 impl RobotEntry {
-    /// The frames of a robot and of its nominal model.
+    /// Frames of a robot and its nominal model.
     pub(in crate::io) fn new(robot: &Robot, nominal: &Robot) -> Self {
         RobotEntry {
             name: robot.name.clone(),
@@ -200,7 +200,7 @@ impl RobotEntry {
 }
 
 impl StationEntry {
-    /// Those of a calibration; none if there is one without a name.
+    /// Stations of a calibration; empty for a single one without a name.
     fn of(calibration: &Calibration) -> Vec<Self> {
         let stations = calibration.stations.iter();
         let is_plain = calibration.stations.len() == 1 && stations.clone().all(|it| it.name.is_none());
@@ -213,7 +213,7 @@ impl StationEntry {
 }
 
 impl OffsetEntry {
-    /// The offsets that a formulation with offsets found.
+    /// Joint offsets of a formulation that has them.
     fn of(calibration: &Calibration) -> Option<Vec<Self>> {
         let offsets = calibration.solver.joint_offsets.as_ref()?;
         let entry = |(joint, &offset): (&Joint, &f64)| OffsetEntry {
@@ -226,7 +226,7 @@ impl OffsetEntry {
 }
 
 impl JointEntry {
-    /// The joints of a robot and of its nominal model.
+    /// Joints of a robot and its nominal model.
     pub(in crate::io) fn of_robot(robot: &Robot, nominal: &Robot) -> Vec<Self> {
         let pairs = robot.joints.iter().zip(&nominal.joints);
         pairs
@@ -290,7 +290,7 @@ impl JointEntry {
 }
 
 impl TargetEntry {
-    /// `tip_from_target`; the orientation of a point is the tip's.
+    /// `tip_from_target`; a point has the tip's orientation.
     ///
     /// # Errors
     /// [`ErrorKind::Model`] if the quaternion is far from unit.

@@ -1,4 +1,4 @@
-//! What `calibration.json` says of outliers.
+//! Outliers in `calibration.json`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,55 +6,55 @@ use serde::{Deserialize, Serialize};
 use crate::calibration::{Calibration, Loss, RowError, SetAccuracy, row_errors, row_influence};
 use crate::measurement::Dataset;
 
-/// Suspected rows that a file lists at most; `robust` has their number.
+/// Most suspected rows in a file; `robust` has their number.
 const LISTED: usize = 1000;
 
-/// What was done about outliers.
+/// Treatment of outliers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RobustEntry {
-    /// The robust loss of the fit; null: least squares.
+    /// Loss of a robust fit; null: least squares.
     pub loss: Option<Loss>,
-    /// Number of suspected rows among those fitted.
+    /// Number of suspected training rows.
     pub suspected_fit: usize,
-    /// Number of suspected rows among those held out.
+    /// Number of suspected held-out rows.
     pub suspected_held_out: usize,
-    /// `accuracy.training` without the suspected rows; null if none is.
+    /// `accuracy.training` without suspected rows; null if there are none.
     pub training_without_suspected: Option<SetAccuracy>,
-    /// `accuracy.held_out` without the suspected rows; null if none is.
+    /// `accuracy.held_out` without suspected rows; null if there are none.
     pub held_out_without_suspected: Option<SetAccuracy>,
 }
 
 /// A suspected outlier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OutlierEntry {
-    /// The file that it came from, as named by the user.
+    /// Its file, as named by the user.
     pub file: String,
     /// Its line in that file, from 1.
     pub row: u32,
-    /// Whether it was fitted.
+    /// Its set.
     pub set: OutlierSet,
     /// Distance from the position that the calibrated model predicts, millimetres.
     pub residual_mm: f64,
     /// Angle from the orientation that it predicts, degrees; null where none was measured.
     pub residual_deg: Option<f64>,
-    /// Length of its residual in units of that residual's own standard deviation.
+    /// Studentised residual: length over its own standard deviation.
     pub studentized: f64,
-    /// Its weight in the fit, 0 to 1; of a row held out, what it would have had.
+    /// Weight in the fit, 0 to 1; of a held-out row the weight that it would have had.
     pub weight: f64,
 }
 
-/// The set of a suspected row.
+/// Set of a suspected row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum OutlierSet {
-    /// It was fitted.
+    /// Training row.
     Fit,
-    /// It was held out.
+    /// Held-out row.
     HeldOut,
 }
 
 impl RobustEntry {
-    /// Of a finished calibration.
+    /// Outliers of a finished calibration.
     pub(super) fn of(calibration: &Calibration) -> Self {
         let robustness = &calibration.robustness;
         let suspected = |rows: &[u32]| rows.len() - robustness.rest(rows).len();
@@ -69,7 +69,7 @@ impl RobustEntry {
 }
 
 impl OutlierEntry {
-    /// The suspected rows of a finished calibration, the worst first, at most 1,000.
+    /// Suspected rows of a finished calibration, the worst first, at most 1,000.
     #[must_use]
     pub fn of(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
         let robustness = &calibration.robustness;

@@ -1,11 +1,11 @@
-//! Why a text is no calibration.
+//! Errors for texts that are no calibration.
 
 use std::path::Path;
 
 use super::SCHEMA;
 use crate::error::{Error, ErrorKind};
 
-/// Why a text is no calibration of this version; `error` is what kept it from being read as one.
+/// Message for a text that is no calibration of this version; `error` is the parser's.
 pub(super) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path) -> Error {
     let syntax = |error: &serde_json::Error| {
         let reason = error.to_string();
@@ -15,7 +15,7 @@ pub(super) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
             "found {found} ({reason}), expected a calibration as written by `poecal calibrate`: name a calibration.json"
         );
         let line = error.line().max(1);
-        // The parser counts bytes up to what it did not expect.
+        // The parser counts bytes up to the unexpected one.
         let before = text.split('\n').nth(line - 1).unwrap_or_default().char_indices();
         let column = before.take_while(|(at, _)| *at < error.column()).count().max(1);
         Error::new(ErrorKind::Syntax, message).at(path, line, column)

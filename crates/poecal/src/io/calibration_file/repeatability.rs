@@ -1,4 +1,4 @@
-//! What `calibration.json` says of configurations that were measured several times.
+//! Pose accuracy and repeatability in `calibration.json`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::calibration::{Calibration, RepeatedPose, repeatability};
 use crate::measurement::Dataset;
 
-/// Poses that a file lists at most.
+/// Most poses in a file.
 const LISTED: usize = 100;
 
-/// Pose accuracy and repeatability in the manner of ISO 9283, of positions.
+/// Pose accuracy and repeatability of positions, after ISO 9283.
 ///
 /// ```
 /// use poecal::io::calibration_file::RepeatabilityEntry;
@@ -21,17 +21,17 @@ const LISTED: usize = 100;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RepeatabilityEntry {
-    /// Configurations (of one target each) with three rows or more.
+    /// Number of targets in configurations with three rows or more.
     pub poses: usize,
-    /// Their rows.
+    /// Number of their rows.
     pub rows: usize,
-    /// Mean over them of the distance from the nominal model's prediction to the mean of the measured positions, millimetres.
+    /// Mean pose accuracy of the nominal model: distance from its prediction to the mean measured position, millimetres.
     pub accuracy_nominal_mm: f64,
     /// The same of the registered model.
     pub accuracy_registered_mm: f64,
     /// The same of the calibrated model.
     pub accuracy_calibrated_mm: f64,
-    /// Mean over them of the repeatability: mean distance of the measured positions from their mean, and three standard deviations of it.
+    /// Mean repeatability: mean distance of measured positions from their mean, plus three standard deviations, millimetres.
     pub repeatability_mm: f64,
     /// The largest repeatability.
     pub worst_repeatability_mm: f64,
@@ -59,7 +59,7 @@ pub struct RepeatedPoseEntry {
 }
 
 impl RepeatabilityEntry {
-    /// Of a finished calibration; none if nothing was measured three times.
+    /// Repeatability of a finished calibration; `None` if nothing was measured three times.
     pub(super) fn of(calibration: &Calibration, data: &Dataset) -> Option<Self> {
         let mut poses = repeatability(calibration, data);
         poses.sort_by_key(|pose| std::cmp::Reverse(pose.rows.len()));

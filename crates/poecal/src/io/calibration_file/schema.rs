@@ -25,11 +25,11 @@ use crate::solve::Termination;
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CalibrationFile {
-    /// Version of this form.
+    /// Version of the file.
     pub schema: String,
-    /// Version of the program that wrote it.
+    /// Version of the program.
     pub poecal_version: String,
-    /// What was read.
+    /// Inputs.
     pub inputs: Inputs,
     /// Errors of the nominal, registered and calibrated model on training and held-out rows.
     pub accuracy: Accuracy,
@@ -39,10 +39,10 @@ pub struct CalibrationFile {
     pub identifiability: IdentifiabilityEntry,
     /// Noise by which residuals were weighted.
     pub noise: NoiseEntry,
-    /// Whether the result is good to use, and where.
+    /// Verdict: whether the result is good to use, and where.
     #[serde(default)]
     pub verdict: Option<Verdict>,
-    /// How much of each joint's range was sampled.
+    /// Sampled part of each joint's range.
     #[serde(default)]
     pub coverage: Vec<JointCoverage>,
     /// Cross-validation: errors of rows that are predicted by a fit of the others; null if there are too few.
@@ -51,32 +51,31 @@ pub struct CalibrationFile {
     /// Each joint's correction.
     #[serde(default)]
     pub corrections: Vec<CorrectionEntry>,
-    /// Expected errors of predictions; null if there are no more residuals than unknowns.
+    /// Expected errors of predictions; null without more residuals than unknowns.
     #[serde(default)]
     pub uncertainty: Option<UncertaintyEntry>,
-    /// How outliers were treated.
+    /// Treatment of outliers.
     #[serde(default)]
     pub robust: RobustEntry,
-    /// The rows that are suspected, the worst first, at most 1,000; `robust` has their number.
+    /// Suspected rows, the worst first, at most 1,000; `robust` has their number.
     #[serde(default)]
     pub outliers: Vec<OutlierEntry>,
     /// Configurations that were measured several times; null if there are none.
     #[serde(default)]
     pub repeatability: Option<RepeatabilityEntry>,
-    /// What makes the result doubtful, a sentence each.
+    /// Warnings, a sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
-    /// Mistakes that the measurements show: named, not corrected.
+    /// Mistakes in the input: named, not corrected.
     #[serde(default)]
     pub diagnosis: Vec<DiagnosisEntry>,
     /// The calibrated robot's frames.
     pub robot: RobotEntry,
     /// The calibrated joints from base to tip.
     pub joints: Vec<JointEntry>,
-    /// Where the measuring device stands.
+    /// Frame of the measuring device.
     pub measurement_frame: FrameEntry,
-    /// Where the measuring device stood, if the measurements name it or it stood at several places; the first is that of
-    /// `measurement_frame`.
+    /// Stations of the measuring device, if they are named or several; the first is that of `measurement_frame`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stations: Vec<StationEntry>,
     /// Pose of the tip in the last joint's frame.
@@ -85,7 +84,7 @@ pub struct CalibrationFile {
     pub targets: BTreeMap<String, TargetEntry>,
 }
 
-/// What was read.
+/// Inputs.
 ///
 /// ```
 /// use poecal::io::calibration_file::Inputs;
@@ -98,18 +97,17 @@ pub struct Inputs {
     pub model: String,
     /// The measurement files, as named by the user.
     pub measurements: Vec<String>,
-    /// SHA-256 of each file that was read, by the name that the user gave it; what is no regular file, such as a pipe, has one only if it
-    /// is of measurements.
+    /// SHA-256 of each file by its name; of input that is no regular file, such as a pipe, only for measurements.
     #[serde(default)]
     pub sha256: BTreeMap<String, String>,
-    /// The command that makes the same calibration again; null if it was not made by the program.
+    /// The command that reproduces the calibration; null if it was not made by the program.
     #[serde(default)]
     pub command: Option<String>,
 }
 
 impl Inputs {
-    /// The checksum of each file, by its name: of a model or a mapping, those of measurements being told by
-    /// [`MeasurementFile::sha256`](crate::io::measurements::MeasurementFile::sha256). What is no regular file has none.
+    /// Checksum of each model or mapping file by its name; for measurements see
+    /// [`MeasurementFile::sha256`](crate::io::measurements::MeasurementFile::sha256). Inputs that are no regular files have none.
     ///
     /// # Errors
     /// [`ErrorKind::File`](crate::ErrorKind::File) if a file cannot be read.
@@ -131,16 +129,16 @@ pub struct SolverEntry {
     /// Method of the solver: `levenberg-marquardt`, or others for comparison.
     #[serde(default = "usual_method")]
     pub method: String,
-    /// What the formulation does to the result, if it is not the usual one.
+    /// Effect of the formulation on the result, if it is not the usual one.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub note: Option<String>,
     /// Iterations of the full fit.
     pub iterations: usize,
     /// Whether an optimum was reached.
     pub converged: bool,
-    /// Why it ended.
+    /// Reason of its end.
     pub termination: Termination,
-    /// Further starts because the first fit seemed to have converged to a local minimum.
+    /// Number of further starts after a suspected local minimum.
     pub restarts: usize,
     /// Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit starts again.
     #[serde(default)]
@@ -163,7 +161,7 @@ fn usual_method() -> String {
     FormulationWords::default().method.to_owned()
 }
 
-/// An offset of a joint, by its unit.
+/// Offset of a joint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OffsetEntry {
     /// The joint.
@@ -183,20 +181,20 @@ pub struct IdentifiabilityEntry {
     pub parameters: usize,
     /// Directions that the data determine against the noise.
     pub rank: usize,
-    /// Effective number of unknowns that the measurements determine beside the prior: the sum of a share of each.
+    /// Effective number of unknowns that the measurements determine beside the prior.
     #[serde(default)]
     pub told: Option<f64>,
-    /// Condition number over those directions; null if there is none.
+    /// Condition number over these directions; null if there are none.
     pub condition: Option<f64>,
     /// Directions that the configurations do not determine.
     pub unidentifiable: Vec<Direction>,
-    /// Directions that they determine weakly, hardly better than the nominal model.
+    /// Directions that they determine weakly, little better than the nominal model.
     #[serde(default)]
     pub weak: Vec<Direction>,
-    /// What is not observable: no measurement of this kind could determine it. It is not among the parameters, and changes no prediction.
+    /// Directions that are not observable by measurements of this kind: not among the parameters, and without effect on predictions.
     #[serde(default)]
     pub structural: Vec<Direction>,
-    /// The observability indices; null where a direction is not observed at all.
+    /// Observability indices; null where a singular value is zero.
     #[serde(default)]
     pub observability: Observability,
 }
@@ -206,7 +204,7 @@ impl IdentifiabilityEntry {
         IdentifiabilityEntry {
             parameters: found.parameters,
             rank: found.rank,
-            told: Some(found.told),
+            told: Some(found.effective_unknowns),
             condition: Some(found.condition).filter(|condition| condition.is_finite()),
             unidentifiable: found.unidentifiable.clone(),
             weak: found.weak.clone(),
@@ -223,11 +221,11 @@ pub struct NoiseEntry {
     pub sigma_position_mm: f64,
     /// Standard deviation of each rotation component, degrees; null where no orientation was measured.
     pub sigma_rotation_deg: Option<f64>,
-    /// Where it came from.
+    /// Source of the noise.
     pub source: NoiseSource,
 }
 
-/// A mistake that the measurements show.
+/// A mistake in the input.
 ///
 /// ```
 /// use poecal::forensics::DiagnosisKind;
@@ -239,11 +237,11 @@ pub struct NoiseEntry {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct DiagnosisEntry {
-    /// What it is.
+    /// Kind of the mistake.
     pub kind: DiagnosisKind,
-    /// The evidence and what to do.
+    /// Evidence and advice.
     pub statement: String,
-    /// The rows concerned, counted from 0 over all files; empty if all are.
+    /// Rows concerned, counted from 0 over all files; empty if all are.
     pub rows: Vec<u32>,
 }
 
@@ -277,7 +275,7 @@ pub struct JointEntry {
     pub base_from_joint: PoseEntry,
     /// Lower and upper limit, radians or metres.
     pub limits: Option<[f64; 2]>,
-    /// How the joint's value follows from a reading.
+    /// The joint's value as a function of a reading.
     pub reading: ReadingEntry,
 }
 
@@ -303,15 +301,15 @@ pub struct ScrewEntry {
 /// `value = multiplier * reading + offset`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReadingEntry {
-    /// The measured joint.
+    /// Name of the reading.
     pub name: String,
     /// Factor.
     pub multiplier: f64,
-    /// Added after the factor, radians or metres.
+    /// Offset, radians or metres.
     pub offset: f64,
 }
 
-/// Where the measuring device stands.
+/// Frame of the measuring device.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrameEntry {
     /// Whether the frame was unknown or the base.
@@ -320,7 +318,7 @@ pub struct FrameEntry {
     pub base_from_device: PoseEntry,
 }
 
-/// A place that the measuring device stood at.
+/// A station of the measuring device.
 ///
 /// ```
 /// use poecal::io::calibration_file::{PoseEntry, StationEntry};
@@ -330,13 +328,13 @@ pub struct FrameEntry {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StationEntry {
-    /// The instrument's name: what the column `instrument` says, or the file with `--frames per-file`.
+    /// Name of the instrument: from the column `instrument`, or the file with `--frames per-file`.
     pub instrument: Option<String>,
     /// Pose of the device in the base.
     pub base_from_device: PoseEntry,
 }
 
-/// What was known of the device's frame.
+/// Knowledge of the device frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FrameWord {

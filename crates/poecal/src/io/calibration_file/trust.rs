@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{CalibrationFile, PoseEntry};
 use crate::analysis::JointCoverage;
-use crate::calibration::{Calibration, Expected, JointCorrection, Kept, KeptPart, Trust};
+use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Estimate;
 use crate::lie::Pose;
@@ -14,12 +14,12 @@ use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::Layout;
 use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
 
-/// Rows of one fold or block, and their errors by a fit of the others.
+/// Errors of the rows of a fold or block, predicted by a fit of the others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LeftOutEntry {
-    /// What they have in common.
+    /// Name of the block.
     pub left_out: String,
-    /// How many they are.
+    /// Number of rows.
     pub rows: usize,
     /// Root mean square error of position, millimetres.
     pub position_rms_mm: f64,
@@ -41,24 +41,24 @@ pub struct CrossValidationEntry {
 pub struct ExpectedEntry {
     /// Root mean square distance.
     pub sigma_position_mm: f64,
-    /// Mean of the distances that are not exceeded in 95 % of all cases.
+    /// Mean of the 95 % bounds.
     pub bound95_position_mm: f64,
-    /// The largest of those.
+    /// The largest of these.
     pub worst_bound95_position_mm: f64,
 }
 
-/// The spread of predictions at the measured configurations over bootstrap samples of the rows.
+/// Spread of predictions at measured configurations over bootstrap samples of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BootstrapEntry {
     /// Number of samples: neighbourhoods of rows, with replacement.
     pub drawings: usize,
     /// Root mean square distance over these samples, millimetres.
     pub sigma_position_mm: f64,
-    /// The same if residuals are white noise, by the covariance, millimetres.
+    /// The same by the covariance, for white noise, millimetres.
     pub formal_sigma_position_mm: f64,
 }
 
-/// Errors of one kind on held-out rows beside their predicted uncertainty.
+/// Errors of held-out positions or rotations compared with their predicted uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct KeptEntry {
     /// Expected root mean square error between measured and predicted, millimetres or degrees.
@@ -67,7 +67,7 @@ pub struct KeptEntry {
     pub inside_bound95: f64,
 }
 
-/// How the errors of held-out rows compare with their predicted uncertainty.
+/// Errors of held-out rows compared with their predicted uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HeldOutEntry {
     /// Of positions, millimetres.
@@ -77,8 +77,8 @@ pub struct HeldOutEntry {
 }
 
 impl HeldOutEntry {
-    fn of(kept: &Kept) -> Self {
-        let entry = |part: KeptPart| KeptEntry {
+    fn of(kept: &CoverageCheck) -> Self {
+        let entry = |part: PartCoverage| KeptEntry {
             expected_rms: part.expected_rms,
             inside_bound95: part.inside_bound95,
         };
@@ -112,19 +112,19 @@ pub struct CorrectionEntry {
     pub sigma_tilt_deg: Option<f64>,
     /// Standard deviation of the axis' place at the joint, millimetres; null where it is not determined.
     pub sigma_shift_mm: Option<f64>,
-    /// Root mean square position error if this screw alone stayed nominal, millimetres.
+    /// Root mean square position error with this screw alone nominal, millimetres.
     pub left_nominal_rms_mm: f64,
-    /// What speaks against the joint, in words: a correction beyond those of the others, or residuals that follow its position.
+    /// Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub suspicious: Option<String>,
 }
 
-/// The covariance by which predictions state their error, and expected errors.
+/// Covariance of the unknowns, and expected errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct UncertaintyEntry {
-    /// By how much the covariance is larger than independent residuals would make it.
+    /// Factor of the covariance over that of independent residuals.
     pub inflation: f64,
-    /// The same outside the sampled range; as inside if absent.
+    /// The same outside the sampled range; absent if no larger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolation: Option<f64>,
     /// Model error: standard deviation of each position component, millimetres.
@@ -149,33 +149,32 @@ pub struct UncertaintyEntry {
     /// The same of rotations.
     #[serde(default)]
     pub freedom_rotation: Option<f64>,
-    /// Correlation of residuals that follow each other in the order of the rows; null where it is chance.
+    /// Correlation of residuals of consecutive rows; null if not significant.
     #[serde(default)]
     pub lag_one_correlation: Option<f64>,
-    /// In the configurations that were measured.
+    /// In the measured configurations.
     pub measured: ExpectedEntry,
-    /// In configurations anywhere within the limits.
+    /// Anywhere within the limits.
     pub range: ExpectedEntry,
-    /// How the errors of held-out rows compare with their predicted uncertainty; null if none were held out.
+    /// Errors of held-out rows compared with their predicted uncertainty; null without such rows.
     #[serde(default)]
     pub held_out: Option<HeldOutEntry>,
-    /// The spread of predictions where it was measured, by resampling rows; null if they are too few.
+    /// Bootstrap at measured configurations; null with too few rows.
     #[serde(default)]
     pub bootstrap: Option<BootstrapEntry>,
     /// By parts of each joint's range.
     pub parts: Vec<RangeEntry>,
     /// Metres that a radian counts in the covariance.
     pub length_m: f64,
-    /// The frames `base_from_axis` at zero, z along the joint, in which the unknowns of each joint stand: shifts along x and y and turns about
-    /// x and y of a revolute one, turns about x and y of a prismatic one.
+    /// Frames `base_from_axis` at zero, z along the joint, of each joint's unknowns: shifts along x and y and turns about x and y of a
+    /// revolute joint, turns about x and y of a prismatic one.
     pub axes: Vec<PoseEntry>,
-    /// The targets whose unknowns follow, with `true` for frames: shifts along their axes, and for frames turns about them. The name of the
-    /// tip is empty.
+    /// Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. The tip has an empty name.
     pub targets: Vec<(String, bool)>,
-    /// The unknowns' covariance, square metres, turns multiplied by `length_m`: the upper triangle by rows, in the order of the fit, those
-    /// that only shift a target first.
+    /// Covariance of the unknowns, square metres, turns multiplied by `length_m`: the upper triangle by rows, in the order of the fit with
+    /// pure translations first.
     pub covariance_m2: Vec<f64>,
-    /// The same outside the sampled range; as inside if absent.
+    /// The same outside the sampled range; absent if no larger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub covariance_outside_m2: Option<Vec<f64>>,
 }
@@ -244,7 +243,7 @@ impl UncertaintyEntry {
         let trust = &calibration.trust;
         let found = trust.uncertainty.as_ref()?;
         let n = found.layout.dim();
-        // Predictions are said in the base frame: frames of further places of the device are none of their unknowns.
+        // Predictions are in the base frame, so that frames of further stations do not matter.
         let mut kept: Vec<usize> = found
             .layout
             .parameters()
@@ -298,10 +297,10 @@ impl UncertaintyEntry {
 }
 
 impl CalibrationFile {
-    /// The uncertainty of predictions with the index in it of each of some targets; `None` is the tip.
+    /// Uncertainty of predictions, and the index in it of each of some targets; `None` is the tip.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if the calibration holds none, or has been changed into none.
+    /// [`ErrorKind::Model`] if the calibration holds no valid uncertainty.
     pub fn uncertainty(&self, targets: &[Option<&str>]) -> Result<(Uncertainty, Vec<usize>)> {
         let bad = |what: &str| {
             let message = format!(
@@ -337,7 +336,7 @@ impl CalibrationFile {
         let mut index = |wanted: &Option<&str>| {
             let wanted = wanted.unwrap_or_default();
             entry.targets.iter().position(|(name, _)| name == wanted).unwrap_or_else(|| {
-                // A point fixed to the last link that was not measured itself: as sure as the link.
+                // A point on the last link that was not measured itself is as certain as the link.
                 let pose = place(wanted).unwrap_or_else(Pose::identity);
                 estimate.base_from_target.push(robot.home * pose);
                 estimate.base_from_target.len() - 1

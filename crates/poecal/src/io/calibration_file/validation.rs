@@ -1,23 +1,25 @@
-//! A calibration judged by measurements that it did not see.
+//! A calibration file judged by other measurements.
 
 use super::CalibrationFile;
-use crate::calibration::{Judgement, Kept, KeptPart, Promise, Refitted, Subject, judge};
+use crate::calibration::{
+    CoverageCheck, Judgement, PartCoverage, PredictedUncertainty, Refitted, Subject, judge,
+};
 use crate::error::Result;
 use crate::measurement::Dataset;
 
-/// A device frame that fits leaves errors of the calibration's own size; beyond this many times it, the device was moved.
+/// Ratio to the calibration's own error above which a device frame that is not refitted must have moved.
 const MOVED_DEVICE: f64 = 20.0;
-/// Share of errors inside their 95 % bound below which the promise is broken.
+/// Share of errors inside their 95 % bound below which the bounds do not hold.
 const BROKEN: f64 = 0.75;
-/// What a calibration of exact data leaves is rounding, below a nanometre.
+/// Errors of exact data below this are rounding: a nanometre.
 const ROUNDING_MM: f64 = 1e-6;
 
 impl CalibrationFile {
-    /// Judges the calibration by measurements, of which every row counts, with the device's frame and the targets found anew as asked.
+    /// Judges the calibration by all rows of some measurements, with device frame and targets refitted as asked.
     ///
     /// # Errors
-    /// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the measurements are of other targets or instruments, or too few for what is found anew;
-    /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file has been changed into no calibration.
+    /// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the measurements are of other targets or instruments, or too few for the refit;
+    /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file holds no valid calibration.
     pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
         let (calibrated, nominal) = (self.robot()?, self.nominal_robot()?);
         if !refit_tool {
@@ -28,11 +30,11 @@ impl CalibrationFile {
         let (first, further) =
             devices.split_first().map_or((usual, &[][..]), |(first, further)| (*first, further));
         let noise = self.noise()?;
-        // A calibration without uncertainty promises nothing; of targets that are found anew, none is the calibration's.
+        // Refitted targets are not those of the calibration.
         let known = data.targets.iter().map(Option::as_deref).filter(|_| !refit_tool);
         let names: Vec<Option<&str>> = known.collect();
         let found = if self.uncertainty.is_some() { Some(self.uncertainty(&names)?) } else { None };
-        let promise = found.as_ref().map(|(uncertainty, targets)| Promise {
+        let predicted = found.as_ref().map(|(uncertainty, targets)| PredictedUncertainty {
             uncertainty,
             targets,
             coverage: &self.coverage,
@@ -46,19 +48,19 @@ impl CalibrationFile {
             noise,
             refit_frame,
             refit_tool,
-            promise,
+            uncertainty: predicted,
         };
         judge(&subject, data)
     }
 
-    /// What of a judgement the calibration does not explain, in a sentence.
+    /// Contradiction between a judgement and the calibration, as a sentence.
     #[must_use]
     pub fn doubt(&self, judgement: &Judgement) -> Option<String> {
         let own_mm = self.own_position_rms_mm().max(ROUNDING_MM);
         let rms_mm = judgement.calibrated.position_mm.rms;
-        let kept = judgement.promised.filter(|_| rms_mm > ROUNDING_MM);
-        // Where most errors are as promised, single rows are wrong, and not the device.
-        let mostly = kept.is_some_and(|it| it.position_mm.inside_bound95 > 0.5);
+        let check = judgement.promised.filter(|_| rms_mm > ROUNDING_MM);
+        // Where most errors are inside their bounds, single rows are wrong, not the device.
+        let mostly = check.is_some_and(|it| it.position_mm.inside_bound95 > 0.5);
         let is_far = rms_mm > MOVED_DEVICE * own_mm;
         if mostly && is_far {
             return Some(format!(
@@ -67,12 +69,12 @@ impl CalibrationFile {
             ));
         }
         let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
-        let broken = kept.filter(|it| it.least_inside() < BROKEN);
-        let Some(kept) = broken else {
+        let broken = check.filter(|it| it.least_inside() < BROKEN);
+        let Some(check) = broken else {
             let times = rms_mm / own_mm;
-            return (kept.is_none() && is_far && !refit_frame).then(|| moved_words(times, rms_mm, own_mm));
+            return (check.is_none() && is_far && !refit_frame).then(|| moved_words(times, rms_mm, own_mm));
         };
-        let exceeding = exceeding(&kept);
+        let exceeding = exceeding(&check);
         let Some(some) = &judgement.in_sampled_range else {
             let moved = if refit_frame { "" } else { ", and whether the measuring device was moved" };
             return Some(format!(
@@ -90,7 +92,7 @@ impl CalibrationFile {
         if !refit_frame && is_far {
             return Some(moved_words(rms_mm / own_mm, rms_mm, own_mm));
         }
-        let place = if kept.inside_sampled_range < 1.0 { " inside the sampled range" } else { "" };
+        let place = if check.inside_sampled_range < 1.0 { " inside the sampled range" } else { "" };
         Some(format!(
             "{}{place} exceed their 95 % bound: the robot, its tool or the measuring device is not as it was calibrated, or orientations \
              are written in another form",
@@ -99,11 +101,11 @@ impl CalibrationFile {
     }
 }
 
-/// How many errors are beyond their bounds.
-fn exceeding(kept: &Kept) -> String {
-    let share = |part: KeptPart| 100.0 * (1.0 - part.inside_bound95);
-    let rotation = kept.rotation_deg.map(|part| format!(" and {:.0} % of the rotation errors", share(part)));
-    format!("{:.0} % of the position errors{}", share(kept.position_mm), rotation.unwrap_or_default())
+/// Shares of errors beyond their bounds.
+fn exceeding(check: &CoverageCheck) -> String {
+    let share = |part: PartCoverage| 100.0 * (1.0 - part.inside_bound95);
+    let rotation = check.rotation_deg.map(|part| format!(" and {:.0} % of the rotation errors", share(part)));
+    format!("{:.0} % of the position errors{}", share(check.position_mm), rotation.unwrap_or_default())
 }
 
 fn moved_words(times: f64, rms_mm: f64, own_mm: f64) -> String {

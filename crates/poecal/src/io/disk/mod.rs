@@ -1,7 +1,7 @@
-//! Operations on files: one small trait behind which all of them stand, so that whole commands can run on a disk that fails.
+//! File operations behind one small trait, so that whole commands can run on a simulated disk.
 //!
-//! [`SystemDisk`] is the machine's. Another takes its place for the work of one thread by [`on`]; `tests/it/simulated_disk` has one
-//! that writes short, runs full and loses what was not synced.
+//! [`SystemDisk`] is the machine's. [`on`] replaces it for the work of one thread; `tests/it/simulated_disk` has one with short writes, no
+//! space, and loss of unsynced data.
 
 mod system;
 
@@ -14,9 +14,9 @@ use std::sync::Arc;
 
 pub use system::SystemDisk;
 
-/// What a path leads to.
+/// Kind of a path's object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FoundKind {
+pub enum ObjectKind {
     /// A regular file.
     File,
     /// A folder.
@@ -27,37 +27,37 @@ pub enum FoundKind {
     Other,
 }
 
-/// What is found at a path.
+/// Object at a path.
 ///
 /// ```
-/// use poecal::io::disk::{Disk as _, FoundKind, SystemDisk};
+/// use poecal::io::disk::{Disk as _, ObjectKind, SystemDisk};
 /// let found = SystemDisk.look(std::env::temp_dir().as_path())?;
-/// assert_ne!(found.kind, FoundKind::File);
+/// assert_ne!(found.kind, ObjectKind::File);
 /// # Ok::<(), std::io::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Found {
+pub struct Object {
     /// What it is.
-    pub kind: FoundKind,
-    /// Device and number of the file, the same for every path that leads to it; none where the system has no such numbers.
+    pub kind: ObjectKind,
+    /// Device and file number, the same for every path to the file; `None` if the system has none.
     pub identity: Option<(u64, u64)>,
-    /// Whether it belongs to the user who runs the program; where files have no owners, it does.
+    /// Whether it belongs to the user of this process; true where files have no owners.
     pub is_mine: bool,
 }
 
 /// Holds a lock until it is dropped.
 pub type Lock = Box<dyn Any + Send>;
 
-/// A file that is being written.
+/// A file being written.
 pub trait Output: Write + Send {
     /// Waits until what was written is on the disk.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the system.
     fn sync(&mut self) -> io::Result<()>;
 }
 
-/// Operations on files. Each is one step: it happens or it does not.
+/// Atomic operations on files.
 ///
 /// ```
 /// use poecal::io::disk::{Disk as _, SystemDisk};
@@ -77,43 +77,43 @@ pub trait Output: Write + Send {
 /// Each gives the system's error.
 #[expect(clippy::missing_errors_doc, reason = "said once, above")]
 pub trait Disk: Send + Sync {
-    /// What is at a path, a link itself included.
-    fn look(&self, path: &Path) -> io::Result<Found>;
-    /// What a path leads to, links followed.
-    fn follow(&self, path: &Path) -> io::Result<Found>;
-    /// The one path, without links, of what a path leads to.
+    /// The object at a path; a link itself.
+    fn look(&self, path: &Path) -> io::Result<Object>;
+    /// The object that a path leads to.
+    fn follow(&self, path: &Path) -> io::Result<Object>;
+    /// Path without links.
     fn actual(&self, path: &Path) -> io::Result<PathBuf>;
     /// Names in a folder, sorted.
     fn names(&self, folder: &Path) -> io::Result<Vec<OsString>>;
-    /// Opens what is there for reading.
+    /// Opens a file for reading.
     fn open(&self, path: &Path) -> io::Result<Box<dyn Read + Send>>;
-    /// Standard input, once: [`io::ErrorKind::ResourceBusy`] afterwards.
+    /// Standard input, once: then [`io::ErrorKind::ResourceBusy`].
     fn standard_input(&self) -> io::Result<Box<dyn Read + Send>>;
-    /// Creates a file where nothing is.
+    /// Creates a new file.
     fn create(&self, path: &Path) -> io::Result<Box<dyn Output>>;
-    /// Opens what is no regular file (a device, a pipe) for writing.
+    /// Opens a device or pipe for writing.
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Output>>;
-    /// Creates a folder where nothing is.
+    /// Creates a new folder.
     fn create_folder(&self, path: &Path) -> io::Result<()>;
     /// Removes a file or a link.
     fn remove_file(&self, path: &Path) -> io::Result<()>;
     /// Removes an empty folder.
     fn remove_folder(&self, path: &Path) -> io::Result<()>;
-    /// Moves a file, over one that is there.
+    /// Moves a file, replacing another one.
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
-    /// Moves a file or folder to where nothing is.
+    /// Moves a file or folder without replacing another one.
     fn rename_new(&self, from: &Path, to: &Path) -> io::Result<()>;
-    /// Exchanges two folders in one step; [`io::ErrorKind::Unsupported`] where the system cannot.
+    /// Exchanges two folders atomically; [`io::ErrorKind::Unsupported`] where the system cannot.
     fn exchange(&self, one: &Path, other: &Path) -> io::Result<()>;
-    /// Gives a file a second name.
+    /// Gives a file a second name (hard link).
     fn link(&self, from: &Path, to: &Path) -> io::Result<()>;
-    /// Gives a folder the owner and permissions of another one; [`io::ErrorKind::Unsupported`] if they cannot be the same.
+    /// Copies owner and permissions of a folder to another one; [`io::ErrorKind::Unsupported`] if that is impossible.
     fn copy_access(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// Waits until a folder's names are on the disk.
     fn sync_folder(&self, path: &Path) -> io::Result<()>;
-    /// Locks a file, created if need be; none if somebody else holds it. [`io::ErrorKind::Unsupported`] where there are no locks.
+    /// Locks a file, creating it if necessary; `None` if another process holds it. [`io::ErrorKind::Unsupported`] without locks.
     fn lock(&self, path: &Path) -> io::Result<Option<Lock>>;
-    /// Locks a folder, and waits some seconds for whoever holds it; where there are no locks, without one.
+    /// Locks a folder, waiting some seconds for another holder; without a lock where there are none.
     fn lock_folder(&self, path: &Path) -> io::Result<Lock>;
 }
 
@@ -121,13 +121,13 @@ thread_local! {
     static HERE: RefCell<Arc<dyn Disk>> = RefCell::new(Arc::new(SystemDisk));
 }
 
-/// The disk of this thread's work.
+/// Disk of this thread.
 #[must_use]
 pub fn here() -> Arc<dyn Disk> {
     HERE.with_borrow(Arc::clone)
 }
 
-/// Does some work, as far as this thread does it, on another disk than the machine's.
+/// Runs some work on another disk, as far as this thread does it.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -135,7 +135,7 @@ pub fn here() -> Arc<dyn Disk> {
 /// assert_eq!(on(Arc::new(SystemDisk), || 1 + 1), 2);
 /// ```
 pub fn on<T>(disk: Arc<dyn Disk>, work: impl FnOnce() -> T) -> T {
-    /// Puts the disk before back, also when the work panics.
+    /// Restores the disk before, also after a panic.
     struct Back(Option<Arc<dyn Disk>>);
     impl Drop for Back {
         fn drop(&mut self) {

@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
-use super::{Disk, Found, FoundKind, Lock, Output};
+use super::{Disk, Lock, Object, ObjectKind, Output};
 
-/// The disk as the system has it.
+/// The machine's disk.
 ///
 /// ```
 /// use poecal::io::disk::{Disk as _, SystemDisk};
@@ -44,14 +44,14 @@ impl<W: io::Write + Send> Output for Standard<W> {
     }
 }
 
-fn found(metadata: &Metadata) -> Found {
+fn found(metadata: &Metadata) -> Object {
     let kind = match metadata.file_type() {
-        kind if kind.is_file() => FoundKind::File,
-        kind if kind.is_dir() => FoundKind::Folder,
-        kind if kind.is_symlink() => FoundKind::Link,
-        _ => FoundKind::Other,
+        kind if kind.is_file() => ObjectKind::File,
+        kind if kind.is_dir() => ObjectKind::Folder,
+        kind if kind.is_symlink() => ObjectKind::Link,
+        _ => ObjectKind::Other,
     };
-    Found { kind, identity: identity(metadata), is_mine: is_mine(metadata) }
+    Object { kind, identity: identity(metadata), is_mine: is_mine(metadata) }
 }
 
 #[cfg(unix)]
@@ -76,13 +76,13 @@ fn identity(_: &Metadata) -> Option<(u64, u64)> {
     None
 }
 
-/// How long a folder's lock is waited for, and how often it is asked for. Whoever works with it is done in less.
+/// Time to wait for a folder's lock, and between attempts. Other runs hold it for less.
 #[cfg(unix)]
 const PATIENCE: Duration = Duration::from_secs(20);
 #[cfg(unix)]
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Whether the file system does not know what was asked of it.
+/// Whether the file system does not support the operation.
 fn is_unknown(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported)
 }
@@ -96,7 +96,7 @@ fn has_no_locks(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::Unsupported
 }
 
-/// Extended attributes with their values: access lists and labels.
+/// Extended attributes with their values, such as access lists and labels.
 #[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
 fn attributes(path: &Path) -> io::Result<Vec<(Vec<u8>, Vec<u8>)>> {
     use std::ffi::OsStr;
@@ -120,8 +120,7 @@ fn attributes(path: &Path) -> io::Result<Vec<(Vec<u8>, Vec<u8>)>> {
     Ok(valued)
 }
 
-/// What a rename that must not replace comes to where the system has no such call: a second name, or a folder, which replaces no
-/// other that holds anything.
+/// Rename without replacement where the system has no such call: a hard link, or a folder rename, which replaces only an empty folder.
 fn rename_new_in_steps(from: &Path, to: &Path) -> io::Result<()> {
     if fs::symlink_metadata(from)?.is_dir() {
         return fs::rename(from, to);
@@ -167,11 +166,11 @@ mod renames {
 }
 
 impl Disk for SystemDisk {
-    fn look(&self, path: &Path) -> io::Result<Found> {
+    fn look(&self, path: &Path) -> io::Result<Object> {
         fs::symlink_metadata(path).map(|metadata| found(&metadata))
     }
 
-    fn follow(&self, path: &Path) -> io::Result<Found> {
+    fn follow(&self, path: &Path) -> io::Result<Object> {
         fs::metadata(path).map(|metadata| found(&metadata))
     }
 
@@ -204,7 +203,7 @@ impl Disk for SystemDisk {
     }
 
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Output>> {
-        // Opened anew, a file that standard output goes into would be written from its beginning.
+        // Reopening a file that standard output goes to would overwrite it from its beginning.
         if ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name)) {
             return Ok(Box::new(Standard(io::stdout())));
         }

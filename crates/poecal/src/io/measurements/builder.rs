@@ -1,9 +1,9 @@
-//! Finding the columns that a layout needs.
+//! Finds the columns of a layout in a header.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::header::{Header, unit_in_name};
-use super::inputs::{Input, Source, Term};
+use super::inputs::{Input, InputSource, Term};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
 use super::units::{Quantity, Unit, UnitSource};
@@ -14,7 +14,7 @@ use crate::robot::{JointKind, Robot};
 const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
 
-/// Names that have a meaning in every file, beside the joints'.
+/// Names with a meaning in every file, beside those of joints.
 const OUR_NAMES: [&str; 19] = [
     "x",
     "y",
@@ -37,10 +37,10 @@ const OUR_NAMES: [&str; 19] = [
     "set",
 ];
 
-/// What to do about a column of ours that is not found.
+/// Advice where a column of ours is missing.
 const MISSING: &str = ": rename or add a column, or name the right one in a mapping file (--columns)";
 
-/// One target of each row; numbers are indices into [`Builder::inputs`].
+/// One target of a row; numbers are indices into [`Builder::inputs`].
 #[derive(Clone, Debug)]
 pub(super) struct TargetLayout {
     pub(super) name: Option<String>,
@@ -50,7 +50,7 @@ pub(super) struct TargetLayout {
     pub(super) sigma_rotation: Option<usize>,
 }
 
-/// Finds one thing after the other in a header and keeps account of the columns used.
+/// Finds columns in a header, and records which are used.
 pub(super) struct Builder<'a> {
     header: &'a Header<'a>,
     map: &'a ColumnMap,
@@ -60,7 +60,7 @@ pub(super) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// Finds the joints' columns.
+    /// Finds the columns of the joints.
     pub(super) fn new(header: &'a Header<'a>, robot: &Robot, map: &'a ColumnMap) -> Result<Self> {
         let names = robot.reading_names();
         let readings: BTreeSet<String> = names.iter().cloned().collect();
@@ -79,7 +79,7 @@ impl<'a> Builder<'a> {
         Ok(builder)
     }
 
-    /// Adds a number that has a column or a value.
+    /// Adds a number from a column or a constant.
     fn spec_input(
         &mut self,
         name: &str,
@@ -107,13 +107,13 @@ impl<'a> Builder<'a> {
                 format!("found the value {value:?} {purpose}, expected at most {LARGEST_NUMBER:e} {si}");
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
         }
-        let source = Source::Constant(unit.to_si(value));
+        let source = InputSource::Constant(unit.to_si(value));
         let (name, label) = (name.to_owned(), name.to_owned());
         self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
         Ok(self.inputs.len() - 1)
     }
 
-    /// Adds a number that has a column.
+    /// Adds a number from a column.
     fn column_input(
         &mut self,
         name: &str,
@@ -130,18 +130,18 @@ impl<'a> Builder<'a> {
         let default = self.map.units.of(quantity).map(|unit| (unit, UnitSource::Mapping));
         let (unit, unit_from) = match (stated.or(default), self.header.units_line) {
             (Some(known), _) => known,
-            // Where units are stated below the header, an empty cell may be one that was forgotten or merged.
+            // With a line of units, an empty cell in it may have been forgotten or merged.
             (None, Some(line)) if quantity != Quantity::Number => {
                 return Err(self.header.no_unit(index, line, quantity, purpose));
             }
             (None, _) => (quantity.si_unit(), UnitSource::Si),
         };
-        let (name, label, source) = (name.to_owned(), column.to_owned(), Source::Column(index));
+        let (name, label, source) = (name.to_owned(), column.to_owned(), InputSource::Column(index));
         self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
         Ok(self.inputs.len() - 1)
     }
 
-    /// Adds a number that is a sum of columns.
+    /// Adds a sum of columns.
     fn sum_input(
         &mut self,
         name: &str,
@@ -166,16 +166,16 @@ impl<'a> Builder<'a> {
         }
         let parts = self.inputs.split_off(at);
         for (part, &factor) in parts.iter().zip(spec.columns.values()) {
-            if let Source::Column(column) = part.source {
+            if let InputSource::Column(column) = part.source {
                 sum.push(Term { column, unit: part.unit, factor });
             }
         }
-        // The first of them stands for all where one unit and one place are told.
+        // If unit and place are unique, the first column represents all.
         self.inputs.extend(parts.into_iter().next().map(|first| Input { label, sum, ..first }));
         Ok(at)
     }
 
-    /// Index of a column that must be there.
+    /// Index of a required column.
     pub(super) fn text_column(&mut self, name: &str, purpose: &str) -> Result<usize> {
         let is_known =
             |found: &str| found != name && (self.readings.contains(found) || OUR_NAMES.contains(&found));
@@ -189,7 +189,7 @@ impl<'a> Builder<'a> {
         Ok(index)
     }
 
-    /// Says of a name's second column that the model's own joint takes the name of a column with a meaning, if that is why.
+    /// Explains a duplicate column by a joint of the model with the name of a column with a meaning.
     fn explained(&self, name: &str, error: Error) -> Error {
         let is_clash =
             self.header.count(name) > 1 && self.readings.contains(name) && OUR_NAMES.contains(&name);
@@ -203,7 +203,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Index of a column that may be there and is not used for something else.
+    /// Index of an optional column that is not used otherwise.
     pub(super) fn optional_text_column(&mut self, name: &str) -> Result<Option<usize>> {
         let index = self.header.find(name)?.filter(|&index| !self.is_used(index));
         if let Some(index) = index {
@@ -229,7 +229,7 @@ impl<'a> Builder<'a> {
         self.used.get(index).copied().unwrap_or(false)
     }
 
-    /// The target of a layout with one target a row.
+    /// The target of a layout with one target per row.
     pub(super) fn single_target(&mut self) -> Result<TargetLayout> {
         let map = self.map;
         let position = self.position("", map.position.as_ref().unwrap_or(&PositionSpec::default()))?;
@@ -250,7 +250,7 @@ impl<'a> Builder<'a> {
         })
     }
 
-    /// One target of a layout with several targets a row.
+    /// One target of a layout with several targets per row.
     pub(super) fn named_target(&mut self, target: &TargetSpec) -> Result<TargetLayout> {
         let prefix = format!("{} ", target.name);
         let position = self.position(&prefix, &target.position)?;
@@ -295,7 +295,7 @@ impl<'a> Builder<'a> {
         Ok((spec.form, indices))
     }
 
-    /// The orientation columns of our own names, of which all of one form must be there or none.
+    /// The orientation columns with our own names: all of one form, or none.
     fn default_orientation(&mut self) -> Result<Option<(OrientationForm, Vec<usize>)>> {
         let mut chosen: Option<(OrientationForm, &str)> = None;
         for form in DEFAULT_FORMS {
@@ -338,12 +338,12 @@ impl<'a> Builder<'a> {
         self.spec_input(name, spec, quantity, &format!("for `{name}`")).map(Some)
     }
 
-    /// Refuses a column that is two things at once. (One sigma may serve several targets, and one column several sums.)
+    /// Refuses a column with two meanings. (One sigma may serve several targets, and one column several sums.)
     pub(super) fn check_distinct(&self) -> Result<()> {
         let distinct = |input: &Input| !input.name.contains("sigma_") && input.sum.is_empty();
         let mut first: BTreeMap<usize, &Input> = BTreeMap::new();
         for input in self.inputs.iter().filter(|input| distinct(input)) {
-            let Source::Column(index) = input.source else { continue };
+            let InputSource::Column(index) = input.source else { continue };
             if let Some(other) = first.insert(index, input) {
                 let message = if other.name == input.name {
                     format!("found one column `{0}`, {1}", input.name, clash(&input.name))
@@ -371,7 +371,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The name of ours, of those that are missing, that a column without meaning is a slip of the pen, or brackets, away from.
+/// A missing name of ours that an unused column resembles, but for a typing error or brackets.
 fn meant(name: &str, missing: &[&'static str]) -> Option<String> {
     let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
     let with_unit = |ours: &str| Some(format!("{ours}[{}]", unit_in_name(name, ours)?.symbol()));
@@ -381,7 +381,7 @@ fn meant(name: &str, missing: &[&'static str]) -> Option<String> {
     })
 }
 
-/// What is wrong, and what to do, when a joint has the name of a column with a meaning.
+/// Error and advice where a joint has the name of a column with a meaning.
 fn clash(name: &str) -> String {
     format!(
         "expected different names for the model's joint `{name}` and the measured `{name}`: call the joint's column \
@@ -389,7 +389,7 @@ fn clash(name: &str) -> String {
     )
 }
 
-/// What a reading measures: as the joint of its name, else as a joint that follows it.
+/// Quantity of a reading: that of the joint of its name, else of a joint that follows it.
 fn reading_quantity(robot: &Robot, reading: &str) -> Quantity {
     let users = || robot.joints.iter().filter(|joint| joint.reading.name == reading);
     match users().find(|joint| joint.name == reading).or_else(|| users().next()).map(|joint| joint.kind) {

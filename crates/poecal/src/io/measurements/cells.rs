@@ -1,4 +1,4 @@
-//! A line's cells.
+//! Cells of a line.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::csv_text::plain;
 
-/// What stands between two cells.
+/// Separator of cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Separator {
@@ -32,7 +32,7 @@ impl Separator {
         }
     }
 
-    /// The separator of this character.
+    /// The separator with this character.
     pub(super) fn of(c: char) -> Option<Self> {
         match c {
             ',' => Some(Separator::Comma),
@@ -43,7 +43,7 @@ impl Separator {
         }
     }
 
-    /// What messages call it.
+    /// Name in messages.
     pub(super) fn symbol(self) -> &'static str {
         match self {
             Separator::Comma => "`,`",
@@ -53,7 +53,7 @@ impl Separator {
         }
     }
 
-    /// As a byte, unless it is any run of blanks.
+    /// Its byte, unless it is any run of blanks.
     fn byte(self) -> Option<u8> {
         match self {
             Separator::Comma => Some(b','),
@@ -79,18 +79,18 @@ impl Separator {
     }
 }
 
-/// One cell: its text without padding and quotes, and where it starts in the line (bytes).
+/// One cell: its text without padding and quotes, and its byte offset in the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::io) struct Cell<'a> {
-    /// Text, in which a quote may still be doubled.
+    /// Text; doubled quotes are still doubled.
     pub(in crate::io) raw: &'a str,
-    /// Byte offset of its first character, the quote if it has one.
+    /// Byte offset of its first character or quote.
     pub(in crate::io) offset: usize,
     escaped: bool,
 }
 
 impl<'a> Cell<'a> {
-    /// The text as meant: without doubled quotes, and without the apostrophe that files of ours have before what would be run.
+    /// The text without doubled quotes, and without the apostrophe that our own files put before texts that a spreadsheet would run.
     pub(in crate::io) fn text(&self) -> Cow<'a, str> {
         let text = plain(self.raw);
         if self.escaped { Cow::Owned(text.replace("\"\"", "\"")) } else { Cow::Borrowed(text) }
@@ -104,7 +104,7 @@ pub(super) fn character_column(line: &str, offset: usize) -> usize {
 
 /// Splits a line into cells.
 ///
-/// On failure returns the byte offset and what was found and expected.
+/// On failure returns the byte offset, what was found and what was expected.
 pub(in crate::io) fn split<'a>(
     line: &'a str,
     separator: Separator,
@@ -160,7 +160,7 @@ fn split_plainly<'a>(line: &'a str, separator: u8, cells: &mut Vec<Cell<'a>>) {
     let mut start = 0;
     for end in memchr::memchr_iter(separator, line.as_bytes()).chain([line.len()]) {
         let piece = line.get(start..end).unwrap_or_default();
-        // What surely has no padding.
+        // Fast path: surely without padding.
         if let [first, .., last] | [first @ last] = piece.as_bytes()
             && first.is_ascii_graphic()
             && last.is_ascii_graphic()
@@ -178,7 +178,7 @@ fn split_plainly<'a>(line: &'a str, separator: u8, cells: &mut Vec<Cell<'a>>) {
     }
 }
 
-/// Byte index of the quote that ends a quoted cell; a doubled quote is part of the text.
+/// Byte index of the closing quote of a quoted cell; a doubled quote is text.
 fn closing_quote(text: &str) -> Option<usize> {
     let mut from = 0;
     loop {
@@ -190,7 +190,7 @@ fn closing_quote(text: &str) -> Option<usize> {
     }
 }
 
-/// [`split`], and the error of a line that cannot be.
+/// [`split`], with its failure as an error.
 pub(super) fn split_line<'a>(
     path: &Path,
     line: usize,

@@ -1,10 +1,10 @@
-//! Which rows are fitted, by the value of a column.
+//! Training rows selected by the value of a column.
 
 use std::str::FromStr;
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// Rows whose cell in `column` equals one of `values` are fitted, all others held out. Cells compare as text or as numbers.
+/// Rows with one of `values` in `column` are fitted, all others held out. Cells compare as text or as numbers.
 ///
 /// ```
 /// use poecal::io::measurements::FitWhere;
@@ -14,14 +14,14 @@ use crate::error::{Error, ErrorKind, Result};
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FitWhere {
-    /// The column's name, as in the header, with or without its unit.
+    /// Name of the column, with or without its unit.
     pub column: String,
     /// Values that mark a row to fit.
     pub values: Vec<String>,
 }
 
 impl FitWhere {
-    /// Index of the value that a cell equals.
+    /// Index of the value that equals a cell.
     pub(super) fn matching(&self, cell: &str) -> Option<usize> {
         self.values.iter().position(|value| value == cell).or_else(|| {
             let number = number(cell)?;

@@ -1,4 +1,4 @@
-//! The line that names the columns, and the line of units that may stand below it.
+//! Header: the line of column names, and the line of units that may follow it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,27 +10,27 @@ use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 /// A column of the header: `name[unit]` or `name (unit)`.
 #[derive(Clone, Debug)]
 pub(super) struct HeaderCell {
-    /// As it stands in the file.
+    /// As in the file.
     pub(super) text: String,
     /// Without the unit.
     pub(super) name: String,
-    /// What the brackets hold.
+    /// Text in brackets.
     pub(super) unit: Option<String>,
-    /// What stands below, in the line of units: column in that line, and unit.
+    /// Unit in the line of units, with its column there.
     below: Option<(usize, String)>,
     column: usize,
 }
 
-/// The line that names the columns.
+/// The line of column names.
 pub(super) struct Header<'a> {
     pub(super) path: &'a Path,
     pub(super) line: usize,
     pub(super) cells: Vec<HeaderCell>,
-    /// The first and the second column of each name, with and without its unit.
+    /// First and second column of each name, with and without its unit.
     named: BTreeMap<String, (usize, Option<usize>)>,
     /// The line of units, if there is one.
     pub(super) units_line: Option<usize>,
-    /// The first few lines below, for a header that is none.
+    /// The first lines below, for the message if this is no header.
     below: Vec<(usize, String)>,
 }
 
@@ -51,12 +51,12 @@ impl HeaderCell {
     }
 }
 
-/// A text that ends with brackets: what stands before them and in them.
+/// A text that ends with brackets: the parts before and in them.
 fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
     text.strip_suffix(close)?.rsplit_once(open)
 }
 
-/// The unit that a column states as part of its name, as `x_mm` or `x in mm`.
+/// The unit in a column's name, as `x_mm` or `x in mm`.
 pub(super) fn unit_in_name(text: &str, name: &str) -> Option<Unit> {
     let start = text.get(..name.len()).filter(|start| start.eq_ignore_ascii_case(name))?;
     let rest = text.get(start.len()..).filter(|rest| !rest.starts_with(char::is_alphanumeric))?;
@@ -69,13 +69,13 @@ pub(super) fn unit_in_name(text: &str, name: &str) -> Option<Unit> {
     }
 }
 
-/// Whether the cells below a header are units: one is, and none is a number. (Whether each fits is seen where it is needed.)
+/// Whether the cells below a header are units: one is, and none is a number. (Each is checked when it is needed.)
 pub(super) fn are_units(cells: &[Cell<'_>]) -> bool {
     cells.iter().any(|cell| Unit::parse_any(bare(cell.raw)).is_ok())
         && !cells.iter().any(|cell| is_number(cell.raw))
 }
 
-/// A unit without brackets around it.
+/// A unit without brackets.
 fn bare(text: &str) -> &str {
     let inside = |open, close| text.strip_prefix(open)?.strip_suffix(close);
     inside('[', ']').or_else(|| inside('(', ')')).unwrap_or(text).trim()
@@ -110,7 +110,7 @@ impl<'a> Header<'a> {
         Ok(Header { path, line, cells, named, units_line: None, below: Vec::new() })
     }
 
-    /// Takes the units of a line below.
+    /// Adds the line of units.
     pub(super) fn set_units(&mut self, line: usize, text: &str, cells: &[Cell<'_>]) {
         self.units_line = Some(line);
         for (header, cell) in self.cells.iter_mut().zip(cells) {
@@ -120,17 +120,17 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// Keeps the first few lines below, for what is to be said if this header is none.
+    /// Stores the first lines below, for the message if this is no header.
     pub(super) fn look_below(&mut self, lines: impl Iterator<Item = (usize, String)>) {
         self.below = lines.collect();
     }
 
-    /// The last line that is not a row.
+    /// The last line of the header.
     pub(super) fn last_line(&self) -> usize {
         self.units_line.unwrap_or(self.line)
     }
 
-    /// The unit that the file states for a column, in the header, below it, or both.
+    /// Unit of a column by the header, the line of units, or both.
     pub(super) fn unit(
         &self,
         index: usize,
@@ -162,7 +162,7 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// The error of a column that has no unit in the line of units, nor anywhere else.
+    /// The error for a column without a unit in the line of units or elsewhere.
     pub(super) fn no_unit(&self, index: usize, line: usize, quantity: Quantity, purpose: &str) -> Error {
         let name = self.cells.get(index).map_or("", |cell| cell.text.as_str());
         let si = quantity.si_unit().symbol();
@@ -173,7 +173,7 @@ impl<'a> Header<'a> {
         self.error(ErrorKind::Unit, index, message)
     }
 
-    /// Index of the column of this name, which may include the unit as the file writes it.
+    /// Index of the column of this name, which may include the unit as in the file.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
         match self.named.get(name) {
             Some((_, Some(second))) => {
@@ -186,13 +186,13 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// How many columns have this name.
+    /// Number of columns with this name.
     pub(super) fn count(&self, name: &str) -> usize {
         self.cells.iter().filter(|cell| cell.name == name).count()
     }
 
-    /// As [`Header::find`], but the column must be there; `is_known` tells names that cannot be a misspelling of another column's,
-    /// and `advice` is what to do.
+    /// As [`Header::find`] for a required column; `is_known` recognises names that cannot be misspellings of another column's, and `advice`
+    /// is for the message.
     pub(super) fn require(
         &self,
         name: &str,
@@ -208,7 +208,7 @@ impl<'a> Header<'a> {
         Err(Error::new(ErrorKind::Measurement, message).at_line(self.path, self.line))
     }
 
-    /// What to say if this line is not the header at all.
+    /// Message if this line is no header.
     fn no_header(&self, name: &str) -> Option<String> {
         let has_name = |(_, text): &&(usize, String)| {
             let mut cells = Vec::new();
@@ -237,7 +237,7 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// What other column may be meant.
+    /// Another column that may be meant.
     fn other_names(&self, name: &str, is_known: impl Fn(&str) -> bool) -> String {
         let names = || {
             let named = self.cells.iter().filter(|cell| !cell.name.is_empty());
@@ -264,7 +264,7 @@ impl<'a> Header<'a> {
 }
 
 fn header_cells(text: &str, cells: &[Cell<'_>]) -> Vec<HeaderCell> {
-    // Counted on from cell to cell: there may be very many.
+    // Counted from cell to cell, since there may be very many.
     let (mut column, mut offset) = (1, 0);
     let cell = |cell: &Cell<'_>| {
         column += text.get(offset..cell.offset).map_or(0, |passed| passed.chars().count());

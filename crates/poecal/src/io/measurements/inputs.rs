@@ -6,17 +6,17 @@ use super::units::{Quantity, Unit, UnitSource};
 use crate::error::{Error, Result};
 use crate::io::numbers::LARGEST_NUMBER;
 
-/// A number of each row.
+/// A number in each row.
 #[derive(Clone, Debug)]
 pub(super) struct Input {
-    /// Our name for it.
+    /// Our name.
     pub(super) name: String,
-    /// What messages call it: the file's column, our name for a constant.
+    /// Name in messages: the file's column; of a constant our name.
     pub(super) label: String,
-    pub(super) source: Source,
+    pub(super) source: InputSource,
     pub(super) unit: Unit,
     pub(super) unit_from: UnitSource,
-    /// What is added up, if it is a sum of columns: `source` is then the first of them.
+    /// Columns of a sum; `source` is the first of them.
     pub(super) sum: Vec<Term>,
 }
 
@@ -28,16 +28,16 @@ pub(super) struct Term {
     pub(super) factor: f64,
 }
 
-/// Where a number comes from.
+/// Source of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Source {
+pub(super) enum InputSource {
     /// Index of the file's column.
     Column(usize),
-    /// The same in every row (metres, radians).
+    /// Constant (metres, radians).
     Constant(f64),
 }
 
-/// Smallest and largest of the values seen.
+/// Smallest and largest value so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Range(pub(super) Option<(f64, f64)>);
 
@@ -48,7 +48,7 @@ impl Range {
     }
 }
 
-/// Reads the inputs of row after row into the same buffers.
+/// Reads the inputs of one row after the other into the same buffers.
 pub(super) struct InputReader<'a> {
     pub(super) numbers: Numbers,
     /// Smallest and largest value of each input.
@@ -56,12 +56,12 @@ pub(super) struct InputReader<'a> {
     inputs: &'a [Input],
     values: Vec<Option<f64>>,
     readings: Vec<f64>,
-    /// How many of the inputs, the first ones, are joint readings.
+    /// Number of joint readings, which come first.
     joints: usize,
 }
 
 impl<'a> InputReader<'a> {
-    /// For rows of these inputs, of which so many, the first ones, are joint readings.
+    /// For these inputs, the first `joints` of which are joint readings.
     pub(super) fn new(inputs: &'a [Input], joints: usize, numbers: Numbers) -> Self {
         InputReader {
             numbers,
@@ -73,14 +73,14 @@ impl<'a> InputReader<'a> {
         }
     }
 
-    /// Takes in a row's numbers; an empty cell is no number.
+    /// Reads a row's numbers; an empty cell is `None`.
     pub(super) fn read(&mut self, row: &Row<'_>) -> Result<()> {
         self.values.clear();
         for (index, input) in self.inputs.iter().enumerate() {
             let value = match input.source {
-                Source::Constant(value) => Some(value),
-                Source::Column(_) if !input.sum.is_empty() => sum(&mut self.numbers, row, input)?,
-                Source::Column(column) => match row.cells.get(column).map_or("", |cell| cell.raw) {
+                InputSource::Constant(value) => Some(value),
+                InputSource::Column(_) if !input.sum.is_empty() => sum(&mut self.numbers, row, input)?,
+                InputSource::Column(column) => match row.cells.get(column).map_or("", |cell| cell.raw) {
                     "" => None,
                     text => Some(self.numbers.parse(text, row.line).map_err(|expected| {
                         let hint = hint(text, index < self.joints);
@@ -99,7 +99,7 @@ impl<'a> InputReader<'a> {
         Ok(())
     }
 
-    /// Counts the current row's numbers for the smallest and largest.
+    /// Updates the extreme values by the current row.
     pub(super) fn include_in_ranges(&mut self) {
         for (value, range) in self.values.iter().zip(&mut self.ranges) {
             if let Some(value) = value {
@@ -108,7 +108,7 @@ impl<'a> InputReader<'a> {
         }
     }
 
-    /// Takes numbers of the current row for empty cells.
+    /// Treats numbers of the current row as empty cells.
     pub(super) fn forget(&mut self, inputs: &[usize]) {
         for &input in inputs {
             if let Some(value) = self.values.get_mut(input) {
@@ -117,17 +117,17 @@ impl<'a> InputReader<'a> {
         }
     }
 
-    /// The value of an input in the current row.
+    /// Value of an input in the current row.
     pub(super) fn value(&self, input: usize) -> Option<f64> {
         self.values.get(input).copied().flatten()
     }
 
-    /// The values of inputs in the current row.
+    /// Values of inputs in the current row.
     pub(super) fn all<const N: usize>(&self, inputs: [usize; N]) -> [Option<f64>; N] {
         inputs.map(|input| self.value(input))
     }
 
-    /// Takes the current row's joint readings, which must be there.
+    /// Reads the joint readings of the current row, which are required.
     pub(super) fn take_readings(&mut self, row: &Row<'_>) -> Result<()> {
         self.readings.clear();
         for (input, value) in self.values.iter().take(self.joints).enumerate() {
@@ -146,7 +146,7 @@ impl<'a> InputReader<'a> {
         Ok(())
     }
 
-    /// The joint readings taken last.
+    /// Joint readings of the current row.
     pub(super) fn readings(&self) -> &[f64] {
         &self.readings
     }
@@ -157,16 +157,16 @@ impl<'a> InputReader<'a> {
         row.error(self.column(input), format!("{found} in column `{name}`, expected {expected}"))
     }
 
-    /// The file's column of an input, 0 for a constant.
+    /// The file's column of an input; 0 for a constant.
     pub(super) fn column(&self, input: usize) -> usize {
         match self.inputs.get(input).map(|input| input.source) {
-            Some(Source::Column(column)) => column,
-            Some(Source::Constant(_)) | None => 0,
+            Some(InputSource::Column(column)) => column,
+            Some(InputSource::Constant(_)) | None => 0,
         }
     }
 }
 
-/// The sum of an input's columns; nothing if a cell is empty.
+/// Sum of an input's columns; `None` if a cell is empty.
 fn sum(numbers: &mut Numbers, row: &Row<'_>, input: &Input) -> Result<Option<f64>> {
     let mut sum = 0.0;
     for term in &input.sum {
@@ -183,10 +183,10 @@ fn sum(numbers: &mut Numbers, row: &Row<'_>, input: &Input) -> Result<Option<f64
     Ok(Some(sum))
 }
 
-/// What to do about a word for nothing.
+/// Advice for a word such as `nan`.
 const NOTHING: &str = ": leave the cell empty where nothing was measured";
 
-/// What to do about a cell that is no number.
+/// Advice for a cell that is no number.
 fn hint(text: &str, is_joint: bool) -> &'static str {
     if stands_for_nothing(text) {
         if is_joint { ": leave out a row without a reading" } else { NOTHING }
@@ -197,16 +197,16 @@ fn hint(text: &str, is_joint: bool) -> &'static str {
     }
 }
 
-/// Whether a cell is what programs write where they have no number.
+/// Whether programs write this cell where they have no number.
 fn stands_for_nothing(text: &str) -> bool {
     let words = ["nan", "na", "n/a", "null", "none", "nil", "inf", "+inf", "-inf", "-nan"];
     let is_dashes = text.chars().all(|c| matches!(c, '-' | '–' | '—' | '.' | '*' | '?' | '/'));
     text.starts_with('#') || is_dashes || words.contains(&text.to_lowercase().as_str())
 }
 
-/// Refuses a number that nothing measured can be, which sums of squares would not bear.
+/// Refuses numbers beyond any measurement, whose squares would overflow.
 fn check_size(value: f64, row: &Row<'_>, input: &Input) -> Result<()> {
-    let Source::Column(column) = input.source else { return Ok(()) };
+    let InputSource::Column(column) = input.source else { return Ok(()) };
     if value.abs() <= LARGEST_NUMBER {
         return Ok(());
     }

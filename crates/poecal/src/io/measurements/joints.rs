@@ -1,10 +1,10 @@
-//! Tables of joint readings alone, as predictions need them.
+//! Tables of joint readings alone, for predictions.
 
 use std::path::Path;
 
 use super::ReadOptions;
 use super::inputs::InputReader;
-use super::layout::Layout;
+use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
 use super::number::Numbers;
 use super::scale::JointWatch;
@@ -14,7 +14,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Robot;
 use crate::text::visible;
 
-/// Configurations of a file.
+/// Configurations from a file.
 ///
 /// ```
 /// use poecal::io::measurements::JointsTable;
@@ -24,19 +24,19 @@ use crate::text::visible;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointsTable {
-    /// The rows' readings one after the other, in the order of [`Robot::reading_names`] (radians, metres).
+    /// Readings of all rows, in the order of [`Robot::reading_names`] (radians, metres).
     pub readings: Vec<f64>,
     /// Number of rows.
     pub rows: usize,
     /// The rows' `id`, empty if there is no such column.
     pub ids: Vec<String>,
-    /// The rows' lines in the file, from 1.
+    /// The rows' line numbers, from 1.
     pub lines: Vec<usize>,
-    /// What the user should know, a sentence each.
+    /// Warnings, a sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Reads the joint columns of a file, and `id` if there is one; other columns are left alone.
+/// Reads the joint columns of a file, and `id` if there is one; other columns are ignored.
 ///
 /// # Errors
 /// As [`super::read`], of what concerns joints.
@@ -76,7 +76,7 @@ fn of_blocks<'p>(
     let no_map = ColumnMap::default();
     let map = options.mapping.as_ref().unwrap_or(&no_map);
     let mut table = Table::open(path, blocks, map)?;
-    let layout = Layout::joints(&table.header, robot, map)?;
+    let layout = ColumnLayout::joints(&table.header, robot, map)?;
     let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
     let mut watch = JointWatch::new(robot);
     let mut joints = JointsTable::default();

@@ -1,4 +1,4 @@
-//! Which column of a file is what: the header, the mapping and the robot put together.
+//! Meaning of a file's columns, from header, mapping and robot.
 
 use super::builder::{Builder, TargetLayout};
 use super::header::Header;
@@ -8,7 +8,7 @@ use super::{FitWhere, ReadOptions};
 use crate::error::Result;
 use crate::robot::Robot;
 
-/// How a row's set is known; numbers are columns of the file.
+/// Source of a row's set; numbers are columns of the file.
 #[derive(Clone, Debug)]
 pub(super) enum SetRule {
     Unstated,
@@ -16,24 +16,24 @@ pub(super) enum SetRule {
     Where(usize, FitWhere),
 }
 
-/// Everything that a row holds.
+/// Columns of a row by meaning.
 #[derive(Clone, Debug)]
-pub(super) struct Layout {
-    /// The readings in the robot's order, then the measured numbers.
+pub(super) struct ColumnLayout {
+    /// Readings in the robot's order, then measured numbers.
     pub(super) inputs: Vec<Input>,
     pub(super) targets: Vec<TargetLayout>,
     /// Column with the target's name.
     pub(super) target_column: Option<usize>,
-    /// Column with the name of the device, or of the place that it stood at.
+    /// Column with the name of the instrument or station.
     pub(super) instrument: Option<usize>,
     pub(super) id: Option<usize>,
     pub(super) set: SetRule,
     pub(super) pose: PoseDirection,
-    /// Columns that have no meaning, with a name of ours that they may have meant.
+    /// Columns without meaning, each with a name of ours that may have been meant.
     pub(super) ignored: Vec<(String, Option<String>)>,
 }
 
-impl Layout {
+impl ColumnLayout {
     /// The layout of a measurement file.
     pub(super) fn new(
         header: &Header<'_>,
@@ -66,7 +66,7 @@ impl Layout {
         let words = builder.optional_text_column("set")?;
         let set = match (rule, words) {
             (Some(rule), _) if options.ignore_sets => {
-                // A column that is there and known is not listed as left alone.
+                // A known column is not listed as ignored.
                 builder.optional_text_column(&rule.column)?;
                 SetRule::Unstated
             }
@@ -79,15 +79,15 @@ impl Layout {
         };
         let ignored = builder.ignored();
         let Builder { inputs, .. } = builder;
-        Ok(Layout { inputs, targets, target_column, instrument, id, set, pose: map.pose, ignored })
+        Ok(ColumnLayout { inputs, targets, target_column, instrument, id, set, pose: map.pose, ignored })
     }
 
-    /// The layout of a file of which only the joints are wanted.
+    /// The layout of a file that is read for its joints alone.
     pub(super) fn joints(header: &Header<'_>, robot: &Robot, map: &ColumnMap) -> Result<Self> {
         let mut builder = Builder::new(header, robot, map)?;
         builder.check_distinct()?;
         let id = builder.id_column()?;
-        Ok(Layout {
+        Ok(ColumnLayout {
             inputs: builder.inputs,
             targets: Vec::new(),
             target_column: None,

@@ -1,4 +1,4 @@
-//! Lost beams: measurements that say nothing of where the target was.
+//! Lost beams: measurements without a position.
 
 use std::path::Path;
 
@@ -10,11 +10,10 @@ use super::inputs::InputReader;
 use super::table::Row;
 use crate::error::{Error, Result};
 
-/// Lines that are named.
+/// Most lines in a message.
 const NAMED_LINES: usize = 5;
 
-/// Measurements that were left out because the device did not see the target: their position is empty, or exactly zero in all three
-/// coordinates.
+/// Measurements omitted because the device did not see the target: their position is empty, or exactly zero in all coordinates.
 ///
 /// ```
 /// use poecal::io::measurements::{ReadOptions, parse};
@@ -27,16 +26,16 @@ const NAMED_LINES: usize = 5;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct LostBeams {
-    /// How many there are.
+    /// Their number.
     pub count: usize,
-    /// The lines of the first few.
+    /// Lines of the first ones.
     pub first_lines: Vec<usize>,
 }
 
-/// What a row shows of a target.
+/// State of a target in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Beam {
-    /// Something was measured, or written.
+    /// Measured.
     Seen,
     /// All cells are empty.
     Empty,
@@ -45,7 +44,7 @@ enum Beam {
 }
 
 impl LostBeams {
-    /// Takes lost beams out of a row's numbers; whether nothing is left of the row.
+    /// Removes lost beams from a row's numbers; true if the row has no measurement then.
     ///
     /// # Errors
     /// [`crate::ErrorKind::Measurement`] at a lost beam if it is refused (`strict`).
@@ -61,7 +60,7 @@ impl LostBeams {
         for target in targets {
             match beam(target, inputs) {
                 Beam::Seen => seen = true,
-                // Of several targets in a row some may not be looked at.
+                // With several targets in a row, some may not have been measured.
                 Beam::Empty => {}
                 Beam::Zero if strict => return Err(refused(row, target, inputs, "the position 0, 0, 0")),
                 Beam::Zero => {
@@ -87,7 +86,7 @@ impl LostBeams {
         }
     }
 
-    /// What was left out, in words; none if there is nothing.
+    /// Omitted measurements in words; `None` if there are none.
     #[must_use]
     pub fn words(&self) -> Option<String> {
         let lines: Vec<String> = self.first_lines.iter().map(usize::to_string).collect();
@@ -104,13 +103,13 @@ impl LostBeams {
         ))
     }
 
-    /// The warning of a file.
+    /// Warning for a file.
     pub(super) fn warning(&self, path: &Path) -> Option<String> {
         Some(format!("{}: skipped {}; --strict refuses them", path.display(), self.words()?))
     }
 }
 
-/// What the current row shows of a target.
+/// State of a target in the current row.
 fn beam(target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
     let position = inputs.all(target.position);
     let orientation =

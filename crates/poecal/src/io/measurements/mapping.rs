@@ -1,4 +1,4 @@
-//! The mapping file: how a file with its own column names is to be read.
+//! Mapping files: how files with their own column names are read.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -15,7 +15,7 @@ use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::source_text::{self, position};
 
-/// How a file's columns become ours, read from a TOML file (docs/file-formats.md, "Mapping file").
+/// A mapping of a file's columns to ours, as TOML (docs/file-formats.md, "Mapping file").
 ///
 /// ```
 /// use poecal::io::measurements::ColumnMap;
@@ -49,7 +49,7 @@ pub struct ColumnMap {
     pub(super) targets: Vec<TargetSpec>,
 }
 
-/// Which way the file's poses point.
+/// Direction of the file's poses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum PoseDirection {
@@ -78,17 +78,17 @@ impl UnitDefaults {
     }
 }
 
-/// One column, a sum of columns, or one value for all rows. In TOML a column's name, or a table.
+/// One column, a sum of columns, or a constant. In TOML a column's name, or a table.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ColumnSpec {
     pub(super) column: Option<String>,
-    /// Columns with their factors; none if it is no sum.
+    /// Columns with their factors; empty if it is no sum.
     pub(super) columns: BTreeMap<String, f64>,
     pub(super) value: Option<f64>,
     pub(super) unit: Option<Unit>,
 }
 
-/// Which rows are fitted.
+/// Training rows.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SetSpec {
@@ -122,7 +122,7 @@ struct OrientationFields {
     unit: Option<Unit>,
 }
 
-/// One target of a layout that has several in a row.
+/// One target of a layout with several per row.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TargetSpec {
@@ -143,10 +143,10 @@ impl ColumnMap {
         ColumnMap::parse(&source_text::read(path, "a column mapping (TOML)")?, path)
     }
 
-    /// A mapping from its TOML text; `path` is what messages call it.
+    /// A mapping from its TOML text; messages call it `path`.
     ///
     /// # Errors
-    /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, or has a key or value that is not known.
+    /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, or has an unknown key or value.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let mut map: ColumnMap = toml::from_str(text).map_err(|error| {
@@ -274,7 +274,7 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
     }
 }
 
-/// The columns of a sum, which must be some, with factors that say something.
+/// Columns of a sum: at least one, with finite factors other than zero.
 fn checked_columns<E: serde::de::Error>(
     columns: BTreeMap<String, f64>,
 ) -> std::result::Result<BTreeMap<String, f64>, E> {
@@ -292,7 +292,7 @@ fn checked_columns<E: serde::de::Error>(
     Ok(columns)
 }
 
-/// A string that `parse` understands; its error is the TOML error's message.
+/// A string for `parse`; its error becomes the TOML error's message.
 fn parsed<'de, D: Deserializer<'de>, T>(
     deserializer: D,
     parse: impl Fn(&str) -> Result<T>,

@@ -1,4 +1,4 @@
-//! Measurement files: CSV with one row a configuration and target (docs/file-formats.md, "Measurements").
+//! Measurement files: CSV with one row per configuration and target (docs/file-formats.md, "Measurements").
 //!
 //! Text becomes lines (`text`) and cells (`cells`), a table with places for messages (`table`), columns with a meaning and a unit
 //! (`layout` and `builder`, from header, mapping and robot), numbers in SI (`inputs`), without those of lost beams (`lost`), and at
@@ -46,7 +46,7 @@ use std::collections::BTreeMap;
 
 use crate::measurement::Dataset;
 
-/// How to read measurement files.
+/// Options for reading measurement files.
 ///
 /// ```
 /// use poecal::io::measurements::ReadOptions;
@@ -56,20 +56,20 @@ use crate::measurement::Dataset;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct ReadOptions {
-    /// How the columns of files that are not of our own form become ours; it applies to every file.
+    /// Mapping of columns with other names than ours; applies to every file.
     pub mapping: Option<ColumnMap>,
-    /// Which rows are fitted; goes before the `set` column and the mapping's `set`.
+    /// Training rows; precedes the `set` column and the mapping's `set`.
     pub fit_where: Option<FitWhere>,
-    /// Whether no row belongs to a set: [`ReadOptions::fit_where`], the mapping's `set` and the `set` column are then neither
-    /// applied nor required, as for files of which every row judges a calibration.
+    /// Whether sets are ignored ([`ReadOptions::fit_where`], the mapping's `set`, the `set` column), as for files that only judge a
+    /// calibration.
     pub ignore_sets: bool,
-    /// Whether a lost beam, an empty or zero position, is an error; otherwise it is left out and counted in a warning.
+    /// Whether a lost beam, an empty or zero position, is an error; otherwise it is omitted and counted in a warning.
     pub strict: bool,
-    /// Which rows share a device frame.
+    /// Rows with a common device frame.
     pub frames: Frames,
 }
 
-/// Which rows share one frame of the measuring device.
+/// Rows with a common device frame.
 ///
 /// ```
 /// use poecal::io::measurements::{Frames, ReadOptions};
@@ -77,14 +77,14 @@ pub struct ReadOptions {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Frames {
-    /// All, or those of one name in the column `instrument`.
+    /// All rows, or those of one name in the column `instrument`.
     #[default]
     Common,
     /// Those of a file.
     PerFile,
 }
 
-/// What measurement files hold, and how they were understood.
+/// Contents of measurement files, and how they were read.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -106,10 +106,10 @@ pub enum Frames {
 pub struct MeasurementFile {
     /// The rows of all files, in order.
     pub data: Dataset,
-    /// How each file was understood.
+    /// How each file was read.
     pub understood: Vec<FileUnderstanding>,
-    /// SHA-256 of each file, by its name: of the bytes that the rows were read from.
+    /// SHA-256 of each file by its name, of the bytes that were read.
     pub sha256: BTreeMap<String, String>,
-    /// What the user should know, a sentence each.
+    /// Warnings, a sentence each.
     pub warnings: Vec<String>,
 }

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use super::table::Row;
 use crate::error::Result;
 
-/// Whether the first row named what it is about, and where that row is.
+/// Whether the first row has a name, and its place.
 #[derive(Default)]
 pub(super) struct Naming {
     first: Option<(bool, PathBuf, usize)>,
 }
 
 impl Naming {
-    /// Refuses a row that names it where the first did not, or the reverse. `what` is named, with what to say of none.
+    /// Refuses a row that differs from the first in having a name. `what` is the named thing, with advice for rows without one.
     pub(super) fn check(
         &mut self,
         row: &Row<'_>,

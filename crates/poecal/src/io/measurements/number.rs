@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What stands before the decimals.
+/// Decimal sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DecimalSign {
@@ -12,26 +12,26 @@ pub enum DecimalSign {
     Comma,
 }
 
-/// Reads numbers; the first one with a decimal sign decides which sign the file has.
+/// Reader of numbers; the first one with a decimal sign fixes the sign of the file.
 pub(super) struct Numbers {
     sign: Option<(DecimalSign, Option<usize>)>,
     buffer: String,
 }
 
 impl Numbers {
-    /// Numbers with a sign that is stated or not.
+    /// For numbers with a given decimal sign, or one to be found.
     pub(super) fn new(stated: Option<DecimalSign>) -> Self {
         Numbers { sign: stated.map(|sign| (sign, None)), buffer: String::new() }
     }
 
-    /// The sign, a point if no number has had one.
+    /// The decimal sign; a point if no number has had one.
     pub(super) fn sign(&self) -> DecimalSign {
         self.sign.map_or(DecimalSign::Point, |(sign, _)| sign)
     }
 
-    /// A finite number, or what was expected.
+    /// A finite number, or the expected form.
     pub(super) fn parse(&mut self, text: &str, line: usize) -> Result<f64, String> {
-        // The usual case; all else, `nan` and `inf` too, takes the long way.
+        // Fast path; everything else, `nan` and `inf` too, takes the slow one.
         if matches!(self.sign, Some((DecimalSign::Point, _)))
             && let Ok(value) = fast_float2::parse::<f64, _>(text)
             && value.is_finite()
@@ -82,7 +82,7 @@ impl Numbers {
 
 const NO_GROUPS: &str = "a number with one decimal sign and no thousands separators";
 
-/// Whether a text is digits in groups that are not separated by a decimal sign: `1 234,5`, `1'234.5`.
+/// Whether a text is digits in groups, as `1 234,5` or `1'234.5`.
 fn is_grouped(text: &str) -> bool {
     let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+');
     let separates = |c: char| matches!(c, ' ' | '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '\u{2019}' | '_');

@@ -1,4 +1,4 @@
-//! The forms in which files state an orientation.
+//! Forms of orientations in files.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,10 +9,10 @@ use super::units::Quantity;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::rotation;
 
-/// How far the norm of a quaternion may be from 1.
+/// Largest deviation of a quaternion's norm from 1.
 const QUATERNION_TOLERANCE: f64 = 1e-2;
 
-/// How three angles or four quaternion parts give a rotation.
+/// Rotation from three angles or four quaternion parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum OrientationForm {
     /// Quaternion parts in the order x, y, z, w.
@@ -21,9 +21,9 @@ pub(super) enum OrientationForm {
     QuaternionWxyz,
     /// Axis times angle.
     RotationVector,
-    /// Angles about the axes (0 = x) as they stand after the turns before: `R = R_a R_b R_c`.
+    /// Angles about moving axes (0 = x): `R = R_a R_b R_c`.
     Intrinsic([usize; 3]),
-    /// Angles about axes that stay: `R = R_c R_b R_a`.
+    /// Angles about fixed axes: `R = R_c R_b R_a`.
     Extrinsic([usize; 3]),
 }
 
@@ -41,12 +41,12 @@ impl OrientationForm {
         }
     }
 
-    /// What its columns measure.
+    /// Quantity of its columns.
     pub(super) fn quantity(self) -> Quantity {
         if self.len() == 4 { Quantity::Number } else { Quantity::Angle }
     }
 
-    /// Names of its columns in files of our own form, in order; none for Euler angles, which such files do not have.
+    /// Column names in our own files, in order; empty for Euler angles, which these do not have.
     pub(super) fn own_columns(self) -> &'static [&'static str] {
         match self {
             OrientationForm::Extrinsic([0, 1, 2])
@@ -57,7 +57,7 @@ impl OrientationForm {
         }
     }
 
-    /// What its columns hold, in order.
+    /// Contents of its columns, in order.
     pub(super) fn part_names(self) -> &'static [&'static str] {
         match self {
             OrientationForm::QuaternionXyzw => &["qx", "qy", "qz", "qw"],

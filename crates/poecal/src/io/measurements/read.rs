@@ -1,4 +1,4 @@
-//! Files to measurements.
+//! Reads measurement files.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::builder::TargetLayout;
 use super::inputs::InputReader;
-use super::layout::{Layout, SetRule};
+use super::layout::{ColumnLayout, SetRule};
 use super::lost::LostBeams;
 use super::mapping::ColumnMap;
 use super::naming::Naming;
@@ -28,8 +28,8 @@ use crate::text::visible;
 ///
 /// # Errors
 /// A file that cannot be read ([`ErrorKind::File`]), is no table ([`ErrorKind::Syntax`]), has a wrong or missing unit
-/// ([`ErrorKind::Unit`]), or whose columns or cells are not what they should be ([`ErrorKind::Measurement`]); a
-/// [`ReadOptions::fit_where`] that fits no file ([`ErrorKind::Option`]).
+/// ([`ErrorKind::Unit`]), or has wrong columns or cells ([`ErrorKind::Measurement`]); a [`ReadOptions::fit_where`] that fits no file
+/// ([`ErrorKind::Option`]).
 pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     if paths.is_empty() {
         return Err(Error::new(ErrorKind::Option, "found no measurement file, expected at least one"));
@@ -68,7 +68,7 @@ pub fn parse(
     reader.finish()
 }
 
-/// Columns left alone that a warning names.
+/// Most ignored columns in a warning.
 const IGNORED_NAMED: usize = 30;
 
 struct Reader<'a> {
@@ -106,7 +106,7 @@ impl<'a> Reader<'a> {
 
     fn file<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
         let mut table = Table::open(path, blocks, self.map)?;
-        let layout = Layout::new(&table.header, self.robot, self.options, self.map)?;
+        let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
         if let Some(column) = layout.instrument.filter(|_| self.options.frames == Frames::PerFile) {
             let message = "found a column that names the instrument beside --frames per-file, expected one of the two: leave the option \
                            out, or the column";
@@ -185,7 +185,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn warn_of_ignored(&mut self, path: &Path, layout: &Layout) {
+    fn warn_of_ignored(&mut self, path: &Path, layout: &ColumnLayout) {
         if layout.ignored.is_empty() {
             return;
         }
@@ -202,7 +202,7 @@ impl<'a> Reader<'a> {
         self.warnings.push(format!("{}: ignored the columns {columns}{more}", path.display()));
     }
 
-    fn row(&mut self, row: &Row<'_>, layout: &Layout, inputs: &InputReader<'_>) -> Result<()> {
+    fn row(&mut self, row: &Row<'_>, layout: &ColumnLayout, inputs: &InputReader<'_>) -> Result<()> {
         let set = self.set(row, layout)?;
         for target in &layout.targets {
             let may_be_missing = layout.targets.len() > 1;
@@ -231,8 +231,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The set of a row, if it is stated.
-    fn set(&mut self, row: &Row<'_>, layout: &Layout) -> Result<Option<Set>> {
+    /// The stated set of a row.
+    fn set(&mut self, row: &Row<'_>, layout: &ColumnLayout) -> Result<Option<Set>> {
         let text = |index: usize| row.cells.get(index).map(|cell| cell.text()).unwrap_or_default();
         match &layout.set {
             SetRule::Unstated => Ok(None),
@@ -255,7 +255,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Index of the row's target. Either all rows name their target or none does.
-    fn target(&mut self, row: &Row<'_>, layout: &Layout, target: &TargetLayout) -> Result<usize> {
+    fn target(&mut self, row: &Row<'_>, layout: &ColumnLayout, target: &TargetLayout) -> Result<usize> {
         let cell = layout.target_column.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
         let name = cell.as_deref().or(target.name.as_deref()).filter(|name| !name.is_empty());
         self.target_naming.check(
@@ -276,8 +276,8 @@ impl<'a> Reader<'a> {
         Ok(index)
     }
 
-    /// Index of the place that the device stood at in this row. Either all rows name their instrument or none does.
-    fn station(&mut self, row: &Row<'_>, layout: &Layout) -> Result<usize> {
+    /// Index of the row's station. Either all rows name their instrument or none does.
+    fn station(&mut self, row: &Row<'_>, layout: &ColumnLayout) -> Result<usize> {
         let file = || row.path.display().to_string();
         let cell = layout.instrument.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
         let name = match cell {

@@ -1,4 +1,4 @@
-//! What a row says of a target.
+//! Measurement of a target in a row.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,10 +10,10 @@ use crate::error::Result;
 use crate::lie::Pose;
 use crate::measurement::{Measurement, PointMeasurement, PoseMeasurement};
 
-/// What is expected of a position of which a part is missing.
+/// Expected cells of an incomplete position.
 const EMPTY: &str = "a position: where none was measured, leave all of its cells empty";
 
-/// What the row says of a target; none if it may be missing and is.
+/// Measurement of a target in the current row; `None` if an optional one is missing.
 pub(super) fn measurement(
     row: &Row<'_>,
     target: &TargetLayout,
@@ -47,7 +47,7 @@ pub(super) fn measurement(
     Ok(Some(measurement))
 }
 
-/// The measured rotation; none if all its cells are empty.
+/// The measured rotation; `None` if all its cells are empty.
 fn orientation(
     row: &Row<'_>,
     target: &TargetLayout,
@@ -78,7 +78,7 @@ fn orientation(
     }
 }
 
-/// A standard deviation, if the row states it.
+/// The row's standard deviation, if stated.
 pub(super) fn sigma(row: &Row<'_>, input: Option<usize>, inputs: &InputReader<'_>) -> Result<Option<f64>> {
     let Some(input) = input else { return Ok(None) };
     match inputs.value(input) {

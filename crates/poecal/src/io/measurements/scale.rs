@@ -1,31 +1,32 @@
-//! Values that only another unit explains, and joints beyond their limits.
+//! Joint values in a wrong unit or beyond their limits.
 
 use std::path::Path;
 
 use nalgebra::Vector3;
 
 use super::inputs::{Input, InputReader};
-use super::layout::Layout;
+use super::layout::ColumnLayout;
 use super::table::Row;
 use super::units::{Quantity, Unit, UnitSource};
+use crate::distributions::median_point;
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Observation;
 use crate::robot::{Joint, Limits, Robot};
 
-/// Without limits, a reading beyond this many radians or metres must have its unit stated.
+/// Without limits, readings beyond this many radians or metres need a stated unit.
 const LARGEST_UNLIMITED: f64 = 50.0;
-/// What a reading taken as another unit must stay below, where there are no limits (two turns in radians, and metres).
+/// Without limits, largest reading in the supposed unit (two turns in radians, and metres).
 const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
-/// Share of rows that must look wrong: a few corrupt rows are no other unit.
+/// Least share of rows with implausible values: a few corrupt rows are no wrong unit.
 const SHARE: f64 = 0.1;
-/// Positions that spread further than this many reaches are not in the stated unit.
+/// Positions with a spread of more than this many reaches are in a wrong unit.
 const REACHES: f64 = 20.0;
-/// Readings may exceed their limit by rounding.
+/// Rounding allowed beyond a limit.
 const ROUNDING: f64 = 1e-6;
-/// Lines that a warning names.
+/// Most lines in a warning.
 const NAMED_LINES: usize = 5;
 
-/// Watches the joint values of a file row by row.
+/// Collects the joint values of a file.
 pub(super) struct JointWatch<'a> {
     joints: Vec<OneJoint<'a>>,
     rows: usize,
@@ -58,7 +59,7 @@ impl<'a> JointWatch<'a> {
         JointWatch { joints: joints.collect(), rows: 0 }
     }
 
-    /// Takes in the readings of a row.
+    /// Adds the readings of a row.
     pub(super) fn observe(&mut self, row: &Row<'_>, inputs: &InputReader<'_>) {
         self.rows += 1;
         for one in &mut self.joints {
@@ -79,11 +80,11 @@ impl<'a> JointWatch<'a> {
         }
     }
 
-    /// A warning for each joint beyond its limits.
+    /// Warnings for joints beyond their limits.
     ///
     /// # Errors
-    /// [`ErrorKind::Unit`] if another unit explains the readings and the stated one does not.
-    pub(super) fn finish(&self, path: &Path, layout: &Layout) -> Result<Vec<String>> {
+    /// [`ErrorKind::Unit`] if only another unit explains the readings.
+    pub(super) fn finish(&self, path: &Path, layout: &ColumnLayout) -> Result<Vec<String>> {
         let mut warnings = Vec::new();
         for one in self.joints.iter().filter(|one| one.beyond > 0) {
             let Some(input) = layout.inputs.get(one.reading) else { continue };
@@ -102,7 +103,7 @@ impl<'a> JointWatch<'a> {
 }
 
 impl OneJoint<'_> {
-    /// Whether a reading lies inside the limits widened by `slack`, or is not too large where there are none.
+    /// Whether a reading is inside the limits widened by `slack`; without limits, whether it is not too large.
     fn allows(&self, reading: f64, slack: f64) -> bool {
         let value = self.joint.reading.value(reading);
         match self.joint.limits {
@@ -111,7 +112,7 @@ impl OneJoint<'_> {
         }
     }
 
-    /// The unit that explains readings which lie far outside.
+    /// The unit that explains readings far outside.
     fn other_unit(&self, input: &Input, rows: usize) -> Option<Unit> {
         let candidates: &[&str] = match input.unit.symbol() {
             "rad" => &["deg", "mrad"],
@@ -136,12 +137,12 @@ impl OneJoint<'_> {
         })
     }
 
-    /// Whether some reading lies so far outside that the joint cannot have been there.
+    /// Whether a reading is so far outside that the joint cannot have been there.
     fn is_far_outside(&self, quantity: Quantity, unit_from: UnitSource) -> bool {
         match self.joint.limits {
             Some(limits) => {
                 let span = limits.upper - limits.lower;
-                // Limits may be narrow or wrong: only readings that are large in themselves count.
+                // Limits may be narrow or wrong: only large readings count.
                 let (large, spans) = match quantity {
                     Quantity::Length => (5.0, 5.0),
                     Quantity::Angle | Quantity::Number => (std::f64::consts::TAU, 0.5),
@@ -194,11 +195,11 @@ impl OneJoint<'_> {
     }
 }
 
-/// Refuses positions of a file that spread so far that their unit must be a smaller one.
+/// Refuses positions whose spread shows that their unit must be smaller.
 pub(super) fn check_positions(
     path: &Path,
     robot: &Robot,
-    layout: &Layout,
+    layout: &ColumnLayout,
     slides_m: f64,
     rows: &[Observation],
 ) -> Result<()> {
@@ -211,11 +212,11 @@ pub(super) fn check_positions(
         "um" => "nm",
         _ => return Ok(()),
     };
-    // A slide without limits is not in the reach.
+    // The reach does not contain prismatic joints without limits.
     let reach = robot.reach_m() + slides_m;
     let positions: Vec<Vector3<f64>> =
         rows.iter().map(|row| row.measurement.residual_model().position()).collect();
-    let middle = middle(&positions);
+    let middle = median_point(&positions);
     let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();
     let furthest = positions
         .iter()
@@ -238,25 +239,12 @@ pub(super) fn check_positions(
     Err(Error::new(ErrorKind::Unit, message).at_line(path, line as usize))
 }
 
-/// The median of each coordinate, which a few corrupt rows do not move.
-pub(super) fn middle(positions: &[Vector3<f64>]) -> Vector3<f64> {
-    let mut middle = Vector3::zeros();
-    for (axis, coordinate) in middle.iter_mut().enumerate() {
-        let mut values: Vec<f64> = positions.iter().map(|position| position[axis]).collect();
-        let half = values.len() / 2;
-        if half < values.len() {
-            *coordinate = *values.select_nth_unstable_by(half, f64::total_cmp).1;
-        }
-    }
-    middle
-}
-
 /// A number to four significant digits.
 pub(super) fn short(value: f64) -> String {
     format!("{value:.3e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
-/// How far the slides without limits move in all (metres).
+/// Total travel of the prismatic joints without limits (metres).
 pub(super) fn unlimited_slides(robot: &Robot, watch: &JointWatch<'_>) -> f64 {
     let slides = robot.joints.iter().zip(&watch.joints);
     slides

@@ -1,32 +1,33 @@
-//! Units told by how far the measured positions spread, compared with the nominal model at the same configurations.
+//! Units checked by the spread of measured positions, compared with the nominal model at the same configurations.
 
 use std::path::Path;
 
 use nalgebra::Vector3;
 
 use super::header::Header;
-use super::inputs::{Input, Source};
-use super::layout::Layout;
-use super::scale::{middle, short};
+use super::inputs::{Input, InputSource};
+use super::layout::ColumnLayout;
+use super::scale::short;
 use super::units::{Quantity, Unit};
+use crate::distributions::{median, median_point};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
 use crate::robot::Robot;
 
-/// Rows compared at most.
+/// Most rows of the comparison.
 const ROWS: usize = 500;
-/// With fewer rows the spread says nothing.
+/// Fewest rows for a spread.
 const FEWEST_ROWS: usize = 4;
-/// The model must move its tip by this share of its reach.
+/// Least motion of the model's tip, as a share of its reach.
 const SHARE_OF_REACH: f64 = 0.05;
-/// Tools longer than the model's tip change the spread, but by less than this factor.
+/// Longer tools than the model's change the spread by less than this factor.
 const FACTOR: f64 = 4.0;
-/// Largest angle (in degrees) that a full turn in radians looks like.
+/// Angles in degrees below this may be radians of a full turn.
 const FULL_TURN_AS_DEGREES: f64 = 6.4;
-/// Angles taken as degrees move the model less than the measurements by more than this.
+/// Factor by which angles misread as degrees reduce the model's spread at least.
 const SMALLER: f64 = 10.0;
 
-/// Refuses positions, or joint angles, whose spread only another unit explains; `first` is the file's first row.
+/// Refuses positions or joint angles whose spread only another unit explains; `first` is the file's first row.
 ///
 /// # Errors
 /// [`ErrorKind::Unit`].
@@ -34,7 +35,7 @@ pub(super) fn check(
     path: &Path,
     header: &Header<'_>,
     robot: &Robot,
-    layout: &Layout,
+    layout: &ColumnLayout,
     data: &Dataset,
     first: usize,
 ) -> Result<()> {
@@ -74,18 +75,16 @@ pub(super) fn check(
     match message {
         None => Ok(()),
         Some((input, message)) => Err(match input.source {
-            Source::Column(column) => header.error(ErrorKind::Unit, column, message),
-            Source::Constant(_) => Error::new(ErrorKind::Unit, message).in_file(path),
+            InputSource::Column(column) => header.error(ErrorKind::Unit, column, message),
+            InputSource::Constant(_) => Error::new(ErrorKind::Unit, message).in_file(path),
         }),
     }
 }
 
-/// Median distance from the middle, which a few corrupt rows do not move.
+/// Median distance from the middle, which a few corrupt rows do not change.
 fn spread(positions: Vec<Vector3<f64>>) -> f64 {
-    let middle = middle(&positions);
-    let mut distances: Vec<f64> = positions.iter().map(|position| (position - middle).norm()).collect();
-    let half = distances.len() / 2;
-    if half < distances.len() { *distances.select_nth_unstable_by(half, f64::total_cmp).1 } else { 0.0 }
+    let middle = median_point(&positions);
+    median(positions.iter().map(|position| (position - middle).norm())).unwrap_or(0.0)
 }
 
 fn is_about(ratio: f64, expected: f64) -> bool {
@@ -96,8 +95,8 @@ fn is_angle(input: &Input) -> bool {
     input.unit.quantity() == Quantity::Angle
 }
 
-/// The first joint angle, if all are stated in degrees and are as small as radians would be.
-fn degrees_within_a_turn<'a>(layout: &'a Layout, data: &Dataset, rows: &[usize]) -> Option<&'a Input> {
+/// The first joint angle, if all are in degrees and as small as radians.
+fn degrees_within_a_turn<'a>(layout: &'a ColumnLayout, data: &Dataset, rows: &[usize]) -> Option<&'a Input> {
     let count = data.reading_names().len();
     let mut angles = layout.inputs.iter().take(count).filter(|input| is_angle(input));
     let first = angles.next().filter(|input| input.unit.symbol() == "deg")?;
@@ -120,7 +119,7 @@ fn angle_message(input: &Input, measured: f64, modelled: f64) -> String {
     )
 }
 
-/// `power`: of ten, by how much the positions spread further than the model says.
+/// `power`: power of ten by which the measured spread exceeds the model's.
 fn position_message(input: &Input, measured: f64, modelled: f64, power: i32) -> String {
     let stated = input.unit;
     let model = format!(

@@ -9,10 +9,10 @@ use super::text::{Blocks, Lines};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::looks_like::model_for_table;
 
-/// Lines below the header that are looked at if it is none.
+/// Most lines below the header that are checked if it is none.
 const LINES_BELOW: usize = 10;
 
-/// A row, as long as the next one is not read.
+/// A row, valid until the next one is read.
 pub(super) struct Row<'t> {
     pub(super) path: &'t Path,
     pub(super) line: usize,
@@ -20,19 +20,19 @@ pub(super) struct Row<'t> {
     pub(super) cells: &'t [Cell<'t>],
 }
 
-/// A file being read block by block.
+/// A file, read block by block.
 pub(super) struct Table<'a> {
     pub(super) header: Header<'a>,
     pub(super) separator: Separator,
-    /// The line that states the separator, as `sep=;`, if there is one.
+    /// The line that states the separator, as `sep=;`.
     pub(super) separator_line: Option<usize>,
     blocks: Blocks<'a>,
-    /// Whether the block at hand has yet to give its rows.
+    /// Whether the rows of the current block are still to be returned.
     unread: bool,
 }
 
-/// The rows of a block, one after the other.
-pub(super) struct Rows<'t> {
+/// The rows of a block.
+pub(super) struct TableRows<'t> {
     header: &'t Header<'t>,
     separator: Separator,
     lines: Lines<'t>,
@@ -40,7 +40,7 @@ pub(super) struct Rows<'t> {
 }
 
 impl<'a> Table<'a> {
-    /// Reads the header and the lines of separator and units around it; the separator is the mapping's, stated or recognised.
+    /// Reads the header with the lines of separator and units; the separator is the mapping's, stated or recognised.
     pub(super) fn open(path: &'a Path, mut blocks: Blocks<'a>, map: &ColumnMap) -> Result<Self> {
         blocks.advance()?;
         let none = || {
@@ -70,23 +70,23 @@ impl<'a> Table<'a> {
         Ok(Table { header, separator, separator_line, blocks, unread: true })
     }
 
-    /// The checksum of the file, as far as it has been read.
+    /// Checksum of the bytes read so far.
     pub(super) fn sha256(&self) -> Option<String> {
         self.blocks.sha256()
     }
 
     /// The rows of the next block.
-    pub(super) fn next_block(&mut self) -> Result<Option<Rows<'_>>> {
+    pub(super) fn next_block(&mut self) -> Result<Option<TableRows<'_>>> {
         if !std::mem::take(&mut self.unread) && !self.blocks.advance()? {
             return Ok(None);
         }
         let Table { header, separator, blocks, .. } = self;
         let lines = blocks.lines(header.last_line());
-        Ok(Some(Rows { header, separator: *separator, lines, cells: Vec::new() }))
+        Ok(Some(TableRows { header, separator: *separator, lines, cells: Vec::new() }))
     }
 }
 
-impl Rows<'_> {
+impl TableRows<'_> {
     /// The next row that is not empty.
     pub(super) fn next(&mut self) -> Result<Option<Row<'_>>> {
         let Header { path, line: header_line, .. } = *self.header;
@@ -113,7 +113,7 @@ impl Rows<'_> {
         }
     }
 
-    /// What may be wrong with a row of another number of cells than the header's.
+    /// Advice for a row with another number of cells than the header.
     fn count_hint(&self, text: &str) -> String {
         let (found, expected) = (self.cells.len(), self.header.cells.len());
         let mut cells = Vec::new();
@@ -146,7 +146,7 @@ impl Rows<'_> {
     }
 }
 
-/// The first line after line `skip` that is neither blank nor a comment, in this block or a later one.
+/// The first line after line `skip` that is neither blank nor a comment.
 fn next_line(blocks: &mut Blocks<'_>, skip: usize) -> Result<Option<(usize, String)>> {
     loop {
         if let Some((line, text)) = blocks.lines(skip).next() {
@@ -158,7 +158,7 @@ fn next_line(blocks: &mut Blocks<'_>, skip: usize) -> Result<Option<(usize, Stri
     }
 }
 
-/// The separator that a line `sep=;` states, as spreadsheets write it.
+/// The separator stated by a line `sep=;`, as spreadsheets write it.
 fn stated_separator(path: &Path, line: usize, text: &str) -> Result<Option<Separator>> {
     let text = text.strip_prefix('"').and_then(|text| text.trim_end().strip_suffix('"')).unwrap_or(text);
     let Some(stated) = text.get(..4).filter(|start| start.eq_ignore_ascii_case("sep=")) else {
@@ -176,10 +176,10 @@ fn stated_separator(path: &Path, line: usize, text: &str) -> Result<Option<Separ
     }
 }
 
-/// Measurements, or rows of joint readings, that are read at most: they are held in memory, and an endless pipe has more.
+/// Most rows of a file: they are held in memory, and a pipe may be endless.
 pub(super) const MOST_ROWS: usize = 10_000_000;
 
-/// Refuses a row that is one too many.
+/// Refuses rows beyond the limit.
 pub(super) fn refuse_more_rows(read: usize, row: &Row<'_>) -> Result<()> {
     if read <= MOST_ROWS {
         return Ok(());

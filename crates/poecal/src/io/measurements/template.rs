@@ -1,4 +1,4 @@
-//! An empty measurement file for a robot, and a table of configurations to measure it in.
+//! An empty measurement file for a robot, and a table of configurations to be measured.
 
 use std::fmt::Write as _;
 
@@ -10,10 +10,10 @@ use crate::error::Result;
 use crate::robot::Robot;
 use crate::simulate::{Configurations, Kind};
 
-/// Rows from one visit of the first configuration to the next.
+/// Number of rows between visits of the first configuration.
 const ROWS_BETWEEN_VISITS: usize = 20;
 
-/// A measurement file without rows: the columns that this robot needs, and what to do with them as comments.
+/// A measurement file without rows: the columns for this robot, with instructions as comments.
 pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
     let names = robot.reading_names();
     let columns = header(&names, &reading_units(&names, robot)?, kind.sees_orientation())?;
@@ -49,8 +49,8 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
     Ok(format!("{text}{columns}\n"))
 }
 
-/// A table of `count` random configurations within the limits (±180° and ±0.5 m where there are none). Every twentieth is the first
-/// again, which shows what repeats and what drifts.
+/// A table of `count` random configurations within the limits (±180° and ±0.5 m where there are none). Every twentieth is the first again,
+/// which shows repeatability and drift.
 pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<String> {
     let names = robot.reading_names();
     let units = reading_units(&names, robot)?;

@@ -1,4 +1,4 @@
-//! The text of a file and its lines.
+//! Text of a file and its lines.
 
 use std::io::Read;
 use std::path::Path;
@@ -8,54 +8,54 @@ use crate::io::hashes::Hashing;
 use crate::io::source::{self, Input, LARGEST_TABLE, unreadable};
 use crate::io::source_text::position;
 
-/// Bytes of a file that are held at a time, about.
+/// Approximate number of bytes held at a time.
 const BLOCK: usize = 1 << 18;
 
-/// Bytes of a line, at most.
+/// Longest line, bytes.
 const LONGEST_LINE: usize = 16 << 20;
 
-/// Where a text comes from.
-enum Source<'a> {
+/// Source of a text.
+enum TextSource<'a> {
     File(Hashing<Input>),
     Text(&'a [u8]),
 }
 
-/// A text in blocks of whole lines, so that a large file is never held whole.
+/// A text in blocks of whole lines, so that large files are never held whole.
 pub(super) struct Blocks<'a> {
     path: &'a Path,
-    /// What the file should be.
+    /// Description of the file in messages.
     expected: &'a str,
-    source: Source<'a>,
-    /// Bytes that are read at a time.
+    source: TextSource<'a>,
+    /// Bytes per read.
     size: usize,
-    /// The block at hand.
+    /// The current block.
     text: String,
-    /// What follows it and has been read: no whole line.
+    /// The incomplete line after it.
     rest: Vec<u8>,
-    /// What ends a line; none before the first block.
+    /// Line ending; `None` before the first block.
     newline: Option<u8>,
-    /// Lines before the block at hand.
+    /// Number of lines before the current block.
     lines: usize,
 }
 
 impl<'a> Blocks<'a> {
-    /// The blocks of a file; `expected` says what it should be.
+    /// The blocks of a file; `expected` describes it in messages.
     pub(super) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
-        let source = Source::File(Hashing::new(source::open(path, expected, LARGEST_TABLE)?));
+        let source = TextSource::File(Hashing::new(source::open(path, expected, LARGEST_TABLE)?));
         Ok(Blocks { expected, ..Blocks::of(path, source, BLOCK) })
     }
 
-    /// The blocks of a text; `path` is for the messages only.
+    /// The blocks of a text; messages call it `path`.
     pub(super) fn new(path: &'a Path, text: &'a [u8]) -> Self {
         Blocks::sized(path, text, BLOCK)
     }
 
-    /// The same, of which so many bytes are read at a time.
+    /// The same with another number of bytes per read.
     pub(super) fn sized(path: &'a Path, text: &'a [u8], size: usize) -> Self {
-        Blocks::of(path, Source::Text(text), size)
+        Blocks::of(path, TextSource::Text(text), size)
     }
 
-    fn of(path: &'a Path, source: Source<'a>, size: usize) -> Self {
+    fn of(path: &'a Path, source: TextSource<'a>, size: usize) -> Self {
         let (expected, text, rest) = ("a table (CSV)", String::new(), Vec::new());
         Blocks { path, expected, source, size, text, rest, newline: None, lines: 0 }
     }
@@ -71,8 +71,8 @@ impl<'a> Blocks<'a> {
             let known = bytes.len();
             let size = self.size as u64;
             let more = match &mut self.source {
-                Source::File(file) => file.take(size).read_to_end(&mut bytes),
-                Source::Text(text) => text.take(size).read_to_end(&mut bytes),
+                TextSource::File(file) => file.take(size).read_to_end(&mut bytes),
+                TextSource::Text(text) => text.take(size).read_to_end(&mut bytes),
             };
             let more = more.map_err(|error| unreadable(self.path, &error, self.expected))?;
             let end = memchr::memrchr(b'\n', bytes.get(known..).unwrap_or_default());
@@ -93,7 +93,7 @@ impl<'a> Blocks<'a> {
         if is_first {
             self.newline = Some(if memchr::memchr(b'\n', &bytes).is_some() { b'\n' } else { b'\r' });
         }
-        // UTF-8 too, but no text: rather UTF-16 without its mark.
+        // Valid UTF-8, but no text: rather UTF-16 without a byte order mark.
         if let Some(at) = memchr::memchr(0, &bytes) {
             return Err(not_utf8(self.path, &bytes, at, self.lines));
         }
@@ -107,24 +107,24 @@ impl<'a> Blocks<'a> {
         Ok(!self.text.is_empty())
     }
 
-    /// The checksum of the file as far as it has been read; a text has none.
+    /// Checksum of the bytes read so far; `None` for a text.
     pub(super) fn sha256(&self) -> Option<String> {
         match &self.source {
-            Source::File(file) => Some(file.sha256()),
-            Source::Text(_) => None,
+            TextSource::File(file) => Some(file.sha256()),
+            TextSource::Text(_) => None,
         }
     }
 
-    /// The lines of the block at hand, but for the first `skip` of the file.
+    /// Lines of the current block, without the first `skip` of the file.
     pub(super) fn lines(&self, skip: usize) -> Lines<'_> {
         Lines { rest: Some(&self.text), newline: self.newline.unwrap_or(b'\n'), number: self.lines, skip }
     }
 }
 
-/// The error of bytes that are no text, of which there are `lines` lines before these.
+/// The error for bytes that are no text, after so many lines.
 fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
     let is_marked = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
-    // Without a mark, of the first two characters every other byte is none.
+    // UTF-16 without a byte order mark: every other byte of the first two characters is zero.
     let is_utf16 = is_marked || matches!(bytes, [0, 1..=255, 0, 1..=255, ..] | [1..=255, 0, 1..=255, 0, ..]);
     if lines == 0 && is_utf16 {
         let message = "found UTF-16 text, expected UTF-8; save the file as `CSV UTF-8`";
@@ -149,7 +149,7 @@ pub(super) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The next line, whatever it holds.
+    /// The next line, comments and blank ones too.
     fn line(&mut self) -> Option<&'a str> {
         let rest = self.rest?;
         let end = memchr::memchr(self.newline, rest.as_bytes());
@@ -174,10 +174,10 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// What spreadsheets write for a cell that they could not work out; other lines that begin with `#` are comments.
+/// Error values of spreadsheets; other lines that begin with `#` are comments.
 const SPREADSHEET_ERRORS: [&str; 7] = ["#N/A", "#NV", "#VALUE!", "#WERT!", "#REF!", "#DIV/0!", "#NAME?"];
 
-/// Whether a line is one for people only.
+/// Whether a line is blank or a comment.
 fn is_comment(content: &str) -> bool {
     let is_cell = |error: &str| {
         let rest = content.strip_prefix(error);
@@ -247,7 +247,7 @@ mod tests {
             }
         }
         let path = Path::new("x.csv");
-        let source = Source::File(Hashing::new(Input::of(Box::new(Broken))));
+        let source = TextSource::File(Hashing::new(Input::of(Box::new(Broken))));
         let expected = "a measurement file (CSV)";
         let error = Blocks { expected, ..Blocks::of(path, source, BLOCK) }.advance().unwrap_err().to_string();
         assert_eq!(

@@ -1,24 +1,23 @@
-//! Orientations that a file may state otherwise than they are read: degrees taken for radians, and columns of robot makers that have no
-//! meaning of themselves.
+//! Orientations that may be misread: degrees as radians, and robot makers' columns without a unique meaning.
 
 use std::f64::consts::TAU;
 use std::path::Path;
 
 use super::header::Header;
 use super::inputs::InputReader;
-use super::inputs::Source;
-use super::layout::Layout;
+use super::inputs::InputSource;
+use super::layout::ColumnLayout;
 use super::mapping::ColumnMap;
 use super::orientation::OrientationForm;
 use super::table::Row;
 use crate::error::{Error, ErrorKind, Result};
 
-/// Share of rows that must be beyond all sense: a few corrupt rows are no other unit.
+/// Least share of rows with implausible angles: a few corrupt rows are no wrong unit.
 const SHARE: f64 = 0.1;
-/// What rounding may add to a full turn.
+/// Rounding allowed beyond a full turn.
 const ROUNDING: f64 = 1e-3;
 
-/// Watches the angles of a file's orientations row by row.
+/// Collects the angles of a file's orientations.
 pub(super) struct TurnWatch {
     rows: usize,
     beyond: usize,
@@ -26,7 +25,7 @@ pub(super) struct TurnWatch {
     first: Option<First>,
 }
 
-/// The first orientation that turns too far.
+/// The first orientation with too large an angle.
 struct First {
     line: usize,
     column: usize,
@@ -40,15 +39,15 @@ impl TurnWatch {
         TurnWatch { rows: 0, beyond: 0, largest: 0.0, first: None }
     }
 
-    /// Takes in the orientations of a row.
-    pub(super) fn observe(&mut self, row: &Row<'_>, layout: &Layout, inputs: &InputReader<'_>) {
+    /// Adds the orientations of a row.
+    pub(super) fn observe(&mut self, row: &Row<'_>, layout: &ColumnLayout, inputs: &InputReader<'_>) {
         for (form, columns) in layout.targets.iter().filter_map(|target| target.orientation.as_ref()) {
             let of_radians =
                 |&input: &usize| layout.inputs.get(input).is_some_and(|it| it.unit.symbol() == "rad");
             let (is_vector, most) = match form {
                 OrientationForm::QuaternionXyzw | OrientationForm::QuaternionWxyz => continue,
                 OrientationForm::RotationVector => (true, TAU + ROUNDING),
-                // Angles that are counted on and on are none of another unit.
+                // Angles that count on over many turns are in no other unit.
                 OrientationForm::Intrinsic(_) | OrientationForm::Extrinsic(_) => (false, 2.0 * TAU),
             };
             let values: Vec<f64> = columns.iter().filter_map(|&input| inputs.value(input)).collect();
@@ -75,13 +74,13 @@ impl TurnWatch {
         }
     }
 
-    /// Nothing, if what was seen may be radians.
+    /// Checks the angles.
     ///
     /// # Errors
-    /// [`ErrorKind::Unit`] if degrees explain it.
+    /// [`ErrorKind::Unit`] if only degrees explain them.
     pub(super) fn finish(self, path: &Path) -> Result<()> {
         let Some(first) = self.first else { return Ok(()) };
-        // Degrees of a turn or two; what is larger is neither.
+        // Degrees of one or two turns; larger angles are neither.
         if (self.beyond as f64) < SHARE * self.rows as f64 || self.largest > (2.0 * TAU).to_degrees() {
             return Ok(());
         }
@@ -102,7 +101,7 @@ impl TurnWatch {
     }
 }
 
-/// Columns that robot makers have for an orientation: their names, whose they are, and the form that reads them.
+/// Orientation columns of robot makers: names, maker, and form.
 const MAKERS: [(&[&str], &str, &str); 6] = [
     (&["A", "B", "C"], "KUKA's A, B, C (turns about z, then the new y, then the new x)", "intrinsic_zyx"),
     (&["W", "P", "R"], "FANUC's W, P, R (turns about the fixed x, y, z)", "roll_pitch_yaw"),
@@ -116,8 +115,8 @@ const MAKERS: [(&[&str], &str, &str); 6] = [
     ),
 ];
 
-/// What to know of columns that may say an orientation, and are not read so.
-pub(super) fn warning(header: &Header<'_>, layout: &Layout, map: &ColumnMap) -> Option<String> {
+/// Advice on columns that may hold an orientation and are not read as one.
+pub(super) fn warning(header: &Header<'_>, layout: &ColumnLayout, map: &ColumnMap) -> Option<String> {
     let [target] = layout.targets.as_slice() else { return None };
     match &target.orientation {
         None => unread(header, layout),
@@ -128,8 +127,8 @@ pub(super) fn warning(header: &Header<'_>, layout: &Layout, map: &ColumnMap) -> 
     }
 }
 
-/// The columns of a maker that no one has given a meaning.
-fn unread(header: &Header<'_>, layout: &Layout) -> Option<String> {
+/// Columns of a maker that the layout does not use.
+fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
     let left_alone = |name: &str| {
         let mut cells = header.cells.iter().filter(|cell| cell.name.eq_ignore_ascii_case(name));
         cells.find(|cell| layout.ignored.iter().any(|(text, _)| *text == cell.text))
@@ -150,10 +149,10 @@ fn unread(header: &Header<'_>, layout: &Layout) -> Option<String> {
 }
 
 /// Columns of a rotation vector in the order of turns about z, y, x.
-fn backwards(header: &Header<'_>, layout: &Layout, columns: &[usize]) -> Option<String> {
+fn backwards(header: &Header<'_>, layout: &ColumnLayout, columns: &[usize]) -> Option<String> {
     let place = |&input: &usize| match layout.inputs.get(input)?.source {
-        Source::Column(column) => Some(column),
-        Source::Constant(_) => None,
+        InputSource::Column(column) => Some(column),
+        InputSource::Constant(_) => None,
     };
     let places: Vec<usize> = columns.iter().filter_map(place).collect();
     if !matches!(places.as_slice(), [x, y, z] if z < y && y < x) {
@@ -173,7 +172,7 @@ fn backwards(header: &Header<'_>, layout: &Layout, columns: &[usize]) -> Option<
     ))
 }
 
-/// An orientation as a mapping states it.
+/// An orientation in a mapping.
 fn mapped(form: &str, columns: &[&str], unit: &str) -> String {
     let columns: Vec<String> = columns.iter().map(|name| format!("\"{name}\"")).collect();
     format!("`orientation = {{ form = \"{form}\", columns = [{}]{unit} }}`", columns.join(", "))

@@ -1,4 +1,4 @@
-//! What was understood of a file, for the user to check.
+//! How a file was read, for the user to check.
 
 use std::path::PathBuf;
 
@@ -6,31 +6,31 @@ use serde::Serialize;
 
 use super::cells::Separator;
 use super::header::Header;
-use super::inputs::{Input, Range, Source};
-use super::layout::{Layout, SetRule};
+use super::inputs::{Input, InputSource, Range};
+use super::layout::{ColumnLayout, SetRule};
 use super::lost::LostBeams;
 use super::mapping::PoseDirection;
 use super::number::DecimalSign;
 use super::units::UnitSource;
 
-/// What one of our columns was read from.
+/// Source of one of our columns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ColumnUnderstanding {
     /// Our name: `joint1`, `x`, `smr1 x`, …
     pub name: String,
-    /// The file's column, as in its header, or the sum of columns that the mapping asks for; none for a constant of the mapping.
+    /// The file's column, or sum of columns; `None` for a constant of the mapping.
     pub column: Option<String>,
-    /// Symbol of the unit; none for text and pure numbers.
+    /// Symbol of the unit; `None` for text and pure numbers.
     pub unit: Option<&'static str>,
-    /// Where the unit came from; none without unit.
+    /// Source of the unit; `None` without unit.
     pub unit_from: Option<UnitSource>,
-    /// Smallest value, metres or radians; none for text and for a column of empty cells.
+    /// Smallest value, metres or radians; `None` for text and empty columns.
     pub min: Option<f64>,
     /// Largest value, metres or radians.
     pub max: Option<f64>,
 }
 
-/// How a file was understood. Serialised, it is what `poecal check --json` prints.
+/// How a file was read, as `poecal check --json` prints it.
 ///
 /// ```
 /// use poecal::io::measurements::FileUnderstanding;
@@ -40,45 +40,49 @@ pub struct ColumnUnderstanding {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FileUnderstanding {
-    /// The file, as the user named it.
+    /// File name as given by the user.
     pub path: PathBuf,
-    /// Rows of the file, those of lost beams too.
+    /// Number of rows, those of lost beams included.
     pub rows: usize,
-    /// Position-only measurements.
+    /// Number of position-only measurements.
     pub points: usize,
-    /// Measurements with orientation.
+    /// Number of measurements with orientation.
     pub poses: usize,
-    /// Lost beams: measurements without a position, which were left out.
+    /// Lost beams: measurements without a position, which were omitted.
     pub lost: LostBeams,
-    /// What stands between two cells.
+    /// Separator of cells.
     pub separator: Separator,
-    /// The line that states the separator, as `sep=;`; none if no line does.
+    /// Line that states the separator, as `sep=;`; `None` if there is none.
     pub separator_line: Option<usize>,
-    /// The line of units below the header; none if there is none.
+    /// Line of units below the header; `None` if there is none.
     pub units_line: Option<usize>,
-    /// What stands before the decimals.
+    /// Decimal sign.
     pub decimal_sign: DecimalSign,
-    /// Our columns and what they were read from.
+    /// Our columns with their sources.
     pub columns: Vec<ColumnUnderstanding>,
-    /// How orientation columns give a rotation; none without orientation.
+    /// Form of the orientation columns; `None` without orientation.
     pub orientation: Option<String>,
-    /// Which way the file's poses point: `device_from_target`, or `target_from_device` if they were inverted.
+    /// Direction of the file's poses: `device_from_target`, or `target_from_device` if they were inverted.
     pub pose: &'static str,
-    /// Columns that were left alone.
+    /// Ignored columns.
     pub ignored: Vec<String>,
 }
 
-/// Our columns and what they were read from.
-pub(super) fn columns(header: &Header<'_>, layout: &Layout, ranges: &[Range]) -> Vec<ColumnUnderstanding> {
+/// Our columns with their sources.
+pub(super) fn columns(
+    header: &Header<'_>,
+    layout: &ColumnLayout,
+    ranges: &[Range],
+) -> Vec<ColumnUnderstanding> {
     let text_of = |index: usize| header.cells.get(index).map(|cell| cell.text.clone());
     let number = |(input, range): (&Input, &Range)| {
         let has_unit = input.unit.symbol() != "1";
         ColumnUnderstanding {
             name: input.name.clone(),
             column: match input.source {
-                Source::Column(_) if !input.sum.is_empty() => Some(input.label.clone()),
-                Source::Column(index) => text_of(index),
-                Source::Constant(_) => None,
+                InputSource::Column(_) if !input.sum.is_empty() => Some(input.label.clone()),
+                InputSource::Column(index) => text_of(index),
+                InputSource::Constant(_) => None,
             },
             unit: has_unit.then_some(input.unit.symbol()),
             unit_from: has_unit.then_some(input.unit_from),
@@ -104,8 +108,8 @@ pub(super) fn columns(header: &Header<'_>, layout: &Layout, ranges: &[Range]) ->
     layout.inputs.iter().zip(ranges).map(number).chain(texts.into_iter().flatten()).collect()
 }
 
-/// The orientation forms of the targets, each once.
-pub(super) fn orientation(layout: &Layout) -> Option<String> {
+/// Orientation forms of the targets, without repetition.
+pub(super) fn orientation(layout: &ColumnLayout) -> Option<String> {
     let mut forms: Vec<String> = Vec::new();
     for (form, _) in layout.targets.iter().filter_map(|target| target.orientation.as_ref()) {
         let form = form.to_string();
@@ -116,7 +120,7 @@ pub(super) fn orientation(layout: &Layout) -> Option<String> {
     (!forms.is_empty()).then(|| forms.join("; "))
 }
 
-/// The word for a pose's direction.
+/// Word for a pose's direction.
 pub(super) fn pose_word(pose: PoseDirection) -> &'static str {
     match pose {
         PoseDirection::DeviceFromTarget => "device_from_target",

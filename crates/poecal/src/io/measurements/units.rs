@@ -1,4 +1,4 @@
-//! Units of lengths and angles as files state them.
+//! Units of lengths and angles in files.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result, nearest};
 
-/// Where a column's unit came from.
+/// Source of a column's unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UnitSource {
@@ -16,11 +16,11 @@ pub enum UnitSource {
     UnitsLine,
     /// The mapping file.
     Mapping,
-    /// Nowhere: SI.
+    /// None stated: SI.
     Si,
 }
 
-/// What a number measures.
+/// Quantity of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// SI unit metre.
@@ -55,7 +55,7 @@ impl Quantity {
     }
 }
 
-/// A unit: its symbol, what it measures, and how it becomes SI.
+/// A unit: symbol, quantity, and conversion to SI.
 ///
 /// ```
 /// use poecal::io::measurements::{Quantity, Unit};
@@ -68,7 +68,7 @@ impl Quantity {
 pub struct Unit {
     symbol: &'static str,
     quantity: Quantity,
-    // Lengths divide by a power of ten, which is exact, where a factor such as 0.001 is not.
+    // Lengths are divided by a power of ten, which is exact; 0.001 is not.
     factor: f64,
     divisor: f64,
 }
@@ -95,7 +95,7 @@ const UNITS: [Unit; 12] = [
     unit("arcsec", Quantity::Angle, PI / 648_000.0, 1.0),
     ONE,
 ];
-/// Other names of units, in small letters or not.
+/// Other names of units, case ignored.
 const OTHER_NAMES: [(&str, &[&str]); 10] = [
     ("m", &["metre", "metres", "meter", "meters"]),
     ("cm", &["centimetre", "centimetres", "centimeter", "centimeters"]),
@@ -110,7 +110,7 @@ const OTHER_NAMES: [(&str, &[&str]); 10] = [
 ];
 
 impl Unit {
-    /// The unit of this symbol for this quantity; `µm`, `°` and words such as `degrees` and `inch` are known beside the symbols.
+    /// The unit of this symbol for this quantity; also `µm`, `°` and words such as `degrees` and `inch`.
     ///
     /// # Errors
     /// [`ErrorKind::Unit`] if it is unknown or measures something else.
@@ -118,7 +118,7 @@ impl Unit {
         Unit::parse_for(symbol, quantity, "")
     }
 
-    /// As [`Unit::parse`]; `purpose` (` for …`) says in the message what the unit is for.
+    /// As [`Unit::parse`]; `purpose` (` for …`) describes the unit's use in the message.
     pub(super) fn parse_for(symbol: &str, quantity: Quantity, purpose: &str) -> Result<Unit> {
         let plain = plain(symbol);
         if let Some(unit) = quantity.known_units().find(|unit| unit.symbol == plain) {
@@ -142,7 +142,7 @@ impl Unit {
         ))
     }
 
-    /// The unit of this symbol, whatever it measures.
+    /// The unit of this symbol, of any quantity.
     ///
     /// # Errors
     /// [`ErrorKind::Unit`] if it is unknown.
@@ -159,13 +159,13 @@ impl Unit {
         )
     }
 
-    /// A value in this unit, in metres, radians or as it is.
+    /// Converts a value in this unit to metres or radians.
     #[must_use]
     pub fn to_si(self, value: f64) -> f64 {
         value * self.factor / self.divisor
     }
 
-    /// A value in metres or radians, in this unit.
+    /// Converts a value in metres or radians to this unit.
     #[must_use]
     pub fn from_si(self, value: f64) -> f64 {
         value * self.divisor / self.factor
@@ -177,14 +177,14 @@ impl Unit {
         self.symbol
     }
 
-    /// What it measures.
+    /// Its quantity.
     #[must_use]
     pub fn quantity(self) -> Quantity {
         self.quantity
     }
 }
 
-/// The symbol of a unit that may be called by another name.
+/// The symbol for any name of a unit.
 fn plain(name: &str) -> &str {
     let is_named = |words: &[&str]| words.iter().any(|word| word.eq_ignore_ascii_case(name));
     match name {

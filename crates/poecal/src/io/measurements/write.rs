@@ -1,4 +1,4 @@
-//! A measurement file of simulated rows.
+//! Measurement files of simulated rows.
 
 use std::fmt::Write as _;
 
@@ -8,9 +8,8 @@ use crate::io::csv_text;
 use crate::measurement::{Dataset, Noise};
 use crate::robot::{JointKind, Robot};
 
-/// Rows of the unnamed target as a file that begins with a comment: joints in degrees and millimetres, positions in millimetres,
-/// orientations as quaternions. Readings read back as the same numbers; measured ones are rounded to less than a thousandth of
-/// their noise.
+/// Rows of the unnamed target as a file with a leading comment: degrees and millimetres, orientations as quaternions. Readings are exact;
+/// measured numbers are rounded to less than a thousandth of their noise.
 pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
     let mm = Unit::parse("mm", Quantity::Length)?;
     let number = Quantity::Number.si_unit();
@@ -37,7 +36,7 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
     Ok(out)
 }
 
-/// The units that readings are written in: degrees and millimetres.
+/// Units of the readings: degrees and millimetres.
 pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>> {
     let (deg, mm) = (Unit::parse("deg", Quantity::Angle)?, Unit::parse("mm", Quantity::Length)?);
     let of = |name: &String| robot.joints.iter().find(|joint| joint.reading.name == *name);
@@ -48,7 +47,7 @@ pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>
     Ok(names.iter().map(unit).collect())
 }
 
-/// The header of a file of readings and measured positions, with orientations or without.
+/// Header of readings and measured positions, with or without orientations.
 pub(super) fn header(names: &[String], units: &[Unit], orientations: bool) -> Result<String> {
     let measured_names: &[&str] =
         if orientations { &["x", "y", "z", "qx", "qy", "qz", "qw"] } else { &["x", "y", "z"] };
@@ -77,12 +76,12 @@ pub(super) fn reading_header(names: &[String], units: &[Unit]) -> String {
     names.iter().zip(units).map(cell).collect::<Vec<_>>().join(",")
 }
 
-/// Decimals that leave less than a thousandth of a noise; `None`, all that there are, without noise.
+/// Decimals for less than a thousandth of the noise; `None`, all of them, without noise.
 fn decimals(noise: f64) -> Option<usize> {
     (noise > 0.0).then(|| (3.0 - noise.log10()).ceil().clamp(0.0, 17.0) as usize)
 }
 
-/// A number in a unit: with the decimals asked for, else with as many as it takes to read back as the same number.
+/// A number in a unit, with the given decimals, else with as many as are needed to read back the same number.
 pub(super) fn decimal(si: f64, unit: Unit, decimals: Option<usize>) -> String {
     let value = unit.from_si(si);
     let with = |count: usize| format!("{value:.count$}");

@@ -1,4 +1,4 @@
-//! The results of a calibration.
+//! Output of a calibration.
 
 use super::contents::REPORT;
 use super::{FilePlace, FolderPlace, NewFile, Page, Written, robot_files, write_files};
@@ -6,24 +6,24 @@ use crate::calibration::Calibration;
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::model::Model;
-use crate::io::residuals::Rows;
+use crate::io::residuals::ResidualRows;
 use crate::robot::Robot;
 
-/// What is written of a calibration beside its models.
+/// Output of a calibration beside its models.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate};
 /// use poecal::io::calibration_file::{CalibrationFile, Inputs};
-/// use poecal::io::{output::Results, residuals::Rows};
+/// use poecal::io::{output::Results, residuals::ResidualRows};
 /// use poecal::simulate::{Kind, Simulation, elbow};
 /// let made = Simulation::default().run(&elbow(), Kind::Point)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let results = Results {
 ///     file: CalibrationFile::new(&calibration, &made.data, Inputs::default()),
-///     residuals: Rows::Of(&made.data, &calibration),
+///     residuals: ResidualRows::Of(&made.data, &calibration),
 ///     report: None,
 /// };
-/// assert!(matches!(results.residuals, Rows::Of(data, _) if data.len() == made.data.len()));
+/// assert!(matches!(results.residuals, ResidualRows::Of(data, _) if data.len() == made.data.len()));
 /// # Ok::<(), poecal::Error>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -31,13 +31,13 @@ pub struct Results<'a> {
     /// For `calibration.json`.
     pub file: CalibrationFile,
     /// For `residuals.csv`.
-    pub residuals: Rows<'a>,
-    /// `report.html`, if it is to be written.
+    pub residuals: ResidualRows<'a>,
+    /// `report.html`, if wanted.
     pub report: Option<Page>,
 }
 
-/// Writes a calibration's files. They are written to a staging folder first, read back and compared with the fitted robot on 1,000
-/// configurations, and only then put in place. The report goes to the place `elsewhere` if there is one.
+/// Writes a calibration's files: first to a staging folder, where they are read back and compared with the fitted robot in 1,000
+/// configurations, then to their place. The report goes to `elsewhere` if given.
 ///
 /// # Errors
 /// [`ErrorKind::File`](crate::ErrorKind::File) if something cannot be written; [`ErrorKind::Export`](crate::ErrorKind::Export) if
@@ -52,7 +52,7 @@ pub fn write(
     write_robot(place, elsewhere, model, &calibration.robot_with_targets(), results)
 }
 
-/// [`write()`] for a calibrated robot with its targets, where the calibration itself is no longer at hand.
+/// [`write()`] for a calibrated robot with its targets, without the calibration itself.
 ///
 /// # Errors
 /// As [`write()`].

@@ -1,11 +1,11 @@
-//! Which files are whose: the names that each kind of run may write.
+//! File names of each kind of run.
 
-/// The report's name among the results.
+/// Name of the report among the results.
 pub const REPORT: &str = "report.html";
-/// Every name that a calibration may write.
+/// File names of a calibration.
 const CALIBRATION: [&str; 5] =
     ["calibration.json", "calibrated.urdf", "calibrated.toml", "residuals.csv", REPORT];
-/// Every name that a simulated session may write.
+/// File names of a simulated session.
 const SIMULATION: [&str; 7] = [
     "nominal.urdf",
     "nominal.toml",
@@ -15,12 +15,12 @@ const SIMULATION: [&str; 7] = [
     "held_out.csv",
     "truth.json",
 ];
-/// Names that every project has.
+/// File names of every project.
 pub(super) const PROJECT: [&str; 4] = ["measurements.csv", "joints.csv", "poecal.toml", "README.md"];
-/// Names of its model, of which it has one.
+/// File names of its model, one of which it has.
 const MODELS: [&str; 3] = ["robot.urdf", "robot.toml", "robot.json"];
 
-/// What a folder is to hold.
+/// Contents of an output folder.
 ///
 /// ```
 /// use poecal::io::output::Contents;
@@ -39,13 +39,13 @@ pub enum Contents {
 }
 
 impl Contents {
-    /// Whether a run of any kind may have written a file of this name.
+    /// Whether any kind of run writes files of this name.
     pub(super) fn is_of_any(name: &str) -> bool {
         let all = [Contents::Calibration, Contents::Simulation, Contents::Reproduction, Contents::Project];
         all.into_iter().any(|contents| contents.is_own(name)) || MODELS.contains(&name)
     }
 
-    /// Whether a file of this name is one that may be written, so that one of an earlier run goes.
+    /// Whether these contents may have a file of this name; one of an earlier run is removed.
     #[must_use]
     pub fn is_own(self, name: &str) -> bool {
         match self {
@@ -57,7 +57,7 @@ impl Contents {
     }
 }
 
-/// Whether a reproduction may write a file of this name.
+/// Whether a reproduction may have a file of this name.
 fn is_of_reproduction(name: &str) -> bool {
     let figure = name.strip_prefix("figure-").and_then(|rest| rest.strip_suffix(".svg"));
     ["report.html", "report.md", "results.json"].contains(&name)

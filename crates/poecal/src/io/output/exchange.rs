@@ -1,5 +1,4 @@
-//! New files put in place: a whole folder where that is possible, which nobody can see half done; otherwise file by file, by a
-//! journal that the next run completes.
+//! Puts new files in place: the whole folder atomically where possible, otherwise file by file, with a journal that the next run completes.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -13,7 +12,7 @@ use super::{NewFile, interrupted, leftovers};
 use crate::error::{Error, Result};
 use crate::io::disk::{Disk, Lock};
 
-/// Times that a folder may be exchanged by others while it is being locked.
+/// Most attempts to lock a folder that others exchange.
 const ATTEMPTS: usize = 1000;
 
 impl FolderPlace {
@@ -29,13 +28,13 @@ impl FolderPlace {
         })
     }
 
-    /// Where the new files lie until they are put in place.
+    /// Folder of the new files.
     pub(super) fn new_files(&self) -> std::path::PathBuf {
         self.staging.new_files()
     }
 
-    /// Puts the new files of these names in place, and removes other files of an earlier run. Gives what is to be said. The caller
-    /// holds [`interrupted::undisturbed`].
+    /// Puts new files of these names in place, and removes other files of an earlier run. Returns messages. The caller holds
+    /// [`interrupted::undisturbed`].
     pub(super) fn put(mut self, names: &[String]) -> Result<Vec<String>> {
         let place = self.named.clone();
         let failed = |cause: io::Error| {
@@ -50,12 +49,12 @@ impl FolderPlace {
             }
         }
         let _lock = lock(self.staging.disk.as_ref(), &self.folder).map_err(failed)?;
-        // Whoever was at work before this run had the lock may have been killed at it.
+        // An earlier holder of the lock may have been killed in the middle of an exchange.
         let mut notes = Vec::new();
         leftovers::settle_inside(self.staging.disk.as_ref(), &self.folder, &mut |note| notes.push(note));
         let replaced = self.look_again(failed)?;
         for name in names.iter().filter(|name| replaced.contains(*name)) {
-            // A file whose owner and permissions cannot be kept gets the usual ones.
+            // A file whose owner and permissions cannot be kept gets the default ones.
             let (from, to) = (self.folder.join(name), self.staging.new_files().join(name));
             let _ = self.staging.disk.copy_access(&from, &to);
         }
@@ -66,7 +65,7 @@ impl FolderPlace {
         Ok([notes, more].concat())
     }
 
-    /// What is to be said after a folder's names were synced, or could not be.
+    /// Messages after syncing a folder's names.
     fn synced(&self, folder: Option<&Path>) -> Vec<String> {
         let synced = folder.map_or(Ok(()), |folder| self.staging.disk.sync_folder(folder));
         let note = |error| {
@@ -78,7 +77,7 @@ impl FolderPlace {
         synced.err().map(note).into_iter().collect()
     }
 
-    /// Somebody has made the folder meanwhile: the new files go on from inside it, if they may.
+    /// The folder has been created meanwhile: continues from inside it, if that is allowed.
     fn move_inside(&mut self, failed: impl Fn(io::Error) -> Error) -> Result<()> {
         if self.existing == Existing::Kept {
             let message = "found the output folder made by another run meanwhile, expected it to be new: nothing was changed; choose \
@@ -98,7 +97,7 @@ impl FolderPlace {
         Ok(())
     }
 
-    /// Checks what is in the folder now that nobody else changes it. Gives the names of files that are replaced or go.
+    /// Checks the contents of the locked folder. Returns the names of files to be replaced or removed.
     fn look_again(&self, failed: impl Fn(io::Error) -> Error) -> Result<BTreeSet<String>> {
         let disk = self.staging.disk.as_ref();
         let names = own_names(disk, &self.folder, self.contents).map_err(failed)?;
@@ -107,7 +106,7 @@ impl FolderPlace {
         Ok(names.into_iter().collect())
     }
 
-    /// Exchanges the whole folder; none if that is not possible. Nothing was changed then, nor if it fails.
+    /// Exchanges the whole folder; `None` if that is not possible. Nothing has changed then, nor after an error.
     fn exchange_folders(&mut self) -> io::Result<Option<Vec<String>>> {
         let Some(beside) = self.moved_beside() else { return Ok(None) };
         let (disk, new) = (self.staging.disk.clone(), beside.new_files());
@@ -119,7 +118,7 @@ impl FolderPlace {
         Ok(Some(notes))
     }
 
-    /// The new files in a staging folder beside the folder, if that holds nothing but files of ours.
+    /// The new files in a staging folder beside the folder, if that holds only files of ours.
     fn moved_beside(&self) -> Option<Staging> {
         let disk = self.staging.disk.clone();
         let names = staging::names(disk.as_ref(), &self.folder).ok()?;
@@ -127,7 +126,7 @@ impl FolderPlace {
             Some(name.as_os_str()) == self.staging.folder.file_name()
                 || name.to_str().is_some_and(|name| self.contents.is_own(name))
         };
-        // Whoever works in the folder would find himself in one that is gone.
+        // A process in this folder would find itself in a removed one.
         let is_here = disk.actual(Path::new(".")).is_ok_and(|here| here.starts_with(&self.folder));
         if is_here || !names.iter().all(is_ours) {
             return None;
@@ -140,7 +139,7 @@ impl FolderPlace {
         Some(beside)
     }
 
-    /// Removes the earlier folder, which has this run's staging folder in it and lies where the new one was.
+    /// Removes the earlier folder, which holds this run's staging folder and is now at the place of the new one.
     fn remove_earlier(&mut self, mut beside: Staging) {
         let (disk, earlier) = (self.staging.disk.clone(), beside.new_files());
         interrupted::ended(&self.staging.folder);
@@ -148,13 +147,13 @@ impl FolderPlace {
             self.staging.folder = earlier.join(name);
         }
         self.staging.abandoned = true;
-        // What cannot be removed now, the next run removes.
+        // The next run removes the rest.
         let _ = staging::remove(disk.as_ref(), &self.staging.folder);
         let is_own = |name: &str| self.contents.is_own(name);
         beside.abandoned = leftovers::give_back(disk.as_ref(), &earlier, &self.folder, &is_own).is_err();
     }
 
-    /// Exchanges file after file.
+    /// Exchanges the files one by one.
     fn exchange_files(&mut self, names: &[String], replaced: &BTreeSet<String>) -> Result<Vec<String>> {
         let (disk, staging) = (self.staging.disk.clone(), self.staging.folder.clone());
         let (disk, folder) = (disk.as_ref(), self.folder.clone());
@@ -168,7 +167,7 @@ impl FolderPlace {
         let kept = keep_old(disk, &self.staging, &folder, replaced)
             .and_then(|()| journal.keep(disk, &staging, &journal.back(replaced)));
         if let Err(cause) = kept {
-            // What the journal says must not be done once this has said that nothing was.
+            // After an error here, the journal must not be executed.
             self.staging.abandoned = Journal::end(disk, &staging).is_err();
             return error(format!("the results cannot be put in place ({cause}): nothing was changed"));
         }
@@ -194,12 +193,12 @@ impl FolderPlace {
     }
 }
 
-/// Whether a place is taken.
+/// Whether something is at a path.
 fn is_taken(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::AlreadyExists | io::ErrorKind::DirectoryNotEmpty)
 }
 
-/// Locks the folder that is at a path now: the one before may have been exchanged while its lock was waited for.
+/// Locks the folder at a path; one locked before may have been exchanged meanwhile.
 fn lock(disk: &dyn Disk, folder: &Path) -> io::Result<Lock> {
     for _ in 0..ATTEMPTS {
         let before = disk.look(folder)?;
@@ -211,7 +210,7 @@ fn lock(disk: &dyn Disk, folder: &Path) -> io::Result<Lock> {
     Err(io::ErrorKind::ResourceBusy.into())
 }
 
-/// Keeps the files that will be replaced.
+/// Keeps the files to be replaced.
 fn keep_old(
     disk: &dyn Disk,
     staging: &Staging,

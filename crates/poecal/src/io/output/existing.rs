@@ -1,18 +1,18 @@
-//! What is at a place already, and whether it may go.
+//! Treatment of existing files.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::disk::{Disk, Found, FoundKind};
+use crate::io::disk::{Disk, Object, ObjectKind};
 use crate::io::named_files;
 
-/// By what a report is known.
+/// Text that identifies a report.
 pub(super) const GENERATOR: &str = "<meta name=\"generator\" content=\"poecal ";
-/// Bytes in which that stands.
+/// Number of leading bytes that contain it.
 const HEAD: u64 = 4096;
 
-/// What may become of files that exist.
+/// What may happen to existing files.
 ///
 /// ```
 /// use poecal::io::output::Existing;
@@ -22,27 +22,27 @@ const HEAD: u64 = 4096;
 pub enum Existing {
     /// They stay, and nothing is written.
     Kept,
-    /// They are replaced where poecal wrote them: a folder with a `calibration.json`, a report.
+    /// Those written by poecal are replaced: a folder with a `calibration.json`, a report.
     Own,
     /// They are replaced.
     Replaced,
 }
 
 impl Existing {
-    /// As a switch says it.
+    /// From the state of a switch.
     #[must_use]
     pub fn forced(force: bool) -> Self {
         if force { Existing::Replaced } else { Existing::Kept }
     }
 }
 
-/// A complaint about a place.
+/// An error at a path.
 pub(super) fn refused(path: &Path, message: impl Into<String>) -> Error {
     Error::new(ErrorKind::File, message).in_file(path)
 }
 
-/// What is at a path, if anything is.
-pub(super) fn found(disk: &dyn Disk, path: &Path) -> Result<Option<Found>> {
+/// The object at a path, if there is one.
+pub(super) fn found(disk: &dyn Disk, path: &Path) -> Result<Option<Object>> {
     match disk.look(path) {
         Ok(found) => Ok(Some(found)),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
@@ -53,7 +53,7 @@ pub(super) fn found(disk: &dyn Disk, path: &Path) -> Result<Option<Found>> {
     }
 }
 
-/// The path without links of a place in a folder that exists, where nothing is yet.
+/// Path without links of a new file in an existing folder.
 pub(super) fn new_place(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, PathBuf)> {
     let parent = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -63,7 +63,7 @@ pub(super) fn new_place(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, PathBu
         return Err(refused(path, "found no name at the end of the path, expected one: name the place"));
     };
     match disk.actual(parent) {
-        Ok(actual) if disk.follow(&actual).is_ok_and(|found| found.kind == FoundKind::Folder) => {
+        Ok(actual) if disk.follow(&actual).is_ok_and(|found| found.kind == ObjectKind::Folder) => {
             Ok((actual.clone(), actual.join(name)))
         }
         _ => {
@@ -73,15 +73,15 @@ pub(super) fn new_place(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, PathBu
     }
 }
 
-/// What a link leads to.
-pub(super) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Found)> {
+/// Object that a link leads to.
+pub(super) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Object)> {
     let actual = disk.actual(path).and_then(|actual| Ok((actual.clone(), disk.look(&actual)?)));
     actual.map_err(|error| {
         refused(path, format!("found a link that leads nowhere ({error}), expected one to something: remove it, or choose another"))
     })
 }
 
-/// Refuses a place where an input of the same run lies, whatever path names it.
+/// Refuses to replace an input of the same run, by whatever path.
 pub(super) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {
     match inputs.iter().find(|input| named_files::are_same(disk, input, path)) {
         Some(input) => Err(refused(
@@ -99,7 +99,7 @@ pub(super) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Re
 /// Whether poecal wrote a file.
 pub(super) fn is_of_poecal(disk: &dyn Disk, path: &Path, mark: &str) -> bool {
     let mut head = Vec::new();
-    let is_file = disk.look(path).is_ok_and(|found| found.kind == FoundKind::File);
+    let is_file = disk.look(path).is_ok_and(|found| found.kind == ObjectKind::File);
     let read =
         |file: Box<dyn io::Read + Send>| io::Read::read_to_end(&mut io::Read::take(file, HEAD), &mut head);
     is_file

@@ -1,4 +1,4 @@
-//! One file, whole or not at all; or a stream, as it is.
+//! Output to one file, complete or not at all, or to a stream.
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -7,12 +7,12 @@ use super::existing::{Existing, GENERATOR, found, is_of_poecal, led_to, new_plac
 use super::staging::{self, Staging};
 use super::{NewFile, Page, interrupted, leftovers};
 use crate::error::{Error, Result};
-use crate::io::disk::{self, Disk, FoundKind};
+use crate::io::disk::{self, Disk, ObjectKind};
 
-/// The name of the file in its staging folder, whatever it will be called.
+/// Name of the file in its staging folder.
 const NAME: &str = "file";
 
-/// Whether a path is that of a stream of this process.
+/// Whether a path is a stream of this process.
 fn is_stream(path: &Path) -> bool {
     let number = |path: &str| {
         let number = path.strip_prefix("/dev/fd/").or_else(|| path.strip_prefix("/proc/self/fd/"))?;
@@ -22,7 +22,7 @@ fn is_stream(path: &Path) -> bool {
         .is_some_and(|path| ["/dev/stdout", "/dev/stderr"].contains(&path) || number(path).unwrap_or(false))
 }
 
-/// A file that is about to be written. Nothing has changed yet.
+/// A reserved place for a file. Nothing has changed yet.
 ///
 /// ```
 /// use poecal::io::output::{Existing, FilePlace};
@@ -34,15 +34,15 @@ fn is_stream(path: &Path) -> bool {
 /// # Ok::<(), poecal::Error>(())
 /// ```
 pub struct FilePlace {
-    /// As the user named it.
+    /// As given by the user.
     named: PathBuf,
     way: Way,
 }
 
 enum Way {
-    /// To what is no regular file.
+    /// A stream.
     Stream(PathBuf),
-    /// Beside its place first, then moved there.
+    /// A file, written beside its place and then moved there.
     Staged { path: PathBuf, existing: Existing, replaces: bool, staging: Staging },
 }
 
@@ -52,17 +52,16 @@ impl std::fmt::Debug for FilePlace {
     }
 }
 
-/// A file whose new text is in place, and whose earlier one is still at hand.
+/// A replaced file that can still be restored.
 pub(super) struct Put(Option<(PathBuf, bool, Staging)>);
 
 impl FilePlace {
-    /// Looks whether a file may be written, and makes room for it beside its place. What is no regular file (a device, a pipe) is
-    /// written to as it is; a link is followed. What an interrupted run left there is removed first, and that is said. `inputs` are
-    /// files of this run, which are never replaced.
+    /// Checks that a file may be written, and makes room for it beside its place. Devices and pipes are written directly; links are
+    /// followed. Remains of an interrupted run are removed first, with a message. `inputs` are files of this run, which are never replaced.
     ///
     /// # Errors
-    /// [`ErrorKind::File`](crate::ErrorKind::File) if something is there that `existing` does not let go, if it is an input or a
-    /// folder, or if nothing can be written there.
+    /// [`ErrorKind::File`](crate::ErrorKind::File) if `existing` does not allow replacement, if it is an input or a folder, or if nothing
+    /// can be written there.
     pub fn reserve(
         path: &Path,
         existing: Existing,
@@ -75,23 +74,23 @@ impl FilePlace {
             return Ok(FilePlace { named, way: Way::Stream(path.to_owned()) });
         }
         let there = match found(disk.as_ref(), path)? {
-            Some(found) if found.kind == FoundKind::Link => Some(led_to(disk.as_ref(), path)?),
+            Some(found) if found.kind == ObjectKind::Link => Some(led_to(disk.as_ref(), path)?),
             Some(found) => Some((path.to_owned(), found)),
             None => None,
         };
         let at = there.as_ref().map_or(path, |(actual, _)| actual);
         let kind = there.as_ref().map(|(_, found)| found.kind);
-        if kind.is_none_or(|kind| kind == FoundKind::File) {
+        if kind.is_none_or(|kind| kind == ObjectKind::File) {
             leftovers::settle(disk.as_ref(), &new_place(disk.as_ref(), at)?.1, say);
         }
         match kind {
-            Some(FoundKind::Folder) => {
+            Some(ObjectKind::Folder) => {
                 return Err(refused(path, "found a directory, expected a file to write: name the file"));
             }
-            Some(FoundKind::Other | FoundKind::Link) => {
+            Some(ObjectKind::Other | ObjectKind::Link) => {
                 return Ok(FilePlace { named, way: Way::Stream(at.to_owned()) });
             }
-            Some(FoundKind::File) => {
+            Some(ObjectKind::File) => {
                 refuse_input(disk.as_ref(), path, inputs)?;
                 if !may_go(disk.as_ref(), at, existing) {
                     return Err(refused(path, IN_THE_WAY));
@@ -106,23 +105,23 @@ impl FilePlace {
         Ok(FilePlace { named, way: Way::Staged { path: place, existing, replaces, staging } })
     }
 
-    /// Writes the file, of pieces that follow each other.
+    /// Writes the file from consecutive pieces.
     ///
     /// # Errors
-    /// [`ErrorKind::File`](crate::ErrorKind::File) if it cannot be written; then nothing was changed.
+    /// [`ErrorKind::File`](crate::ErrorKind::File) if it cannot be written; then nothing has changed.
     pub fn write(mut self, page: Page) -> Result<()> {
         self.stage(page)?;
         let _undisturbed = interrupted::undisturbed();
         self.put().map(Put::finish)
     }
 
-    /// Writes the new text beside its place; a stream gets it at once.
+    /// Writes the new text beside its place, or to the stream.
     pub(super) fn stage(&mut self, page: Page) -> Result<()> {
         let staged = match &mut self.way {
             Way::Stream(path) => disk::here().stream(path).and_then(|mut out| {
                 let written = page.iter().try_for_each(|piece| out.write_all(piece.as_bytes()));
                 match written.and_then(|()| out.sync()) {
-                    // A reader that has gone away is no error.
+                    // A closed pipe is no error.
                     Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
                     written => written,
                 }
@@ -143,7 +142,7 @@ impl FilePlace {
             return Err(refused(&self.named, IN_THE_WAY));
         }
         let moved = if replaces {
-            // A file whose owner and permissions cannot be kept gets the usual ones.
+            // A file whose owner and permissions cannot be kept gets the default ones.
             let _ = disk.copy_access(&path, &new);
             let kept =
                 disk.create_folder(&old).and_then(|()| staging::keep(disk.as_ref(), &path, &old.join(NAME)));
@@ -163,7 +162,7 @@ impl FilePlace {
 }
 
 impl Put {
-    /// Takes the new text away again, and puts the earlier one back; adds to an error if that fails too.
+    /// Restores the earlier text; extends an error if that fails too.
     pub(super) fn take_back(self, error: Error) -> Error {
         let Some((path, replaces, staging)) = self.0 else { return error };
         let disk = staging.disk.as_ref();
@@ -186,13 +185,13 @@ impl Put {
         if let Some((path, _, staging)) = self.0
             && let Some(parent) = path.parent()
         {
-            // It is in place, whatever becomes of it if power fails now.
+            // The file is in place; a sync failure changes nothing about that.
             let _ = staging.disk.sync_folder(parent);
         }
     }
 }
 
-/// What is said of a file that must stay.
+/// Message for a file that must not be replaced.
 const IN_THE_WAY: &str =
     "found this file, expected none: choose another, or write over this one with --force";
 

@@ -1,4 +1,4 @@
-//! What a signal may not cut short, and what it leaves to clean up.
+//! Sections that a signal must not interrupt, and staging folders to be removed after one.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -21,12 +21,12 @@ pub(super) fn ended(staging: &Path) {
     live().remove(staging);
 }
 
-/// Lets no [`clean_up`](super::clean_up) begin while it is held.
+/// While held, no [`clean_up`](super::clean_up) begins.
 pub(super) fn undisturbed() -> RwLockReadGuard<'static, ()> {
     EXCHANGE.read().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Waits for the end of what may not be cut short, and lets nothing such begin again. Gives the staging folders that there are.
+/// Waits for the end of uninterruptible sections, and blocks new ones. Returns the staging folders.
 pub(super) fn at_last() -> Vec<PathBuf> {
     std::mem::forget(EXCHANGE.write().unwrap_or_else(PoisonError::into_inner));
     live().iter().cloned().collect()

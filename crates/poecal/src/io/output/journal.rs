@@ -1,4 +1,4 @@
-//! What is left to do of an exchange of files, kept on the disk, so that the next run can do it.
+//! Journal of an exchange of files: remaining steps on the disk, so that the next run can complete them.
 
 use std::collections::BTreeSet;
 use std::io::{self, Read as _, Write as _};
@@ -6,28 +6,28 @@ use std::path::Path;
 
 use super::contents::Contents;
 use super::staging::{JOURNAL, JOURNAL_BACK, NEW, OLD, UNFINISHED_JOURNAL, gone};
-use crate::io::disk::{Disk, FoundKind};
+use crate::io::disk::{Disk, ObjectKind};
 use crate::io::named_files;
 
-/// The first line, with the version of the form.
+/// First line, with the version of the format.
 const HEAD: &str = "poecal-journal-1";
-/// The last line, without which the text is not whole.
+/// Last line, without which the text is incomplete.
 const END: &str = "end";
-/// Bytes that a journal has at most.
+/// Largest journal, bytes.
 const LONGEST: u64 = 1 << 20;
 
-/// One step of an exchange. Each can be done again when it is done.
+/// One step of an exchange. Steps are idempotent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
-    /// The file goes from the folder of the new files to its place, over another one.
+    /// Moves a file from the new folder to its place, replacing another one.
     Put(String),
-    /// The file goes from the folder of the new files to its place, where nothing is.
+    /// Moves a file from the new folder to its place, which is empty.
     Add(String),
-    /// The file goes from the folder of the old files back to its place.
+    /// Moves a file from the old folder back to its place.
     Back(String),
-    /// The file in place goes.
+    /// Removes a file.
     Remove(String),
-    /// The file in place goes if it was added.
+    /// Removes a file if it was added.
     Take(String),
 }
 
@@ -47,12 +47,12 @@ impl Journal {
         format!("{HEAD}\n{}{END}\n", self.0.iter().map(line).collect::<String>())
     }
 
-    /// None if the text is not whole, or names a file outside the folder.
+    /// `None` if the text is incomplete, or names a file outside the folder.
     fn parse(text: &str) -> Option<Self> {
         let lines = text.strip_prefix(HEAD)?.strip_prefix('\n')?.strip_suffix('\n')?.strip_suffix(END)?;
         let step = |line: &str| {
             let (word, name) = line.split_once(' ')?;
-            // Nothing else was ever to be written, whoever wrote the journal.
+            // Other names were never to be written.
             let name = Contents::is_of_any(name).then(|| name.to_owned())?;
             match word {
                 "put" => Some(Step::Put(name)),
@@ -66,7 +66,7 @@ impl Journal {
         lines.lines().map(step).collect::<Option<_>>().map(Journal)
     }
 
-    /// Keeps the journal in a staging folder, and what undoes it.
+    /// Stores the journal in a staging folder, with the one that undoes it.
     pub(super) fn keep(&self, disk: &dyn Disk, staging: &Path, back: &Journal) -> io::Result<()> {
         for (journal, name) in [(back, JOURNAL_BACK), (self, UNFINISHED_JOURNAL)] {
             let mut file = disk.create(&staging.join(name))?;
@@ -77,16 +77,16 @@ impl Journal {
         disk.sync_folder(staging)
     }
 
-    /// Keeps what undoes the journal instead.
+    /// Replaces the journal by the one that undoes it.
     pub(super) fn turn_back(disk: &dyn Disk, staging: &Path) -> io::Result<()> {
         disk.rename(&staging.join(JOURNAL_BACK), &staging.join(JOURNAL))?;
         disk.sync_folder(staging)
     }
 
-    /// The journal that a staging folder keeps, if it keeps one.
+    /// The journal in a staging folder, if there is one.
     ///
     /// # Errors
-    /// Those of the disk; [`io::ErrorKind::InvalidData`] if it is no journal.
+    /// Errors of the disk; [`io::ErrorKind::InvalidData`] if it is no journal.
     pub(super) fn kept(disk: &dyn Disk, staging: &Path) -> io::Result<Option<Self>> {
         let path = staging.join(JOURNAL);
         if !is_file(disk, &path)? {
@@ -97,8 +97,8 @@ impl Journal {
         Journal::parse(&text).ok_or_else(|| io::ErrorKind::InvalidData.into()).map(Some)
     }
 
-    /// Does each step that is not done, in a folder. Where a place does not hold what it held when the journal was written, somebody
-    /// else has changed it: that is an error, or for one who does it `again` no matter, and it stays.
+    /// Executes the remaining steps in a folder. A place that someone has changed since the journal was written is an error, or, on a
+    /// repeated (`again`) execution, left as it is.
     pub(super) fn carry_out(
         &self,
         disk: &dyn Disk,
@@ -142,7 +142,7 @@ impl Journal {
         Ok(())
     }
 
-    /// What undoes the journal, however much of it is done; files of the names `replaced` have their earlier ones kept.
+    /// The journal that undoes this one, however far it was executed; the earlier files named in `replaced` are kept.
     pub(super) fn back(&self, replaced: &BTreeSet<String>) -> Self {
         let added = self.0.iter().filter_map(|step| match step {
             Step::Add(name) => Some(Step::Take(name.clone())),
@@ -151,13 +151,13 @@ impl Journal {
         Journal(added.chain(replaced.iter().cloned().map(Step::Back)).collect())
     }
 
-    /// Ends an exchange: nothing is left to do.
+    /// Ends an exchange.
     pub(super) fn end(disk: &dyn Disk, staging: &Path) -> io::Result<()> {
         gone(disk.remove_file(&staging.join(JOURNAL)))
     }
 }
 
-/// Whether there is a file that is not the one that was kept.
+/// Whether the file is another one than the kept one.
 fn is_changed(disk: &dyn Disk, kept: &Path, place: &Path) -> io::Result<bool> {
     if !is_file(disk, place)? {
         return Ok(false);
@@ -168,7 +168,7 @@ fn is_changed(disk: &dyn Disk, kept: &Path, place: &Path) -> io::Result<bool> {
     if named_files::are_same(disk, kept, place) {
         return Ok(false);
     }
-    // Where there are no second names, it is a copy.
+    // Without hard links it is a copy.
     let (mut kept, mut place) = (disk.open(kept)?, disk.open(place)?);
     let (mut one, mut other) = (Vec::new(), Vec::new());
     kept.read_to_end(&mut one)?;
@@ -176,10 +176,10 @@ fn is_changed(disk: &dyn Disk, kept: &Path, place: &Path) -> io::Result<bool> {
     Ok(one != other)
 }
 
-/// Whether a file is there.
+/// Whether there is a file.
 fn is_file(disk: &dyn Disk, path: &Path) -> io::Result<bool> {
     match disk.look(path) {
-        Ok(found) => Ok(found.kind == FoundKind::File),
+        Ok(found) => Ok(found.kind == ObjectKind::File),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
         Err(error) => Err(error),
     }

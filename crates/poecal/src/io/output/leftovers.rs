@@ -1,4 +1,4 @@
-//! What interrupted runs left: exchanges are completed, the rest is removed, and both are said.
+//! Remains of interrupted runs: exchanges are completed, other files removed, with messages.
 
 use std::ffi::OsStr;
 use std::io;
@@ -7,15 +7,15 @@ use std::path::{Path, PathBuf};
 use super::contents::Contents;
 use super::journal::Journal;
 use super::{interrupted, staging};
-use crate::io::disk::{Disk, FoundKind, Lock, SystemDisk};
+use crate::io::disk::{Disk, Lock, ObjectKind, SystemDisk};
 
-/// Another thread may be writing into a folder while it is removed.
+/// Attempts to remove a folder that another thread may be writing into.
 const ATTEMPTS: usize = 100;
 
-/// Settles what lies at a place without links, beside it and inside if it is a folder. Says what was done, a sentence each.
+/// Settles remains at a path without links: beside it, and inside if it is a folder. Returns messages.
 pub(super) fn settle(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String)) {
-    let is_folder = disk.look(place).is_ok_and(|found| found.kind == FoundKind::Folder);
-    // What lies beside it may have to go inside first.
+    let is_folder = disk.look(place).is_ok_and(|found| found.kind == ObjectKind::Folder);
+    // Remains beside a folder may belong inside.
     if let (Some(parent), Some(name)) = (place.parent(), place.file_name()) {
         for (folder, lock) in left(disk, parent, &staging::prefix(Some(name))) {
             let target = is_folder.then_some(place);
@@ -23,7 +23,7 @@ pub(super) fn settle(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String))
             drop(lock);
         }
     }
-    // Nobody puts files in place meanwhile.
+    // Locked, so that no one puts files in place meanwhile.
     if is_folder
         && !left(disk, place, &staging::prefix(None)).is_empty()
         && let Ok(_locked) = disk.lock_folder(place)
@@ -32,14 +32,14 @@ pub(super) fn settle(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String))
     }
 }
 
-/// Settles what lies inside a folder that is locked.
+/// Settles remains inside a locked folder.
 pub(super) fn settle_inside(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String)) {
     for (folder, _lock) in left(disk, place, &staging::prefix(None)) {
         say(told(&folder, place, settle_one(disk, &folder, place)));
     }
 }
 
-/// A folder that cannot be listed cannot be written to either, which is then said.
+/// Staging folders in a folder. One that cannot be listed cannot be written to either, which is reported then.
 fn left(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> Vec<(PathBuf, Lock)> {
     staging::left(disk, parent, prefix).unwrap_or_default()
 }
@@ -64,7 +64,7 @@ fn unsettled(staging: &Path, error: &io::Error) -> String {
     )
 }
 
-/// Settles what lies beside a place; `target` is the folder there, which may have been exchanged, if there is one.
+/// Settles remains beside a path; `target` is the folder there, if there is one, which may have been exchanged.
 fn settle_beside(disk: &dyn Disk, staging: &Path, target: Option<&Path>) -> io::Result<()> {
     if let Some(target) = target {
         give_back(disk, &staging.join(staging::NEW), target, &Contents::is_of_any)?;
@@ -72,7 +72,7 @@ fn settle_beside(disk: &dyn Disk, staging: &Path, target: Option<&Path>) -> io::
     staging::remove(disk, staging)
 }
 
-/// Settles what lies inside a folder; whether there was something to complete.
+/// Settles remains inside a folder; true if an exchange was completed.
 fn settle_one(disk: &dyn Disk, staging: &Path, target: &Path) -> io::Result<bool> {
     let journal = Journal::kept(disk, staging)?;
     if let Some(journal) = &journal {
@@ -83,7 +83,7 @@ fn settle_one(disk: &dyn Disk, staging: &Path, target: &Path) -> io::Result<bool
     Ok(journal.is_some())
 }
 
-/// Removes a folder that has been exchanged for `target`, or was to be: own files go, all else moves to the target.
+/// Removes a folder that was, or was to be, exchanged for `target`: files of ours are removed, others moved to the target.
 pub(super) fn give_back(
     disk: &dyn Disk,
     folder: &Path,
@@ -94,8 +94,8 @@ pub(super) fn give_back(
     for name in &names {
         let path = folder.join(name);
         match disk.look(&path)?.kind {
-            FoundKind::File if name.to_str().is_some_and(is_own) => disk.remove_file(&path)?,
-            FoundKind::File | FoundKind::Folder | FoundKind::Link | FoundKind::Other => {
+            ObjectKind::File if name.to_str().is_some_and(is_own) => disk.remove_file(&path)?,
+            ObjectKind::File | ObjectKind::Folder | ObjectKind::Link | ObjectKind::Other => {
                 disk.rename_new(&path, &target.join(name))?
             }
         }
@@ -106,8 +106,8 @@ pub(super) fn give_back(
     }
 }
 
-/// Removes what runs of this process have written and not yet put in place. Results that are being put in place are waited for, and
-/// none are afterwards: for a program that was asked to end, and ends then.
+/// Removes staged files of this process after waiting for those being put in place, and blocks further ones: for a program that is about to
+/// end.
 pub fn clean_up() {
     for folder in interrupted::at_last() {
         for _ in 0..ATTEMPTS {

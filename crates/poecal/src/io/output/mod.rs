@@ -1,8 +1,8 @@
-//! Output files and folders: written whole or not at all, and every robot model in them proven equal to the one it is of.
+//! Output files and folders, written completely or not at all, with every robot model verified.
 //!
-//! A place is reserved before the work ([`FolderPlace`], [`FilePlace`]). Files go into a staging folder (`staging.rs`), are read
-//! back from there and put in place together (`exchange.rs`, `journal.rs`). What an interrupted run leaves, the next run settles
-//! (`leftovers.rs`), or a signal's handler at once ([`clean_up`]).
+//! A place is reserved before the work ([`FolderPlace`], [`FilePlace`]). Files are written to a staging folder (`staging.rs`), read back
+//! and put in place together (`exchange.rs`, `journal.rs`). Remains of an interrupted run are settled by the next one (`leftovers.rs`), or
+//! by a signal handler ([`clean_up`]).
 
 mod calibration;
 mod contents;
@@ -26,7 +26,7 @@ pub use leftovers::clean_up;
 pub use place::FolderPlace;
 pub use project::{Project, write_project};
 pub use reproduction::write_reproduction;
-pub use simulation::{Session, write_simulation};
+pub use simulation::{SimulatedSession, write_simulation};
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -34,18 +34,18 @@ use std::path::{Path, PathBuf};
 
 use super::model::{Model, ModelSource};
 use super::proof::{Difference, Reference};
-use super::residuals::Rows;
+use super::residuals::ResidualRows;
 use super::robot_toml;
 use super::urdf::{self, ChainSelection};
 use crate::error::{Error, ErrorKind, Result};
 use crate::robot::Robot;
 
-/// Configurations on which written models are compared with their robot.
+/// Number of configurations in which written models are compared with their robot.
 const CONFIGURATIONS: usize = 1000;
-/// Largest difference allowed, metres and radians.
+/// Largest allowed difference, metres and radians.
 const TOLERANCE: f64 = 1e-9;
 
-/// What was written.
+/// Summary of written files.
 ///
 /// ```
 /// # use poecal::io::{Difference, output::Written};
@@ -58,27 +58,27 @@ pub struct Written {
     pub folder: PathBuf,
     /// Names of the files in it.
     pub files: Vec<String>,
-    /// Largest difference between a robot and any of its models read back.
+    /// Largest difference of a model read back from its robot.
     pub largest: Difference,
-    /// What had to be added or left out, a sentence each.
+    /// Additions and omissions, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// A page in pieces that follow each other, so that those which never change need not be copied.
+/// A page in consecutive pieces, so that constant ones need not be copied.
 pub type Page = Vec<Cow<'static, str>>;
 
-/// What a file will hold.
+/// Contents of a file.
 enum Content<'a> {
     Text(Page),
-    /// Written some at a time: there may be many.
-    Rows(Rows<'a>),
+    /// Rows, written in parts: there may be many.
+    Rows(ResidualRows<'a>),
 }
 
 /// A file to be written.
 struct NewFile<'a> {
     name: String,
     content: Content<'a>,
-    /// The robot that the file is a model of, and the link that is its tip there.
+    /// The robot of a model file, and the name of its tip link.
     model_of: Option<(&'a Robot, String)>,
 }
 
@@ -91,7 +91,7 @@ impl<'a> NewFile<'a> {
         NewFile { name: name.to_owned(), content: Content::Text(page), model_of: None }
     }
 
-    fn of_rows(name: &str, rows: Rows<'a>) -> Self {
+    fn of_rows(name: &str, rows: ResidualRows<'a>) -> Self {
         NewFile { name: name.to_owned(), content: Content::Rows(rows), model_of: None }
     }
 
@@ -110,7 +110,7 @@ impl<'a> NewFile<'a> {
         }
     }
 
-    /// The robot that the file holds, read back from the folder where it lies for now.
+    /// The robot of the file, read back from its staging folder.
     fn read_back(&self, robot: &Robot, tip_link: &str, folder: &Path, final_folder: &Path) -> Result<Robot> {
         let selection = if self.name.ends_with(".urdf") {
             let (base_link, tip_link) = (Some(robot.base_name.clone()), Some(tip_link.to_owned()));
@@ -123,7 +123,7 @@ impl<'a> NewFile<'a> {
     }
 }
 
-/// Compares the models among the files, read back, with their robots; gives the largest difference.
+/// Compares the models among the files with their robots; returns the largest difference.
 fn prove(files: &[NewFile], folder: &Path, final_folder: &Path) -> Result<Difference> {
     let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
     let mut known: Option<Reference> = None;
@@ -151,8 +151,8 @@ fn prove(files: &[NewFile], folder: &Path, final_folder: &Path) -> Result<Differ
     Ok(largest)
 }
 
-/// A robot in the form that `model` was read from: the same URDF text with other values, or else a TOML model and a new URDF.
-/// Appends what had to be added or left out to `notes`.
+/// A robot in the form of `model`: the same URDF text with other values, or a TOML model and a new URDF. Additions and omissions are
+/// appended to `notes`.
 fn robot_files<'a>(
     stem: &str,
     model: &Model,
@@ -176,8 +176,8 @@ fn robot_files<'a>(
     }
 }
 
-/// Writes the files to their staging folder, proves the models among them, and only then puts all in place, `elsewhere` too. Own
-/// files of an earlier run that this one does not write go, so that a folder never mixes two runs.
+/// Writes the files to their staging folder, verifies the models, and puts all in place, also `elsewhere`. Other files of an earlier run
+/// are removed, so that a folder never mixes two runs.
 fn write_files(
     mut place: FolderPlace,
     files: &[NewFile],

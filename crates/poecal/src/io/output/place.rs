@@ -1,4 +1,4 @@
-//! Where results go: what may be there, and what of it may be replaced. Asked before the work begins.
+//! Output folders: checks of existing files before the work begins.
 
 use std::ffi::OsStr;
 use std::io;
@@ -9,9 +9,9 @@ use super::existing::{Existing, found, is_of_poecal, led_to, new_place, refuse_i
 use super::staging::{self, Staging};
 use super::{FilePlace, leftovers};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::disk::{self, Disk, FoundKind};
+use crate::io::disk::{self, Disk, ObjectKind};
 
-/// A folder in which files are about to be written. Nothing in it has changed yet, and nothing will unless all is written.
+/// A reserved place for files. Nothing in it has changed yet, and nothing will unless all is written.
 ///
 /// ```
 /// use poecal::io::output::{Contents, Existing, FolderPlace};
@@ -22,13 +22,13 @@ use crate::io::disk::{self, Disk, FoundKind};
 /// # Ok::<(), poecal::Error>(())
 /// ```
 pub struct FolderPlace {
-    /// As the user named it.
+    /// As given by the user.
     pub(super) named: PathBuf,
     /// Without links.
     pub(super) folder: PathBuf,
     pub(super) contents: Contents,
     pub(super) existing: Existing,
-    /// Whether the folder was there.
+    /// Whether the folder existed.
     pub(super) was_there: bool,
     pub(super) staging: Staging,
 }
@@ -40,13 +40,12 @@ impl std::fmt::Debug for FolderPlace {
 }
 
 impl FolderPlace {
-    /// Looks whether files may be written to a folder, and makes room for them: inside the folder, or beside it if it is new. What an
-    /// interrupted run left there is completed or removed first, and that is said, a sentence each. `inputs` are files of this run,
-    /// which are never replaced.
+    /// Checks that files may be written to a folder, and makes room for them: inside, or beside a new folder. Remains of an interrupted run
+    /// are completed or removed first, with messages. `inputs` are files of this run, which are never replaced.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] if the folder holds something and `existing` does not let it go, if something there is no regular file or
-    /// an input, or if the folder cannot be written to.
+    /// [`ErrorKind::File`] if the folder is not empty and `existing` does not allow replacement, if something there is no regular file or
+    /// is an input, or if the folder cannot be written to.
     pub fn reserve(
         folder: &Path,
         contents: Contents,
@@ -57,7 +56,7 @@ impl FolderPlace {
         let disk = disk::here();
         let cannot = |error: io::Error| unwritable(folder, &error);
         let there = match found(disk.as_ref(), folder)? {
-            Some(found) if found.kind == FoundKind::Link => Some(led_to(disk.as_ref(), folder)?),
+            Some(found) if found.kind == ObjectKind::Link => Some(led_to(disk.as_ref(), folder)?),
             Some(found) => Some((disk.actual(folder).map_err(cannot)?, found)),
             None => None,
         };
@@ -66,7 +65,7 @@ impl FolderPlace {
                 let (parent, actual) = new_place(disk.as_ref(), folder)?;
                 (parent, staging::prefix(actual.file_name()), actual)
             }
-            Some((actual, found)) if found.kind == FoundKind::Folder => {
+            Some((actual, found)) if found.kind == ObjectKind::Folder => {
                 (actual.clone(), staging::prefix(None), actual.clone())
             }
             Some(_) => {
@@ -87,10 +86,10 @@ impl FolderPlace {
         Ok(FolderPlace { named, folder: actual, contents, existing, was_there, staging })
     }
 
-    /// The place of a report that does not lie among these results; none if its path is that among them.
+    /// The place of a report outside these results; `None` if its path is that among them.
     ///
     /// # Errors
-    /// As [`FilePlace::reserve`], and if it is the folder itself or has the name of another result in it.
+    /// As [`FilePlace::reserve`], and if it is the folder itself or the path of another result.
     pub fn reserve_report(
         &self,
         path: &Path,
@@ -129,13 +128,13 @@ pub(super) fn unwritable(folder: &Path, error: &io::Error) -> Error {
     refused(folder, message)
 }
 
-/// Names in a folder that are the contents' own.
+/// Names in a folder that belong to the contents.
 pub(super) fn own_names(disk: &dyn Disk, folder: &Path, contents: Contents) -> io::Result<Vec<String>> {
     let names = staging::names(disk, folder)?.into_iter().filter_map(|name| name.into_string().ok());
     Ok(names.filter(|name| contents.is_own(name)).collect())
 }
 
-/// Refuses a folder whose files must stay.
+/// Refuses a folder whose files must not be replaced.
 pub(super) fn check_existing(
     disk: &dyn Disk,
     folder: &Path,
@@ -169,14 +168,14 @@ pub(super) fn check_existing(
     }
 }
 
-/// Refuses to replace what is no regular file, or an input.
+/// Refuses to replace an input, or an object that is no regular file.
 pub(super) fn check_own(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {
     let what = match found(disk, path)?.map(|found| found.kind) {
         None => return Ok(()),
-        Some(FoundKind::File) => return refuse_input(disk, path, inputs),
-        Some(FoundKind::Folder) => "a directory",
-        Some(FoundKind::Link) => "a link",
-        Some(FoundKind::Other) => "a device or a pipe",
+        Some(ObjectKind::File) => return refuse_input(disk, path, inputs),
+        Some(ObjectKind::Folder) => "a directory",
+        Some(ObjectKind::Link) => "a link",
+        Some(ObjectKind::Other) => "a device or a pipe",
     };
     let message = format!(
         "found {what}, expected a file or nothing: move it away, or choose another folder with --out"
@@ -184,10 +183,10 @@ pub(super) fn check_own(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Resul
     Err(refused(path, message))
 }
 
-/// By what a `calibration.json` is known.
+/// Text that identifies a `calibration.json`.
 const SCHEMA: &str = "\"schema\": \"poecal-calibration-";
 
-/// The error of a file that is in the way.
+/// The error for a file in the way.
 pub(super) fn taken(path: &Path) -> Error {
     let message = "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out";
     Error::new(ErrorKind::File, message).in_file(path)

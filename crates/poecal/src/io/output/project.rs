@@ -1,4 +1,4 @@
-//! A folder to start a calibration from.
+//! Project folders, to begin a calibration with.
 
 use super::place::taken;
 use super::{FolderPlace, NewFile, Written, write_files};
@@ -14,7 +14,7 @@ use crate::text::visible;
 const SETTINGS: &str = include_str!("project/poecal.toml");
 const README: &str = include_str!("project/README.md");
 
-/// What a project folder is to hold.
+/// Contents of a project folder.
 ///
 /// ```no_run
 /// use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project};
@@ -32,11 +32,11 @@ const README: &str = include_str!("project/README.md");
 pub struct Project<'a> {
     /// The robot's model.
     pub model: &'a Model,
-    /// The chain that was selected in it.
+    /// Selected chain of the model.
     pub chain: &'a ChainSelection,
-    /// What the device sees.
+    /// Kind of the measurements.
     pub kind: Kind,
-    /// Number of configurations to suggest.
+    /// Number of suggested configurations.
     pub count: usize,
     /// Seed of their choice.
     pub seed: u64,
@@ -53,7 +53,7 @@ impl Project<'_> {
 
     fn files(&self) -> Result<Vec<NewFile<'static>>> {
         let robot = &self.model.robot;
-        // As it is, comments and all: not written anew from what was understood.
+        // Copied with its comments, not written from what was read.
         let model = source_text::read(&self.model.path, "a robot model")?;
         Ok(vec![
             NewFile::new(self.model_name(), model),
@@ -64,7 +64,7 @@ impl Project<'_> {
         ])
     }
 
-    /// A text with the project's own words in it.
+    /// A text with the project's names filled in.
     fn filled(&self, text: &str) -> String {
         let links = [("base_link", &self.chain.base_link), ("tip_link", &self.chain.tip_link)];
         let line = |(key, link): &(&str, &Option<String>)| match link {
@@ -93,14 +93,12 @@ impl Project<'_> {
 const ROTATION_NOISE: &str =
     "# And of the measured rotation about each axis.\n#sigma_rotation = \"0.01deg\"\n\n";
 
-/// Writes a project folder: the model as it is, an empty measurement file with this robot's columns, configurations to measure,
-/// settings for `poecal calibrate`, and what to do with them. The folder may exist; files in it are never replaced, since somebody
-/// may have filled them in.
+/// Writes a project folder: the model, an empty measurement file with this robot's columns, configurations to measure, settings for `poecal
+/// calibrate`, and instructions. The folder may exist; files in it are never replaced.
 ///
 /// # Errors
 /// [`ErrorKind::File`](crate::ErrorKind::File) if one of the files exists or cannot be written;
-/// [`ErrorKind::Model`](crate::ErrorKind::Model) if a joint has the name of a measured
-/// column. Nothing is left behind then.
+/// [`ErrorKind::Model`](crate::ErrorKind::Model) if a joint has the name of a measured column. Nothing is left behind then.
 pub fn write_project(place: FolderPlace, project: &Project) -> Result<Written> {
     let model = place.named.join(project.model_name());
     if disk::here().look(&model).is_ok() {

@@ -1,4 +1,4 @@
-//! The report of a reproduction.
+//! Output of a reproduction.
 
 use super::{FolderPlace, NewFile, Written, write_files};
 use crate::error::Result;

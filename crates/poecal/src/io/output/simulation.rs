@@ -1,4 +1,4 @@
-//! A simulated session as files: both robots, the measurements and the truth.
+//! Output of a simulated session: both robots, the measurements and the truth.
 
 use serde::Serialize;
 
@@ -13,23 +13,23 @@ use crate::simulate::{Kind, Simulated, Simulation};
 /// Version word of `truth.json`.
 const SCHEMA: &str = "poecal-truth-1";
 
-/// A simulated session and how it was made.
+/// A simulated session and its origin.
 #[derive(Clone, Copy, Debug)]
-pub struct Session<'a> {
-    /// What was simulated.
+pub struct SimulatedSession<'a> {
+    /// Options.
     pub simulation: &'a Simulation,
-    /// What the device saw.
+    /// Kind of the measurements.
     pub kind: Kind,
-    /// What came out.
+    /// Result.
     pub made: &'a Simulated,
-    /// Further rows free of noise.
+    /// Further rows without noise.
     pub held_out: Option<&'a Dataset>,
-    /// The command that makes the same session, for the record.
+    /// The command that makes the same session.
     pub command: &'a str,
 }
 
-/// What the measurements of a simulated session hide (`truth.json`). Lengths in metres and angles in radians unless a key says
-/// otherwise; "nominal" is the model given, the other entries are of the robot that was measured.
+/// Truth of a simulated session (`truth.json`). Lengths in metres and angles in radians unless a key says otherwise; "nominal" is the given
+/// model, the other entries are of the actual robot.
 #[derive(Serialize)]
 struct TruthFile {
     schema: String,
@@ -60,8 +60,8 @@ impl Magnitudes {
 }
 
 impl TruthFile {
-    fn new(session: &Session) -> Self {
-        let Session { simulation, made, .. } = session;
+    fn new(session: &SimulatedSession) -> Self {
+        let SimulatedSession { simulation, made, .. } = session;
         TruthFile {
             schema: SCHEMA.to_owned(),
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -90,14 +90,14 @@ impl TruthFile {
     }
 }
 
-/// Writes a simulated session whole or not at all: `nominal` and `actual` model, `measurements.csv`, `held_out.csv` if there are
-/// such rows, and `truth.json`. Models are read back and compared with their robots on 1,000 configurations.
+/// Writes a simulated session, completely or not at all: `nominal` and `actual` model, `measurements.csv`, `held_out.csv` if there are such
+/// rows, and `truth.json`. Models are read back and compared with their robots in 1,000 configurations.
 ///
 /// # Errors
 /// [`ErrorKind::File`] if something cannot be written; [`ErrorKind::Export`] if a model read back differs by more than 1e-9 m or
 /// rad. Nothing is left behind then.
-pub fn write_simulation(place: FolderPlace, model: &Model, session: &Session) -> Result<Written> {
-    let Session { simulation, made, command, .. } = session;
+pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSession) -> Result<Written> {
+    let SimulatedSession { simulation, made, command, .. } = session;
     let noise =
         Noise { position_m: simulation.noise_position_m, rotation_rad: simulation.noise_rotation_rad };
     let exact = Noise { position_m: 0.0, rotation_rad: 0.0 };

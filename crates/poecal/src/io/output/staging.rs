@@ -1,7 +1,7 @@
-//! Staging folders: where files are written and proven before they go to their place.
+//! Staging folders: files are written and verified there before they are put in place.
 //!
-//! A staging folder holds `lock`, which its run has locked, `new` with the new files, and while files are exchanged `old` with those
-//! that they replace and a journal. One that nobody has locked is what an interrupted run left.
+//! A staging folder holds `lock`, which its run has locked, `new` with the new files, and during an exchange `old` with the replaced files
+//! and a journal. Without a locked `lock` it remains from an interrupted run.
 
 use std::ffi::{OsStr, OsString};
 use std::io::{self, Write as _};
@@ -9,38 +9,38 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{NewFile, interrupted};
-use crate::io::disk::{Disk, FoundKind, Lock, Output};
+use crate::io::disk::{Disk, Lock, ObjectKind, Output};
 
-/// The folder of new files in a staging folder.
+/// Folder of new files in a staging folder.
 pub(super) const NEW: &str = "new";
-/// The folder of the files that are replaced.
+/// Folder of replaced files.
 pub(super) const OLD: &str = "old";
 const LOCK: &str = "lock";
-/// The journal of an exchange.
+/// Journal of an exchange.
 pub(super) const JOURNAL: &str = "journal";
-/// The name under which it is written.
+/// Temporary name of the journal.
 pub(super) const UNFINISHED_JOURNAL: &str = "journal.unfinished";
-/// The name of the journal that takes its place where the exchange fails: it lies ready, since a full disk may be what fails.
+/// Journal that undoes the exchange, written in advance since the disk may become full.
 pub(super) const JOURNAL_BACK: &str = "journal.back";
 const JOURNALS: [&str; 3] = [UNFINISHED_JOURNAL, JOURNAL, JOURNAL_BACK];
-/// What the name of a staging folder has before the numbers of its process and of itself.
+/// Prefix of a staging folder's name, before its process and own number.
 const UNFINISHED: &str = ".poecal-unfinished-";
-/// Names that are taken which are passed over.
+/// Most attempts to find a free name.
 const ATTEMPTS: usize = 1000;
 
 /// A staging folder of this run, removed when dropped.
 pub(super) struct Staging {
     pub(super) disk: Arc<dyn Disk>,
     pub(super) folder: PathBuf,
-    /// None where the system has no locks.
+    /// `None` where the system has no locks.
     _lock: Option<Lock>,
-    /// What is written and not yet synced.
+    /// Written and not yet synced files.
     unsynced: Vec<Box<dyn Output>>,
-    /// Whether an exchange is left to the next run.
+    /// Whether the next run has to complete an exchange.
     pub(super) abandoned: bool,
 }
 
-/// What the names of a place's staging folders begin with: inside the place if that is a folder, or beside it.
+/// Prefix of the names of a place's staging folders: inside a folder, or beside a file.
 pub(super) fn prefix(beside: Option<&OsStr>) -> OsString {
     let mut prefix = OsString::new();
     if let Some(name) = beside {
@@ -52,14 +52,14 @@ pub(super) fn prefix(beside: Option<&OsStr>) -> OsString {
 }
 
 impl Staging {
-    /// Makes one in a folder, whose name begins with `prefix`.
+    /// Creates one in a folder, with a name that begins with `prefix`.
     pub(super) fn new(disk: &Arc<dyn Disk>, parent: &Path, prefix: &OsStr) -> io::Result<Self> {
-        // Otherwise a signal could come when the folder is made and not yet known.
+        // No signal may come between its creation and its registration.
         let _undisturbed = interrupted::undisturbed();
         Staging::make(disk, parent, prefix)
     }
 
-    /// [`Staging::new`] for who holds [`interrupted::undisturbed`].
+    /// [`Staging::new`] for a holder of [`interrupted::undisturbed`].
     pub(super) fn make(disk: &Arc<dyn Disk>, parent: &Path, prefix: &OsStr) -> io::Result<Self> {
         for attempt in 0..ATTEMPTS {
             let mut name = prefix.to_owned();
@@ -72,7 +72,7 @@ impl Staging {
             interrupted::begun(&folder);
             let lock = match disk.lock(&folder.join(LOCK)) {
                 Ok(Some(lock)) => Some(lock),
-                // A run that looks for what others left was faster.
+                // Another run has already removed it as a remainder.
                 Ok(None) => {
                     interrupted::ended(&folder);
                     continue;
@@ -95,7 +95,7 @@ impl Staging {
                 abandoned: false,
             };
             match staging.disk.create_folder(&staging.new_files()) {
-                // A run that looks for what others left was faster.
+                // Another run has already removed it as a remainder.
                 Err(error) if error.kind() == io::ErrorKind::NotFound => staging.abandoned = true,
                 made => return made.map(|()| staging),
             }
@@ -120,7 +120,7 @@ impl Staging {
         Ok(())
     }
 
-    /// Waits until all new files are on the disk.
+    /// Syncs all new files.
     pub(super) fn sync(&mut self) -> io::Result<()> {
         self.unsynced.drain(..).try_for_each(|mut file| file.sync())?;
         self.disk.sync_folder(&self.new_files())
@@ -138,15 +138,15 @@ impl Drop for Staging {
     }
 }
 
-/// Removes a staging folder of this run as far as that is possible: what stays, the next run removes.
+/// Removes a staging folder of this run as far as possible; the next run removes the rest.
 fn discard(disk: &dyn Disk, folder: &Path) {
     let _ = remove(disk, folder);
     interrupted::ended(folder);
 }
 
-/// Removes a staging folder with the new and old files in it. If there is anything else, it stays, with an error.
+/// Removes a staging folder with its new and old files. If it holds anything else, it stays, with an error.
 pub(super) fn remove(disk: &dyn Disk, folder: &Path) -> io::Result<()> {
-    // The journal first, and for good: without its files it would tell the next run half of what there was to do.
+    // The journal first, and synced: without its files it would be executed in part by the next run.
     let mut had_one = false;
     for name in JOURNALS {
         match disk.remove_file(&folder.join(name)) {
@@ -168,7 +168,7 @@ pub(super) fn remove(disk: &dyn Disk, folder: &Path) -> io::Result<()> {
     gone(disk.remove_folder(folder))
 }
 
-/// Gives a file a second name, or a copy where there are no second names.
+/// Gives a file a second name, or a copy where there are no hard links.
 pub(super) fn keep(disk: &dyn Disk, from: &Path, to: &Path) -> io::Result<()> {
     if disk.link(from, to).is_ok() {
         return Ok(());
@@ -179,7 +179,7 @@ pub(super) fn keep(disk: &dyn Disk, from: &Path, to: &Path) -> io::Result<()> {
     copy.sync()
 }
 
-/// Something that is to be gone, and is if it never was.
+/// Ignores the error of removing an object that does not exist.
 pub(super) fn gone(removed: io::Result<()>) -> io::Result<()> {
     match removed {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
@@ -187,7 +187,7 @@ pub(super) fn gone(removed: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Names in a folder; none if there is no such folder.
+/// Names in a folder; empty if there is no such folder.
 pub(super) fn names(disk: &dyn Disk, folder: &Path) -> io::Result<Vec<OsString>> {
     match disk.names(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
@@ -203,25 +203,25 @@ pub(super) fn is_staging(name: &OsStr, prefix: &OsStr) -> bool {
     })
 }
 
-/// Whether a staging folder and what belongs into it are what they seem, and this user's: whoever can write beside a place could
-/// have put links there that lead elsewhere.
+/// Whether a staging folder and its contents are as expected and this user's: others with access to the parent folder could have put links
+/// there.
 fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
-    let is = |path: &Path, kind: FoundKind| match disk.look(path) {
+    let is = |path: &Path, kind: ObjectKind| match disk.look(path) {
         Ok(found) => found.kind == kind && found.is_mine,
         Err(error) => error.kind() == io::ErrorKind::NotFound,
     };
-    is(folder, FoundKind::Folder)
-        && [NEW, OLD].into_iter().all(|half| is(&folder.join(half), FoundKind::Folder))
-        && JOURNALS.into_iter().chain([LOCK]).all(|name| is(&folder.join(name), FoundKind::File))
+    is(folder, ObjectKind::Folder)
+        && [NEW, OLD].into_iter().all(|half| is(&folder.join(half), ObjectKind::Folder))
+        && JOURNALS.into_iter().chain([LOCK]).all(|name| is(&folder.join(name), ObjectKind::File))
 }
 
-/// Staging folders in a folder that nobody has locked, each with its lock, now ours.
+/// Unlocked staging folders in a folder, each with its lock, which is then ours.
 pub(super) fn left(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> io::Result<Vec<(PathBuf, Lock)>> {
     let mut left = Vec::new();
     for name in names(disk, parent)? {
         let folder = parent.join(&name);
         let is_left = is_staging(&name, prefix) && is_real(disk, &folder);
-        // Where there are no locks, nobody can tell whether a run is still at work.
+        // Without locks, it is unknown whether a run is still active.
         if is_left && let Ok(Some(lock)) = disk.lock(&folder.join(LOCK)) {
             left.push((folder, lock));
         }

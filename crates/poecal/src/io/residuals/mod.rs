@@ -1,4 +1,4 @@
-//! `residuals.csv`: what each measurement leaves, row by row.
+//! `residuals.csv`: residuals and diagnostics of each measurement.
 
 mod read;
 mod source;
@@ -11,19 +11,19 @@ use crate::calibration::Calibration;
 use crate::measurement::Dataset;
 use crate::robot::JointKind;
 use source::RowSource;
-pub use write::Rows;
+pub use write::ResidualRows;
 use write::in_pieces;
 
-/// Columns that every file begins with; a column for each joint reading follows.
+/// First columns of every file; a column for each joint reading follows.
 const COLUMNS: &str = "file,line,id,set,target,position_nominal[mm],position_registered[mm],position_calibrated[mm],x[mm],y[mm],z[mm],\
      rotation_nominal[deg],rotation_registered[deg],rotation_calibrated[deg],rx[deg],ry[deg],rz[deg],\
      weight,leverage,studentized,suspected";
 
-/// The last column, if there are several instruments.
+/// Last column, if there are several instruments.
 const INSTRUMENT: &str = "instrument";
 
-/// Errors of one row by the nominal, registered and calibrated model, and the calibrated model's residual (measured less predicted) by
-/// component in the device's axes.
+/// Errors of one row by the nominal, registered and calibrated model, and the calibrated model's residual by component in the device's
+/// axes.
 ///
 /// ```
 /// let errors = poecal::io::residuals::ModelErrors { models: [11.2, 10.4, 0.1], residual: [0.1, 0.0, 0.0] };
@@ -37,25 +37,25 @@ pub struct ModelErrors {
     pub residual: [f64; 3],
 }
 
-/// What the fit says of a row.
+/// Diagnostics of a row.
 ///
 /// ```
-/// let found = poecal::io::residuals::Judged { weight: 1.0, leverage: 0.3, studentized: 1.6, suspected: false };
+/// let found = poecal::io::residuals::RowDiagnostics { weight: 1.0, leverage: 0.3, studentized: 1.6, suspected: false };
 /// assert!(!found.suspected);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Judged {
-    /// Its weight in the fit; of a row held out, what it would have had.
+pub struct RowDiagnostics {
+    /// Weight in the fit; of a held-out row the weight that it would have had.
     pub weight: f64,
-    /// Mean variance of its prediction in units of its noise.
+    /// Leverage: mean variance of its prediction in units of its noise.
     pub leverage: f64,
-    /// Length of its residual in units of its own standard deviation.
+    /// Studentised residual: length of the residual over its own standard deviation.
     pub studentized: f64,
-    /// Whether it is suspected to be grossly wrong.
+    /// Whether it is suspected of a gross error.
     pub suspected: bool,
 }
 
-/// What one measurement leaves.
+/// Residuals and diagnostics of one measurement.
 ///
 /// ```
 /// use poecal::io::residuals::{ModelErrors, ResidualRow};
@@ -65,27 +65,27 @@ pub struct Judged {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResidualRow {
-    /// Index of the file that it came from.
+    /// Index of its file.
     pub file: usize,
     /// Its line there, from 1.
     pub line: u32,
     /// Its name; empty without one.
     pub id: String,
-    /// Whether it was held out of the fit.
+    /// Whether it was held out.
     pub held_out: bool,
-    /// Index of the target that was seen.
+    /// Index of its target.
     pub target: usize,
-    /// Index of the instrument that saw it; 0 where there is one only.
+    /// Index of its instrument; 0 if there is only one.
     pub station: usize,
     /// Errors of position, millimetres.
     pub position_mm: ModelErrors,
     /// Errors of rotation, degrees, where orientation was measured.
     pub rotation_deg: Option<ModelErrors>,
-    /// What the fit says of it.
-    pub judged: Option<Judged>,
+    /// Diagnostics.
+    pub judged: Option<RowDiagnostics>,
 }
 
-/// What all measurements leave, in the order read.
+/// Residuals and diagnostics of all measurements, in the order read.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate};
@@ -100,7 +100,7 @@ pub struct ResidualRow {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Residuals {
-    /// The files that rows came from, as named by the user.
+    /// Files of the rows, as named by the user.
     pub files: Vec<String>,
     /// The targets' names; the tip's is empty.
     pub targets: Vec<String>,
@@ -115,7 +115,7 @@ pub struct Residuals {
 }
 
 impl Residuals {
-    /// Of a finished calibration.
+    /// Residuals of a finished calibration.
     #[must_use]
     pub fn of(data: &Dataset, calibration: &Calibration) -> Self {
         let source = RowSource::new(data, calibration);
@@ -142,7 +142,7 @@ impl Residuals {
         self.values.get(row * n..(row + 1) * n).unwrap_or_default()
     }
 
-    /// The name of a row's file; empty if it came from none.
+    /// Name of a row's file; empty if it has none.
     #[must_use]
     pub fn file(&self, row: &ResidualRow) -> &str {
         self.files.get(row.file).map_or("", String::as_str)
@@ -152,17 +152,17 @@ impl Residuals {
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = Vec::with_capacity(self.rows.len() * 200);
-        // Writing to memory cannot fail, and what is written is text.
+        // Writing to memory cannot fail, and the result is UTF-8.
         let _ = self.write_to(&mut out);
         String::from_utf8(out).unwrap_or_default()
     }
 
-    /// Writes the text of the file piece by piece.
+    /// Writes the text of the file in pieces.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// Errors of `out`.
     pub fn write_to(&self, out: &mut (dyn Write + Send)) -> std::io::Result<()> {
-        Rows::AtHand(self).write_to(out)
+        ResidualRows::AtHand(self).write_to(out)
     }
 }
 

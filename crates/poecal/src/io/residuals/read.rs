@@ -3,14 +3,14 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use super::{COLUMNS, INSTRUMENT, Judged, ModelErrors, ResidualRow, Residuals, unit};
+use super::{COLUMNS, INSTRUMENT, ModelErrors, ResidualRow, Residuals, RowDiagnostics, unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::measurements::{Cell, Separator, split};
 use crate::io::source::LARGEST_TABLE;
 use crate::io::source_text;
 use crate::robot::JointKind;
 
-/// What to do about a file that is none.
+/// Advice for a file of another kind.
 const EXPECTED: &str = "a residuals.csv as written by this version's `poecal calibrate`";
 
 impl Residuals {
@@ -50,7 +50,7 @@ impl Residuals {
         Ok(found)
     }
 
-    /// Reads the header, and tells whether the last column names the instrument.
+    /// Reads the header; returns whether the last column names the instrument.
     fn head(&mut self, cells: &[Cow<'_, str>], named: &mut bool) -> std::result::Result<(), Wrong> {
         for (column, expected) in COLUMNS.split(',').enumerate() {
             let cell = cells.get(column).map_or("", |cell| cell);
@@ -122,7 +122,7 @@ impl Residuals {
     }
 }
 
-/// The index of a name, added if it is new.
+/// Index of a name, which is added if new.
 fn index_of(names: &mut Vec<String>, name: &str) -> usize {
     names.iter().rposition(|known| known == name).unwrap_or_else(|| {
         names.push(name.to_owned());
@@ -130,7 +130,7 @@ fn index_of(names: &mut Vec<String>, name: &str) -> usize {
     })
 }
 
-/// The records that are not blank, each with its byte offset: lines, but for breaks within quotes, which names may have.
+/// Records that are not blank, each with its byte offset: lines, which may break within quotes.
 fn records(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let (mut is_quoted, mut next) = (false, 0);
     let records = text.split(move |c| {
@@ -148,7 +148,7 @@ fn records(text: &str) -> impl Iterator<Item = (usize, &str)> {
     placed.map(|(start, record)| (start, record.trim_end_matches('\r'))).filter(|(_, it)| !it.is_empty())
 }
 
-/// What is wrong, and in which cell, from 0.
+/// Error, and its cell, from 0.
 struct Wrong {
     cell: usize,
     message: String,
@@ -161,7 +161,7 @@ struct Cells<'a> {
 }
 
 impl<'a> Cells<'a> {
-    /// A complaint about the cell that was taken last.
+    /// An error at the cell taken last.
     fn wrong(&self, found: &str, expected: &str) -> Wrong {
         Wrong {
             cell: self.next.saturating_sub(1),
@@ -200,7 +200,7 @@ impl<'a> Cells<'a> {
         Ok(Some(values))
     }
 
-    /// Whether the next cells are all empty; they are then passed over.
+    /// Whether the next cells are all empty; then they are skipped.
     fn are_empty(&mut self, count: usize) -> bool {
         let here = self.cells.get(self.next..self.next + count);
         let empty = here.is_some_and(|cells| cells.iter().all(|cell| cell.is_empty()));
@@ -213,13 +213,13 @@ impl<'a> Cells<'a> {
         Ok(numbers.map(|[a, b, c, x, y, z]| ModelErrors { models: [a, b, c], residual: [x, y, z] }))
     }
 
-    fn judged(&mut self) -> std::result::Result<Option<Judged>, Wrong> {
+    fn judged(&mut self) -> std::result::Result<Option<RowDiagnostics>, Wrong> {
         if self.are_empty(4) {
             return Ok(None);
         }
         let weight = self.number()?;
-        // Where all of a row's information is its own, these may be no numbers.
+        // Diagnostics may be missing.
         let (leverage, studentized) = (self.parsed("a number")?, self.parsed("a number")?);
-        Ok(Some(Judged { weight, leverage, studentized, suspected: self.number()? != 0.0 }))
+        Ok(Some(RowDiagnostics { weight, leverage, studentized, suspected: self.number()? != 0.0 }))
     }
 }

@@ -1,20 +1,20 @@
-//! The rows of a finished calibration, worked out some at a time.
+//! Rows of a finished calibration, computed in parts.
 
 use std::ops::Range;
 
-use super::{Judged, ModelErrors, ResidualRow, Residuals};
+use super::{ModelErrors, ResidualRow, Residuals, RowDiagnostics};
 use crate::calibration::{Calibration, RowError, RowInfluence, row_errors};
 use crate::estimate::Estimate;
 use crate::measurement::Dataset;
 use crate::robot::{JointKind, Robot};
 
-/// What any row is worked out from.
+/// Input for computing any row.
 pub(super) struct RowSource<'a> {
     data: &'a Dataset,
     calibration: &'a Calibration,
     influence: RowInfluence<'a>,
     held_out: Vec<bool>,
-    /// Without rows: the names that all of them share.
+    /// The names that all rows share, without rows.
     names: Residuals,
 }
 
@@ -35,7 +35,7 @@ impl<'a> RowSource<'a> {
         RowSource { data, calibration, influence: RowInfluence::new(calibration, data), held_out, names }
     }
 
-    /// The file's names, and these rows.
+    /// The names of the file, with these rows.
     pub(super) fn rows(&self, range: Range<usize>) -> Residuals {
         let Calibration { models, robustness, .. } = self.calibration;
         let indices: Vec<u32> = range.filter_map(|row| u32::try_from(row).ok()).collect();
@@ -56,7 +56,7 @@ impl<'a> RowSource<'a> {
                 station: observation.station,
                 position_mm: position_errors(errors),
                 rotation_deg: rotation_errors(errors),
-                judged: robustness.rows.get(row).map(|found| Judged {
+                judged: robustness.rows.get(row).map(|found| RowDiagnostics {
                     weight: found.weight,
                     leverage: influences[at].leverage,
                     studentized: influences[at].studentized,
@@ -80,7 +80,7 @@ fn stations(data: &Dataset) -> Vec<String> {
     if data.station_count() > 1 { names.collect() } else { Vec::new() }
 }
 
-/// What a reading measures, by the joint that it moves.
+/// Quantity of a reading, by the joint that it moves.
 fn kind(robot: &Robot, reading: &str) -> JointKind {
     let joint = robot.joints.iter().find(|joint| joint.reading.name == reading);
     joint.map_or(JointKind::Revolute, |joint| joint.kind)

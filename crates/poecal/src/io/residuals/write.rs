@@ -1,58 +1,58 @@
-//! The text of a `residuals.csv`, made in pieces by all threads and written in the order of the rows.
+//! Text of a `residuals.csv`, made in pieces by all threads and written in the order of the rows.
 
 use std::fmt::Write as _;
 use std::io::Write;
 use std::ops::Range;
 
 use super::source::RowSource;
-use super::{COLUMNS, INSTRUMENT, Judged, ModelErrors, Residuals, unit};
+use super::{COLUMNS, INSTRUMENT, ModelErrors, Residuals, RowDiagnostics, unit};
 use crate::calibration::Calibration;
 use crate::io::csv_text::cell;
 use crate::io::numbers::push_number;
 use crate::measurement::Dataset;
 use crate::threads;
 
-/// Rows that one thread works on at a time.
+/// Rows of one work item.
 const PIECE: usize = 256;
-/// Pieces that are held until they are written.
+/// Most pieces waiting to be written.
 const TOGETHER: usize = 8;
-/// Bytes of a row, about.
+/// Approximate bytes per row.
 const ROW: usize = 480;
 
 /// Rows to write.
 ///
 /// ```
 /// use poecal::calibration::{CalibrationOptions, calibrate};
-/// use poecal::io::residuals::{Residuals, Rows};
+/// use poecal::io::residuals::{Residuals, ResidualRows};
 /// use poecal::simulate::{Kind, Simulation, elbow};
 /// let made = Simulation::default().run(&elbow(), Kind::Point)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let mut text = Vec::new();
-/// Rows::Of(&made.data, &calibration).write_to(&mut text)?;
+/// ResidualRows::Of(&made.data, &calibration).write_to(&mut text)?;
 /// assert_eq!(text, Residuals::of(&made.data, &calibration).text().into_bytes());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub enum Rows<'a> {
-    /// Those at hand.
+pub enum ResidualRows<'a> {
+    /// Given rows.
     AtHand(&'a Residuals),
-    /// Those of a finished calibration, worked out while they are written: a few at a time, for there may be many.
+    /// Rows of a finished calibration, computed while they are written, since there may be many.
     Of(&'a Dataset, &'a Calibration),
 }
 
-impl Rows<'_> {
-    /// Writes the text of the file piece by piece.
+impl ResidualRows<'_> {
+    /// Writes the text of the file in pieces.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// Errors of `out`.
     pub fn write_to(self, out: &mut (dyn Write + Send)) -> std::io::Result<()> {
         match self {
-            Rows::AtHand(residuals) => {
+            ResidualRows::AtHand(residuals) => {
                 out.write_all(head(residuals).as_bytes())?;
                 let make = |rows| text(residuals, rows);
                 in_pieces(residuals.rows.len(), make, |piece| out.write_all(piece.as_bytes()))
             }
-            Rows::Of(data, calibration) => {
+            ResidualRows::Of(data, calibration) => {
                 let source = RowSource::new(data, calibration);
                 out.write_all(head(&source.rows(0..0)).as_bytes())?;
                 let worked_out = |rows: Range<usize>| {
@@ -65,7 +65,7 @@ impl Rows<'_> {
     }
 }
 
-/// Hands over what `make` gives for one range of rows after the other: all threads make some, while those before are taken.
+/// Passes on the results of `make` for consecutive ranges of rows: all threads make some while earlier ones are taken.
 pub(super) fn in_pieces<T: Send, E: Send>(
     rows: usize,
     make: impl Fn(Range<usize>) -> T + Sync + Send,
@@ -118,7 +118,7 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
         push_errors(&mut text, Some(&row.position_mm));
         push_errors(&mut text, row.rotation_deg.as_ref());
         match &row.judged {
-            Some(Judged { weight, leverage, studentized, suspected }) => {
+            Some(RowDiagnostics { weight, leverage, studentized, suspected }) => {
                 [*weight, *leverage, *studentized]
                     .into_iter()
                     .for_each(|number| push_cell(&mut text, number));

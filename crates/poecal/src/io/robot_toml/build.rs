@@ -1,4 +1,4 @@
-//! From the tables of the file to a robot.
+//! Robots from the tables of the file.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use crate::io::mimic::{self, Mimic};
 use crate::lie::{Pose, Screw, Twist};
 use crate::robot::{DhConvention, DhRow, Joint, JointKind, Limits, Reading, Robot, Tolerance};
 
-/// The largest `v·ω` that is taken for rounding, as a share of the robot's size.
+/// Largest `v·ω` that counts as rounding, as a share of the robot's size.
 const PITCH_ROUNDING: f64 = 1e-3;
 
 pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
@@ -53,7 +53,7 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
     Ok(robot)
 }
 
-/// How far a joint's axis may stand off the table.
+/// Tolerance of a joint's axis, if the table states one.
 fn tolerance(context: &Context, table: &JointTable) -> Result<Option<Tolerance>> {
     let Some(stated) = &table.tolerance else { return Ok(None) };
     let found = Tolerance {
@@ -111,7 +111,7 @@ fn from_screws(context: &Context, file: &File, name: &str) -> Result<Robot> {
     Robot::new(name, joints, home).map_err(|error| error.in_file(context.path))
 }
 
-/// A length that says how large the robot is, metres.
+/// A length that characterises the size of the robot, metres.
 fn size_m(context: &Context, file: &File, home: &Pose) -> f64 {
     let metres = |numbers: [f64; 3]| context.length.to_metres(Vector3::from(numbers).norm());
     file.joint
@@ -304,8 +304,7 @@ fn limits(context: &Context, table: &JointTable) -> Result<Option<Limits>> {
     Ok(Some(Limits { lower, upper }))
 }
 
-/// The reading of a joint, through mimic relations. A leader that is not among the joints is read beside the chain, in the
-/// follower's unit.
+/// Reading of a joint, through mimic relations. A leader outside the chain is read beside it, in the follower's unit.
 fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &JointTable) -> Result<Reading> {
     let find = |name: &str| tables.get(name).copied();
     let mimic_of = |name: &str| -> Result<Option<Mimic>> {

@@ -1,4 +1,4 @@
-//! Numbers of the file to SI, checked, with the place they stand at.
+//! Numbers of the file in SI, checked, with their places for messages.
 
 use std::ops::Range;
 use std::path::Path;
@@ -13,10 +13,10 @@ use crate::io::source_text::position;
 use crate::lie::{Pose, rotation};
 use crate::robot::{JointKind, check_name};
 
-/// Rounding that a table of four digits has, in unit vectors, quaternions and rotation matrices.
+/// Rounding of tables with four digits, in unit vectors, quaternions and rotation matrices.
 pub(super) const TABLE_ROUNDING: f64 = 2e-3;
 
-/// The text, for places, and its units.
+/// Text, for places, and units.
 pub(super) struct Context<'a> {
     pub(super) text: &'a str,
     pub(super) path: &'a Path,
@@ -30,7 +30,7 @@ impl Context<'_> {
         Error::new(ErrorKind::Model, message).at(self.path, line, column)
     }
 
-    /// The numbers, if all are finite and none is beyond all sense.
+    /// The numbers, if all are finite and of plausible size.
     pub(super) fn checked<const N: usize>(
         &self,
         numbers: [f64; N],
@@ -76,7 +76,7 @@ impl Context<'_> {
         }
     }
 
-    /// A name that must not be empty, nor hold a character that XML, and so a URDF, cannot.
+    /// A name, neither empty nor with a character that XML, and so a URDF, cannot hold.
     pub(super) fn name(&self, name: &Spanned<String>, of: &str) -> Result<String> {
         if let Some(c) = name.get_ref().chars().find(|&c| c < ' ' && !c.is_ascii_whitespace() || c == '\u{c}')
         {

@@ -61,8 +61,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Robot> {
 /// ```
 ///
 /// # Errors
-/// [`ErrorKind::Syntax`] if the text is not TOML or has other keys than a robot model, [`ErrorKind::Model`] if the model cannot be
-/// used.
+/// [`ErrorKind::Syntax`] if the text is no TOML or has unknown keys, [`ErrorKind::Model`] if the model is invalid.
 pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Robot> {
     let path = path.as_ref();
     let file: file::File = toml::from_str(text).map_err(|error| syntax_error(&error, text, path))?;
@@ -70,7 +69,7 @@ pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Robot> {
     build::robot(&context, &file)
 }
 
-/// The parser's complaint as one sentence with its place.
+/// The parser's message as one sentence with its place.
 fn syntax_error(error: &toml::de::Error, text: &str, path: &Path) -> Error {
     let complaint = error.message().trim().replace('\n', ", ");
     let message = match complaint.as_str() {

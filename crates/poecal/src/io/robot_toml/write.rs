@@ -9,7 +9,7 @@ use crate::robot::{Joint, JointKind, Robot};
 /// The robot as a TOML text of screws, SI units. Numbers are the shortest decimals that read back the same, freed of rounding
 /// below 1e-15.
 ///
-/// Joint frames are not part of the format: a screw and the home pose are all that forward kinematics needs.
+/// Joint frames are not part of the format: screws and home pose suffice for forward kinematics.
 ///
 /// ```
 /// use nalgebra::Vector3;

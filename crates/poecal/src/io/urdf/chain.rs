@@ -1,18 +1,18 @@
-//! The chain from base to tip: as asked for, or the only one there is.
+//! Chain from base to tip: the selected one, or the only one.
 
 use super::tree::Tree;
-use super::xml::Source;
+use super::xml::XmlSource;
 use super::{ChainSelection, ends};
 use crate::error::{Error, ErrorKind, Result, nearest_or_all};
 
 /// A chain through the tree: links and joints as indices into the tree, joints from base to tip.
-pub(super) struct Chain {
+pub(super) struct UrdfChain {
     pub(super) base: usize,
     pub(super) tip: usize,
     pub(super) joints: Vec<usize>,
 }
 
-pub(super) fn select(tree: &Tree, selection: &ChainSelection) -> Result<Chain> {
+pub(super) fn select(tree: &Tree, selection: &ChainSelection) -> Result<UrdfChain> {
     let find =
         |name: &Option<String>, option| name.as_deref().map(|name| find_link(tree, name, option)).transpose();
     let base = find(&selection.base_link, "--base-link")?;
@@ -25,7 +25,7 @@ pub(super) fn select(tree: &Tree, selection: &ChainSelection) -> Result<Chain> {
     Ok(chain)
 }
 
-fn error(source: &Source, message: String) -> Error {
+fn error(source: &XmlSource, message: String) -> Error {
     Error::new(ErrorKind::Model, message).in_file(source.path)
 }
 
@@ -36,7 +36,7 @@ fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {
     })
 }
 
-/// The only link without children that has a moving joint above it (below `base`, if that is given).
+/// The only end link below a moving joint (below `base`, if given).
 fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
     let mut tips = ends::ends(tree, base);
     if tips.len() > 1 {
@@ -63,7 +63,7 @@ fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
 }
 
 /// Names of the moving joints of a chain.
-fn moving<'a>(tree: &'a Tree, chain: &'a Chain) -> impl Iterator<Item = &'a str> {
+fn moving<'a>(tree: &'a Tree, chain: &'a UrdfChain) -> impl Iterator<Item = &'a str> {
     chain
         .joints
         .iter()
@@ -72,8 +72,8 @@ fn moving<'a>(tree: &'a Tree, chain: &'a Chain) -> impl Iterator<Item = &'a str>
         .map(|joint| joint.name)
 }
 
-/// The way from `tip` up to `base`, or to the root.
-fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<Chain> {
+/// Path from `tip` up to `base`, or to the root.
+fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<UrdfChain> {
     let mut at = tip;
     let mut joints = Vec::new();
     for (index, joint) in tree.ancestors(tip) {
@@ -97,11 +97,11 @@ fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<Chain> {
                 ),
             ))
         }
-        _ => Ok(Chain { base: at, tip, joints }),
+        _ => Ok(UrdfChain { base: at, tip, joints }),
     }
 }
 
-fn check_joints(tree: &Tree, chain: &Chain) -> Result<()> {
+fn check_joints(tree: &Tree, chain: &UrdfChain) -> Result<()> {
     let (base, tip) = (tree.link_name(chain.base), tree.link_name(chain.tip));
     for joint in chain.joints.iter().filter_map(|&joint| tree.joints.get(joint)) {
         if !joint.kind.moves() && joint.kind != super::tree::JointType::Fixed {

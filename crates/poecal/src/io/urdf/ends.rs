@@ -1,18 +1,18 @@
-//! The ends of a tree: links without children, each with what moves above it. One walk through the tree finds them all.
+//! End links of a tree with the moving joints above them, found in one walk.
 
 use std::collections::BTreeSet;
 
 use super::tree::Tree;
 
-/// A link without children that has a moving joint above it.
+/// An end link below a moving joint.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct End {
     pub(super) link: usize,
-    /// Whether all that moves above it leads mimic joints elsewhere, as the motor beside a telescopic column does.
+    /// Whether all moving joints above it lead mimic joints elsewhere, as the motor beside a telescopic column does.
     pub(super) only_leads: bool,
 }
 
-/// All ends below a base, or below every root, in the order of the file.
+/// All end links below a base, or below every root, in the order of the file.
 pub(super) fn ends(tree: &Tree, base: Option<usize>) -> Vec<End> {
     let below = joints_below(tree);
     let leaders: Vec<BTreeSet<usize>> = tree.joints.iter().map(|joint| leaders_of(tree, joint)).collect();
@@ -23,7 +23,7 @@ pub(super) fn ends(tree: &Tree, base: Option<usize>) -> Vec<End> {
         None => (0..tree.links.len()).filter(|&link| tree.above(link).is_none()).collect(),
     };
     for start in starts {
-        // Links to come to, and joints to go back by. Not by recursion: a chain may be longer than the stack.
+        // Links to visit, and joints to return by. Not recursive: a chain may be longer than the stack.
         let mut steps = vec![Step::To(start, None)];
         while let Some(step) = steps.pop() {
             let (link, joint) = match step {
@@ -53,7 +53,7 @@ enum Step {
     Back(usize),
 }
 
-/// For each link, the joints that it carries.
+/// Joints below each link.
 fn joints_below(tree: &Tree) -> Vec<Vec<usize>> {
     let mut below = vec![Vec::new(); tree.links.len()];
     for (index, joint) in tree.joints.iter().enumerate() {
@@ -70,14 +70,14 @@ fn leaders_of(tree: &Tree, joint: &super::tree::TreeJoint<'_>) -> BTreeSet<usize
     mimics.filter_map(|mimic| tree.joint_index(mimic.attribute("joint")?)).collect()
 }
 
-/// The joints from the start of a walk to where it is.
+/// Joints from the start of a walk to its current place.
 struct Way<'a> {
     tree: &'a Tree<'a>,
     leaders: &'a [BTreeSet<usize>],
-    /// For each joint: whether it is on the way, and how many joints elsewhere follow it.
+    /// For each joint: whether it is on the path, and how many joints elsewhere follow it.
     is_on: Vec<bool>,
     elsewhere: Vec<usize>,
-    /// Moving joints on the way, and those of them that lead none elsewhere.
+    /// Moving joints on the path, and those of them that lead no joint elsewhere.
     moving: usize,
     alone: usize,
 }

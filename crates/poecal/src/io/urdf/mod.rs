@@ -1,7 +1,7 @@
-//! URDF: a serial chain read from a robot description, and written back into the same text.
+//! URDF: reads a serial chain, and writes calibrated values into the same text.
 //!
-//! Read: links, joints (fixed, revolute, continuous, prismatic), origins, axes, limits, mimic relations. Everything else in the
-//! file (meshes, inertias, controllers, comments) is neither looked at nor changed.
+//! It reads links, joints (fixed, revolute, continuous, prismatic), origins, axes, limits and mimic relations. Everything else in the
+//! file (meshes, inertias, controllers, comments) is ignored and stays.
 
 mod chain;
 mod ends;
@@ -24,10 +24,10 @@ use crate::io::source_text;
 use crate::robot::Robot;
 use parts::Part;
 use tree::Tree;
-use xml::{Source, crowded_element};
+use xml::{XmlSource, crowded_element};
 
-/// Which chain of the tree is meant. What is left out must be unique: the base is then the root above the tip, and the tip the
-/// only end link with a moving joint above it.
+/// Selection of a chain. An omitted end must be unique: the base is then the root above the tip, and the tip the only end link below a
+/// moving joint.
 ///
 /// ```
 /// let selection = poecal::io::urdf::ChainSelection { tip_link: Some("tool0".into()), ..Default::default() };
@@ -41,7 +41,7 @@ pub struct ChainSelection {
     pub tip_link: Option<String>,
 }
 
-/// A URDF text with the serial chain that was read from it.
+/// A URDF text with its serial chain.
 ///
 /// ```
 /// use poecal::io::urdf::{ChainSelection, UrdfDocument};
@@ -81,8 +81,8 @@ impl UrdfDocument {
     /// Reads the chain from a text; `path` is for the messages only.
     ///
     /// # Errors
-    /// [`ErrorKind::Syntax`] if the text is not XML or no URDF, [`ErrorKind::Model`] if it is not a tree of links, the chain is
-    /// not unique or not there, or a joint of it cannot be used.
+    /// [`ErrorKind::Syntax`] if the text is no XML or no URDF, [`ErrorKind::Model`] if it is not a tree of links, the chain is not unique
+    /// or missing, or a joint of it is invalid.
     pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
         if let Some(offset) = crowded_element(text) {
@@ -92,7 +92,7 @@ impl UrdfDocument {
             return Err(Error::new(ErrorKind::Syntax, message).at(path, line, column));
         }
         let document = Document::parse(text).map_err(|error| xml_error(&error, path))?;
-        let source = Source { document: &document, path };
+        let source = XmlSource { document: &document, path };
         let robot_element = document.root_element();
         if robot_element.tag_name().name() != "robot" {
             let name = robot_element.tag_name().name();
@@ -116,14 +116,14 @@ impl UrdfDocument {
         &self.robot
     }
 
-    /// The text as it was read.
+    /// The original text.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 }
 
-/// The parser's complaint as one sentence with its place.
+/// The parser's message as one sentence with its place.
 fn xml_error(error: &roxmltree::Error, path: &Path) -> Error {
     let place = error.pos();
     let (line, column) = (place.row as usize, place.col as usize);
@@ -144,7 +144,7 @@ const XACRO: &str =
     "found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`";
 
 /// An expanded file may still declare the prefix, but has no elements of it.
-fn refuse_xacro(source: &Source) -> Result<()> {
+fn refuse_xacro(source: &XmlSource) -> Result<()> {
     let is_xacro =
         |node: &roxmltree::Node| node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"));
     match source.document.descendants().find(is_xacro) {

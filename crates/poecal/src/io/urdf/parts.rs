@@ -1,19 +1,19 @@
-//! The joints of the chain: origins, axes, limits and mimic relations, and where they stand in the text.
+//! Joints of the chain: origins, axes, limits and mimic relations, with their places in the text.
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 use roxmltree::Node;
 
-use super::chain::Chain;
+use super::chain::UrdfChain;
 use super::tree::{JointType, Tree, TreeJoint};
-use super::xml::{Source, value_range};
+use super::xml::{XmlSource, value_range};
 use crate::error::{Result, nearest_or_all};
 use crate::io::mimic::{self, Mimic};
 use crate::lie::{Pose, Screw};
 use crate::robot::{Joint, JointKind, Limits, Reading};
 
-/// A fixed or moving joint of the chain, with all that is needed to write it back.
+/// A fixed or moving joint of the chain, with the places for writing it back.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
     /// `<origin>`: pose of the joint's frame in its parent link.
@@ -23,7 +23,7 @@ pub(super) struct Part {
     pub(super) place: Place,
 }
 
-/// Byte positions in the text of a joint.
+/// Byte offsets in the text of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Place {
     /// The whole `<joint>` element.
@@ -39,8 +39,8 @@ pub(super) struct Place {
     pub(super) axis_xyz: Option<Range<usize>>,
 }
 
-/// The parts of the chain and the moving joints among them, frames and screws in the base link.
-pub(super) fn read(tree: &Tree, chain: &Chain) -> Result<(Vec<Part>, Vec<Joint>, Pose)> {
+/// The joints of the chain, and the moving ones among them with frames and screws in the base link.
+pub(super) fn read(tree: &Tree, chain: &UrdfChain) -> Result<(Vec<Part>, Vec<Joint>, Pose)> {
     let mut base_from_link = Pose::identity();
     let (mut parts, mut joints) = (Vec::new(), Vec::new());
     for joint in chain.joints.iter().filter_map(|&joint| tree.joints.get(joint)) {
@@ -77,7 +77,7 @@ fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_j
     })
 }
 
-fn read_part<'a>(source: &Source<'a>, joint: &TreeJoint<'a>) -> Result<Part> {
+fn read_part<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Part> {
     let child = |name| source.only_child(joint.node, name, &format!("joint `{}`", joint.name), true);
     let (origin, axis) = (child("origin")?, child("axis")?);
     let of = format!("<origin> of joint `{}`", joint.name);
@@ -112,7 +112,7 @@ fn read_part<'a>(source: &Source<'a>, joint: &TreeJoint<'a>) -> Result<Part> {
 
 /// The unit axis in the joint's frame; without an `<axis>` it is x.
 fn read_axis<'a>(
-    source: &Source<'a>,
+    source: &XmlSource<'a>,
     joint: &TreeJoint<'a>,
     axis: Option<Node<'a, 'a>>,
 ) -> Result<Vector3<f64>> {
@@ -126,8 +126,8 @@ fn read_axis<'a>(
     Ok((axis / axis.amax()).normalize())
 }
 
-/// Limits, unless the joint is continuous or its range is empty (as exporters write what they do not know).
-fn read_limits<'a>(source: &Source<'a>, joint: &TreeJoint<'a>) -> Result<Option<Limits>> {
+/// Limits, unless the joint is continuous or its range is empty (as exporters write unknown limits).
+fn read_limits<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Option<Limits>> {
     let of = format!("joint `{}`", joint.name);
     let Some(node) = source.only_child(joint.node, "limit", &of, false)? else { return Ok(None) };
     if joint.kind == JointType::Continuous {

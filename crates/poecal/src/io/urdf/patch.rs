@@ -1,4 +1,4 @@
-//! A calibrated robot written into the text that the nominal one was read from.
+//! Writes a calibrated robot into the text of the nominal one.
 
 use nalgebra::Vector3;
 
@@ -10,9 +10,9 @@ use crate::io::numbers::tidy;
 use crate::lie::{Pose, Screw, rotation};
 use crate::robot::{Joint, Robot};
 
-/// Differences below this (metres, or of rotation matrices) are rounding: the text stays.
+/// Smaller differences (metres, or of rotation matrices) are rounding: the text stays.
 const UNCHANGED: f64 = 1e-15;
-/// An axis this far (metres, radians) from where the joint's frame puts it is written anew.
+/// An axis farther than this (metres, radians) from that of the joint's frame is rewritten.
 const AXIS_TOLERANCE: f64 = 1e-13;
 
 /// A URDF text with calibrated values.
@@ -35,18 +35,17 @@ const AXIS_TOLERANCE: f64 = 1e-13;
 pub struct PatchedUrdf {
     /// The whole text.
     pub text: String,
-    /// The link that is the tip now.
+    /// The link that is now the tip.
     pub tip_link: String,
-    /// What the user should know of, a sentence each.
+    /// Notes for the user, a sentence each.
     pub notes: Vec<String>,
 }
 
 impl UrdfDocument {
-    /// The text with the origins (and axes, where needed) of `calibrated`; every other byte stays.
+    /// The text with the origins (and axes, where needed) of `calibrated`; all other bytes stay.
     ///
-    /// `calibrated` is this document's robot with other screws, joint frames and home pose. Joint values that differ by rounding
-    /// only are left as they are. The tip's new place goes into the last fixed joint before the tip; where there is none, a link
-    /// `<tip>_calibrated` is added.
+    /// `calibrated` is this document's robot with other screws, joint frames and home pose. Values that differ only by rounding stay. The
+    /// tip's pose is written to the last fixed joint before the tip; without one, a link `<tip>_calibrated` is added.
     ///
     /// # Errors
     /// [`ErrorKind::Export`] if `calibrated` has other joints, or a number of it is not finite.
@@ -54,7 +53,7 @@ impl UrdfDocument {
         self.check_same_joints(calibrated)?;
         let mut splice = Splice::new(&self.text);
         let mut joints = calibrated.joints.iter();
-        // What the new text will say, so that rounding does not add up along the chain.
+        // Values as the new text has them, so that rounding does not add up along the chain.
         let mut base_from_link = Pose::identity();
         let last = self.parts.len().saturating_sub(1);
         for (index, part) in self.parts.iter().enumerate() {
@@ -116,7 +115,7 @@ impl UrdfDocument {
     }
 }
 
-/// Writes a moving joint's origin, and its axis, if that is not where the frame has it. Returns its frame as the text has it.
+/// Writes a moving joint's origin, and its axis if it is not that of the frame. Returns its frame as in the text.
 fn write_joint(
     splice: &mut Splice,
     part: &Part,
@@ -133,7 +132,7 @@ fn write_joint(
     written
 }
 
-/// The frame with its origin shifted onto the axis, where it is off.
+/// The frame with its origin shifted onto the axis, if it is off it.
 pub(super) fn frame_on_axis(frame: &Pose, screw: &Screw) -> Pose {
     let on_axis = screw.nearest_point(&frame.translation);
     if (on_axis - frame.translation).norm() > AXIS_TOLERANCE {
@@ -143,7 +142,7 @@ pub(super) fn frame_on_axis(frame: &Pose, screw: &Screw) -> Pose {
     }
 }
 
-/// Writes the part of the origin that must change for the frame to stand at `target`. Returns the frame as the text has it.
+/// Writes the changed parts of an origin so that the frame is at `target`. Returns the frame as in the text.
 fn write_origin(splice: &mut Splice, part: &Part, base_from_link: Pose, target: &Pose) -> Pose {
     let unchanged = base_from_link * part.parent_from_joint;
     if close(&unchanged, target) {

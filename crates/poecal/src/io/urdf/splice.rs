@@ -1,4 +1,4 @@
-//! Changing a text at a few places and leaving every other byte as it is.
+//! Changes a text at a few places; all other bytes stay.
 
 use std::ops::Range;
 
@@ -20,7 +20,7 @@ impl<'a> Splice<'a> {
         self.edits.push((at..at, new));
     }
 
-    /// Sets an attribute of an element: its value, if it stands at `range`, else the whole of it after the element's name.
+    /// Sets an attribute: its value if it has a `range`, otherwise the whole attribute after the element's name.
     fn set(&mut self, range: Option<&Range<usize>>, after_name: usize, name: &str, value: String) {
         match range {
             Some(range) => self.edits.push((range.clone(), value)),
@@ -28,7 +28,7 @@ impl<'a> Splice<'a> {
         }
     }
 
-    /// Sets the values of `<origin>` that are given, and the element itself, if there is none.
+    /// Sets the given values of `<origin>`, and the element itself if there is none.
     pub(super) fn set_origin(&mut self, place: &Place, xyz: Option<String>, rpy: Option<String>) {
         if let Some(after_name) = place.origin {
             if let Some(xyz) = xyz {
@@ -47,7 +47,7 @@ impl<'a> Splice<'a> {
         self.insert(place.first_child, format!("<origin{attributes}/>{space}"));
     }
 
-    /// Sets `<axis xyz>`, and the element itself, if there is none.
+    /// Sets `<axis xyz>`, and the element itself if there is none.
     pub(super) fn set_axis(&mut self, place: &Place, xyz: String) {
         match place.axis {
             Some(after_name) => self.set(place.axis_xyz.as_ref(), after_name, "xyz", xyz),
@@ -58,7 +58,7 @@ impl<'a> Splice<'a> {
         }
     }
 
-    /// Adds a link and the fixed joint that carries it after a joint's element, indented as that is. Names come escaped.
+    /// Adds a link and its fixed joint after a joint's element, with the same indentation. Names are escaped.
     pub(super) fn add_link(&mut self, after: &Place, parent: &str, link: &str, xyz: &str, rpy: &str) {
         let outer = self.space_before(after.element.start);
         let inner = self.space_before(after.first_child);

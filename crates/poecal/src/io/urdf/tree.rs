@@ -1,10 +1,10 @@
-//! The tree of links and joints: names, parents and children, checked for being a tree at all.
+//! Tree of links and joints, checked.
 
 use std::collections::BTreeMap;
 
 use roxmltree::Node;
 
-use super::xml::Source;
+use super::xml::XmlSource;
 use crate::error::{Result, nearest_or_all};
 
 /// The types of joints in URDF.
@@ -51,19 +51,19 @@ pub(super) struct TreeJoint<'a> {
     pub(super) node: Node<'a, 'a>,
 }
 
-/// All links and joints; every link has at most one joint above it, and there is no loop.
+/// All links and joints; every link has at most one parent joint, and there is no loop.
 pub(super) struct Tree<'a> {
-    pub(super) source: Source<'a>,
+    pub(super) source: XmlSource<'a>,
     pub(super) links: Vec<&'a str>,
     pub(super) joints: Vec<TreeJoint<'a>>,
-    /// For each link, the index of the joint that carries it.
+    /// Parent joint of each link.
     joint_above: Vec<Option<usize>>,
     link_indices: BTreeMap<&'a str, usize>,
     joint_indices: BTreeMap<&'a str, usize>,
 }
 
 impl<'a> Tree<'a> {
-    pub(super) fn read(source: Source<'a>) -> Result<Self> {
+    pub(super) fn read(source: XmlSource<'a>) -> Result<Self> {
         let robot = source.document.root_element();
         let (links, index) = read_links(source, robot)?;
         let mut tree = Tree {
@@ -105,13 +105,13 @@ impl<'a> Tree<'a> {
         Ok(())
     }
 
-    /// The joint that carries a link, with its index.
+    /// Parent joint of a link, with its index.
     pub(super) fn above(&self, link: usize) -> Option<(usize, &TreeJoint<'a>)> {
         let index = self.joint_above.get(link).copied().flatten()?;
         Some((index, self.joints.get(index)?))
     }
 
-    /// The joints above a link, from the link up.
+    /// Joints above a link, upwards.
     pub(super) fn ancestors(&self, link: usize) -> impl Iterator<Item = (usize, &TreeJoint<'a>)> {
         std::iter::successors(self.above(link), |(_, joint)| self.above(joint.parent))
     }
@@ -132,7 +132,7 @@ impl<'a> Tree<'a> {
         self.joints.get(self.joint_index(name)?)
     }
 
-    /// Every way up must end: the links of a loop, each with one parent, have no root above them.
+    /// Checks that every path upwards ends: the links of a loop, each with one parent, have no root above them.
     fn check_no_loop(&self) -> Result<()> {
         let mut rooted = vec![false; self.links.len()];
         for link in 0..self.links.len() {
@@ -142,7 +142,7 @@ impl<'a> Tree<'a> {
                     break;
                 }
                 let Some((_, joint)) = self.above(at) else { break };
-                // A way longer than there are links comes by some link twice.
+                // A path longer than the number of links visits one of them twice.
                 if way.len() > self.links.len() {
                     let message = format!(
                         "joint `{}` closes a loop of links, expected a tree with one root link",
@@ -165,7 +165,7 @@ impl<'a> Tree<'a> {
 /// The links' names in the order of the file, and their indices by name.
 type Links<'a> = (Vec<&'a str>, BTreeMap<&'a str, usize>);
 
-fn read_links<'a>(source: Source<'a>, robot: Node<'a, 'a>) -> Result<Links<'a>> {
+fn read_links<'a>(source: XmlSource<'a>, robot: Node<'a, 'a>) -> Result<Links<'a>> {
     let (mut links, mut index) = (Vec::new(), BTreeMap::new());
     for node in source.children(robot, "link") {
         let (name, _) = source.required(node, "name", "the link")?;
@@ -179,7 +179,7 @@ fn read_links<'a>(source: Source<'a>, robot: Node<'a, 'a>) -> Result<Links<'a>> 
 }
 
 fn read_joint<'a>(
-    source: Source<'a>,
+    source: XmlSource<'a>,
     node: Node<'a, 'a>,
     links: &BTreeMap<&'a str, usize>,
 ) -> Result<TreeJoint<'a>> {

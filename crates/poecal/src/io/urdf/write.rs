@@ -9,7 +9,7 @@ use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
 use crate::robot::{Joint, JointKind, Robot};
 
-/// Limit written for a prismatic joint without limits, metres: URDF demands one.
+/// Limit for a prismatic joint without limits, metres: URDF requires one.
 const WIDE_LIMIT_M: f64 = 1000.0;
 
 /// A new URDF text.
@@ -31,14 +31,14 @@ const WIDE_LIMIT_M: f64 = 1000.0;
 pub struct NewUrdf {
     /// The whole text.
     pub text: String,
-    /// What could not be carried, or had to be added, a sentence each.
+    /// Losses and additions, a sentence each.
     pub notes: Vec<String>,
 }
 
 /// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint.
 ///
 /// # Errors
-/// [`ErrorKind::Export`] if a joint's reading cannot be said in URDF (a factor or offset on its own reading).
+/// [`ErrorKind::Export`] if URDF cannot express a joint's reading (a factor or offset on its own reading).
 pub fn write_new(robot: &Robot) -> Result<NewUrdf> {
     let mut writer = Writer { text: String::new(), notes: Vec::new(), links: Vec::new() };
     writer.line(0, "<?xml version=\"1.0\"?>");
@@ -85,7 +85,7 @@ impl Writer {
         let _ = writeln!(self.text, "{:width$}{line}", "", width = 2 * depth);
     }
 
-    /// Writes a link with a name not yet taken, and returns the name.
+    /// Writes a link with a free name, and returns the name.
     fn link(&mut self, wanted: &str) -> String {
         let mut name = wanted.to_owned();
         while self.links.contains(&name) {
@@ -102,7 +102,7 @@ impl Writer {
         self.line(2, &format!("<child link=\"{}\"/>", escaped(child)));
     }
 
-    /// Writes an origin and returns it as the text has it.
+    /// Writes an origin, and returns it as in the text.
     fn origin(&mut self, pose: &Pose) -> Pose {
         let (xyz, rpy) = origin_values(pose);
         self.line(2, &format!("<origin xyz=\"{}\" rpy=\"{}\"/>", triple(xyz), triple(rpy)));
@@ -118,7 +118,7 @@ impl Writer {
         }
     }
 
-    /// The motion a joint without limits of its own allows.
+    /// Range of a joint without limits of its own.
     fn wide_limit(&mut self, name: &str) {
         self.limit(-WIDE_LIMIT_M, WIDE_LIMIT_M);
         self.notes.push(format!(
@@ -126,7 +126,7 @@ impl Writer {
         ));
     }
 
-    /// Leaders of mimic joints that are not on the chain, as joints beside it.
+    /// Leaders of mimic joints outside the chain, as joints beside it.
     fn leaders(&mut self, robot: &Robot, base: &str) {
         for name in robot.reading_names() {
             let Some(follower) = robot.joints.iter().find(|joint| joint.reading.name == name) else {
@@ -152,7 +152,7 @@ impl Writer {
         }
     }
 
-    /// Writes a moving joint; returns its origin as the text has it.
+    /// Writes a moving joint, and returns its origin as in the text.
     fn joint(&mut self, joint: &Joint, parent: &str, child: &str, origin: &Pose) -> Result<Pose> {
         let kind = match (joint.kind, joint.limits) {
             (JointKind::Prismatic, _) => "prismatic",

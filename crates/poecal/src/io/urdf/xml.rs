@@ -10,17 +10,17 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::numbers::LARGEST_NUMBER;
 use crate::io::source_text::position;
 
-/// Attributes that an element may have: the parser compares each with all others.
+/// Most attributes of an element: the parser compares each with all others.
 const MOST_ATTRIBUTES: usize = 1000;
 
-/// The byte where an element begins that has more attributes than any robot description, if there is one.
+/// Byte offset of the first element with more attributes, if there is one.
 pub(super) fn crowded_element(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
-    // Where the element began, the values closed in it, and the sign that closes the value at hand.
+    // Start of the element, number of closed values, and quote of the current value.
     let (mut element, mut values, mut quote) = (None, 0, None);
     for at in memchr::memchr3_iter(b'<', b'"', b'\'', bytes) {
         match (bytes.get(at), quote) {
-            // No value holds this sign, whatever was left open before.
+            // No value holds this character, whatever was left open before.
             (Some(b'<'), _) => (element, values, quote) = (Some(at), 0, None),
             (Some(sign), None) => quote = Some(*sign),
             (Some(sign), Some(open)) if *sign == open => {
@@ -38,12 +38,12 @@ pub(super) fn crowded_element(text: &str) -> Option<usize> {
 
 /// A parsed XML text and the name of its file.
 #[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
+pub(super) struct XmlSource<'a> {
     pub(super) document: &'a Document<'a>,
     pub(super) path: &'a Path,
 }
 
-impl<'a> Source<'a> {
+impl<'a> XmlSource<'a> {
     /// An error at a byte offset of the text.
     pub(super) fn error_at(&self, offset: usize, message: String) -> Error {
         let (line, column) = position(self.document.input_text(), offset);
@@ -61,7 +61,7 @@ impl<'a> Source<'a> {
         Error::new(ErrorKind::Syntax, message).at(self.path, line, column)
     }
 
-    /// The children of an element that are elements of this name.
+    /// Child elements of this name.
     pub(super) fn children(
         self,
         node: Node<'a, 'a>,
@@ -70,8 +70,8 @@ impl<'a> Source<'a> {
         node.children().filter(move |child| child.is_element() && child.tag_name().name() == name)
     }
 
-    /// The child of this name, of which there may be one only: which of two counts is not the same for all readers. A second one that
-    /// says the same is passed over, unless it is one of those that are written `anew`.
+    /// The only child of this name: readers differ on which of two counts. A second one with the same values is ignored, unless elements of
+    /// this name are rewritten (`anew`).
     pub(super) fn only_child(
         self,
         node: Node<'a, 'a>,
@@ -97,7 +97,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// An attribute that must be there and not be empty; `of` names its owner.
+    /// A required attribute, not empty; `of` names its owner.
     pub(super) fn required(
         &self,
         node: Node<'a, 'a>,
@@ -114,7 +114,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The numbers of an attribute, if it is there.
+    /// The numbers of an attribute, if present.
     pub(super) fn numbers<const N: usize>(
         &self,
         node: Node<'a, 'a>,
@@ -166,7 +166,7 @@ impl<'a> Source<'a> {
         Ok(number)
     }
 
-    /// The byte after `<name` of an element: where another attribute can be inserted.
+    /// Byte offset after `<name`, where another attribute can be inserted.
     pub(super) fn after_name(&self, node: Node<'a, 'a>) -> usize {
         let start = node.range().start;
         let tag = self.document.input_text().get(start..).unwrap_or("");
@@ -177,7 +177,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Where the value of an attribute stands in the text, without its quotes.
+/// Byte range of an attribute's value, without its quotes.
 pub(super) fn value_range(node: Node, name: &str) -> Option<Range<usize>> {
     node.attribute_node(name).map(|attribute| attribute.range_value())
 }

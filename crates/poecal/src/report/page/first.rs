@@ -3,7 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::figures;
-use super::html::{Table, count, facts, figure, figure_or, list, path, plots, quoted};
+use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
 use super::trust::direction_words;
 use crate::analysis::Direction;
 use crate::calibration::{Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
@@ -77,7 +77,7 @@ fn lead_table(
     file: &CalibrationFile,
     quantity: &str,
     of: fn(&ModelAccuracy) -> Option<Statistic>,
-) -> Table {
+) -> HtmlTable {
     let (set, key, rest, rest_key, suspected) = match &file.accuracy.held_out {
         Some(set) => (
             set,
@@ -106,7 +106,7 @@ fn lead_table(
         let name = format!("calibrated, without {suspected} suspected");
         rows.push((name, &rest.calibrated, format!("{rest_key}.calibrated")));
     }
-    let mut table = Table::new(caption, 1, &["", "mean", "RMS", "95 %", "max"]);
+    let mut table = HtmlTable::new(caption, 1, &["", "mean", "RMS", "95 %", "max"]);
     for (name, model, key) in rows {
         let cells = STATISTICS.iter().zip(STATISTIC_KEYS).map(|((_, value), statistic)| {
             let value = of(model).map(|it| value(&it));
@@ -185,12 +185,12 @@ fn verdict_words(level: Level) -> &'static str {
 }
 
 /// Errors of position of the three models.
-pub(super) fn position_table(caption: &str, set: &SetAccuracy, key: &str) -> Table {
+pub(super) fn position_table(caption: &str, set: &SetAccuracy, key: &str) -> HtmlTable {
     error_table(caption, set, key, "position_mm", |model| Some(model.position_mm))
 }
 
 /// Errors of rotation, where orientation was measured.
-pub(super) fn rotation_table(caption: &str, set: &SetAccuracy, key: &str) -> Table {
+pub(super) fn rotation_table(caption: &str, set: &SetAccuracy, key: &str) -> HtmlTable {
     error_table(caption, set, key, "rotation_deg", |model| model.rotation_deg)
 }
 
@@ -200,8 +200,8 @@ fn error_table(
     key: &str,
     quantity: &str,
     of: fn(&ModelAccuracy) -> Option<Statistic>,
-) -> Table {
-    let mut table = Table::new(caption, 1, &["", "nominal", "registered", "calibrated"]);
+) -> HtmlTable {
+    let mut table = HtmlTable::new(caption, 1, &["", "nominal", "registered", "calibrated"]);
     for ((label, value), statistic) in STATISTICS.iter().zip(STATISTIC_KEYS) {
         let cells = MODELS.iter().map(|(name, model)| {
             let value = of(model(set)).map(|it| value(&it));

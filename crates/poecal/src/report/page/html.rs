@@ -59,7 +59,7 @@ pub(super) fn decimal(value: f64, decimals: usize) -> String {
 }
 
 /// A table.
-pub(super) struct Table {
+pub(super) struct HtmlTable {
     caption: String,
     head: Markup,
     rows: String,
@@ -67,10 +67,10 @@ pub(super) struct Table {
     words: usize,
 }
 
-impl Table {
+impl HtmlTable {
     pub(super) fn new(caption: &str, words: usize, head: &[&str]) -> Self {
         let mut table =
-            Table { caption: caption.to_owned(), head: Markup::default(), rows: String::new(), words };
+            HtmlTable { caption: caption.to_owned(), head: Markup::default(), rows: String::new(), words };
         table.head = html! { tr { @for (k, name) in head.iter().enumerate() { th scope="col" class=(table.class(k)) { (name) } } } };
         table
     }
@@ -103,7 +103,7 @@ impl Table {
     }
 }
 
-impl Render for Table {
+impl Render for HtmlTable {
     fn render(&self) -> Markup {
         // The box scrolls on narrow screens, and is reached by the keyboard.
         html! {
@@ -135,7 +135,7 @@ pub(super) fn facts(facts: &[(&str, Markup)]) -> Markup {
 }
 
 /// A table that is opened on demand, and printed in any case.
-pub(super) fn folded(summary: &str, table: &Table) -> Markup {
+pub(super) fn folded(summary: &str, table: &HtmlTable) -> Markup {
     html! { details { summary { (summary) } (table) } }
 }
 

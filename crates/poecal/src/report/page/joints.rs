@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::figures;
-use super::html::{Table, decimal, figure, figure_or, folded, plots, quoted, section};
+use super::html::{HtmlTable, decimal, figure, figure_or, folded, plots, quoted, section};
 use crate::io::calibration_file::{CalibrationFile, JointEntry, KindWord, ScrewEntry};
 
 pub(super) fn sections(file: &CalibrationFile) -> Markup {
@@ -12,7 +12,7 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
 
 fn view(file: &CalibrationFile) -> Markup {
     let head = ["joint", "kind", "model", "x", "y", "z", "through x, mm", "y, mm", "z, mm"];
-    let mut table = Table::new(
+    let mut table = HtmlTable::new(
         "Axes in the base frame with all joints at zero: direction, and the point nearest to the base",
         3,
         &head,
@@ -34,7 +34,11 @@ fn view(file: &CalibrationFile) -> Markup {
 }
 
 /// A joint's axis in one of the models.
-fn axis(table: &mut Table, (k, joint): (usize, &JointEntry), (model, screw, key): (&str, &ScrewEntry, &str)) {
+fn axis(
+    table: &mut HtmlTable,
+    (k, joint): (usize, &JointEntry),
+    (model, screw, key): (&str, &ScrewEntry, &str),
+) {
     let turns = joint.kind == KindWord::Revolute;
     let (direction, part) = if turns { (screw.w, "w") } else { (screw.v_m, "v_m") };
     let [x, y, z] = [0, 1, 2].map(|i| figure(direction[i], format_args!("joints.{k}.{key}.{part}.{i}")));
@@ -57,7 +61,7 @@ fn cross(w: [f64; 3], v: [f64; 3]) -> [f64; 3] {
 
 fn corrections(file: &CalibrationFile) -> Markup {
     let head = ["joint", "tilt, °", "± (1 σ)", "shift, mm", "± (1 σ)", "left nominal, mm (RMS)"];
-    let mut table = Table::new("Corrections of the joints", 1, &head);
+    let mut table = HtmlTable::new("Corrections of the joints", 1, &head);
     for (k, found) in file.corrections.iter().enumerate() {
         let slides =
             file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == KindWord::Prismatic);
@@ -101,7 +105,7 @@ fn corrections(file: &CalibrationFile) -> Markup {
 /// Joint offsets, where the formulation has them.
 fn offsets(file: &CalibrationFile) -> Markup {
     let Some(offsets) = &file.solver.joint_offsets else { return Markup::default() };
-    let mut table = Table::new(
+    let mut table = HtmlTable::new(
         "Joint offsets of this formulation; in the calibrated model they are part of the axes",
         1,
         &["joint", "offset"],

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::figures;
-use super::html::{Table, count, facts, figure, folded, path, plots, quoted, section};
+use super::html::{HtmlTable, count, facts, figure, folded, path, plots, quoted, section};
 use crate::io::calibration_file::{CalibrationFile, FrameWord};
 use crate::solve::Termination;
 
@@ -68,7 +68,7 @@ fn solver(file: &CalibrationFile) -> Markup {
 fn convergence(file: &CalibrationFile) -> Markup {
     let trace = &file.solver.trace;
     let mut table =
-        Table::new("Mean square of the whitened residual by iteration", 1, &["iteration", "value"]);
+        HtmlTable::new("Mean square of the whitened residual by iteration", 1, &["iteration", "value"]);
     for (k, value) in trace.iter().enumerate().take(LISTED) {
         table.row(&[&k, &figure(*value, format_args!("solver.trace.{k}"))]);
     }
@@ -82,7 +82,7 @@ fn convergence(file: &CalibrationFile) -> Markup {
 
 fn inputs(file: &CalibrationFile) -> Markup {
     let inputs = &file.inputs;
-    let mut table = Table::new("Files that were read", 3, &["file", "what", "SHA-256"]);
+    let mut table = HtmlTable::new("Files that were read", 3, &["file", "what", "SHA-256"]);
     let mut add = |name: &String, shown: Markup, what: &str| {
         let hash = inputs.sha256.get(name).map_or("not recorded", String::as_str);
         table.row(&[&shown, &what, &html! { code.hash { (hash) } }]);

@@ -4,11 +4,11 @@ use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place, short};
 use super::first::{position_table, rotation_table};
-use super::html::{Table, chart, count, decimal, figure, figure_or, folded, plots, section};
+use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, plots, section};
 use super::{figures, readings_of};
 use crate::calibration::Statistic;
 use crate::io::calibration_file::{CalibrationFile, OutlierSet};
-use crate::io::residuals::{Judged, ResidualRow, Residuals};
+use crate::io::residuals::{ResidualRow, Residuals, RowDiagnostics};
 use crate::report::table::number;
 use crate::threads;
 
@@ -94,9 +94,12 @@ fn set_tables(file: &CalibrationFile) -> Markup {
 }
 
 /// Mean and spread of each component.
-fn component_table(residuals: &Residuals) -> Table {
-    let mut table =
-        Table::new("Residuals by component", 2, &["component", "rows", "number", "mean", "RMS", "largest"]);
+fn component_table(residuals: &Residuals) -> HtmlTable {
+    let mut table = HtmlTable::new(
+        "Residuals by component",
+        2,
+        &["component", "rows", "number", "mean", "RMS", "largest"],
+    );
     let turned = residuals.rows.iter().any(|row| row.rotation_deg.is_some());
     let parts = if turned { 2 } else { 1 };
     let rows = threads::map_parts_of(residuals.rows.len(), 6 * parts, |index| {
@@ -127,8 +130,8 @@ fn component_table(residuals: &Residuals) -> Table {
 }
 
 /// Errors by equal parts of what was sampled of each joint.
-fn joint_table(residuals: &Residuals) -> Table {
-    let mut table = Table::new(
+fn joint_table(residuals: &Residuals) -> HtmlTable {
+    let mut table = HtmlTable::new(
         "Position error of the calibrated model, mm (RMS), and number of rows by parts of each reading",
         1,
         &["reading", "from", "to", "rows", "RMS"],
@@ -171,14 +174,15 @@ fn named(residuals: &Residuals, file: &str, row: u32, key: impl Render) -> Marku
     }
 }
 
-fn leverage_table(residuals: &Residuals) -> Option<Table> {
+fn leverage_table(residuals: &Residuals) -> Option<HtmlTable> {
     let judged = residuals.rows.iter().enumerate().filter_map(|(k, row)| Some((k, row.judged?)));
     let mut judged: Vec<_> = judged.filter(|(_, found)| found.leverage.is_finite()).collect();
-    let larger =
-        |a: &(usize, Judged), b: &(usize, Judged)| b.1.leverage.total_cmp(&a.1.leverage).then(a.0.cmp(&b.0));
+    let larger = |a: &(usize, RowDiagnostics), b: &(usize, RowDiagnostics)| {
+        b.1.leverage.total_cmp(&a.1.leverage).then(a.0.cmp(&b.0))
+    };
     keep_first(&mut judged, LEVERAGES, larger);
     judged.sort_unstable_by(larger);
-    let mut table = Table::new(
+    let mut table = HtmlTable::new(
         "Rows of largest leverage",
         2,
         &["row", "set", "leverage", "studentised residual", "weight"],
@@ -221,12 +225,12 @@ fn suspects(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     section("suspects", "Suspected rows", &content)
 }
 
-fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> Table {
+fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
     let turned = file.outliers.iter().any(|it| it.residual_deg.is_some());
     let mut head = vec!["row", "set", "off by, mm"];
     head.extend(turned.then_some("off by, °"));
     head.extend(["studentised", "weight"]);
-    let mut table = Table::new("Suspected outliers, the worst first", 2, &head);
+    let mut table = HtmlTable::new("Suspected outliers, the worst first", 2, &head);
     for (k, found) in file.outliers.iter().take(LISTED).enumerate() {
         let figure = |value, name| figure_or(value, format_args!("outliers.{k}.{name}"), "–");
         let set = match found.set {
@@ -245,7 +249,7 @@ fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> Table {
 fn repeatability(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let Some(found) = &file.repeatability else { return Markup::default() };
     let head = ["pose", "rows", "accuracy, nominal", "registered", "calibrated", "repeatability"];
-    let mut table = Table::new("Pose accuracy and repeatability, mm", 1, &head);
+    let mut table = HtmlTable::new("Pose accuracy and repeatability, mm", 1, &head);
     table.row(&[
         &"mean of all",
         &count(found.rows, "repeatability.rows"),

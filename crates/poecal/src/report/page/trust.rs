@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::figures;
-use super::html::{Table, count, decimal, figure, figure_or, list, plots, quoted, scaled, section};
+use super::html::{HtmlTable, count, decimal, figure, figure_or, list, plots, quoted, scaled, section};
 use crate::analysis::Direction;
 use crate::io::calibration_file::{
     CalibrationFile, CrossValidationEntry, KindWord, LeftOutEntry, RangeEntry, UncertaintyEntry,
@@ -28,7 +28,7 @@ fn unit_of(file: &CalibrationFile, joint: &str) -> (f64, &'static str) {
 
 fn expected(found: &UncertaintyEntry) -> Markup {
     let head = ["configurations", "RMS", "95 % bound, mean", "95 % bound, worst"];
-    let mut table = Table::new("Expected errors of predicted positions, mm", 1, &head);
+    let mut table = HtmlTable::new("Expected errors of predicted positions, mm", 1, &head);
     for (words, set, key) in
         [("measured", &found.measured, "measured"), ("anywhere within the limits", &found.range, "range")]
     {
@@ -74,7 +74,7 @@ fn cross_validation(found: &CrossValidationEntry) -> Markup {
     let turned = found.random.rotation_rms_deg.is_some();
     let mut head = vec!["rows predicted", "rows", "position, mm (RMS)"];
     head.extend(turned.then_some("rotation, ° (RMS)"));
-    let mut table = Table::new("Fitted rows, predicted by fits of the others", 1, &head);
+    let mut table = HtmlTable::new("Fitted rows, predicted by fits of the others", 1, &head);
     let mut add = |entry: &LeftOutEntry, key: &str| {
         let mut cells = vec![
             quoted(&entry.left_out, format_args!("{key}.left_out")),
@@ -99,7 +99,7 @@ fn cross_validation(found: &CrossValidationEntry) -> Markup {
 
 fn coverage(file: &CalibrationFile) -> Markup {
     let head = ["joint", "sampled from", "to", "limits from", "to", "share"];
-    let mut table = Table::new("Sampled range of each joint", 1, &head);
+    let mut table = HtmlTable::new("Sampled range of each joint", 1, &head);
     for (k, found) in file.coverage.iter().enumerate() {
         let (factor, unit) = unit_of(file, &found.joint);
         let end = |value: Option<f64>, name: &str| match value {
@@ -135,7 +135,7 @@ fn parts(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
     let most = file.joints.iter().map(|joint| of(&joint.name).count()).max();
     let names: Vec<String> = (1..=most.unwrap_or(0)).map(|part| format!("part {part}")).collect();
     let head: Vec<&str> = std::iter::once("joint").chain(names.iter().map(String::as_str)).collect();
-    let mut table = Table::new("Expected errors by parts of each joint's range, mm (RMS)", 1, &head);
+    let mut table = HtmlTable::new("Expected errors by parts of each joint's range, mm (RMS)", 1, &head);
     for joint in &file.joints {
         let unit = unit_of(file, &joint.name);
         table.marked(&html! {
@@ -219,7 +219,7 @@ fn observability(file: &CalibrationFile) -> Markup {
         ("O4", "noise amplification", "1/m", found.o4, "o4"),
         ("O5", "inverse of the sum of the inverse singular values", "1/m", found.o5, "o5"),
     ];
-    let mut table = Table::new(
+    let mut table = HtmlTable::new(
         "Observability indices; larger is better, for comparing sets of configurations of one robot",
         2,
         &["index", "meaning", "value", "unit"],

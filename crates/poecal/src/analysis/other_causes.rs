@@ -1,4 +1,4 @@
-//! What no plain cause explains: whether the joints' combination is to blame, and else the directions as they are.
+//! Directions without a plain cause: dependent motion of the joints, and the remaining directions as they are.
 
 use super::causes::{Degree, NOTABLE, Rules, join, joint_of};
 use super::direction::Cause;
@@ -12,18 +12,18 @@ use crate::problem::Problem;
 use crate::robot::JointKind;
 use crate::solve::LeastSquares;
 
-/// Rows whose joint values are shuffled to see whether their combination was the cause.
+/// Rows with shuffled joint values, by which the effect of their combination is tested.
 const SHUFFLED: usize = 400;
 
 impl Rules<'_> {
     pub(super) fn dependent_motion(&mut self) {
-        let left = self.left.ncols();
-        let combined = self.told.iter().filter(|told| told.cause.is_combination());
-        let explained: usize = combined.map(|told| told.directions).sum();
+        let left = self.unexplained.ncols();
+        let combined = self.found.iter().filter(|direction| direction.cause.is_combination());
+        let explained: usize = combined.map(|direction| direction.directions).sum();
         if left == 0 || self.hidden_by_combination() < explained + left {
             return;
         }
-        let joints = self.joints_left();
+        let joints = self.unexplained_joints();
         let several = joints.len() > 1;
         let (open, subject) = if several {
             ("cannot be separated", "their screws")
@@ -36,10 +36,10 @@ impl Rules<'_> {
             "{} moved far enough, but not independently of the others: {subject} {words}",
             self.names(&joints)
         );
-        self.tell(Cause::DependentMotion, &joints, directions, description);
+        self.add(Cause::DependentMotion, &joints, directions, description);
     }
 
-    /// How many directions that are open would be told if every joint had taken the same values independently of the others.
+    /// Number of directions that would be determined if every joint had taken the same values independently of the others.
     pub(super) fn hidden_by_combination(&self) -> usize {
         let setup = self.setup;
         let rows = sample_rows(setup.rows, SHUFFLED);
@@ -50,7 +50,7 @@ impl Rules<'_> {
         for (k, &row) in rows.iter().enumerate() {
             let other = |column| setup.data.readings(rows[shuffled(k, column, count)] as usize)[column];
             let readings: Vec<f64> = (0..width).map(other).collect();
-            // Numbers that came from a data set fit into one.
+            // Observations of a data set are valid in another one.
             let _ = data.push_observation(&readings, setup.data.observations[row as usize]);
         }
         let packed = Packed::new(setup.robot, data.all_readings(), width);
@@ -60,21 +60,22 @@ impl Rules<'_> {
         let mut gram = problem.normal(setup.estimate).gram;
         let scale = setup.rows.len() as f64 / count.max(1) as f64;
         gram.iter_mut().for_each(|value| *value *= scale);
-        let then = Spectrum::new(&gram, setup.layout.dim(), self.spectrum.variance, length_m);
-        // What is weak would have to become twice as good: a little better is no cause.
+        let shuffled_spectrum = Spectrum::new(&gram, setup.layout.dim(), self.spectrum.variance, length_m);
+        // Weak directions have to improve by a factor of two: less is no cause.
         let (limit_m, now) = match self.degree {
-            Degree::Open => (PLAUSIBLE * length_m, self.spectrum.open),
-            Degree::Weak(count) => (0.5 * WEAK * length_m, self.spectrum.open + count),
+            Degree::Undetermined => (PLAUSIBLE * length_m, self.spectrum.undetermined),
+            Degree::Weak(count) => (0.5 * WEAK * length_m, self.spectrum.undetermined + count),
         };
-        let then_not = (0..then.values.len()).take_while(|&k| k < then.open || then.sigma_m(k) > limit_m);
-        now.saturating_sub(then_not.count())
+        let remaining = (0..shuffled_spectrum.values.len())
+            .take_while(|&k| k < shuffled_spectrum.undetermined || shuffled_spectrum.sigma_m(k) > limit_m);
+        now.saturating_sub(remaining.count())
     }
 
-    /// Joints with a notable part in what is left.
-    pub(super) fn joints_left(&self) -> Vec<usize> {
+    /// Joints with a notable part in the unexplained directions.
+    pub(super) fn unexplained_joints(&self) -> Vec<usize> {
         let part = |joint: &usize| {
             let screws = self.screws(&[*joint]);
-            let squares = self.left.column_iter().map(|column| {
+            let squares = self.unexplained.column_iter().map(|column| {
                 screws
                     .iter()
                     .map(|unit| column.iter().zip(unit).map(|(a, b)| a * b).sum::<f64>().powi(2))
@@ -85,28 +86,30 @@ impl Rules<'_> {
         (0..self.excitation.still.len()).filter(part).collect()
     }
 
-    /// What no rule explains, as it is; equal sentences once.
+    /// Directions that no rule explains, as they are; equal descriptions once.
     pub(super) fn others(&mut self) {
-        for direction in subspace::sparse(&self.left.clone()) {
+        for direction in subspace::sparse(&self.unexplained.clone()) {
             let (joints, parts) = self.parts(&direction);
             let (open, plural) = match (parts.len(), self.degree) {
                 (1, _) => ("is not determined by these measurements", false),
-                (_, Degree::Open) => ("can change together without effect on these measurements", true),
+                (_, Degree::Undetermined) => {
+                    ("can change together without effect on these measurements", true)
+                }
                 (_, Degree::Weak(_)) => ("", true),
             };
             let subject =
                 if parts.is_empty() { "a combination of all unknowns".to_owned() } else { join(&parts) };
-            let together = if self.degree != Degree::Open && plural { " together" } else { "" };
+            let together = if self.degree != Degree::Undetermined && plural { " together" } else { "" };
             let words = self.degree_words(open, plural, &[direction]);
             let description = format!("{subject}{together} {words}");
-            match self.told.iter_mut().find(|told| told.description == description) {
-                Some(told) => told.directions += 1,
-                None => self.tell(Cause::Other, &joints, 1, description),
+            match self.found.iter_mut().find(|direction| direction.description == description) {
+                Some(same) => same.directions += 1,
+                None => self.add(Cause::Other, &joints, 1, description),
             }
         }
     }
 
-    /// The joints that a direction concerns, and in words what of them and of the targets.
+    /// Joints with a part in a direction, and its parts in words.
     fn parts(&self, direction: &[f64]) -> (Vec<usize>, Vec<String>) {
         let (mut joints, mut parts) = (Vec::new(), Vec::new());
         for (parameter, places) in self.setup.layout.parameters() {
@@ -149,7 +152,7 @@ impl Rules<'_> {
     }
 }
 
-/// Where the k-th of `count` goes in the shuffle of a column: a stride that shares no divisor with the count, another for each column.
+/// Position of the k-th of `count` in the shuffled column: a stride coprime to the count, a different one for each column.
 fn shuffled(k: usize, column: usize, count: usize) -> usize {
     let divides = |a: usize| (2..=a).any(|d| a.is_multiple_of(d) && count.is_multiple_of(d));
     let fraction = ((column as f64 + 1.0) * 0.618_033_988_749_894_9).fract();

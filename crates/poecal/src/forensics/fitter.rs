@@ -1,4 +1,4 @@
-//! A session as the hypotheses see it: a sample of its rows, and how well the nominal robot and a short calibration explain them.
+//! Registrations and short calibrations by which hypotheses are compared, on a subsample of the rows.
 
 use super::change::{like, push};
 use crate::estimate::{Estimate, Packed, RowError, delivered, row_errors, sample_rows};
@@ -11,69 +11,69 @@ use crate::robot::{Joint, JointKind, Robot};
 use crate::solve::{Options, minimize};
 use crate::start::{Registration, register, register_roughly, target_parameters};
 
-/// Rows that a hypothesis is judged on.
+/// Rows of the subsample.
 pub(super) const SAMPLE: usize = 90;
 /// Position noise that weights the rows, metres: only its ratio to the rotation noise counts.
 const NOISE_M: f64 = 1e-3;
-/// Error after a calibration, as a share of the reach, that is no reason to look further: real robots stay below it.
+/// Calibrated error, as a share of the reach, that needs no diagnosis: real robots are below it.
 const QUIET_SHARE: f64 = 5e-4;
-/// How many times the root mean square error a single row may have.
+/// Largest ratio of a single row's error to the root mean square.
 const OUTSTANDING: f64 = 8.0;
-/// How far a calibration may tilt an axis before its joint's zero or sign is in doubt: 4 degrees.
+/// Largest tilt of an axis by a calibration that does not put its joint's zero or sign in doubt: 4 degrees.
 const QUIET_TILT_RAD: f64 = 0.07;
-/// How far it may shift an axis, as a share of the reach, before a zero or a unit is in doubt.
+/// The same for the shift of an axis, as a share of the reach.
 const QUIET_SHIFT_SHARE: f64 = 0.01;
-/// Iterations of a calibration that is to end at its optimum.
+/// Iterations of a calibration to the optimum.
 const LONG: usize = 60;
-/// Iterations of a calibration that compares suppositions.
+/// Iterations of a calibration for comparison.
 pub(super) const SHORT: usize = 12;
 
-/// How far a model is from the measurements.
+/// Error of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Misfit {
     /// Root mean square distance, metres.
     pub(super) position_m: f64,
     /// Root mean square angle, radians; 0 where no orientation was measured.
     pub(super) rotation_rad: f64,
-    /// Both together, an angle counted as its arc at the session's length.
+    /// Both together, an angle counted as its arc at `length_m`.
     pub(super) total_m: f64,
 }
 
 impl Misfit {
-    /// Both together with the distances times a factor.
+    /// Both together with the distances scaled.
     pub(super) fn resized_m(&self, factor: f64) -> f64 {
         let turned = (self.total_m.powi(2) - self.position_m.powi(2)).max(0.0);
         (turned + (factor * self.position_m).powi(2)).sqrt()
     }
 }
 
-/// Misfits with nominal screws, and with screws fitted briefly.
+/// Errors with nominal screws, and with screws fitted in a few iterations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Score {
     pub(super) registered: Misfit,
     pub(super) calibrated: Misfit,
 }
 
-/// A robot and what is known of the session.
+/// Robot and options of the fits.
 #[derive(Clone, Debug)]
-pub(super) struct Session<'a> {
+pub(super) struct Fitter<'a> {
     pub(super) robot: &'a Robot,
     pub(super) device_free: bool,
-    /// Metres that one radian counts.
+    /// Metres that a radian counts.
     pub(super) length_m: f64,
     pub(super) start: Estimate,
     pub(super) noise: Noise,
 }
 
-impl<'a> Session<'a> {
+impl<'a> Fitter<'a> {
     pub(super) fn new(robot: &'a Robot, data: &Dataset, device_free: bool) -> Self {
-        // Not from the strokes found in the data, whose unit may be wrong.
+        // Not from strokes in the data, whose unit may be wrong.
         let length_m = robot.reach_m() / 3.0;
         let noise = Noise { position_m: NOISE_M, rotation_rad: NOISE_M / length_m };
-        Session { robot, device_free, length_m, start: delivered(robot, data), noise }
+        Fitter { robot, device_free, length_m, start: delivered(robot, data), noise }
     }
 
-    /// How far the robot reaches, metres.
+    /// Reach of the robot, metres.
     pub(super) fn reach_m(&self) -> f64 {
         3.0 * self.length_m
     }
@@ -87,7 +87,7 @@ impl<'a> Session<'a> {
         self.register(data, |registration| register(registration, &self.start).0)
     }
 
-    /// Registers the nominal robot quickly, and not always at its optimum.
+    /// Registers the nominal robot quickly, not always to the optimum.
     pub(super) fn roughly_registered(&self, data: &Dataset) -> (Estimate, Misfit) {
         self.register(data, |registration| register_roughly(registration, &self.start))
     }
@@ -109,7 +109,7 @@ impl<'a> Session<'a> {
         (estimate, misfit)
     }
 
-    /// Fits the screws from a registration, a few iterations.
+    /// Fits the screws from a registration in a few iterations.
     pub(super) fn calibrated(
         &self,
         data: &Dataset,
@@ -117,12 +117,12 @@ impl<'a> Session<'a> {
         iterations: usize,
     ) -> (Estimate, Misfit) {
         let kinds = registered.kinds.iter().enumerate();
-        // The device's frame stays: beside the screws it is redundant.
+        // The device frame stays: beside the screws it is redundant.
         let screws = kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind })).collect();
         self.fit(data, registered, screws, iterations)
     }
 
-    /// Fits one joint's offset from a registration; the device moves along.
+    /// Fits one joint's offset from a registration, with an unknown device frame refitted.
     pub(super) fn offset(&self, data: &Dataset, registered: &Estimate, joint: usize) -> (f64, Misfit) {
         let mut free: Vec<Parameter> = Vec::new();
         free.extend(
@@ -149,21 +149,21 @@ impl<'a> Session<'a> {
         let mut start = registered.clone();
         start.recentre(data, &packed, &rows);
         let problem = Problem::new(data, &packed, rows, free, self.noise, self.length_m);
-        // Without following curvature: suppositions that explain nothing would take most of the time.
+        // Without geodesic steps: hypotheses that explain nothing would take most of the time.
         let options = Options { iterations, acceleration: false, ..Options::default() };
         let (estimate, _, _) = minimize(&problem, start, &options);
         let misfit = self.misfit(data, &packed, &estimate);
         (estimate, misfit)
     }
 
-    /// How well the data as they are are explained.
+    /// Estimate and errors of the given data.
     pub(super) fn judged(&self, data: &Dataset) -> (Estimate, Score) {
         let (start, registered) = self.registered(data);
         let (estimate, calibrated) = self.calibrated(data, &start, LONG);
         (estimate, Score { registered, calibrated })
     }
 
-    /// Whether nothing looks wrong: a calibration explains the data, and leaves each axis near where it was.
+    /// Whether nothing needs a diagnosis: a calibration explains the data with each axis near nominal.
     pub(super) fn is_sound(&self, data: &Dataset, calibrated: &Estimate) -> bool {
         let errors = row_errors(data, &self.packed(data), &data.all_rows(), calibrated);
         let totals = errors.iter().map(|error| self.squared_m2(error));
@@ -182,7 +182,7 @@ impl<'a> Session<'a> {
         let is_near = |(screw, joint): (&Screw, &Joint)| {
             let tilt = screw.direction().angle(&joint.screw.direction());
             let place = joint.frame.translation;
-            // A slide has no place.
+            // A prismatic joint has no place.
             let shift = match joint.kind {
                 JointKind::Revolute => (screw.nearest_point(&place) - place).norm(),
                 JointKind::Prismatic => 0.0,
@@ -192,7 +192,7 @@ impl<'a> Session<'a> {
         moved.iter().zip(&self.robot.joints).all(is_near)
     }
 
-    /// Squared error of a row, an angle counted as its arc at the session's length.
+    /// Squared error of a row, an angle counted as its arc at `length_m`.
     pub(super) fn squared_m2(&self, error: &RowError) -> f64 {
         let turned = error.rotation_rad.map_or(0.0, |turn| turn.norm_squared() * self.length_m.powi(2));
         error.position_m.norm_squared() + turned
@@ -217,7 +217,7 @@ impl<'a> Session<'a> {
     }
 }
 
-/// Some rows of a data set, every row counting the same and every pose by its error at the target.
+/// Some rows of a data set, without stated noise.
 pub(super) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
     let mut taken = like(data);
     for &row in rows {
@@ -228,7 +228,7 @@ pub(super) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
     taken
 }
 
-/// At most so many rows as hypotheses are judged on.
+/// The subsample of a data set.
 pub(super) fn sampled(data: &Dataset) -> Dataset {
     taken(data, &sample_rows(&data.all_rows(), SAMPLE))
 }
