@@ -13,7 +13,7 @@ use super::number::DecimalSign;
 use super::orientation::OrientationForm;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::source_text::{self, position};
+use crate::io::source_text;
 
 /// How a file's columns become ours, read from a TOML file (docs/file-formats.md, "Mapping file").
 ///
@@ -156,13 +156,10 @@ impl ColumnMap {
                            that the file's poses point"
                     .to_owned();
             }
-            let error_at = Error::new(ErrorKind::Syntax, message);
+            let found = Error::new(ErrorKind::Syntax, message);
             match error.span() {
-                Some(span) => {
-                    let (line, column) = position(text, span.start);
-                    error_at.at(path, line, column)
-                }
-                None => error_at.in_file(path),
+                Some(span) => found.at_offset(path, text, span.start),
+                None => found.in_file(path),
             }
         })?;
         map.path = path.to_path_buf();

@@ -43,8 +43,7 @@ impl Residuals {
             });
             is_head = false;
             done.map_err(|(offset, message)| {
-                let (line, column) = source_text::position(text, start + offset);
-                Error::new(ErrorKind::Syntax, message).at(path.as_ref(), line, column)
+                Error::new(ErrorKind::Syntax, message).at_offset(path.as_ref(), text, start + offset)
             })?;
         }
         Ok(found)

@@ -8,7 +8,7 @@ use toml::Spanned;
 use super::context::{Context, TABLE_ROUNDING};
 use super::file::{Convention, File, JointTable, PoseTable, ScrewTable};
 use crate::error::Result;
-use crate::io::mimic::{self, Mimic};
+use crate::io::mimic;
 use crate::lie::{Pose, Screw, Twist};
 use crate::robot::{DhConvention, DhRow, Joint, JointKind, Limits, Reading, Robot, Tolerance};
 
@@ -308,7 +308,7 @@ fn limits(context: &Context, table: &JointTable) -> Result<Option<Limits>> {
 /// follower's unit.
 fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &JointTable) -> Result<Reading> {
     let find = |name: &str| tables.get(name).copied();
-    let mimic_of = |name: &str| -> Result<Option<Mimic>> {
+    let follows = |name: &str| -> Result<Option<Reading>> {
         let Some((follower, mimic)) = find(name).and_then(|joint| Some((joint, joint.mimic.as_ref()?)))
         else {
             return Ok(None);
@@ -327,13 +327,7 @@ fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &Join
         if table.joint.trim().is_empty() {
             return Err(context.error(mimic.span(), format!("{of} names no joint, expected its leader")));
         }
-        Ok(Some(Mimic { leader: table.joint.clone(), multiplier, offset }))
+        Ok(Some(Reading { name: table.joint.clone(), multiplier, offset }))
     };
-    mimic::reading(table.name(), mimic_of)?.ok_or_else(|| {
-        let message = format!(
-            "joint `{}` mimics itself through its leaders, expected a leader that is measured",
-            table.name()
-        );
-        context.error(table.name.span(), message)
-    })
+    mimic::reading(table.name(), follows, |message| context.error(table.name.span(), message))
 }

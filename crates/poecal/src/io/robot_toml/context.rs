@@ -9,7 +9,6 @@ use toml::Spanned;
 use super::file::{AngleUnit, LengthUnit, PoseTable};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::io::source_text::position;
 use crate::lie::{Pose, rotation};
 use crate::robot::{JointKind, check_name};
 
@@ -26,8 +25,7 @@ pub(super) struct Context<'a> {
 
 impl Context<'_> {
     pub(super) fn error(&self, span: Range<usize>, message: String) -> Error {
-        let (line, column) = position(self.text, span.start);
-        Error::new(ErrorKind::Model, message).at(self.path, line, column)
+        Error::new(ErrorKind::Model, message).at_offset(self.path, self.text, span.start)
     }
 
     /// The numbers, if all are finite and none is beyond all sense.

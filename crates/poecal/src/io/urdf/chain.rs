@@ -62,16 +62,6 @@ fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
     }
 }
 
-/// Names of the moving joints of a chain.
-fn moving<'a>(tree: &'a Tree, chain: &'a Chain) -> impl Iterator<Item = &'a str> {
-    chain
-        .joints
-        .iter()
-        .filter_map(|&joint| tree.joints.get(joint))
-        .filter(|joint| joint.kind.moves())
-        .map(|joint| joint.name)
-}
-
 /// The way from `tip` up to `base`, or to the root.
 fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<Chain> {
     let mut at = tip;
@@ -103,7 +93,8 @@ fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<Chain> {
 
 fn check_joints(tree: &Tree, chain: &Chain) -> Result<()> {
     let (base, tip) = (tree.link_name(chain.base), tree.link_name(chain.tip));
-    for joint in chain.joints.iter().filter_map(|&joint| tree.joints.get(joint)) {
+    let joints = || chain.joints.iter().filter_map(|&joint| tree.joints.get(joint));
+    for joint in joints() {
         if !joint.kind.moves() && joint.kind != super::tree::JointType::Fixed {
             let message = format!(
                 "joint `{}` between `{base}` and `{tip}` is {}, expected revolute, continuous, prismatic or fixed: choose a chain without it with --base-link and --tip-link",
@@ -113,7 +104,7 @@ fn check_joints(tree: &Tree, chain: &Chain) -> Result<()> {
             return Err(tree.source.error(joint.node, message));
         }
     }
-    if moving(tree, chain).next().is_none() {
+    if !joints().any(|joint| joint.kind.moves()) {
         let message = format!(
             "found no moving joint between base link `{base}` and tip link `{tip}`, expected at least one: choose others with --base-link and --tip-link"
         );

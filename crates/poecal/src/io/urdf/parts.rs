@@ -9,7 +9,7 @@ use super::chain::Chain;
 use super::tree::{JointType, Tree, TreeJoint};
 use super::xml::{Source, value_range};
 use crate::error::{Result, nearest_or_all};
-use crate::io::mimic::{self, Mimic};
+use crate::io::mimic;
 use crate::lie::{Pose, Screw};
 use crate::robot::{Joint, JointKind, Limits, Reading};
 
@@ -146,20 +146,11 @@ fn read_limits<'a>(source: &Source<'a>, joint: &TreeJoint<'a>) -> Result<Option<
 
 /// The reading that gives a joint its value, through all mimic relations.
 fn read_reading(tree: &Tree, joint: &TreeJoint) -> Result<Reading> {
-    let reading = mimic::reading(joint.name, |name| match tree.joint(name) {
-        Some(follower) => read_mimic(tree, follower),
-        None => Ok(None),
-    })?;
-    reading.ok_or_else(|| {
-        let message = format!(
-            "joint `{}` mimics itself through its leaders, expected a leader that is measured",
-            joint.name
-        );
-        tree.source.error(joint.node, message)
-    })
+    let follows = |name: &str| tree.joint(name).map_or(Ok(None), |follower| read_mimic(tree, follower));
+    mimic::reading(joint.name, follows, |message| tree.source.error(joint.node, message))
 }
 
-fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Mimic>> {
+fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Reading>> {
     let source = &tree.source;
     let of = format!("joint `{}`", follower.name);
     let Some(node) = source.only_child(follower.node, "mimic", &of, false)? else { return Ok(None) };
@@ -180,8 +171,8 @@ fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Mi
     let number = |name, default| {
         source.numbers::<1>(node, name, &of).map(|number| number.map_or(default, |[only]| only))
     };
-    Ok(Some(Mimic {
-        leader: name.to_owned(),
+    Ok(Some(Reading {
+        name: name.to_owned(),
         multiplier: number("multiplier", 1.0)?,
         offset: number("offset", 0.0)?,
     }))

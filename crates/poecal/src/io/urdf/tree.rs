@@ -136,27 +136,18 @@ impl<'a> Tree<'a> {
     fn check_no_loop(&self) -> Result<()> {
         let mut rooted = vec![false; self.links.len()];
         for link in 0..self.links.len() {
-            let mut way = vec![link];
-            while let Some(&at) = way.last() {
-                if rooted.get(at).copied().unwrap_or(true) {
-                    break;
-                }
-                let Some((_, joint)) = self.above(at) else { break };
-                // A way longer than there are links comes by some link twice.
-                if way.len() > self.links.len() {
-                    let message = format!(
-                        "joint `{}` closes a loop of links, expected a tree with one root link",
-                        joint.name
-                    );
-                    return Err(self.source.error(joint.node, message));
-                }
-                way.push(joint.parent);
+            let above = self.ancestors(link).map(|(_, joint)| joint.parent);
+            let way = std::iter::once(link).chain(above).take_while(|&at| !rooted[at]);
+            // A way longer than there are links comes by some link twice.
+            let way: Vec<usize> = way.take(self.links.len() + 1).collect();
+            if let Some((_, joint)) = way.get(self.links.len()).and_then(|&at| self.above(at)) {
+                let message = format!(
+                    "joint `{}` closes a loop of links, expected a tree with one root link",
+                    joint.name
+                );
+                return Err(self.source.error(joint.node, message));
             }
-            for at in way {
-                if let Some(flag) = rooted.get_mut(at) {
-                    *flag = true;
-                }
-            }
+            way.into_iter().for_each(|at| rooted[at] = true);
         }
         Ok(())
     }
