@@ -191,13 +191,11 @@ impl<'a> Builder<'a> {
 
     /// Says of a name's second column that the model's own joint takes the name of a column with a meaning, if that is why.
     fn explained(&self, name: &str, error: Error) -> Error {
-        let is_clash =
-            self.header.count(name) > 1 && self.readings.contains(name) && OUR_NAMES.contains(&name);
-        let place = error.place().and_then(|place| Some((place.line?, place.column?)));
-        match place {
-            Some((line, column)) if is_clash => {
+        let is_clash = self.readings.contains(name) && OUR_NAMES.contains(&name);
+        match self.header.second(name) {
+            Some(second) if is_clash => {
                 let message = format!("found a second column `{name}`, {}", clash(name));
-                Error::new(ErrorKind::Measurement, message).at(self.header.path, line, column)
+                self.header.error(ErrorKind::Measurement, second, message)
             }
             _ => error,
         }
@@ -229,45 +227,38 @@ impl<'a> Builder<'a> {
         self.used.get(index).copied().unwrap_or(false)
     }
 
-    /// The target of a layout with one target a row.
-    pub(super) fn single_target(&mut self) -> Result<TargetLayout> {
+    /// The targets of a row: those of the mapping, or the only one.
+    pub(super) fn targets(&mut self) -> Result<Vec<TargetLayout>> {
         let map = self.map;
-        let position = self.position("", map.position.as_ref().unwrap_or(&PositionSpec::default()))?;
-        let orientation = match &map.orientation {
-            Some(spec) => Some(self.mapped_orientation("", spec)?),
-            None => self.default_orientation()?,
+        if !map.targets.is_empty() {
+            return map.targets.iter().map(|target| self.target(target, false)).collect();
+        }
+        let only = TargetSpec {
+            name: map.target_name.clone().unwrap_or_default(),
+            position: map.position.clone().unwrap_or_default(),
+            orientation: map.orientation.clone(),
+            sigma_position: map.sigma_position.clone(),
+            sigma_rotation: map.sigma_rotation.clone(),
         };
-        let sigma_position =
-            self.sigma("sigma_position", map.sigma_position.as_ref(), Quantity::Length, true)?;
-        let sigma_rotation =
-            self.sigma("sigma_rotation", map.sigma_rotation.as_ref(), Quantity::Angle, true)?;
-        Ok(TargetLayout {
-            name: map.target_name.clone(),
-            position,
-            orientation,
-            sigma_position,
-            sigma_rotation,
-        })
+        Ok(vec![self.target(&only, true)?])
     }
 
-    /// One target of a layout with several targets a row.
-    pub(super) fn named_target(&mut self, target: &TargetSpec) -> Result<TargetLayout> {
-        let prefix = format!("{} ", target.name);
+    /// One target of a row; the columns of the only one may have our names.
+    fn target(&mut self, target: &TargetSpec, is_only: bool) -> Result<TargetLayout> {
+        let prefix = if is_only { String::new() } else { format!("{} ", target.name) };
         let position = self.position(&prefix, &target.position)?;
-        let orientation =
-            target.orientation.as_ref().map(|spec| self.mapped_orientation(&prefix, spec)).transpose()?;
+        let orientation = match &target.orientation {
+            Some(spec) => Some(self.mapped_orientation(&prefix, spec)?),
+            None if is_only => self.default_orientation()?,
+            None => None,
+        };
         let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
-            self.sigma(&format!("{prefix}{name}"), spec, quantity, false)
+            self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only)
         };
         let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Quantity::Length)?;
         let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Quantity::Angle)?;
-        Ok(TargetLayout {
-            name: Some(target.name.clone()),
-            position,
-            orientation,
-            sigma_position,
-            sigma_rotation,
-        })
+        let name = Some(target.name.clone()).filter(|name| !name.is_empty());
+        Ok(TargetLayout { name, position, orientation, sigma_position, sigma_rotation })
     }
 
     fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {

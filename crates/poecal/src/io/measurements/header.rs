@@ -175,15 +175,17 @@ impl<'a> Header<'a> {
 
     /// Index of the column of this name, which may include the unit as the file writes it.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
-        match self.named.get(name) {
-            Some((_, Some(second))) => {
-                let message =
-                    format!("found a second column `{name}`, expected one; rename or remove one of them");
-                Err(self.error(ErrorKind::Measurement, *second, message))
-            }
-            Some((first, None)) => Ok(Some(*first)),
-            None => Ok(None),
+        if let Some(second) = self.second(name) {
+            let message =
+                format!("found a second column `{name}`, expected one; rename or remove one of them");
+            return Err(self.error(ErrorKind::Measurement, second, message));
         }
+        Ok(self.named.get(name).map(|(first, _)| *first))
+    }
+
+    /// Index of a second column of this name, if there is one.
+    pub(super) fn second(&self, name: &str) -> Option<usize> {
+        self.named.get(name)?.1
     }
 
     /// How many columns have this name.

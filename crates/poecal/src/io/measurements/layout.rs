@@ -9,15 +9,16 @@ use crate::error::Result;
 use crate::robot::Robot;
 
 /// How a row's set is known; numbers are columns of the file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) enum SetRule {
+    #[default]
     Unstated,
     Words(usize),
     Where(usize, FitWhere),
 }
 
 /// Everything that a row holds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Layout {
     /// The readings in the robot's order, then the measured numbers.
     pub(super) inputs: Vec<Input>,
@@ -42,11 +43,7 @@ impl Layout {
         map: &ColumnMap,
     ) -> Result<Self> {
         let mut builder = Builder::new(header, robot, map)?;
-        let targets = if map.targets.is_empty() {
-            vec![builder.single_target()?]
-        } else {
-            map.targets.iter().map(|target| builder.named_target(target)).collect::<Result<_>>()?
-        };
+        let targets = builder.targets()?;
         builder.check_distinct()?;
         let target_column = match &map.target {
             Some(column) => Some(builder.text_column(column, "for the target's name")?),
@@ -78,7 +75,7 @@ impl Layout {
             (None, None) => SetRule::Unstated,
         };
         let ignored = builder.ignored();
-        let Builder { inputs, .. } = builder;
+        let inputs = builder.inputs;
         Ok(Layout { inputs, targets, target_column, instrument, id, set, pose: map.pose, ignored })
     }
 
@@ -87,15 +84,6 @@ impl Layout {
         let mut builder = Builder::new(header, robot, map)?;
         builder.check_distinct()?;
         let id = builder.id_column()?;
-        Ok(Layout {
-            inputs: builder.inputs,
-            targets: Vec::new(),
-            target_column: None,
-            instrument: None,
-            id,
-            set: SetRule::Unstated,
-            pose: map.pose,
-            ignored: Vec::new(),
-        })
+        Ok(Layout { inputs: builder.inputs, id, ..Layout::default() })
     }
 }

@@ -33,12 +33,7 @@ impl OrientationForm {
 
     /// Number of columns.
     pub(super) fn len(self) -> usize {
-        match self {
-            OrientationForm::QuaternionXyzw | OrientationForm::QuaternionWxyz => 4,
-            OrientationForm::RotationVector
-            | OrientationForm::Intrinsic(_)
-            | OrientationForm::Extrinsic(_) => 3,
-        }
+        self.part_names().len()
     }
 
     /// What its columns measure.

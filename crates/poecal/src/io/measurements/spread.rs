@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::header::Header;
 use super::inputs::{Input, Source};
 use super::layout::Layout;
-use super::scale::{middle, short};
+use super::scale::{median, middle, short};
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
@@ -83,9 +83,7 @@ pub(super) fn check(
 /// Median distance from the middle, which a few corrupt rows do not move.
 fn spread(positions: Vec<Vector3<f64>>) -> f64 {
     let middle = middle(&positions);
-    let mut distances: Vec<f64> = positions.iter().map(|position| (position - middle).norm()).collect();
-    let half = distances.len() / 2;
-    if half < distances.len() { *distances.select_nth_unstable_by(half, f64::total_cmp).1 } else { 0.0 }
+    median(positions.iter().map(|position| (position - middle).norm()))
 }
 
 fn is_about(ratio: f64, expected: f64) -> bool {
