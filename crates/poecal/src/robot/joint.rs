@@ -1,6 +1,7 @@
 //! One joint: its screw, its frame, and its joint value as a function of the reading.
 
 use nalgebra::Matrix3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::lie::{Pose, Screw, rotation};
@@ -10,11 +11,15 @@ use crate::lie::{Pose, Screw, rotation};
 /// ```
 /// assert_eq!(poecal::JointKind::Revolute.word(), "revolute");
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "KindWord", description = "Kind of a joint.")]
 pub enum JointKind {
     /// Turns about an axis; value in radians. URDF's continuous joints are revolute ones without limits.
+    #[schemars(description = "Turns.")]
     Revolute,
     /// Slides along a direction; value in metres.
+    #[schemars(description = "Slides.")]
     Prismatic,
 }
 
@@ -55,11 +60,14 @@ impl Limits {
 /// let own = poecal::robot::Reading::own("joint1");
 /// assert_eq!(own.value(0.3), 0.3);
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "ReadingEntry", description = "`value = multiplier * reading + offset`.")]
 pub struct Reading {
     /// Name of the measured joint: this one, or the leader of a mimic joint.
+    #[schemars(description = "The measured joint.")]
     pub name: String,
     /// Factor on the reading.
+    #[schemars(description = "Factor.")]
     pub multiplier: f64,
     /// Added after the factor, radians or metres.
     pub offset: f64,

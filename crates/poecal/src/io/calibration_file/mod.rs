@@ -22,7 +22,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
 use crate::measurement::Dataset;
-use crate::robot::{Joint, JointKind, Limits, Reading, Robot};
+use crate::robot::{Joint, JointKind, Limits, Robot};
 use nalgebra::Vector3;
 use refusal::refusal;
 
@@ -232,22 +232,18 @@ impl JointEntry {
         pairs
             .map(|(joint, nominal)| JointEntry {
                 name: joint.name.clone(),
-                kind: joint.kind.into(),
+                kind: joint.kind,
                 screw: (&joint.screw).into(),
                 nominal_screw: (&nominal.screw).into(),
                 base_from_joint: (&joint.frame).into(),
                 limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
-                reading: ReadingEntry {
-                    name: joint.reading.name.clone(),
-                    multiplier: joint.reading.multiplier,
-                    offset: joint.reading.offset,
-                },
+                reading: joint.reading.clone(),
             })
             .collect()
     }
 
     fn joint(&self, screw: &ScrewEntry) -> Result<Joint> {
-        let kind = JointKind::from(self.kind);
+        let kind = self.kind;
         let twist = Twist::new(Vector3::from(screw.v_m), Vector3::from(screw.w));
         let bad = || {
             Error::new(
@@ -279,11 +275,7 @@ impl JointEntry {
             screw,
             frame: self.base_from_joint.pose()?,
             limits: self.limits.map(|[lower, upper]| Limits { lower, upper }),
-            reading: Reading {
-                name: self.reading.name.clone(),
-                multiplier: self.reading.multiplier,
-                offset: self.reading.offset,
-            },
+            reading: self.reading.clone(),
             tolerance: None,
         })
     }
@@ -328,24 +320,6 @@ impl From<&Pose> for PoseEntry {
 impl From<&Screw> for ScrewEntry {
     fn from(screw: &Screw) -> Self {
         ScrewEntry { v_m: screw.v().into(), w: screw.w().into() }
-    }
-}
-
-impl From<JointKind> for KindWord {
-    fn from(kind: JointKind) -> Self {
-        match kind {
-            JointKind::Revolute => KindWord::Revolute,
-            JointKind::Prismatic => KindWord::Prismatic,
-        }
-    }
-}
-
-impl From<KindWord> for JointKind {
-    fn from(kind: KindWord) -> Self {
-        match kind {
-            KindWord::Revolute => JointKind::Revolute,
-            KindWord::Prismatic => JointKind::Prismatic,
-        }
     }
 }
 

@@ -13,6 +13,7 @@ use crate::calibration::{Accuracy, FormulationWords, NoiseSource, Verdict};
 use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
+use crate::robot::{JointKind, Reading};
 use crate::solve::Termination;
 
 /// A finished calibration.
@@ -268,7 +269,7 @@ pub struct JointEntry {
     /// Name.
     pub name: String,
     /// Kind.
-    pub kind: KindWord,
+    pub kind: JointKind,
     /// Calibrated screw in the base frame at zero.
     pub screw: ScrewEntry,
     /// Screw of the nominal model.
@@ -278,17 +279,7 @@ pub struct JointEntry {
     /// Lower and upper limit, radians or metres.
     pub limits: Option<[f64; 2]>,
     /// How the joint's value follows from a reading.
-    pub reading: ReadingEntry,
-}
-
-/// Kind of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum KindWord {
-    /// Turns.
-    Revolute,
-    /// Slides.
-    Prismatic,
+    pub reading: Reading,
 }
 
 /// A screw, linear part first.
@@ -298,17 +289,6 @@ pub struct ScrewEntry {
     pub v_m: [f64; 3],
     /// Angular part: a unit vector of an axis, zero of a sliding direction.
     pub w: [f64; 3],
-}
-
-/// `value = multiplier * reading + offset`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ReadingEntry {
-    /// The measured joint.
-    pub name: String,
-    /// Factor.
-    pub multiplier: f64,
-    /// Added after the factor, radians or metres.
-    pub offset: f64,
 }
 
 /// Where the measuring device stands.

@@ -116,7 +116,7 @@ fn size_m(context: &Context, file: &File, home: &Pose) -> f64 {
     let metres = |numbers: [f64; 3]| context.length.to_metres(Vector3::from(numbers).norm());
     file.joint
         .iter()
-        .filter(|joint| joint.kind() == JointKind::Revolute)
+        .filter(|joint| joint.kind == JointKind::Revolute)
         .filter_map(|joint| joint.screw.as_ref())
         .map(|screw| metres(screw.get_ref().v))
         .fold(home.translation.norm().max(0.01), f64::max)
@@ -139,7 +139,7 @@ fn screw_joint(context: &Context, table: &JointTable, size_m: f64) -> Result<Joi
         );
         return Err(context.error(fixed.span(), message));
     }
-    let kind = table.kind();
+    let kind = table.kind;
     match (&table.screw, &table.point, &table.direction) {
         (Some(screw), None, None) => {
             let screw = screw_of_table(context, name, kind, screw, size_m)?;
@@ -277,7 +277,7 @@ fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
     };
     Ok(DhRow {
         name: table.name().to_owned(),
-        kind: table.kind(),
+        kind: table.kind,
         a_m: length(&table.a)?,
         alpha_rad: angle(&table.alpha)?,
         d_m: length(&table.d)?,
@@ -293,7 +293,7 @@ fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
 fn limits(context: &Context, table: &JointTable) -> Result<Option<Limits>> {
     let Some(limits) = &table.limits else { return Ok(None) };
     let of = format!("limits of joint `{}`", table.name());
-    let values = limits.get_ref().map(|value| context.joint_value(table.kind(), value));
+    let values = limits.get_ref().map(|value| context.joint_value(table.kind, value));
     let [lower, upper] = context.checked(values, limits.span(), &of)?;
     if lower >= upper {
         let [lower, upper] = limits.get_ref();
@@ -315,14 +315,14 @@ fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &Join
         };
         let table = mimic.get_ref();
         let of = format!("mimic of joint `{name}`");
-        let leader = find(&table.joint).map_or(follower.kind(), JointTable::kind);
+        let leader = find(&table.joint).map_or(follower.kind, |joint| joint.kind);
         let unit = |kind| context.joint_value(kind, 1.0);
-        let multiplier = if leader == follower.kind() {
+        let multiplier = if leader == follower.kind {
             table.multiplier
         } else {
-            table.multiplier * unit(follower.kind()) / unit(leader)
+            table.multiplier * unit(follower.kind) / unit(leader)
         };
-        let offset = context.joint_value(follower.kind(), table.offset);
+        let offset = context.joint_value(follower.kind, table.offset);
         let [multiplier, offset] = context.checked([multiplier, offset], mimic.span(), &of)?;
         if table.joint.trim().is_empty() {
             return Err(context.error(mimic.span(), format!("{of} names no joint, expected its leader")));

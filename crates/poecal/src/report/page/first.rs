@@ -7,10 +7,11 @@ use super::html::{Table, count, facts, figure, figure_or, list, path, plots, quo
 use super::trust::direction_words;
 use crate::analysis::Direction;
 use crate::calibration::{Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
-use crate::io::calibration_file::{CalibrationFile, FrameWord, KindWord};
+use crate::io::calibration_file::{CalibrationFile, FrameWord};
 use crate::io::residuals::Residuals;
 use crate::report::summary::{Place, Point, expected, look_at};
 use crate::report::table::STATISTICS;
+use crate::robot::JointKind;
 
 /// A model: its word, and how to take it from a set.
 type Model = (&'static str, fn(&SetAccuracy) -> &ModelAccuracy);
@@ -119,7 +120,7 @@ fn lead_table(
 
 /// How many joints of which kind, and from where to where.
 fn kinds(file: &CalibrationFile) -> Markup {
-    let sliding = file.joints.iter().filter(|joint| joint.kind == KindWord::Prismatic).count();
+    let sliding = file.joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
     let words = [(file.joints.len() - sliding, "revolute"), (sliding, "prismatic")];
     let words: Vec<String> =
         words.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
