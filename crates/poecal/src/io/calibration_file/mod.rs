@@ -13,10 +13,9 @@ pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
 pub use trust::*;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::source_text;
+use super::{json_text, source_text};
 use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
@@ -123,10 +122,7 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Export`] if a number is not finite.
     pub fn to_text(&self) -> Result<String> {
-        let text = serde_json::to_string_pretty(self).map_err(|error| {
-            Error::new(ErrorKind::Export, format!("the calibration cannot be written: {error}"))
-        })?;
-        Ok(text + "\n")
+        json_text(self, "calibration")
     }
 
     /// The calibrated robot, with its named targets.
@@ -171,12 +167,6 @@ impl CalibrationFile {
     pub fn json_schema() -> String {
         let schema = schemars::schema_for!(CalibrationFile);
         serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
-    }
-
-    /// The targets' names with their entries.
-    #[must_use]
-    pub fn targets(&self) -> &BTreeMap<String, TargetEntry> {
-        &self.targets
     }
 }
 

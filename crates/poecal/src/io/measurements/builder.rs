@@ -91,8 +91,8 @@ impl<'a> Builder<'a> {
             Unit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
                 .map_err(|error| error.in_file(&self.map.path))?;
         }
-        if !spec.columns.is_empty() {
-            return self.sum_input(name, spec, quantity, purpose);
+        if let Some(columns) = &spec.columns {
+            return self.sum_input(name, columns, quantity, spec.unit, purpose);
         }
         let Some(value) = spec.value else {
             let column = spec.column.as_deref().unwrap_or(name);
@@ -145,8 +145,9 @@ impl<'a> Builder<'a> {
     fn sum_input(
         &mut self,
         name: &str,
-        spec: &ColumnSpec,
+        columns: &BTreeMap<String, f64>,
         quantity: Quantity,
+        unit: Option<Unit>,
         purpose: &str,
     ) -> Result<usize> {
         if !self.readings.contains(name) {
@@ -154,18 +155,18 @@ impl<'a> Builder<'a> {
                 format!("found `columns` {purpose}, expected one column: only joints are sums of columns");
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
         }
-        let mut sum: Vec<Term> = Vec::with_capacity(spec.columns.len());
+        let mut sum: Vec<Term> = Vec::with_capacity(columns.len());
         let mut label = String::new();
         let at = self.inputs.len();
-        for (column, &factor) in &spec.columns {
-            self.column_input(name, column, quantity, spec.unit, purpose)?;
+        for (column, &factor) in columns {
+            self.column_input(name, column, quantity, unit, purpose)?;
             let size = if factor.abs() == 1.0 { String::new() } else { format!("{} ", factor.abs()) };
             let sign = if factor < 0.0 { "- " } else { "+ " };
             let sign = if label.is_empty() && factor > 0.0 { "" } else { sign };
             label.push_str(&format!("{}{sign}{size}{column}", if label.is_empty() { "" } else { " " }));
         }
         let parts = self.inputs.split_off(at);
-        for (part, &factor) in parts.iter().zip(spec.columns.values()) {
+        for (part, &factor) in parts.iter().zip(columns.values()) {
             if let Source::Column(column) = part.source {
                 sum.push(Term { column, unit: part.unit, factor });
             }

@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use serde::Deserialize;
+
 use crate::error::{Error, ErrorKind, Result};
 
 /// Rows whose cell in `column` equals one of `values` are fitted, all others held out. Cells compare as text or as numbers.
@@ -12,11 +14,13 @@ use crate::error::{Error, ErrorKind, Result};
 /// assert_eq!((rule.column.as_str(), rule.values.len()), ("stage", 2));
 /// # Ok::<(), poecal::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields, rename = "SetSpec")]
 pub struct FitWhere {
     /// The column's name, as in the header, with or without its unit.
     pub column: String,
     /// Values that mark a row to fit.
+    #[serde(rename = "fit")]
     pub values: Vec<String>,
 }
 

@@ -57,9 +57,7 @@ impl Layout {
             None => builder.optional_text_column("instrument")?,
         };
         let id = builder.id_column()?;
-        let rule = options.fit_where.clone().or_else(|| {
-            map.set.as_ref().map(|set| FitWhere { column: set.column.clone(), values: set.fit.clone() })
-        });
+        let rule = options.fit_where.as_ref().or(map.set.as_ref()).cloned();
         let words = builder.optional_text_column("set")?;
         let set = match (rule, words) {
             (Some(rule), _) if options.ignore_sets => {

@@ -17,7 +17,7 @@ use super::table::{Row, Table, refuse_more_rows};
 use super::text::Blocks;
 use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
-use super::{Frames, MeasurementFile, ReadOptions};
+use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
 use crate::measurement::{Dataset, Observation, Set, Source};
 use crate::robot::{Robot, check_name};
@@ -281,9 +281,8 @@ impl<'a> Reader<'a> {
     }
 
     fn finish(self) -> Result<MeasurementFile> {
-        let of_map = self.map.set.as_ref().map(|set| (&set.column, &set.fit));
-        let rule = self.options.fit_where.as_ref().map(|rule| (&rule.column, &rule.values)).or(of_map);
-        if let Some((column, values)) = rule
+        let rule = self.options.fit_where.as_ref().or(self.map.set.as_ref());
+        if let Some(FitWhere { column, values }) = rule
             && !self.options.ignore_sets
             && let Some((value, _)) = values.iter().zip(&self.fit_values_seen).find(|(_, seen)| !**seen)
         {

@@ -42,7 +42,7 @@ impl<'a> Blocks<'a> {
     /// The blocks of a file; `expected` says what it should be.
     pub(super) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
         let source = Source::File(Hashing::new(source::open(path, expected, LARGEST_TABLE)?));
-        Ok(Blocks { expected, ..Blocks::of(path, source, BLOCK) })
+        Ok(Blocks::of(path, expected, source, BLOCK))
     }
 
     /// The blocks of a text; `path` is for the messages only.
@@ -52,11 +52,11 @@ impl<'a> Blocks<'a> {
 
     /// The same, of which so many bytes are read at a time.
     pub(super) fn sized(path: &'a Path, text: &'a [u8], size: usize) -> Self {
-        Blocks::of(path, Source::Text(text), size)
+        Blocks::of(path, "a table (CSV)", Source::Text(text), size)
     }
 
-    fn of(path: &'a Path, source: Source<'a>, size: usize) -> Self {
-        let (expected, text, rest) = ("a table (CSV)", String::new(), Vec::new());
+    fn of(path: &'a Path, expected: &'a str, source: Source<'a>, size: usize) -> Self {
+        let (text, rest) = (String::new(), Vec::new());
         Blocks { path, expected, source, size, text, rest, newline: None, lines: 0 }
     }
 

@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::{FolderPlace, NewFile, Written, robot_files, write_files};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::io::calibration_file::{FrameEntry, FrameWord, JointEntry, PoseEntry, RobotEntry};
+use crate::io::json_text;
 use crate::io::measurements;
 use crate::io::model::Model;
 use crate::measurement::{Dataset, Noise};
@@ -81,13 +82,6 @@ impl TruthFile {
             tool: (&made.actual.last_joint_from_tip()).into(),
         }
     }
-
-    fn to_text(&self) -> Result<String> {
-        let text = serde_json::to_string_pretty(self).map_err(|error| {
-            Error::new(ErrorKind::Export, format!("the truth cannot be written: {error}"))
-        })?;
-        Ok(text + "\n")
-    }
 }
 
 /// Writes a simulated session whole or not at all: `nominal` and `actual` model, `measurements.csv`, `held_out.csv` if there are
@@ -114,6 +108,6 @@ pub fn write_simulation(place: FolderPlace, model: &Model, session: &Session) ->
         let text = measurements::text(held_out, &made.nominal, &exact, &comment)?;
         files.push(NewFile::new("held_out.csv", text));
     }
-    files.push(NewFile::new("truth.json", TruthFile::new(session).to_text()?));
+    files.push(NewFile::new("truth.json", json_text(&TruthFile::new(session), "truth")?));
     write_files(place, &files, None, notes)
 }
