@@ -1,6 +1,6 @@
 //! One joint: its screw, its frame, and its joint value as a function of the reading.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +30,14 @@ impl JointKind {
         match self {
             JointKind::Revolute => "revolute",
             JointKind::Prismatic => "prismatic",
+        }
+    }
+
+    /// The screw of a joint of this kind: about an axis through a point, or along it.
+    pub(crate) fn screw(self, direction: &Vector3<f64>, point: &Vector3<f64>) -> Screw {
+        match self {
+            JointKind::Revolute => Screw::revolute(direction, point),
+            JointKind::Prismatic => Screw::prismatic(direction),
         }
     }
 }
@@ -149,7 +157,8 @@ impl Joint {
         Joint::with_screw(name, JointKind::Prismatic, screw)
     }
 
-    fn with_screw(name: &str, kind: JointKind, screw: Screw) -> Self {
+    /// A joint with a frame on its axis and a reading of its own.
+    pub(crate) fn with_screw(name: &str, kind: JointKind, screw: Screw) -> Self {
         Joint {
             name: name.to_owned(),
             kind,
@@ -168,7 +177,7 @@ fn axis_frame(screw: &Screw) -> Pose {
     let turn = if z.z.abs() > 1.0 - 1e-12 && z.z > 0.0 {
         Matrix3::identity()
     } else {
-        rotation::shortest_arc(&nalgebra::Vector3::z(), &z)
+        rotation::shortest_arc(&Vector3::z(), &z)
     };
-    Pose::new(turn, screw.nearest_point(&nalgebra::Vector3::zeros()))
+    Pose::new(turn, screw.nearest_point(&Vector3::zeros()))
 }

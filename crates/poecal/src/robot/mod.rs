@@ -116,6 +116,12 @@ impl Robot {
         names.filter(|name| known.insert(name.as_str())).cloned().collect()
     }
 
+    /// Kind of the first joint that moves by a reading.
+    pub(crate) fn reading_kind(&self, name: &str) -> JointKind {
+        let joint = self.joints.iter().find(|joint| joint.reading.name == name);
+        joint.map_or(JointKind::Revolute, |joint| joint.kind)
+    }
+
     /// For each joint, the index of its reading in [`Robot::reading_names`].
     #[must_use]
     pub fn reading_indices(&self) -> Vec<usize> {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector3;
 use toml::Spanned;
 
-use super::context::{Context, TABLE_ROUNDING};
+use super::context::{Context, TABLE_ROUNDING, span};
 use super::file::{Convention, File, JointTable, PoseTable, ScrewTable};
 use crate::error::Result;
 use crate::io::mimic;
@@ -93,13 +93,9 @@ fn check_joint_names(context: &Context, file: &File) -> Result<()> {
 }
 
 fn from_screws(context: &Context, file: &File, name: &str) -> Result<Robot> {
-    for (key, table) in [("base", &file.base), ("tool", &file.tool)] {
-        if let Some(table) = table {
-            let message =
-                format!("found [{key}] in a model of screws, expected [home] only: it holds the tip's pose");
-            return Err(context.error(table.span(), message));
-        }
-    }
+    context.refuse([("base", span(&file.base)), ("tool", span(&file.tool))], |key| {
+        format!("found [{key}] in a model of screws, expected [home] only: it holds the tip's pose")
+    })?;
     let Some(home) = &file.home else {
         let message =
             "found no [home], expected it: the tip's pose in the base at zero joint values".to_owned();
@@ -124,21 +120,18 @@ fn size_m(context: &Context, file: &File, home: &Pose) -> f64 {
 
 fn screw_joint(context: &Context, table: &JointTable, size_m: f64) -> Result<Joint> {
     let name = table.name();
-    for (key, value) in [("a", &table.a), ("alpha", &table.alpha), ("d", &table.d), ("theta", &table.theta)] {
-        if let Some(value) = value {
-            let message = format!(
-                "joint `{name}` has the DH parameter `{key}`, expected `screw`, or `point` and `direction`: for a DH table state convention = \"standard_dh\" or \"modified_dh\""
-            );
-            return Err(context.error(value.span(), message));
-        }
-    }
-    if let Some(fixed) = &table.fixed {
-        let message = format!(
-            "joint `{name}` has `fixed`, expected it in a DH table only: a screw says where its axis stands in the base, whatever \
+    let dh = [("a", &table.a), ("alpha", &table.alpha), ("d", &table.d), ("theta", &table.theta)];
+    context.refuse(dh.map(|(key, value)| (key, span(value))), |key| {
+        format!(
+            "joint `{name}` has the DH parameter `{key}`, expected `screw`, or `point` and `direction`: for a DH table state convention = \"standard_dh\" or \"modified_dh\""
+        )
+    })?;
+    context.refuse([("fixed", span(&table.fixed))], |key| {
+        format!(
+            "joint `{name}` has `{key}`, expected it in a DH table only: a screw says where its axis stands in the base, whatever \
              lies between"
-        );
-        return Err(context.error(fixed.span(), message));
-    }
+        )
+    })?;
     let kind = table.kind;
     match (&table.screw, &table.point, &table.direction) {
         (Some(screw), None, None) => {
@@ -162,10 +155,7 @@ fn screw_joint(context: &Context, table: &JointTable, size_m: f64) -> Result<Joi
 }
 
 fn joint_of_screw(name: &str, kind: JointKind, screw: Screw, origin: Option<Vector3<f64>>) -> Joint {
-    let mut joint = match kind {
-        JointKind::Revolute => Joint::revolute(name, screw),
-        JointKind::Prismatic => Joint::prismatic(name, screw),
-    };
+    let mut joint = Joint::with_screw(name, kind, screw);
     joint.frame.translation = origin.unwrap_or(joint.frame.translation);
     joint
 }
@@ -188,10 +178,7 @@ fn joint_of_line(
     let point = point
         .map(|point| context.metres(*point.get_ref(), point.span(), &of).map(Vector3::from))
         .transpose()?;
-    let screw = match kind {
-        JointKind::Revolute => Screw::revolute(&axis, &point.unwrap_or_default()),
-        JointKind::Prismatic => Screw::prismatic(&axis),
-    };
+    let screw = kind.screw(&axis, &point.unwrap_or_default());
     Ok(joint_of_screw(name, kind, screw, point))
 }
 
@@ -238,12 +225,11 @@ fn screw_of_table(
 }
 
 fn from_dh(context: &Context, file: &File, name: &str, convention: DhConvention) -> Result<Robot> {
-    if let Some(home) = &file.home {
-        let message =
-            "found [home] in a DH model, expected [base] and [tool]: the home pose follows from the table"
-                .to_owned();
-        return Err(context.error(home.span(), message));
-    }
+    context.refuse([("home", span(&file.home))], |key| {
+        format!(
+            "found [{key}] in a DH model, expected [base] and [tool]: the home pose follows from the table"
+        )
+    })?;
     let rows = file.joint.iter().map(|joint| dh_row(context, joint)).collect::<Result<Vec<_>>>()?;
     let pose = |table: &Option<Spanned<PoseTable>>, of| match table {
         Some(table) => context.pose(table.get_ref(), of),
@@ -255,18 +241,11 @@ fn from_dh(context: &Context, file: &File, name: &str, convention: DhConvention)
 
 fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
     let of = format!("joint `{}`", table.name());
-    let screw_keys = [
-        ("screw", table.screw.as_ref().map(Spanned::span)),
-        ("point", table.point.as_ref().map(Spanned::span)),
-        ("direction", table.direction.as_ref().map(Spanned::span)),
-    ];
-    for (key, span) in screw_keys {
-        if let Some(span) = span {
-            let message =
-                format!("{of} has `{key}`, expected a, alpha, d and theta: the model is a DH table");
-            return Err(context.error(span, message));
-        }
-    }
+    let screw =
+        [("screw", span(&table.screw)), ("point", span(&table.point)), ("direction", span(&table.direction))];
+    context.refuse(screw, |key| {
+        format!("{of} has `{key}`, expected a, alpha, d and theta: the model is a DH table")
+    })?;
     let length = |value: &Option<Spanned<f64>>| match value {
         Some(value) => context.metres([*value.get_ref()], value.span(), &of).map(|[only]| only),
         None => Ok(0.0),
@@ -282,7 +261,6 @@ fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
         alpha_rad: angle(&table.alpha)?,
         d_m: length(&table.d)?,
         theta_rad: angle(&table.theta)?,
-        limits: None,
         fixed: match &table.fixed {
             Some(fixed) => context.pose(fixed.get_ref(), &format!("`fixed` of {of}"))?,
             None => Pose::identity(),

@@ -10,7 +10,7 @@ use super::tree::{JointType, Tree, TreeJoint};
 use super::xml::{Source, value_range};
 use crate::error::{Result, nearest_or_all};
 use crate::io::mimic;
-use crate::lie::{Pose, Screw};
+use crate::lie::Pose;
 use crate::robot::{Joint, JointKind, Limits, Reading};
 
 /// A fixed or moving joint of the chain, with all that is needed to write it back.
@@ -56,16 +56,15 @@ pub(super) fn read(tree: &Tree, chain: &Chain) -> Result<(Vec<Part>, Vec<Joint>,
 
 fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {
     let direction = base_from_joint.rotation * axis;
-    let (kind, screw) = match joint.kind {
-        JointType::Prismatic => (JointKind::Prismatic, Screw::prismatic(&direction)),
+    let kind = match joint.kind {
+        JointType::Prismatic => JointKind::Prismatic,
         JointType::Revolute
         | JointType::Continuous
         | JointType::Fixed
         | JointType::Floating
-        | JointType::Planar => {
-            (JointKind::Revolute, Screw::revolute(&direction, &base_from_joint.translation))
-        }
+        | JointType::Planar => JointKind::Revolute,
     };
+    let screw = kind.screw(&direction, &base_from_joint.translation);
     Ok(Joint {
         name: joint.name.to_owned(),
         kind,
