@@ -44,7 +44,7 @@ mod tests {
         // c = 2 b + 1 = 2 (3 a + 0.5) + 1
         assert_eq!(
             reading("c", follows, |message| Error::new(ErrorKind::Model, message)),
-            Ok(Some(Reading { name: "a".into(), multiplier: 6.0, offset: 2.0 }))
+            Ok(Reading { name: "a".into(), multiplier: 6.0, offset: 2.0 })
         );
     }
 }

@@ -1,6 +1,6 @@
 //! What judging a calibration by other measurements needs of its file.
 
-use super::{CalibrationFile, FrameWord};
+use super::CalibrationFile;
 use crate::calibration::DeviceFrameKnowledge;
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
@@ -13,10 +13,7 @@ impl CalibrationFile {
     /// What was known of the device's frame.
     #[must_use]
     pub fn frame(&self) -> DeviceFrameKnowledge {
-        match self.measurement_frame.known {
-            FrameWord::Unknown => DeviceFrameKnowledge::Unknown,
-            FrameWord::Base => DeviceFrameKnowledge::Base,
-        }
+        self.measurement_frame.known
     }
 
     /// The noise that the calibration was weighted by, in metres and radians.

@@ -16,7 +16,7 @@ pub use trust::*;
 use std::path::Path;
 
 use super::{json_text, source_text};
-use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge};
+use crate::calibration::{CalibratedStation, Calibration};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
@@ -85,10 +85,7 @@ impl CalibrationFile {
             robot: RobotEntry::new(robot, &calibration.nominal),
             joints,
             measurement_frame: FrameEntry {
-                known: match calibration.frame {
-                    DeviceFrameKnowledge::Unknown => FrameWord::Unknown,
-                    DeviceFrameKnowledge::Base => FrameWord::Base,
-                },
+                known: calibration.frame,
                 base_from_device: (&calibration.base_from_device).into(),
             },
             stations: StationEntry::of(calibration),

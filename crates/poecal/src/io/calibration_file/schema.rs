@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
-use crate::calibration::{Accuracy, FormulationWords, NoiseSource, Verdict};
+use crate::calibration::{Accuracy, DeviceFrameKnowledge, FormulationWords, NoiseSource, Verdict};
 use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
@@ -295,7 +295,7 @@ pub struct ScrewEntry {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrameEntry {
     /// Whether the frame was unknown or the base.
-    pub known: FrameWord,
+    pub known: DeviceFrameKnowledge,
     /// Pose of the device in the base.
     pub base_from_device: PoseEntry,
 }
@@ -314,16 +314,6 @@ pub struct StationEntry {
     pub instrument: Option<String>,
     /// Pose of the device in the base.
     pub base_from_device: PoseEntry,
-}
-
-/// What was known of the device's frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FrameWord {
-    /// It was fitted.
-    Unknown,
-    /// Measurements are in the base frame.
-    Base,
 }
 
 /// A pose.

@@ -249,7 +249,7 @@ mod tests {
         let path = Path::new("x.csv");
         let source = Source::File(Hashing::new(Input::of(Box::new(Broken))));
         let expected = "a measurement file (CSV)";
-        let error = Blocks { expected, ..Blocks::of(path, source, BLOCK) }.advance().unwrap_err().to_string();
+        let error = Blocks::of(path, expected, source, BLOCK).advance().unwrap_err().to_string();
         assert_eq!(
             error,
             "x.csv: the file cannot be read (the cable was pulled), expected a measurement file (CSV)"

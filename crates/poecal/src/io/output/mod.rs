@@ -18,7 +18,7 @@ mod reproduction;
 mod simulation;
 mod staging;
 
-pub use calibration::{Results, write, write_robot};
+pub use calibration::{Results, write};
 pub use contents::{Contents, REPORT};
 pub use existing::Existing;
 pub use file::FilePlace;

@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::{FolderPlace, NewFile, Written, robot_files, write_files};
+use crate::calibration::DeviceFrameKnowledge;
 use crate::error::Result;
-use crate::io::calibration_file::{FrameEntry, FrameWord, JointEntry, PoseEntry, RobotEntry};
+use crate::io::calibration_file::{FrameEntry, JointEntry, PoseEntry, RobotEntry};
 use crate::io::json_text;
 use crate::io::measurements;
 use crate::io::model::Model;
@@ -76,7 +77,11 @@ impl TruthFile {
             robot: RobotEntry::new(&made.actual, &made.nominal),
             joints: JointEntry::of_robot(&made.actual, &made.nominal),
             measurement_frame: FrameEntry {
-                known: if simulation.device_anywhere { FrameWord::Unknown } else { FrameWord::Base },
+                known: if simulation.device_anywhere {
+                    DeviceFrameKnowledge::Unknown
+                } else {
+                    DeviceFrameKnowledge::Base
+                },
                 base_from_device: (&made.device_from_base.inverse()).into(),
             },
             tool: (&made.actual.last_joint_from_tip()).into(),

@@ -6,8 +6,8 @@ use super::figures;
 use super::html::{Table, count, facts, figure, figure_or, list, path, plots, quoted};
 use super::trust::direction_words;
 use crate::analysis::Direction;
-use crate::calibration::{Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
-use crate::io::calibration_file::{CalibrationFile, FrameWord};
+use crate::calibration::{DeviceFrameKnowledge, Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
+use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::report::summary::{Place, Point, expected, look_at};
 use crate::report::table::STATISTICS;
@@ -96,8 +96,8 @@ fn lead_table(
         ),
     };
     let nominal = match file.measurement_frame.known {
-        FrameWord::Unknown => "nominal, tool and device fitted",
-        FrameWord::Base => "nominal, tool fitted",
+        DeviceFrameKnowledge::Unknown => "nominal, tool and device fitted",
+        DeviceFrameKnowledge::Base => "nominal, tool fitted",
     };
     let mut rows = vec![
         (nominal.to_owned(), &set.registered, format!("{key}.registered")),
