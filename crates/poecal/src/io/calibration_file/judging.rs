@@ -108,19 +108,17 @@ impl CalibrationFile {
                         )
                     }
                     Some(_) => continue,
-                    None => match nearest(name, names()) {
-                        Some(near) => format!(
-                            "found measurements of target `{name}`, expected one of {known} as in the calibration \
-                             (nearest: `{near}`): rename it, {refit}"
-                        ),
-                        None if !self.targets.is_empty() => format!(
-                            "found measurements of target `{name}`, expected one of {known} as in the calibration: rename \
-                             it, {refit}"
-                        ),
-                        None => format!(
-                            "found measurements of target `{name}`, expected no name, since the calibration has the tip alone: leave the names out, {refit}"
-                        ),
-                    },
+                    None if self.targets.is_empty() => format!(
+                        "found measurements of target `{name}`, expected no name, since the calibration has the tip alone: leave the names out, {refit}"
+                    ),
+                    None => {
+                        let near = nearest(name, names()).map(|near| format!(" (nearest: `{near}`)"));
+                        format!(
+                            "found measurements of target `{name}`, expected one of {known} as in the calibration{}: rename \
+                             it, {refit}",
+                            near.unwrap_or_default()
+                        )
+                    }
                 },
             };
             return Err(Error::new(ErrorKind::Problem, message));

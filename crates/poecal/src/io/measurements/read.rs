@@ -111,7 +111,7 @@ impl<'a> Reader<'a> {
             Numbers::new(self.map.decimal),
         );
         let mut watch = JointWatch::new(self.robot);
-        let mut turns = TurnWatch::new();
+        let mut turns = TurnWatch::default();
         let first = self.found.data.len();
         self.found.data.files.push(path.to_path_buf());
         if layout.id.is_some() {

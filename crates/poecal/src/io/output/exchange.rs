@@ -29,11 +29,6 @@ impl FolderPlace {
         })
     }
 
-    /// Where the new files lie until they are put in place.
-    pub(super) fn new_files(&self) -> std::path::PathBuf {
-        self.staging.new_files()
-    }
-
     /// Puts the new files of these names in place, and removes other files of an earlier run. Gives what is to be said. The caller
     /// holds [`interrupted::undisturbed`].
     pub(super) fn put(mut self, names: &[String]) -> Result<Vec<String>> {

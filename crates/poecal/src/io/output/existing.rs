@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::staging;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::disk::{Disk, Found, FoundKind};
 use crate::io::named_files;
@@ -43,14 +44,11 @@ pub(super) fn refused(path: &Path, message: impl Into<String>) -> Error {
 
 /// What is at a path, if anything is.
 pub(super) fn found(disk: &dyn Disk, path: &Path) -> Result<Option<Found>> {
-    match disk.look(path) {
-        Ok(found) => Ok(Some(found)),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(refused(
-            path,
-            format!("the place cannot be looked at ({error}), expected one to write to: choose another"),
-        )),
-    }
+    staging::there(disk, path).map_err(|error| {
+        let message =
+            format!("the place cannot be looked at ({error}), expected one to write to: choose another");
+        refused(path, message)
+    })
 }
 
 /// The path without links of a place in a folder that exists, where nothing is yet.

@@ -5,7 +5,7 @@ use std::io::{self, Read as _, Write as _};
 use std::path::Path;
 
 use super::contents::Contents;
-use super::staging::{JOURNAL, JOURNAL_BACK, NEW, OLD, UNFINISHED_JOURNAL, gone};
+use super::staging::{JOURNAL, JOURNAL_BACK, NEW, OLD, UNFINISHED_JOURNAL, gone, there};
 use crate::io::disk::{Disk, FoundKind};
 use crate::io::named_files;
 
@@ -168,11 +168,7 @@ fn is_changed(disk: &dyn Disk, kept: &Path, place: &Path) -> io::Result<bool> {
 
 /// Whether a file is there.
 fn is_file(disk: &dyn Disk, path: &Path) -> io::Result<bool> {
-    match disk.look(path) {
-        Ok(found) => Ok(found.kind == FoundKind::File),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(error),
-    }
+    Ok(there(disk, path)?.is_some_and(|found| found.kind == FoundKind::File))
 }
 
 #[cfg(test)]

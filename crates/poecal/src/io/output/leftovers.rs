@@ -53,15 +53,13 @@ fn told(staging: &Path, place: &Path, settled: io::Result<bool>) -> String {
             )
         }
         Ok(false) => format!("{}: removed what an interrupted run left", staging.display()),
-        Err(error) => unsettled(staging, &error),
+        Err(error) => {
+            format!(
+                "{}: an interrupted run left this, and it cannot be settled ({error}): look into it",
+                staging.display()
+            )
+        }
     }
-}
-
-fn unsettled(staging: &Path, error: &io::Error) -> String {
-    format!(
-        "{}: an interrupted run left this, and it cannot be settled ({error}): look into it",
-        staging.display()
-    )
 }
 
 /// Settles what lies beside a place; `target` is the folder there, which may have been exchanged, if there is one.
@@ -100,10 +98,7 @@ pub(super) fn give_back(
             }
         }
     }
-    match disk.remove_folder(folder) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        removed => removed,
-    }
+    staging::gone(disk.remove_folder(folder))
 }
 
 /// Removes what runs of this process have written and not yet put in place. Results that are being put in place are waited for, and

@@ -188,7 +188,7 @@ fn write_files(
         place.stage(file)?;
     }
     let folder = place.named.clone();
-    let largest = prove(files, &place.new_files(), &folder)?;
+    let largest = prove(files, &place.staging.new_files(), &folder)?;
     let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
     let elsewhere = elsewhere.map(|(mut file, page)| file.stage(page).map(|()| file)).transpose()?;
     let _undisturbed = interrupted::undisturbed();

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{NewFile, interrupted};
-use crate::io::disk::{Disk, FoundKind, Lock, Output};
+use crate::io::disk::{Disk, Found, FoundKind, Lock, Output};
 
 /// The folder of new files in a staging folder.
 pub(super) const NEW: &str = "new";
@@ -179,6 +179,14 @@ pub(super) fn keep(disk: &dyn Disk, from: &Path, to: &Path) -> io::Result<()> {
     copy.sync()
 }
 
+/// What is at a path, if anything is.
+pub(super) fn there(disk: &dyn Disk, path: &Path) -> io::Result<Option<Found>> {
+    match disk.look(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        found => found.map(Some),
+    }
+}
+
 /// Something that is to be gone, and is if it never was.
 pub(super) fn gone(removed: io::Result<()>) -> io::Result<()> {
     match removed {
@@ -206,9 +214,8 @@ pub(super) fn is_staging(name: &OsStr, prefix: &OsStr) -> bool {
 /// Whether a staging folder and what belongs into it are what they seem, and this user's: whoever can write beside a place could
 /// have put links there that lead elsewhere.
 fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
-    let is = |path: &Path, kind: FoundKind| match disk.look(path) {
-        Ok(found) => found.kind == kind && found.is_mine,
-        Err(error) => error.kind() == io::ErrorKind::NotFound,
+    let is = |path: &Path, kind: FoundKind| {
+        there(disk, path).is_ok_and(|found| found.is_none_or(|found| found.kind == kind && found.is_mine))
     };
     is(folder, FoundKind::Folder)
         && [NEW, OLD].into_iter().all(|half| is(&folder.join(half), FoundKind::Folder))

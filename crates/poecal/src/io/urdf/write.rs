@@ -69,10 +69,6 @@ pub fn write_new(robot: &Robot) -> Result<NewUrdf> {
     Ok(NewUrdf { text: writer.text, notes: writer.notes })
 }
 
-fn export(message: String) -> Error {
-    Error::new(ErrorKind::Export, message)
-}
-
 struct Writer {
     text: String,
     notes: Vec<String>,
@@ -177,10 +173,11 @@ impl Writer {
             );
             self.line(2, &format!("<mimic joint=\"{}\" {relation}/>", escaped(&reading.name)));
         } else if reading.multiplier != 1.0 || reading.offset != 0.0 {
-            return Err(export(format!(
+            let message = format!(
                 "joint `{}` has a factor or an offset on its own reading, expected factor 1 and offset 0: URDF has them for mimic joints only",
                 joint.name
-            )));
+            );
+            return Err(Error::new(ErrorKind::Export, message));
         }
         self.line(1, "</joint>");
         Ok(origin)
