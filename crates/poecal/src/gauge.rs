@@ -94,11 +94,8 @@ pub fn null_step(
     let screws = estimate.screws();
     let deviations: Vec<_> =
         screws.iter().zip(&robot.joints).map(|(screw, joint)| deviations(screw, joint, length_m)).collect();
-    let now: Vec<f64> = deviations
-        .iter()
-        .flatten()
-        .flat_map(|(deviation, _)| [deviation.x, deviation.y, deviation.z])
-        .collect();
+    let now = deviations.iter().flatten().flat_map(|(deviation, _)| deviation.iter().copied());
+    let now: Vec<f64> = now.collect();
     // How motions of the screws change that.
     let effect = |motions: &[Vector6<f64>]| -> Vec<f64> {
         let changes = deviations

@@ -58,14 +58,13 @@ impl Layout {
         };
         let id = builder.id_column()?;
         let rule = options.fit_where.as_ref().or(map.set.as_ref()).cloned();
-        let words = builder.optional_text_column("set")?;
+        let words = builder.optional_text_column("set")?.filter(|_| !options.ignore_sets);
         let set = match (rule, words) {
             (Some(rule), _) if options.ignore_sets => {
                 // A column that is there and known is not listed as left alone.
                 builder.optional_text_column(&rule.column)?;
                 SetRule::Unstated
             }
-            (None, Some(_)) if options.ignore_sets => SetRule::Unstated,
             (Some(rule), _) => {
                 SetRule::Where(builder.text_column(&rule.column, "that says which rows are fitted")?, rule)
             }

@@ -190,5 +190,5 @@ const SCHEMA: &str = "\"schema\": \"poecal-calibration-";
 /// The error of a file that is in the way.
 pub(super) fn taken(path: &Path) -> Error {
     let message = "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out";
-    Error::new(ErrorKind::File, message).in_file(path)
+    refused(path, message)
 }

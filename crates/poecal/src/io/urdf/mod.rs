@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use roxmltree::Document;
 
 pub use patch::PatchedUrdf;
-pub use write::{NewUrdf, write_new};
+pub use write::write_new;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::source_text;

@@ -65,13 +65,21 @@ pub(super) struct Tree<'a> {
 impl<'a> Tree<'a> {
     pub(super) fn read(source: Source<'a>) -> Result<Self> {
         let robot = source.document.root_element();
-        let (links, index) = read_links(source, robot)?;
+        let (mut links, mut link_indices) = (Vec::new(), BTreeMap::new());
+        for node in source.children(robot, "link") {
+            let (name, _) = source.required(node, "name", "the link")?;
+            if link_indices.insert(name, links.len()).is_some() {
+                let message = format!("found a second link named `{name}`, expected unique link names");
+                return Err(source.error(node, message));
+            }
+            links.push(name);
+        }
         let mut tree = Tree {
             source,
             joint_above: vec![None; links.len()],
             links,
             joints: Vec::new(),
-            link_indices: index,
+            link_indices,
             joint_indices: BTreeMap::new(),
         };
         for node in source.children(robot, "joint") {
@@ -151,22 +159,6 @@ impl<'a> Tree<'a> {
         }
         Ok(())
     }
-}
-
-/// The links' names in the order of the file, and their indices by name.
-type Links<'a> = (Vec<&'a str>, BTreeMap<&'a str, usize>);
-
-fn read_links<'a>(source: Source<'a>, robot: Node<'a, 'a>) -> Result<Links<'a>> {
-    let (mut links, mut index) = (Vec::new(), BTreeMap::new());
-    for node in source.children(robot, "link") {
-        let (name, _) = source.required(node, "name", "the link")?;
-        if index.insert(name, links.len()).is_some() {
-            let message = format!("found a second link named `{name}`, expected unique link names");
-            return Err(source.error(node, message));
-        }
-        links.push(name);
-    }
-    Ok((links, index))
 }
 
 fn read_joint<'a>(
