@@ -39,13 +39,12 @@ pub(super) struct Input {
 /// [`ErrorKind::File`] if it is a directory, missing or unreadable, or of a form that is no text.
 pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
     let error = |message: String| Error::new(ErrorKind::File, message).in_file(path);
+    let disk = disk::here();
     let opened = if is_standard_input(path) {
-        disk::here().standard_input()
+        disk.standard_input()
+    } else if disk.follow(path).is_ok_and(|found| found.kind == FoundKind::Folder) {
+        return Err(error(format!("found a directory, expected {expected}")));
     } else {
-        let disk = disk::here();
-        if disk.follow(path).is_ok_and(|found| found.kind == FoundKind::Folder) {
-            return Err(error(format!("found a directory, expected {expected}")));
-        }
         disk.open(path)
     };
     let mut rest = opened.map_err(|cause| {

@@ -233,14 +233,10 @@ impl JointEntry {
         let kind = self.kind;
         let twist = Twist::new(Vector3::from(screw.v_m), Vector3::from(screw.w));
         let bad = || {
-            Error::new(
-                ErrorKind::Model,
-                format!(
-                    "found a screw of joint `{}` that is no {} screw, expected a unit one",
-                    self.name,
-                    kind.word()
-                ),
-            )
+            let (name, kind) = (&self.name, kind.word());
+            let message =
+                format!("found a screw of joint `{name}` that is no {kind} screw, expected a unit one");
+            Error::new(ErrorKind::Model, message)
         };
         let screw = Screw::project(&twist).ok_or_else(bad)?;
         let off = (screw.twist().to_vector() - twist.to_vector()).norm();
@@ -287,12 +283,10 @@ impl PoseEntry {
     pub fn pose(&self) -> Result<Pose> {
         let norm = self.quaternion_xyzw.iter().map(|q| q * q).sum::<f64>().sqrt();
         if norm.is_nan() || (norm - 1.0).abs() > 1e-6 {
-            return Err(Error::new(
-                ErrorKind::Model,
-                format!(
-                    "found a quaternion of length {norm}, expected a unit quaternion in x, y, z, w order"
-                ),
-            ));
+            let message = format!(
+                "found a quaternion of length {norm}, expected a unit quaternion in x, y, z, w order"
+            );
+            return Err(Error::new(ErrorKind::Model, message));
         }
         Ok(Pose::from_position_quaternion(self.position_m, self.quaternion_xyzw))
     }

@@ -46,15 +46,12 @@ impl FromStr for FitWhere {
             let values: Vec<String> = values.split(',').map(|value| value.trim().to_owned()).collect();
             FitWhere { column: column.trim().to_owned(), values }
         });
-        match parts {
-            Some(rule) if !rule.column.is_empty() && rule.values.iter().all(|value| !value.is_empty()) => {
-                Ok(rule)
-            }
-            _ => Err(Error::new(
-                ErrorKind::Option,
-                format!("found `{text}` as the rows to fit, expected COLUMN=VALUE[,VALUE]"),
-            )),
-        }
+        let is_whole =
+            |rule: &FitWhere| !rule.column.is_empty() && rule.values.iter().all(|value| !value.is_empty());
+        parts.filter(is_whole).ok_or_else(|| {
+            let message = format!("found `{text}` as the rows to fit, expected COLUMN=VALUE[,VALUE]");
+            Error::new(ErrorKind::Option, message)
+        })
     }
 }
 

@@ -99,12 +99,8 @@ impl<'a> Header<'a> {
         for (index, cell) in cells.iter().enumerate() {
             let texts = [Some(&cell.name), Some(&cell.text).filter(|text| **text != cell.name)];
             for text in texts.into_iter().flatten() {
-                match named.get_mut(text) {
-                    Some((_, second)) => *second = second.or(Some(index)),
-                    None => {
-                        named.insert(text.clone(), (index, None));
-                    }
-                }
+                let places = named.entry(text.clone());
+                places.and_modify(|(_, second)| *second = second.or(Some(index))).or_insert((index, None));
             }
         }
         Ok(Header { path, line, cells, named, units_line: None, below: Vec::new() })

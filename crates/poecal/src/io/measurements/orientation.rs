@@ -113,13 +113,11 @@ impl FromStr for OrientationForm {
             },
         };
         form.ok_or_else(|| {
-            Error::new(
-                ErrorKind::Syntax,
-                format!(
-                    "found the orientation form `{text}`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, \
-                     roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz"
-                ),
-            )
+            let message = format!(
+                "found the orientation form `{text}`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, \
+                 roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz"
+            );
+            Error::new(ErrorKind::Syntax, message)
         })
     }
 }

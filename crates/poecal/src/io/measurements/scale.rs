@@ -85,9 +85,8 @@ impl<'a> JointWatch<'a> {
             let Some((lowest, highest)) = range.0 else { continue };
             if let Some(likely) = one.other_unit(input, [lowest, highest], self.rows) {
                 let (line, column) = one.extreme_place;
-                return Err(
-                    Error::new(ErrorKind::Unit, one.unit_message(input, likely)).at(path, line, column)
-                );
+                let message = one.unit_message(input, likely);
+                return Err(Error::new(ErrorKind::Unit, message).at(path, line, column));
             }
             if let Some(limits) = one.joint.limits {
                 warnings.push(one.limit_warning(path, limits, input.unit.quantity().si_unit()));

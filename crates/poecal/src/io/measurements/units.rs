@@ -127,14 +127,9 @@ impl Unit {
             }
             _ => String::new(),
         };
-        Err(Error::new(
-            ErrorKind::Unit,
-            format!(
-                "found the unit `{symbol}`{purpose}, expected {} ({}){hint}",
-                quantity.words(),
-                symbols.join(", ")
-            ),
-        ))
+        let (words, symbols) = (quantity.words(), symbols.join(", "));
+        let message = format!("found the unit `{symbol}`{purpose}, expected {words} ({symbols}){hint}");
+        Err(Error::new(ErrorKind::Unit, message))
     }
 
     /// The unit of this symbol, whatever it measures.
@@ -142,16 +137,12 @@ impl Unit {
     /// # Errors
     /// [`ErrorKind::Unit`] if it is unknown.
     pub fn parse_any(symbol: &str) -> Result<Unit> {
-        Unit::parse(symbol, Quantity::Length).or_else(|_| Unit::parse(symbol, Quantity::Angle)).map_err(
-            |_| {
-                let symbols: Vec<&str> =
-                    UNITS.iter().filter(|unit| **unit != ONE).map(|unit| unit.symbol).collect();
-                Error::new(
-                    ErrorKind::Unit,
-                    format!("found the unit `{symbol}`, expected one of {}", symbols.join(", ")),
-                )
-            },
-        )
+        let unit = Unit::parse(symbol, Quantity::Length).or_else(|_| Unit::parse(symbol, Quantity::Angle));
+        unit.map_err(|_| {
+            let symbols = UNITS.iter().filter(|unit| **unit != ONE).map(|unit| unit.symbol);
+            let symbols = symbols.collect::<Vec<_>>().join(", ");
+            Error::new(ErrorKind::Unit, format!("found the unit `{symbol}`, expected one of {symbols}"))
+        })
     }
 
     /// A value in this unit, in metres, radians or as it is.

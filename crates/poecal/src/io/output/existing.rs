@@ -81,17 +81,15 @@ pub(super) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Found)> {
 
 /// Refuses a place where an input of the same run lies, whatever path names it.
 pub(super) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {
-    match inputs.iter().find(|input| named_files::are_same(disk, input, path)) {
-        Some(input) => Err(refused(
-            path,
-            format!(
-                "found a file that this run reads ({}), expected another place to write to: an input is never replaced, choose another \
-                 with --out",
-                input.display()
-            ),
-        )),
-        None => Ok(()),
-    }
+    let Some(input) = inputs.iter().find(|input| named_files::are_same(disk, input, path)) else {
+        return Ok(());
+    };
+    let message = format!(
+        "found a file that this run reads ({}), expected another place to write to: an input is never replaced, choose another \
+         with --out",
+        input.display()
+    );
+    Err(refused(path, message))
 }
 
 /// Whether poecal wrote a file.

@@ -137,13 +137,11 @@ fn prove(files: &[NewFile], folder: &Path, final_folder: &Path) -> Result<Differ
         let difference = reference.difference(&read);
         known = Some(reference);
         if !difference.is_within(TOLERANCE, TOLERANCE) {
-            return Err(Error::new(
-                ErrorKind::Export,
-                format!(
-                    "{} read back differs from its robot by {:.1e} m and {:.1e} rad, expected at most 1e-9: nothing was written",
-                    file.name, difference.position_m, difference.rotation_rad
-                ),
-            ));
+            let message = format!(
+                "{} read back differs from its robot by {:.1e} m and {:.1e} rad, expected at most 1e-9: nothing was written",
+                file.name, difference.position_m, difference.rotation_rad
+            );
+            return Err(Error::new(ErrorKind::Export, message));
         }
         largest.position_m = largest.position_m.max(difference.position_m);
         largest.rotation_rad = largest.rotation_rad.max(difference.rotation_rad);

@@ -133,6 +133,7 @@ fn screw_joint(context: &Context, table: &JointTable, size_m: f64) -> Result<Joi
         )
     })?;
     let kind = table.kind;
+    let error = |message: String| Err(context.error(table.name.span(), message));
     match (&table.screw, &table.point, &table.direction) {
         (Some(screw), None, None) => {
             let screw = screw_of_table(context, name, kind, screw, size_m)?;
@@ -141,15 +142,11 @@ fn screw_joint(context: &Context, table: &JointTable, size_m: f64) -> Result<Joi
         (None, point, Some(direction)) if kind == JointKind::Prismatic || point.is_some() => {
             joint_of_line(context, name, kind, point.as_ref(), direction)
         }
-        (Some(_), ..) => Err(context.error(
-            table.name.span(),
-            format!("joint `{name}` has a screw and a point or direction, expected one or the other"),
-        )),
-        _ => Err(context.error(
-            table.name.span(),
-            format!(
-                "joint `{name}` has no axis, expected screw = {{ v = [...], w = [...] }}, or point and direction (a prismatic joint: direction)"
-            ),
+        (Some(_), ..) => {
+            error(format!("joint `{name}` has a screw and a point or direction, expected one or the other"))
+        }
+        _ => error(format!(
+            "joint `{name}` has no axis, expected screw = {{ v = [...], w = [...] }}, or point and direction (a prismatic joint: direction)"
         )),
     }
 }

@@ -38,26 +38,21 @@ fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {
 
 /// The only link without children that has a moving joint above it (below `base`, if that is given).
 fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
+    let error = |message: String| Err(error(&tree.source, message));
     let mut tips = ends::ends(tree, base);
     if tips.len() > 1 {
         tips.retain(|end| !end.only_leads);
     }
     match tips.as_slice() {
         [end] => Ok(end.link),
-        [] => Err(error(
-            &tree.source,
-            format!(
-                "found no end link with a moving joint above it{}, expected a serial chain: choose one with --base-link and --tip-link",
-                base.map_or(String::new(), |base| format!(" below base link `{}`", tree.link_name(base)))
-            ),
+        [] => error(format!(
+            "found no end link with a moving joint above it{}, expected a serial chain: choose one with --base-link and --tip-link",
+            base.map_or(String::new(), |base| format!(" below base link `{}`", tree.link_name(base)))
         )),
-        several => Err(error(
-            &tree.source,
-            format!(
-                "found {} end links with a moving joint above them ({}), expected one: choose it with --tip-link, and the base, if it is not the root, with --base-link",
-                several.len(),
-                list(several.iter().map(|end| tree.link_name(end.link)))
-            ),
+        several => error(format!(
+            "found {} end links with a moving joint above them ({}), expected one: choose it with --tip-link, and the base, if it is not the root, with --base-link",
+            several.len(),
+            list(several.iter().map(|end| tree.link_name(end.link)))
         )),
     }
 }
@@ -77,15 +72,13 @@ fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<Chain> {
     match base {
         Some(base) if base != at => {
             let above: Vec<_> = tree.ancestors(tip).map(|(_, joint)| tree.link_name(joint.parent)).collect();
-            Err(error(
-                &tree.source,
-                format!(
-                    "tip link `{}` is not below base link `{}`, expected a base link above the tip ({})",
-                    tree.link_name(tip),
-                    tree.link_name(base),
-                    if above.is_empty() { "there is none".to_owned() } else { list(above) }
-                ),
-            ))
+            let message = format!(
+                "tip link `{}` is not below base link `{}`, expected a base link above the tip ({})",
+                tree.link_name(tip),
+                tree.link_name(base),
+                if above.is_empty() { "there is none".to_owned() } else { list(above) }
+            );
+            Err(error(&tree.source, message))
         }
         _ => Ok(Chain { base: at, tip, joints }),
     }

@@ -170,12 +170,10 @@ fn read_joint<'a>(
     let of = format!("joint `{name}`");
     let (word, attribute) = source.required(node, "type", &of)?;
     let kind = JointType::of_word(word).ok_or_else(|| {
-        source.error_at(
-            attribute.range_value().start,
-            format!(
-                "{of} has type `{word}`, expected revolute, continuous, prismatic, fixed, floating or planar"
-            ),
-        )
+        let message = format!(
+            "{of} has type `{word}`, expected revolute, continuous, prismatic, fixed, floating or planar"
+        );
+        source.error_at(attribute.range_value().start, message)
     })?;
     let link = |role: &'static str| -> Result<usize> {
         let Some(element) = source.only_child(node, role, &of, false)? else {
@@ -185,10 +183,8 @@ fn read_joint<'a>(
         links.get(link).copied().ok_or_else(|| {
             let names: Vec<&str> = links.keys().copied().collect();
             let known = nearest_or_all(link, &names);
-            source.error_at(
-                attribute.range_value().start,
-                format!("{of} names link `{link}`, expected a link of this file, {known}"),
-            )
+            let message = format!("{of} names link `{link}`, expected a link of this file, {known}");
+            source.error_at(attribute.range_value().start, message)
         })
     };
     Ok(TreeJoint { name, kind, parent: link("parent")?, child: link("child")?, node })
