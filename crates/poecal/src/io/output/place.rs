@@ -8,7 +8,7 @@ use super::contents::{self, Contents, REPORT};
 use super::existing::{Existing, found, is_of_poecal, led_to, new_place, refuse_input, refused};
 use super::staging::{self, Staging};
 use super::{FilePlace, leftovers};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::io::disk::{self, Disk, FoundKind};
 
 /// A folder in which files are about to be written. Nothing in it has changed yet, and nothing will unless all is written.
@@ -45,7 +45,7 @@ impl FolderPlace {
     /// which are never replaced.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] if the folder holds something and `existing` does not let it go, if something there is no regular file or
+    /// [`ErrorKind::File`](crate::ErrorKind::File) if the folder holds something and `existing` does not let it go, if something there is no regular file or
     /// an input, or if the folder cannot be written to.
     pub fn reserve(
         folder: &Path,
