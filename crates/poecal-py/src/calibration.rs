@@ -171,7 +171,7 @@ impl Calibration {
             };
             let results =
                 Results { file: file.clone(), residuals: ResidualRows::AtHand(residuals), report: page };
-            output::write_robot(place, elsewhere, model, &robot, results)
+            output::write(place, elsewhere, model, &robot, results)
         });
         let written = written.map_err(raise)?;
         crate::warn(py, &written.notes)?;

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 
 use crate::estimate::Estimate;
-use crate::lie::{Pose, Screw, Twist, hat, rotation};
+use crate::lie::{Pose, Screw, Twist, by_turn, by_twist, hat, rotation};
 use crate::linalg;
 use crate::problem::Layout;
 use crate::robot::{Joint, JointKind, Robot};
@@ -33,11 +33,11 @@ pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose],
             }
         }
         for (pose, nominal) in moved.base_from_target.iter().zip(nominal_targets) {
-            let shift = point_derivative(&pose.translation) * TARGET_WEIGHT;
+            let shift = by_twist(&pose.translation) * TARGET_WEIGHT;
             add(shift, (pose.translation - nominal.translation) * TARGET_WEIGHT);
             let turn = rotation::log(&(pose.rotation * nominal.rotation.transpose()));
             add(
-                turn_derivative(&nalgebra::Matrix3::identity(), TARGET_WEIGHT * length_m),
+                by_turn(&nalgebra::Matrix3::identity(), TARGET_WEIGHT * length_m),
                 turn * (TARGET_WEIGHT * length_m),
             );
         }
@@ -58,28 +58,14 @@ pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose],
 fn deviations(screw: &Screw, nominal: &Joint, length_m: f64) -> [(Vector3<f64>, Matrix3x6<f64>); 2] {
     let direction = screw.direction();
     let tilt = (direction - nominal.screw.direction()) * length_m;
-    let tilting = turn_derivative(&-hat(&direction), length_m);
+    let tilting = by_turn(&-hat(&direction), length_m);
     if screw.is_prismatic() {
         return [(tilt, tilting), (Vector3::zeros(), Matrix3x6::zeros())];
     }
     let origin = &nominal.frame.translation;
     let at = screw.nearest_point(origin);
     let across = nalgebra::Matrix3::identity() - direction * direction.transpose();
-    [(tilt, tilting), (at - origin, across * point_derivative(&at))]
-}
-
-/// `[I, -p̂]`: a point's motion under a spatial twist.
-fn point_derivative(point: &Vector3<f64>) -> Matrix3x6<f64> {
-    let mut derivative = Matrix3x6::zeros();
-    derivative.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
-    derivative.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(point));
-    derivative
-}
-
-fn turn_derivative(by_turn: &nalgebra::Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
-    let mut derivative = Matrix3x6::zeros();
-    derivative.fixed_view_mut::<3, 3>(0, 3).copy_from(&(by_turn * scale));
-    derivative
+    [(tilt, tilting), (at - origin, across * by_twist(&at))]
 }
 
 /// The step within the null space of `gram` that brings the screws nearest to nominal, theory.md §8, below (38); `None` without a null
@@ -108,11 +94,8 @@ pub fn null_step(
     let screws = estimate.screws();
     let deviations: Vec<_> =
         screws.iter().zip(&robot.joints).map(|(screw, joint)| deviations(screw, joint, length_m)).collect();
-    let now: Vec<f64> = deviations
-        .iter()
-        .flatten()
-        .flat_map(|(deviation, _)| [deviation.x, deviation.y, deviation.z])
-        .collect();
+    let now = deviations.iter().flatten().flat_map(|(deviation, _)| deviation.iter().copied());
+    let now: Vec<f64> = now.collect();
     // How motions of the screws change that.
     let effect = |motions: &[Vector6<f64>]| -> Vec<f64> {
         let changes = deviations
@@ -133,7 +116,7 @@ pub fn null_step(
             effects.push(effect(&vec![unit.into_owned(); screws.len()]));
         }
     }
-    let coefficients = least_squares(&effects, &now)?;
+    let coefficients = linalg::combination(&effects, &now)?;
     Some((0..n).map(|k| (0..null).map(|i| vectors[(k, i)] * coefficients[i]).sum()).collect())
 }
 
@@ -154,21 +137,6 @@ fn motions(estimate: &Estimate, layout: &Layout, step: Vec<f64>) -> (Vec<Vector6
         places.iter().for_each(|&(place, _)| rest[place] = 0.0);
     }
     (motions, rest)
-}
-
-/// The combination of some columns that is nearest to `-target` (both zero beyond their length), by normal equations.
-fn least_squares(columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
-    let count = columns.len();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut gram = vec![0.0; count * count];
-    for i in 0..count {
-        for j in i..count {
-            gram[i * count + j] = dot(&columns[i], &columns[j]);
-        }
-    }
-    let gradient: Vec<f64> = columns.iter().map(|column| -dot(column, target)).collect();
-    let factor = linalg::cholesky(&gram, count, 1e-9)?;
-    Some(linalg::cholesky_solve(&factor, &gradient))
 }
 
 /// Deviation of a screw from nominal, with its derivatives by the unknowns.

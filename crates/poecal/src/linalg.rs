@@ -90,6 +90,14 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// The coefficients of the combination of columns that is nearest to `-target` (all zero beyond their length), by damped normal equations.
+pub(crate) fn combination(columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
+    let count = columns.len();
+    let upper: Vec<f64> = (0..count * count).map(|k| dot(&columns[k / count], &columns[k % count])).collect();
+    let gradient: Vec<f64> = columns.iter().map(|column| -dot(column, target)).collect();
+    Some(cholesky_solve(&cholesky(&upper, count, 1e-9)?, &gradient))
+}
+
 /// Eigenvalues (ascending) and eigenvectors (columns) of the symmetric matrix given by its upper triangle.
 pub(crate) fn symmetric_eigen(upper: &[f64], n: usize) -> (Vec<f64>, DMatrix<f64>) {
     let matrix = DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)]);

@@ -31,7 +31,7 @@ fn fifty_rows_are_one_threads_work() {
         let results = Results { file, residuals: ResidualRows::AtHand(&residuals), report };
         let place =
             FolderPlace::reserve(&folder, Contents::Calibration, Existing::Replaced, &[], &mut |_| ());
-        write(place.unwrap(), None, &model, &calibration, results).unwrap();
+        write(place.unwrap(), None, &model, &calibration.robot_with_targets(), results).unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
     }
     assert_eq!(threads(), before);

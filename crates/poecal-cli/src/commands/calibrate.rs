@@ -221,7 +221,8 @@ fn write(
     let report = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
     let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
     let results = Results { file, residuals, report };
-    let written = output::write(places.folder, places.report, model, calibration, results)?;
+    let robot = calibration.robot_with_targets();
+    let written = output::write(places.folder, places.report, model, &robot, results)?;
     for note in &written.notes {
         console.warning(note);
     }

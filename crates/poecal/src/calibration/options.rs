@@ -1,5 +1,8 @@
 //! Options of a calibration.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::robot::Tolerance;
 use crate::solve;
 
@@ -12,12 +15,16 @@ use super::{Formulation, Robust};
 /// let options = CalibrationOptions { frame: DeviceFrameKnowledge::Base, ..Default::default() };
 /// assert_ne!(options, CalibrationOptions::default());
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "FrameWord", description = "What was known of the device's frame.")]
 pub enum DeviceFrameKnowledge {
     /// The device frame is unknown and is fitted (exactly redundant with the screws, docs/theory.md §8).
     #[default]
+    #[schemars(description = "It was fitted.")]
     Unknown,
     /// Measurements are in the robot's base frame, as in lou2009.
+    #[schemars(description = "Measurements are in the base frame.")]
     Base,
 }
 

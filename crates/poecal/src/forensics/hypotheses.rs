@@ -48,11 +48,7 @@ pub(super) struct ReadingColumns {
 impl ReadingColumns {
     pub(super) fn new(robot: &Robot) -> Self {
         let names = robot.reading_names();
-        let kind = |name: &String| {
-            let joint = robot.joints.iter().find(|joint| joint.reading.name == *name);
-            joint.map_or(JointKind::Revolute, |joint| joint.kind)
-        };
-        let kinds = names.iter().map(kind).collect();
+        let kinds = names.iter().map(|name| robot.reading_kind(name)).collect();
         ReadingColumns { names, kinds }
     }
 

@@ -2,51 +2,49 @@
 
 use std::collections::BTreeSet;
 
+use crate::error::{Error, Result};
 use crate::robot::Reading;
 
-/// A joint that follows another: value = multiplier · leader's value + offset.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Mimic {
-    pub(super) leader: String,
-    pub(super) multiplier: f64,
-    pub(super) offset: f64,
-}
-
-/// The reading of a joint, through any number of leaders. `None` for a circle of leaders.
-pub(super) fn reading<E>(
+/// The reading of a joint, through any number of leaders; `follows` gives the relation of a joint to its leader. If the leaders
+/// run in a circle, `circle` makes the error of the sentence that says so.
+pub(super) fn reading(
     joint: &str,
-    mut mimic_of: impl FnMut(&str) -> Result<Option<Mimic>, E>,
-) -> Result<Option<Reading>, E> {
+    follows: impl Fn(&str) -> Result<Option<Reading>>,
+    circle: impl FnOnce(String) -> Error,
+) -> Result<Reading> {
     let mut reading = Reading::own(joint);
     let mut seen = BTreeSet::from([joint.to_owned()]);
-    while let Some(mimic) = mimic_of(&reading.name)? {
-        if !seen.insert(mimic.leader.clone()) {
-            return Ok(None);
+    while let Some(leader) = follows(&reading.name)? {
+        if !seen.insert(leader.name.clone()) {
+            return Err(circle(format!(
+                "joint `{joint}` mimics itself through its leaders, expected a leader that is measured"
+            )));
         }
-        reading.offset += reading.multiplier * mimic.offset;
-        reading.multiplier *= mimic.multiplier;
-        reading.name = mimic.leader;
+        reading.offset += reading.multiplier * leader.offset;
+        reading.multiplier *= leader.multiplier;
+        reading.name = leader.name;
     }
-    Ok(Some(reading))
+    Ok(reading)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::ErrorKind;
 
     #[test]
     fn a_leader_may_follow_another() {
-        let mimic_of = |joint: &str| -> Result<Option<Mimic>, ()> {
+        let follows = |joint: &str| {
             Ok(match joint {
-                "c" => Some(Mimic { leader: "b".into(), multiplier: 2.0, offset: 1.0 }),
-                "b" => Some(Mimic { leader: "a".into(), multiplier: 3.0, offset: 0.5 }),
+                "c" => Some(Reading { name: "b".into(), multiplier: 2.0, offset: 1.0 }),
+                "b" => Some(Reading { name: "a".into(), multiplier: 3.0, offset: 0.5 }),
                 _ => None,
             })
         };
         // c = 2 b + 1 = 2 (3 a + 0.5) + 1
         assert_eq!(
-            reading("c", mimic_of),
-            Ok(Some(Reading { name: "a".into(), multiplier: 6.0, offset: 2.0 }))
+            reading("c", follows, |message| Error::new(ErrorKind::Model, message)),
+            Ok(Reading { name: "a".into(), multiplier: 6.0, offset: 2.0 })
         );
     }
 }

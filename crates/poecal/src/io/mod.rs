@@ -21,3 +21,15 @@ mod source_text;
 pub mod urdf;
 
 pub use proof::Difference;
+
+use serde::Serialize;
+
+use crate::error::{Error, ErrorKind, Result};
+
+/// A value as the text of a JSON file; `what` it is, messages say.
+pub(crate) fn json_text(value: &impl Serialize, what: &str) -> Result<String> {
+    let text = serde_json::to_string_pretty(value);
+    let text = text
+        .map_err(|error| Error::new(ErrorKind::Export, format!("the {what} cannot be written: {error}")))?;
+    Ok(text + "\n")
+}

@@ -186,7 +186,7 @@ pub fn convert(model: &Model, to: ModelFormat) -> Result<Converted> {
                 tip_link: Some(robot.tip_name.clone()),
             };
             let again = UrdfDocument::parse(&urdf.text, &model.path, &selection);
-            (Converted { text: urdf.text, notes: urdf.notes }, again.map(|document| document.robot().clone()))
+            (urdf, again.map(|document| document.robot().clone()))
         }
         ModelFormat::Toml => {
             let text = robot_toml::write(robot);

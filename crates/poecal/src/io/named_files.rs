@@ -27,14 +27,11 @@ pub(super) fn are_same(disk: &dyn Disk, one: &Path, other: &Path) -> bool {
 /// [`ErrorKind::Option`].
 pub fn refuse_repeats(paths: &[PathBuf]) -> Result<()> {
     let mut seen = HashSet::new();
-    match paths.iter().find(|path| !seen.insert(actual(path))) {
-        Some(path) => {
-            let message = "found this measurement file named twice, expected every file once, since the same rows \
-                           twice are not more data: leave one out";
-            Err(Error::new(ErrorKind::Option, message).in_file(path))
-        }
-        None => Ok(()),
-    }
+    refuse(
+        paths.iter().find(|path| !seen.insert(actual(path))),
+        "found this measurement file named twice, expected every file once, since the same rows \
+         twice are not more data: leave one out",
+    )
 }
 
 /// Refuses a file for both fit and validation.
@@ -43,12 +40,14 @@ pub fn refuse_repeats(paths: &[PathBuf]) -> Result<()> {
 /// [`ErrorKind::Option`].
 pub fn refuse_fitted(judges: &[PathBuf], fitted: &[PathBuf]) -> Result<()> {
     let fitted: HashSet<PathBuf> = fitted.iter().map(|path| actual(path)).collect();
-    match judges.iter().find(|path| fitted.contains(&actual(path))) {
-        Some(path) => {
-            let message = "found this file to be fitted and in --validate, expected one of the two, since a fit is \
-                           judged by rows that it did not see: leave one out";
-            Err(Error::new(ErrorKind::Option, message).in_file(path))
-        }
-        None => Ok(()),
-    }
+    refuse(
+        judges.iter().find(|path| fitted.contains(&actual(path))),
+        "found this file to be fitted and in --validate, expected one of the two, since a fit is \
+         judged by rows that it did not see: leave one out",
+    )
+}
+
+/// Refuses a file, if there is one.
+fn refuse(path: Option<&PathBuf>, message: &str) -> Result<()> {
+    path.map_or(Ok(()), |path| Err(Error::new(ErrorKind::Option, message).in_file(path)))
 }

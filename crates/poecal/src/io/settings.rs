@@ -92,8 +92,7 @@ impl Settings {
     pub fn parse(text: &str, path: impl AsRef<Path>, keys: &[&str]) -> Result<Self> {
         let path = path.as_ref();
         let at = |offset: usize, message: String| {
-            let (line, column) = position(text, offset);
-            Error::new(ErrorKind::Syntax, message).at(path, line, column)
+            Error::new(ErrorKind::Syntax, message).at_offset(path, text, offset)
         };
         let table = DeTable::parse(text).map_err(|error| {
             at(error.span().map_or(0, |span| span.start), error.message().trim().replace('\n', ", "))

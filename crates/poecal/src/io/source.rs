@@ -28,8 +28,8 @@ const FORMS: [(&[u8], &str); 7] = [
 
 /// An input. Beyond its largest size it gives an error.
 pub(super) struct Input {
-    head: Cursor<Vec<u8>>,
-    rest: io::Take<Box<dyn Read + Send>>,
+    /// The head, which is looked at first, and the rest.
+    bytes: io::Chain<Cursor<Vec<u8>>, io::Take<Box<dyn Read + Send>>>,
     largest: u64,
 }
 
@@ -39,13 +39,12 @@ pub(super) struct Input {
 /// [`ErrorKind::File`] if it is a directory, missing, unreadable, or of a form that is no text.
 pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
     let error = |message: String| Error::new(ErrorKind::File, message).in_file(path);
+    let disk = disk::here();
     let opened = if is_standard_input(path) {
-        disk::here().standard_input()
+        disk.standard_input()
+    } else if disk.follow(path).is_ok_and(|found| found.kind == ObjectKind::Folder) {
+        return Err(error(format!("found a directory, expected {expected}")));
     } else {
-        let disk = disk::here();
-        if disk.follow(path).is_ok_and(|found| found.kind == ObjectKind::Folder) {
-            return Err(error(format!("found a directory, expected {expected}")));
-        }
         disk.open(path)
     };
     let mut rest = opened.map_err(|cause| {
@@ -61,14 +60,14 @@ pub(super) fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
         return Err(error(format!("found {form}, expected {expected}")));
     }
     // One byte more than allowed shows that the file is too large.
-    Ok(Input { head: Cursor::new(head), rest: rest.take(largest - HEAD + 1), largest })
+    Ok(Input { bytes: Cursor::new(head).chain(rest.take(largest - HEAD + 1)), largest })
 }
 
 #[cfg(test)]
 impl Input {
     /// What `source` gives.
     pub(super) fn of(source: Box<dyn Read + Send>) -> Self {
-        Input { head: Cursor::default(), rest: source.take(LARGEST_TABLE), largest: LARGEST_TABLE }
+        Input { bytes: Cursor::default().chain(source.take(LARGEST_TABLE)), largest: LARGEST_TABLE }
     }
 }
 
@@ -84,12 +83,8 @@ pub(super) fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Erro
 
 impl Read for Input {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let head = self.head.read(into)?;
-        if head > 0 || into.is_empty() {
-            return Ok(head);
-        }
-        let count = self.rest.read(into)?;
-        if self.rest.limit() == 0 {
+        let count = self.bytes.read(into)?;
+        if self.bytes.get_ref().1.limit() == 0 {
             return Err(io::Error::other(format!("it is larger than {} MiB", self.largest >> 20)));
         }
         Ok(count)

@@ -16,24 +16,29 @@ pub(super) fn read(path: &Path, expected: &str) -> Result<String> {
 
 /// [`read()`], with another largest size.
 pub(super) fn read_up_to(path: &Path, expected: &str, largest: u64) -> Result<String> {
-    let file_error = |message: String| Error::new(ErrorKind::File, message).in_file(path);
     let mut bytes = Vec::new();
     source::open(path, expected, largest)?
         .read_to_end(&mut bytes)
         .map_err(|error| source::unreadable(path, &error, expected))?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
-        let (line, column) = position(&String::from_utf8_lossy(error.as_bytes()), valid);
-        Error::new(
-            ErrorKind::File,
-            format!("found bytes that are not UTF-8, expected {expected} as UTF-8 text"),
-        )
-        .at(path, line, column)
+        let message = format!("found bytes that are not UTF-8, expected {expected} as UTF-8 text");
+        let text = String::from_utf8_lossy(error.as_bytes());
+        Error::new(ErrorKind::File, message).at_offset(path, &text, valid)
     })?;
     if text.trim_start_matches('\u{feff}').trim().is_empty() {
-        return Err(file_error(format!("the file is empty, expected {expected}")));
+        let message = format!("the file is empty, expected {expected}");
+        return Err(Error::new(ErrorKind::File, message).in_file(path));
     }
     Ok(text)
+}
+
+impl Error {
+    /// The same error at a byte offset of a file's text.
+    pub(in crate::io) fn at_offset(self, path: &Path, text: &str, offset: usize) -> Self {
+        let (line, column) = position(text, offset);
+        self.at(path, line, column)
+    }
 }
 
 /// Line and column (from 1, the column in characters) of a byte offset.

@@ -13,6 +13,8 @@ pub use pose::Pose;
 pub use screw::Screw;
 pub use twist::{TargetTwist, Twist};
 
+use nalgebra::{Matrix3, Matrix3x6, Vector3};
+
 /// The skew-symmetric matrix `â` with `â b = a × b`: theory.md §1.
 ///
 /// ```
@@ -21,6 +23,20 @@ pub use twist::{TargetTwist, Twist};
 /// assert_eq!(poecal::lie::hat(&a) * b, a.cross(&b));
 /// ```
 #[must_use]
-pub fn hat(a: &nalgebra::Vector3<f64>) -> nalgebra::Matrix3<f64> {
-    nalgebra::Matrix3::new(0.0, -a.z, a.y, a.z, 0.0, -a.x, -a.y, a.x, 0.0)
+pub fn hat(a: &Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::new(0.0, -a.z, a.y, a.z, 0.0, -a.x, -a.y, a.x, 0.0)
+}
+
+/// `[I, -p̂]`: a point's motion under a spatial twist.
+pub(crate) fn by_twist(point: &Vector3<f64>) -> Matrix3x6<f64> {
+    let mut derivative = by_turn(&-hat(point), 1.0);
+    derivative.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
+    derivative
+}
+
+/// `[0, scale · A]`: what depends on the rotation of a spatial twist only.
+pub(crate) fn by_turn(matrix: &Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
+    let mut derivative = Matrix3x6::zeros();
+    derivative.fixed_view_mut::<3, 3>(0, 3).copy_from(&(matrix * scale));
+    derivative
 }

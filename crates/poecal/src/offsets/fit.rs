@@ -5,7 +5,7 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 use nalgebra::{DMatrix, Matrix3, Matrix3x6, Vector3, Vector6};
 
 use super::{End, OffsetOptions};
-use crate::lie::{Pose, Screw, Twist, hat};
+use crate::lie::{Pose, Screw, Twist, by_turn, by_twist, hat};
 use crate::linalg;
 use crate::robot::{Joint, JointKind, Robot};
 
@@ -182,12 +182,8 @@ impl<'a> Comparison<'a> {
             self.scales().iter().zip(&state.offsets).map(|(scale, offset)| scale * offset).collect();
         let parts: Vec<Vec<f64>> =
             (0..open).map(|k| normal.vectors.column(k).iter().take(count).copied().collect()).collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let gram: Vec<f64> = (0..open * open).map(|k| dot(&parts[k / open], &parts[k % open])).collect();
-        let wanted: Vec<f64> = parts.iter().map(|part| -dot(part, &scaled)).collect();
         // The damping settles motions of the base alone.
-        if let Some(factor) = linalg::cholesky(&gram, open, 1e-9) {
-            let coefficients = linalg::cholesky_solve(&factor, &wanted);
+        if let Some(coefficients) = linalg::combination(&parts, &scaled) {
             for (&coefficient, vector) in coefficients.iter().zip(normal.vectors.column_iter()) {
                 step.iter_mut().zip(vector.iter()).for_each(|(s, a)| *s += coefficient * a);
             }
@@ -245,13 +241,13 @@ impl<'a> Comparison<'a> {
         }
         if self.options.tip == End::Kept {
             let goal = &self.actual.home;
-            blocks.push((screws.len(), (home.translation - goal.translation, of_point(&home.translation))));
+            blocks.push((screws.len(), (home.translation - goal.translation, by_twist(&home.translation))));
             // Chords between the axes of the two frames: for small angles the square of the turn, and smooth for large ones.
             let weight = self.length_m / SQRT_2;
             for (axis, goal) in home.rotation.column_iter().zip(goal.rotation.column_iter()) {
                 blocks.push((
                     screws.len(),
-                    ((axis - goal) * weight, of_turn(&-hat(&axis.into_owned()), weight)),
+                    ((axis - goal) * weight, by_turn(&-hat(&axis.into_owned()), weight)),
                 ));
             }
         }
@@ -295,31 +291,17 @@ impl<'a> Comparison<'a> {
 /// Tilt (as a chord at `length_m`) and shift of a screw against the actual joint's, as seen from that one's origin.
 fn screw_blocks(screw: &Screw, actual: &Joint, length_m: f64) -> impl Iterator<Item = Block> + use<> {
     let direction = screw.direction();
-    let tilt = ((direction - actual.screw.direction()) * length_m, of_turn(&-hat(&direction), length_m));
+    let tilt = ((direction - actual.screw.direction()) * length_m, by_turn(&-hat(&direction), length_m));
     let shift = (!screw.is_prismatic()).then(|| {
         let origin = actual.screw.nearest_point(&actual.frame.translation);
         let at = screw.nearest_point(&origin);
         let off = at - origin;
         let across = Matrix3::identity() - direction * direction.transpose();
         // The nearest point slides along an axis that tilts.
-        let sliding = of_turn(&(direction * off.cross(&direction).transpose()), 1.0);
-        (off, across * of_point(&at) + sliding)
+        let sliding = by_turn(&(direction * off.cross(&direction).transpose()), 1.0);
+        (off, across * by_twist(&at) + sliding)
     });
     [Some(tilt), shift].into_iter().flatten()
-}
-
-/// `[I, -p̂]`: a point's motion under a spatial twist.
-fn of_point(point: &Vector3<f64>) -> Matrix3x6<f64> {
-    let mut derivative = of_turn(&-hat(point), 1.0);
-    derivative.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
-    derivative
-}
-
-/// Derivative that depends on the rotation of a spatial twist only.
-fn of_turn(by_turn: &Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
-    let mut derivative = Matrix3x6::zeros();
-    derivative.fixed_view_mut::<3, 3>(0, 3).copy_from(&(by_turn * scale));
-    derivative
 }
 
 fn norm(step: &[f64]) -> f64 {

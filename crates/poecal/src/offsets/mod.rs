@@ -186,7 +186,7 @@ pub fn explain(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Resu
     let predictions = Predictions::new(nominal, actual, options);
     let (_, without_offsets) = predictions.compare(nominal, &unmoved.base);
     let (tip_motion, with_offsets) = predictions.compare(&into_screws(nominal, &found.offsets)?, &found.base);
-    let (joints, home) = remainder(&comparison, &found, options.tip);
+    let (joints, home) = remainder(&comparison, &found);
     Ok(Explanation {
         options: *options,
         undetermined: comparison.undetermined(&found),
@@ -203,7 +203,6 @@ pub fn explain(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Resu
 fn remainder(
     comparison: &Comparison<'_>,
     found: &OffsetState,
-    tip: End,
 ) -> (Vec<JointRemainder>, Option<HomeRemainder>) {
     let (screws, home) = comparison.moved(found);
     let actual = comparison.actual;
@@ -211,19 +210,14 @@ fn remainder(
         let (direction, goal) = (screw.direction(), joint.screw.direction());
         let tilt_rad = direction.cross(&goal).norm().atan2(direction.dot(&goal));
         let origin = joint.screw.nearest_point(&joint.frame.translation);
-        let shift_m = match joint.kind {
-            JointKind::Revolute => Some((screw.nearest_point(&origin) - origin).norm()),
-            JointKind::Prismatic => None,
-        };
+        let shift_m =
+            (joint.kind == JointKind::Revolute).then(|| (screw.nearest_point(&origin) - origin).norm());
         JointRemainder { tilt_rad, shift_m }
     });
-    let home = match tip {
-        End::Kept => Some(HomeRemainder {
-            position_m: (home.translation - actual.home.translation).norm(),
-            rotation_rad: rotation::log(&(home.rotation * actual.home.rotation.transpose())).norm(),
-        }),
-        End::Free => None,
-    };
+    let home = (comparison.options.tip == End::Kept).then(|| HomeRemainder {
+        position_m: (home.translation - actual.home.translation).norm(),
+        rotation_rad: rotation::log(&(home.rotation * actual.home.rotation.transpose())).norm(),
+    });
     (joints.collect(), home)
 }
 

@@ -21,14 +21,13 @@ pub use summary::{Detail, summary, unsaid};
 
 use serde::Serialize;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
+use crate::io::json_text;
 
 /// A result as JSON, with a line break at its end.
 ///
 /// # Errors
-/// [`ErrorKind::Export`] if it cannot be written as JSON.
+/// [`ErrorKind::Export`](crate::ErrorKind::Export) if it cannot be written as JSON.
 pub fn json(result: &impl Serialize) -> Result<String> {
-    let text = serde_json::to_string_pretty(result)
-        .map_err(|error| Error::new(ErrorKind::Export, format!("the result cannot be written: {error}")))?;
-    Ok(text + "\n")
+    json_text(result, "result")
 }

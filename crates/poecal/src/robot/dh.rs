@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::{Joint, JointKind, Limits, Reading, Robot};
+use super::{Joint, JointKind, Robot};
 use crate::error::Result;
-use crate::lie::{Pose, Screw, rotation};
+use crate::lie::{Pose, rotation};
 
 /// Which of the two conventions a table follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub enum DhConvention {
 /// ```
 /// use poecal::robot::{DhConvention, DhRow, JointKind, Robot};
 /// use poecal::lie::Pose;
-/// let row = |a_m, d_m, alpha_rad| DhRow { name: String::new(), kind: JointKind::Revolute, a_m, alpha_rad, d_m, theta_rad: 0.0, limits: None,
+/// let row = |a_m, d_m, alpha_rad| DhRow { name: String::new(), kind: JointKind::Revolute, a_m, alpha_rad, d_m, theta_rad: 0.0,
 ///     fixed: Pose::identity() };
 /// let rows: Vec<DhRow> = [(0.3, 0.0), (0.2, 0.1)].iter().enumerate()
 ///     .map(|(i, &(a, d))| DhRow { name: format!("joint{}", i + 1), ..row(a, d, 0.0) }).collect();
@@ -42,8 +42,6 @@ pub struct DhRow {
     pub d_m: f64,
     /// Joint angle θ at zero reading, radians.
     pub theta_rad: f64,
-    /// Limits of the reading.
-    pub limits: Option<Limits>,
     /// A pose that follows the row and never moves: the next row, or the tip, stands in the frame after it.
     pub fixed: Pose,
 }
@@ -70,19 +68,8 @@ impl Robot {
                 DhConvention::Modified => base_from_frame * along_x,
             };
             let axis = base_from_joint.rotation.column(2).into_owned();
-            let screw = match row.kind {
-                JointKind::Revolute => Screw::revolute(&axis, &base_from_joint.translation),
-                JointKind::Prismatic => Screw::prismatic(&axis),
-            };
-            joints.push(Joint {
-                name: row.name.clone(),
-                kind: row.kind,
-                screw,
-                frame: base_from_joint,
-                limits: row.limits,
-                reading: Reading::own(&row.name),
-                tolerance: None,
-            });
+            let screw = row.kind.screw(&axis, &base_from_joint.translation);
+            joints.push(Joint { frame: base_from_joint, ..Joint::with_screw(&row.name, row.kind, screw) });
             let base_from_row = match convention {
                 DhConvention::Standard => base_from_joint * along_z * along_x,
                 DhConvention::Modified => base_from_joint * along_z,

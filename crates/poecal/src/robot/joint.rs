@@ -1,6 +1,7 @@
 //! One joint: its screw, its frame, and its joint value as a function of the reading.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::lie::{Pose, Screw, rotation};
@@ -10,11 +11,15 @@ use crate::lie::{Pose, Screw, rotation};
 /// ```
 /// assert_eq!(poecal::JointKind::Revolute.word(), "revolute");
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "KindWord", description = "Kind of a joint.")]
 pub enum JointKind {
     /// Turns about an axis; value in radians. URDF's continuous joints are revolute ones without limits.
+    #[schemars(description = "Turns.")]
     Revolute,
     /// Slides along a direction; value in metres.
+    #[schemars(description = "Slides.")]
     Prismatic,
 }
 
@@ -25,6 +30,14 @@ impl JointKind {
         match self {
             JointKind::Revolute => "revolute",
             JointKind::Prismatic => "prismatic",
+        }
+    }
+
+    /// The screw of a joint of this kind: about an axis through a point, or along it.
+    pub(crate) fn screw(self, direction: &Vector3<f64>, point: &Vector3<f64>) -> Screw {
+        match self {
+            JointKind::Revolute => Screw::revolute(direction, point),
+            JointKind::Prismatic => Screw::prismatic(direction),
         }
     }
 }
@@ -55,11 +68,14 @@ impl Limits {
 /// let own = poecal::robot::Reading::own("joint1");
 /// assert_eq!(own.value(0.3), 0.3);
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "ReadingEntry", description = "`value = multiplier * reading + offset`.")]
 pub struct Reading {
     /// Name of the measured joint: this one, or the leader of a mimic joint.
+    #[schemars(description = "The measured joint.")]
     pub name: String,
     /// Factor on the reading.
+    #[schemars(description = "Factor.")]
     pub multiplier: f64,
     /// Added after the factor, radians or metres.
     pub offset: f64,
@@ -141,7 +157,8 @@ impl Joint {
         Joint::with_screw(name, JointKind::Prismatic, screw)
     }
 
-    fn with_screw(name: &str, kind: JointKind, screw: Screw) -> Self {
+    /// A joint with a frame on its axis and a reading of its own.
+    pub(crate) fn with_screw(name: &str, kind: JointKind, screw: Screw) -> Self {
         Joint {
             name: name.to_owned(),
             kind,
@@ -160,7 +177,7 @@ fn axis_frame(screw: &Screw) -> Pose {
     let turn = if z.z.abs() > 1.0 - 1e-12 && z.z > 0.0 {
         Matrix3::identity()
     } else {
-        rotation::shortest_arc(&nalgebra::Vector3::z(), &z)
+        rotation::shortest_arc(&Vector3::z(), &z)
     };
-    Pose::new(turn, screw.nearest_point(&nalgebra::Vector3::zeros()))
+    Pose::new(turn, screw.nearest_point(&Vector3::zeros()))
 }

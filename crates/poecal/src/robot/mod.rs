@@ -56,21 +56,16 @@ impl Robot {
     /// [`ErrorKind::Model`] if there is no joint, there are more than [`MOST_JOINTS`], two joints share a name, or a name is longer
     /// than [`LONGEST_NAME`].
     pub fn new(name: &str, joints: Vec<Joint>, home: Pose) -> Result<Self> {
+        let error = |message: String| Err(Error::new(ErrorKind::Model, message));
         if joints.is_empty() {
-            return Err(Error::new(
-                ErrorKind::Model,
-                format!(
-                    "robot `{name}` has no moving joint, expected at least one revolute, continuous or prismatic joint"
-                ),
+            return error(format!(
+                "robot `{name}` has no moving joint, expected at least one revolute, continuous or prismatic joint"
             ));
         }
         if joints.len() > MOST_JOINTS {
-            return Err(Error::new(
-                ErrorKind::Model,
-                format!(
-                    "robot `{name}` has {} moving joints, expected at most {MOST_JOINTS}: choose a shorter chain",
-                    joints.len()
-                ),
+            return error(format!(
+                "robot `{name}` has {} moving joints, expected at most {MOST_JOINTS}: choose a shorter chain",
+                joints.len()
             ));
         }
         let mut names = BTreeSet::new();
@@ -78,9 +73,9 @@ impl Robot {
             check_name(&joint.name, "joint")?;
             check_name(&joint.reading.name, "joint")?;
             if !names.insert(joint.name.as_str()) {
-                return Err(Error::new(
-                    ErrorKind::Model,
-                    format!("robot `{name}` has two joints named `{}`, expected unique names", joint.name),
+                return error(format!(
+                    "robot `{name}` has two joints named `{}`, expected unique names",
+                    joint.name
                 ));
             }
         }
@@ -114,6 +109,12 @@ impl Robot {
         let mut known = BTreeSet::new();
         let names = self.joints.iter().map(|joint| &joint.reading.name);
         names.filter(|name| known.insert(name.as_str())).cloned().collect()
+    }
+
+    /// Kind of the first joint that moves by a reading.
+    pub(crate) fn reading_kind(&self, name: &str) -> JointKind {
+        let joint = self.joints.iter().find(|joint| joint.reading.name == name);
+        joint.map_or(JointKind::Revolute, |joint| joint.kind)
     }
 
     /// For each joint, the index of its reading in [`Robot::reading_names`].
@@ -186,16 +187,12 @@ impl Robot {
 /// # Errors
 /// [`ErrorKind::Model`] if it has more letters than [`LONGEST_NAME`].
 pub(crate) fn check_name(name: &str, of: &str) -> Result<()> {
-    if name.len() <= LONGEST_NAME {
+    // Letters are counted only of a name whose bytes are too many.
+    if name.len() <= LONGEST_NAME || name.chars().count() <= LONGEST_NAME {
         return Ok(());
     }
-    match name.chars().count() {
-        letters if letters > LONGEST_NAME => Err(Error::new(
-            ErrorKind::Model,
-            format!(
-                "found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}"
-            ),
-        )),
-        _ => Ok(()),
-    }
+    let letters = name.chars().count();
+    let message =
+        format!("found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}");
+    Err(Error::new(ErrorKind::Model, message))
 }

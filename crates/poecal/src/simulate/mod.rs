@@ -14,7 +14,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use crate::error::Result;
-use crate::lie::{Pose, Twist, rotation};
+use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
 use crate::robot::Robot;
 
@@ -213,9 +213,4 @@ impl Simulation {
         actual.name = format!("{}_actual", nominal.name);
         actual
     }
-}
-
-/// A small random twist: rotation by `angle_rad` and shift by `distance_m` in random directions.
-pub fn random_twist(angle_rad: f64, distance_m: f64, generator: &mut ChaCha8Rng) -> Twist {
-    Twist::new(random::direction(generator) * distance_m, random::direction(generator) * angle_rad)
 }

@@ -76,6 +76,12 @@ pub fn register_again(problem: &Registration<'_>, start: &Estimate) -> Estimate 
     polish(problem, start.clone(), problem.rows.to_vec(), 50).0
 }
 
+impl<'a> Registration<'a> {
+    pub(super) fn least_squares(&self, rows: Vec<u32>, free: Vec<Parameter>) -> Problem<'a> {
+        Problem::new(self.data, self.packed, rows, free, self.noise, self.length_m)
+    }
+}
+
 /// Least squares from a start to the optimum, theory.md §6 (27); returns the cost with it.
 pub(super) fn polish(
     problem: &Registration<'_>,
@@ -84,8 +90,7 @@ pub(super) fn polish(
     iterations: usize,
 ) -> (Estimate, f64) {
     let free = free_parameters(problem, &rows);
-    let least_squares =
-        Problem::new(problem.data, problem.packed, rows, free, problem.noise, problem.length_m);
+    let least_squares = problem.least_squares(rows, free);
     let options = Options { iterations, trust: 10.0, ..Options::default() };
     let (estimate, normal, _) = minimize(&least_squares, start, &options);
     (estimate, normal.cost)

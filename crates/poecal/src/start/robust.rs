@@ -30,16 +30,7 @@ pub fn register_robustly(problem: &Registration<'_>, start: &Estimate) -> Estima
 fn least_distances(problem: &Registration<'_>, start: Estimate) -> (Estimate, f64, Vec<f64>) {
     let free = free_parameters(problem, problem.rows);
     let options = Options { iterations: 5, trust: 10.0, ..Options::default() };
-    let unweighted = |rows: &[u32]| {
-        Problem::new(
-            problem.data,
-            problem.packed,
-            rows.to_vec(),
-            free.clone(),
-            problem.noise,
-            problem.length_m,
-        )
-    };
+    let unweighted = |rows: &[u32]| problem.least_squares(rows.to_vec(), free.clone());
     let mut estimate = start;
     let mut weights = vec![0.0; problem.data.len()];
     let mut median = f64::INFINITY;

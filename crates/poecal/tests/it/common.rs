@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, calibrate};
-use poecal::lie::{Pose, Screw};
+use poecal::lie::{Pose, Screw, Twist};
 use poecal::measurement::Dataset;
 use poecal::robot::{Joint, Limits, Robot};
-use poecal::simulate::{Kind, Simulated, Simulation};
+use poecal::simulate::{Kind, Simulated, Simulation, random};
+use rand_chacha::ChaCha8Rng;
 
 /// A usual session of a robot.
 pub(crate) fn simulated(robot: &Robot, kind: Kind, count: usize, seed: u64) -> Simulated {
@@ -33,4 +34,9 @@ pub(crate) fn lifting_robot() -> Robot {
         b,
     ];
     Robot::new("test", joints, Pose::from_translation(Vector3::new(1.0, 0.0, 0.3))).unwrap()
+}
+
+/// A small random twist: rotation by `angle_rad` and shift by `distance_m` in random directions.
+pub(crate) fn random_twist(angle_rad: f64, distance_m: f64, generator: &mut ChaCha8Rng) -> Twist {
+    Twist::new(random::direction(generator) * distance_m, random::direction(generator) * angle_rad)
 }

@@ -9,8 +9,7 @@ use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
 use poecal::robot::Robot;
 use poecal::simulate::{
-    Kind, Simulated, Simulation, elbow, gantry, random, random_chain, random_configuration, random_twist,
-    scara, seven_axis,
+    Kind, Simulated, Simulation, elbow, gantry, random, random_chain, random_configuration, scara, seven_axis,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -94,7 +93,7 @@ fn gauge_brings_the_screws_nearest_to_nominal_once_and_for_all() {
         let length_m = radian_m(&robot, &packed);
         let targets = delivered(&robot, &made.data).base_from_target;
         let again = base_motion(&chosen, &robot, &targets, length_m).log().to_vector().norm();
-        let other = chosen.rebased(&Pose::exp(&random_twist(0.3, 0.2, &mut generator)));
+        let other = chosen.rebased(&Pose::exp(&common::random_twist(0.3, 0.2, &mut generator)));
         let back = other.rebased(&base_motion(&other, &robot, &targets, length_m));
         let [least, before, after] = [&chosen, &other, &back].map(|it| deviation(it, &robot).sqrt());
         println!(

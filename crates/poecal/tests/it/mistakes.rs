@@ -69,8 +69,10 @@ impl Session {
             .collect();
         robot.targets = nominal.iter().enumerate().map(|(k, pose)| (format!("target{k}"), *pose)).collect();
         let actual = simulation.perturbed(&robot, g);
-        let placed: Vec<Pose> =
-            nominal.iter().map(|pose| *pose * Pose::exp(&simulate::random_twist(0.02, 2e-3, g))).collect();
+        let placed: Vec<Pose> = nominal
+            .iter()
+            .map(|pose| *pose * Pose::exp(&crate::common::random_twist(0.02, 2e-3, g)))
+            .collect();
         let device = if device_free {
             Pose::new(simulate::random::rotation(g), direction(g) * 3.0)
         } else {

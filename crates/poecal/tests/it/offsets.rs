@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::common::random_twist;
 use crate::largest::larger;
 use crate::trials::trials;
 use nalgebra::Vector3;
@@ -10,7 +11,7 @@ use poecal::lie::{Pose, Screw, rotation};
 use poecal::offsets::{End, Explanation, OffsetOptions, explain, into_screws};
 use poecal::robot::{Joint, JointKind, Reading, Robot};
 use poecal::simulate::{
-    Simulation, elbow, gantry, random, random_chain, random_configuration, random_twist, scara, seven_axis,
+    Simulation, elbow, gantry, random, random_chain, random_configuration, scara, seven_axis,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;

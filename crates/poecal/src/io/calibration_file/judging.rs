@@ -1,6 +1,6 @@
 //! Data of a calibration file that its judgement needs.
 
-use super::{CalibrationFile, FrameWord};
+use super::CalibrationFile;
 use crate::calibration::DeviceFrameKnowledge;
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
@@ -13,10 +13,7 @@ impl CalibrationFile {
     /// Knowledge of the device frame.
     #[must_use]
     pub fn frame(&self) -> DeviceFrameKnowledge {
-        match self.measurement_frame.known {
-            FrameWord::Unknown => DeviceFrameKnowledge::Unknown,
-            FrameWord::Base => DeviceFrameKnowledge::Base,
-        }
+        self.measurement_frame.known
     }
 
     /// Noise of the calibration, metres and radians.
@@ -110,19 +107,17 @@ impl CalibrationFile {
                         )
                     }
                     Some(_) => continue,
-                    None => match nearest(name, names()) {
-                        Some(near) => format!(
-                            "found measurements of target `{name}`, expected one of {known} as in the calibration \
-                             (nearest: `{near}`): rename it, {refit}"
-                        ),
-                        None if !self.targets.is_empty() => format!(
-                            "found measurements of target `{name}`, expected one of {known} as in the calibration: rename \
-                             it, {refit}"
-                        ),
-                        None => format!(
-                            "found measurements of target `{name}`, expected no name, since the calibration has the tip alone: leave the names out, {refit}"
-                        ),
-                    },
+                    None if self.targets.is_empty() => format!(
+                        "found measurements of target `{name}`, expected no name, since the calibration has the tip alone: leave the names out, {refit}"
+                    ),
+                    None => {
+                        let near = nearest(name, names()).map(|near| format!(" (nearest: `{near}`)"));
+                        format!(
+                            "found measurements of target `{name}`, expected one of {known} as in the calibration{}: rename \
+                             it, {refit}",
+                            near.unwrap_or_default()
+                        )
+                    }
                 },
             };
             return Err(Error::new(ErrorKind::Problem, message));

@@ -13,16 +13,15 @@ pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
 pub use trust::*;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::source_text;
-use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge};
+use super::{json_text, source_text};
+use crate::calibration::{CalibratedStation, Calibration};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
 use crate::measurement::Dataset;
-use crate::robot::{Joint, JointKind, Limits, Reading, Robot};
+use crate::robot::{Joint, JointKind, Limits, Robot};
 use nalgebra::Vector3;
 use refusal::refusal;
 
@@ -86,10 +85,7 @@ impl CalibrationFile {
             robot: RobotEntry::new(robot, &calibration.nominal),
             joints,
             measurement_frame: FrameEntry {
-                known: match calibration.frame {
-                    DeviceFrameKnowledge::Unknown => FrameWord::Unknown,
-                    DeviceFrameKnowledge::Base => FrameWord::Base,
-                },
+                known: calibration.frame,
                 base_from_device: (&calibration.base_from_device).into(),
             },
             stations: StationEntry::of(calibration),
@@ -123,10 +119,7 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Export`] if a number is not finite.
     pub fn to_text(&self) -> Result<String> {
-        let text = serde_json::to_string_pretty(self).map_err(|error| {
-            Error::new(ErrorKind::Export, format!("the calibration cannot be written: {error}"))
-        })?;
-        Ok(text + "\n")
+        json_text(self, "calibration")
     }
 
     /// The calibrated robot, with its named targets.
@@ -171,12 +164,6 @@ impl CalibrationFile {
     pub fn json_schema() -> String {
         let schema = schemars::schema_for!(CalibrationFile);
         serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
-    }
-
-    /// Names of the targets with their entries.
-    #[must_use]
-    pub fn targets(&self) -> &BTreeMap<String, TargetEntry> {
-        &self.targets
     }
 }
 
@@ -232,32 +219,24 @@ impl JointEntry {
         pairs
             .map(|(joint, nominal)| JointEntry {
                 name: joint.name.clone(),
-                kind: joint.kind.into(),
+                kind: joint.kind,
                 screw: (&joint.screw).into(),
                 nominal_screw: (&nominal.screw).into(),
                 base_from_joint: (&joint.frame).into(),
                 limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
-                reading: ReadingEntry {
-                    name: joint.reading.name.clone(),
-                    multiplier: joint.reading.multiplier,
-                    offset: joint.reading.offset,
-                },
+                reading: joint.reading.clone(),
             })
             .collect()
     }
 
     fn joint(&self, screw: &ScrewEntry) -> Result<Joint> {
-        let kind = JointKind::from(self.kind);
+        let kind = self.kind;
         let twist = Twist::new(Vector3::from(screw.v_m), Vector3::from(screw.w));
         let bad = || {
-            Error::new(
-                ErrorKind::Model,
-                format!(
-                    "found a screw of joint `{}` that is no {} screw, expected a unit one",
-                    self.name,
-                    kind.word()
-                ),
-            )
+            let (name, kind) = (&self.name, kind.word());
+            let message =
+                format!("found a screw of joint `{name}` that is no {kind} screw, expected a unit one");
+            Error::new(ErrorKind::Model, message)
         };
         let screw = Screw::project(&twist).ok_or_else(bad)?;
         let off = (screw.twist().to_vector() - twist.to_vector()).norm();
@@ -279,11 +258,7 @@ impl JointEntry {
             screw,
             frame: self.base_from_joint.pose()?,
             limits: self.limits.map(|[lower, upper]| Limits { lower, upper }),
-            reading: Reading {
-                name: self.reading.name.clone(),
-                multiplier: self.reading.multiplier,
-                offset: self.reading.offset,
-            },
+            reading: self.reading.clone(),
             tolerance: None,
         })
     }
@@ -308,12 +283,10 @@ impl PoseEntry {
     pub fn pose(&self) -> Result<Pose> {
         let norm = self.quaternion_xyzw.iter().map(|q| q * q).sum::<f64>().sqrt();
         if norm.is_nan() || (norm - 1.0).abs() > 1e-6 {
-            return Err(Error::new(
-                ErrorKind::Model,
-                format!(
-                    "found a quaternion of length {norm}, expected a unit quaternion in x, y, z, w order"
-                ),
-            ));
+            let message = format!(
+                "found a quaternion of length {norm}, expected a unit quaternion in x, y, z, w order"
+            );
+            return Err(Error::new(ErrorKind::Model, message));
         }
         Ok(Pose::from_position_quaternion(self.position_m, self.quaternion_xyzw))
     }
@@ -328,24 +301,6 @@ impl From<&Pose> for PoseEntry {
 impl From<&Screw> for ScrewEntry {
     fn from(screw: &Screw) -> Self {
         ScrewEntry { v_m: screw.v().into(), w: screw.w().into() }
-    }
-}
-
-impl From<JointKind> for KindWord {
-    fn from(kind: JointKind) -> Self {
-        match kind {
-            JointKind::Revolute => KindWord::Revolute,
-            JointKind::Prismatic => KindWord::Prismatic,
-        }
-    }
-}
-
-impl From<KindWord> for JointKind {
-    fn from(kind: KindWord) -> Self {
-        match kind {
-            KindWord::Revolute => JointKind::Revolute,
-            KindWord::Prismatic => JointKind::Prismatic,
-        }
     }
 }
 

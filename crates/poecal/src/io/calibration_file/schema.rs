@@ -9,10 +9,11 @@ use serde::{Deserialize, Serialize};
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
-use crate::calibration::{Accuracy, FormulationWords, NoiseSource, Verdict};
+use crate::calibration::{Accuracy, DeviceFrameKnowledge, FormulationWords, NoiseSource, Verdict};
 use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
+use crate::robot::{JointKind, Reading};
 use crate::solve::Termination;
 
 /// A finished calibration.
@@ -266,7 +267,7 @@ pub struct JointEntry {
     /// Name.
     pub name: String,
     /// Kind.
-    pub kind: KindWord,
+    pub kind: JointKind,
     /// Calibrated screw in the base frame at zero.
     pub screw: ScrewEntry,
     /// Screw of the nominal model.
@@ -276,17 +277,7 @@ pub struct JointEntry {
     /// Lower and upper limit, radians or metres.
     pub limits: Option<[f64; 2]>,
     /// The joint's value as a function of a reading.
-    pub reading: ReadingEntry,
-}
-
-/// Kind of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum KindWord {
-    /// Turns.
-    Revolute,
-    /// Slides.
-    Prismatic,
+    pub reading: Reading,
 }
 
 /// A screw, linear part first.
@@ -298,22 +289,11 @@ pub struct ScrewEntry {
     pub w: [f64; 3],
 }
 
-/// `value = multiplier * reading + offset`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ReadingEntry {
-    /// Name of the reading.
-    pub name: String,
-    /// Factor.
-    pub multiplier: f64,
-    /// Offset, radians or metres.
-    pub offset: f64,
-}
-
 /// Frame of the measuring device.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrameEntry {
     /// Whether the frame was unknown or the base.
-    pub known: FrameWord,
+    pub known: DeviceFrameKnowledge,
     /// Pose of the device in the base.
     pub base_from_device: PoseEntry,
 }
@@ -332,16 +312,6 @@ pub struct StationEntry {
     pub instrument: Option<String>,
     /// Pose of the device in the base.
     pub base_from_device: PoseEntry,
-}
-
-/// Knowledge of the device frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FrameWord {
-    /// It was fitted.
-    Unknown,
-    /// Measurements are in the base frame.
-    Base,
 }
 
 /// A pose.

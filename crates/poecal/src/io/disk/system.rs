@@ -51,29 +51,14 @@ fn found(metadata: &Metadata) -> Object {
         kind if kind.is_symlink() => ObjectKind::Link,
         _ => ObjectKind::Other,
     };
-    Object { kind, identity: identity(metadata), is_mine: is_mine(metadata) }
-}
-
-#[cfg(unix)]
-fn is_mine(metadata: &Metadata) -> bool {
-    use std::os::unix::fs::MetadataExt as _;
-    metadata.uid() == rustix::process::geteuid().as_raw()
-}
-
-#[cfg(not(unix))]
-fn is_mine(_: &Metadata) -> bool {
-    true
-}
-
-#[cfg(unix)]
-fn identity(metadata: &Metadata) -> Option<(u64, u64)> {
-    use std::os::unix::fs::MetadataExt as _;
-    Some((metadata.dev(), metadata.ino()))
-}
-
-#[cfg(not(unix))]
-fn identity(_: &Metadata) -> Option<(u64, u64)> {
-    None
+    #[cfg(unix)]
+    let (identity, is_mine) = {
+        use std::os::unix::fs::MetadataExt as _;
+        (Some((metadata.dev(), metadata.ino())), metadata.uid() == rustix::process::geteuid().as_raw())
+    };
+    #[cfg(not(unix))]
+    let (identity, is_mine) = (None, true);
+    Object { kind, identity, is_mine }
 }
 
 /// Time to wait for a folder's lock, and between attempts. Other runs hold it for less.
@@ -129,40 +114,21 @@ fn rename_new_in_steps(from: &Path, to: &Path) -> io::Result<()> {
     fs::remove_file(from)
 }
 
+/// Exchanges two files or folders, or moves one to where nothing is, in one step; [`io::ErrorKind::Unsupported`] where the system
+/// cannot.
 #[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
-mod renames {
-    use std::io;
-    use std::path::Path;
-
+fn rename_in_one_step(from: &Path, to: &Path, is_exchange: bool) -> io::Result<()> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};
-
-    pub(super) fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
-        match renameat_with(CWD, from, CWD, to, RenameFlags::NOREPLACE).map_err(io::Error::from) {
-            Err(error) if super::is_unknown(&error) => super::rename_new_in_steps(from, to),
-            done => done,
-        }
-    }
-
-    pub(super) fn exchange(one: &Path, other: &Path) -> io::Result<()> {
-        renameat_with(CWD, one, CWD, other, RenameFlags::EXCHANGE).map_err(|error| {
-            let error = io::Error::from(error);
-            if super::is_unknown(&error) { io::ErrorKind::Unsupported.into() } else { error }
-        })
-    }
+    let flags = if is_exchange { RenameFlags::EXCHANGE } else { RenameFlags::NOREPLACE };
+    renameat_with(CWD, from, CWD, to, flags).map_err(|error| {
+        let error = io::Error::from(error);
+        if is_unknown(&error) { io::ErrorKind::Unsupported.into() } else { error }
+    })
 }
 
 #[cfg(not(any(target_os = "linux", target_os = "android", target_vendor = "apple")))]
-mod renames {
-    use std::io;
-    use std::path::Path;
-
-    pub(super) fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
-        super::rename_new_in_steps(from, to)
-    }
-
-    pub(super) fn exchange(_: &Path, _: &Path) -> io::Result<()> {
-        Err(io::ErrorKind::Unsupported.into())
-    }
+fn rename_in_one_step(_: &Path, _: &Path, _: bool) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
 }
 
 impl Disk for SystemDisk {
@@ -230,11 +196,14 @@ impl Disk for SystemDisk {
     }
 
     fn rename_new(&self, from: &Path, to: &Path) -> io::Result<()> {
-        renames::rename_new(from, to)
+        match rename_in_one_step(from, to, false) {
+            Err(error) if error.kind() == io::ErrorKind::Unsupported => rename_new_in_steps(from, to),
+            done => done,
+        }
     }
 
     fn exchange(&self, one: &Path, other: &Path) -> io::Result<()> {
-        renames::exchange(one, other)
+        rename_in_one_step(one, other, true)
     }
 
     fn link(&self, from: &Path, to: &Path) -> io::Result<()> {

@@ -91,8 +91,8 @@ impl<'a> Builder<'a> {
             Unit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
                 .map_err(|error| error.in_file(&self.map.path))?;
         }
-        if !spec.columns.is_empty() {
-            return self.sum_input(name, spec, quantity, purpose);
+        if let Some(columns) = &spec.columns {
+            return self.sum_input(name, columns, quantity, spec.unit, purpose);
         }
         let Some(value) = spec.value else {
             let column = spec.column.as_deref().unwrap_or(name);
@@ -145,8 +145,9 @@ impl<'a> Builder<'a> {
     fn sum_input(
         &mut self,
         name: &str,
-        spec: &ColumnSpec,
+        columns: &BTreeMap<String, f64>,
         quantity: Quantity,
+        unit: Option<Unit>,
         purpose: &str,
     ) -> Result<usize> {
         if !self.readings.contains(name) {
@@ -154,18 +155,18 @@ impl<'a> Builder<'a> {
                 format!("found `columns` {purpose}, expected one column: only joints are sums of columns");
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&self.map.path));
         }
-        let mut sum: Vec<Term> = Vec::with_capacity(spec.columns.len());
+        let mut sum: Vec<Term> = Vec::with_capacity(columns.len());
         let mut label = String::new();
         let at = self.inputs.len();
-        for (column, &factor) in &spec.columns {
-            self.column_input(name, column, quantity, spec.unit, purpose)?;
+        for (column, &factor) in columns {
+            self.column_input(name, column, quantity, unit, purpose)?;
             let size = if factor.abs() == 1.0 { String::new() } else { format!("{} ", factor.abs()) };
             let sign = if factor < 0.0 { "- " } else { "+ " };
             let sign = if label.is_empty() && factor > 0.0 { "" } else { sign };
             label.push_str(&format!("{}{sign}{size}{column}", if label.is_empty() { "" } else { " " }));
         }
         let parts = self.inputs.split_off(at);
-        for (part, &factor) in parts.iter().zip(spec.columns.values()) {
+        for (part, &factor) in parts.iter().zip(columns.values()) {
             if let InputSource::Column(column) = part.source {
                 sum.push(Term { column, unit: part.unit, factor });
             }
@@ -191,13 +192,11 @@ impl<'a> Builder<'a> {
 
     /// Explains a duplicate column by a joint of the model with the name of a column with a meaning.
     fn explained(&self, name: &str, error: Error) -> Error {
-        let is_clash =
-            self.header.count(name) > 1 && self.readings.contains(name) && OUR_NAMES.contains(&name);
-        let place = error.place().and_then(|place| Some((place.line?, place.column?)));
-        match place {
-            Some((line, column)) if is_clash => {
+        let is_clash = self.readings.contains(name) && OUR_NAMES.contains(&name);
+        match self.header.second(name) {
+            Some(second) if is_clash => {
                 let message = format!("found a second column `{name}`, {}", clash(name));
-                Error::new(ErrorKind::Measurement, message).at(self.header.path, line, column)
+                self.header.error(ErrorKind::Measurement, second, message)
             }
             _ => error,
         }
@@ -229,45 +228,38 @@ impl<'a> Builder<'a> {
         self.used.get(index).copied().unwrap_or(false)
     }
 
-    /// The target of a layout with one target per row.
-    pub(super) fn single_target(&mut self) -> Result<TargetLayout> {
+    /// The targets of a row: those of the mapping, or the only one.
+    pub(super) fn targets(&mut self) -> Result<Vec<TargetLayout>> {
         let map = self.map;
-        let position = self.position("", map.position.as_ref().unwrap_or(&PositionSpec::default()))?;
-        let orientation = match &map.orientation {
-            Some(spec) => Some(self.mapped_orientation("", spec)?),
-            None => self.default_orientation()?,
+        if !map.targets.is_empty() {
+            return map.targets.iter().map(|target| self.target(target, false)).collect();
+        }
+        let only = TargetSpec {
+            name: map.target_name.clone().unwrap_or_default(),
+            position: map.position.clone().unwrap_or_default(),
+            orientation: map.orientation.clone(),
+            sigma_position: map.sigma_position.clone(),
+            sigma_rotation: map.sigma_rotation.clone(),
         };
-        let sigma_position =
-            self.sigma("sigma_position", map.sigma_position.as_ref(), Quantity::Length, true)?;
-        let sigma_rotation =
-            self.sigma("sigma_rotation", map.sigma_rotation.as_ref(), Quantity::Angle, true)?;
-        Ok(TargetLayout {
-            name: map.target_name.clone(),
-            position,
-            orientation,
-            sigma_position,
-            sigma_rotation,
-        })
+        Ok(vec![self.target(&only, true)?])
     }
 
-    /// One target of a layout with several targets per row.
-    pub(super) fn named_target(&mut self, target: &TargetSpec) -> Result<TargetLayout> {
-        let prefix = format!("{} ", target.name);
+    /// One target of a row; the columns of the only one may have our names.
+    fn target(&mut self, target: &TargetSpec, is_only: bool) -> Result<TargetLayout> {
+        let prefix = if is_only { String::new() } else { format!("{} ", target.name) };
         let position = self.position(&prefix, &target.position)?;
-        let orientation =
-            target.orientation.as_ref().map(|spec| self.mapped_orientation(&prefix, spec)).transpose()?;
+        let orientation = match &target.orientation {
+            Some(spec) => Some(self.mapped_orientation(&prefix, spec)?),
+            None if is_only => self.default_orientation()?,
+            None => None,
+        };
         let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
-            self.sigma(&format!("{prefix}{name}"), spec, quantity, false)
+            self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only)
         };
         let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Quantity::Length)?;
         let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Quantity::Angle)?;
-        Ok(TargetLayout {
-            name: Some(target.name.clone()),
-            position,
-            orientation,
-            sigma_position,
-            sigma_rotation,
-        })
+        let name = Some(target.name.clone()).filter(|name| !name.is_empty());
+        Ok(TargetLayout { name, position, orientation, sigma_position, sigma_rotation })
     }
 
     fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {

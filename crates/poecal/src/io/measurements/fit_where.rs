@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use serde::Deserialize;
+
 use crate::error::{Error, ErrorKind, Result};
 
 /// Rows with one of `values` in `column` are fitted, all others held out. Cells compare as text or as numbers.
@@ -12,11 +14,13 @@ use crate::error::{Error, ErrorKind, Result};
 /// assert_eq!((rule.column.as_str(), rule.values.len()), ("stage", 2));
 /// # Ok::<(), poecal::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields, rename = "SetSpec")]
 pub struct FitWhere {
     /// Name of the column, with or without its unit.
     pub column: String,
     /// Values that mark a row to fit.
+    #[serde(rename = "fit")]
     pub values: Vec<String>,
 }
 
@@ -42,15 +46,12 @@ impl FromStr for FitWhere {
             let values: Vec<String> = values.split(',').map(|value| value.trim().to_owned()).collect();
             FitWhere { column: column.trim().to_owned(), values }
         });
-        match parts {
-            Some(rule) if !rule.column.is_empty() && rule.values.iter().all(|value| !value.is_empty()) => {
-                Ok(rule)
-            }
-            _ => Err(Error::new(
-                ErrorKind::Option,
-                format!("found `{text}` as the rows to fit, expected COLUMN=VALUE[,VALUE]"),
-            )),
-        }
+        let is_whole =
+            |rule: &FitWhere| !rule.column.is_empty() && rule.values.iter().all(|value| !value.is_empty());
+        parts.filter(is_whole).ok_or_else(|| {
+            let message = format!("found `{text}` as the rows to fit, expected COLUMN=VALUE[,VALUE]");
+            Error::new(ErrorKind::Option, message)
+        })
     }
 }
 

@@ -99,12 +99,8 @@ impl<'a> Header<'a> {
         for (index, cell) in cells.iter().enumerate() {
             let texts = [Some(&cell.name), Some(&cell.text).filter(|text| **text != cell.name)];
             for text in texts.into_iter().flatten() {
-                match named.get_mut(text) {
-                    Some((_, second)) => *second = second.or(Some(index)),
-                    None => {
-                        named.insert(text.clone(), (index, None));
-                    }
-                }
+                let places = named.entry(text.clone());
+                places.and_modify(|(_, second)| *second = second.or(Some(index))).or_insert((index, None));
             }
         }
         Ok(Header { path, line, cells, named, units_line: None, below: Vec::new() })
@@ -175,15 +171,17 @@ impl<'a> Header<'a> {
 
     /// Index of the column of this name, which may include the unit as in the file.
     pub(super) fn find(&self, name: &str) -> Result<Option<usize>> {
-        match self.named.get(name) {
-            Some((_, Some(second))) => {
-                let message =
-                    format!("found a second column `{name}`, expected one; rename or remove one of them");
-                Err(self.error(ErrorKind::Measurement, *second, message))
-            }
-            Some((first, None)) => Ok(Some(*first)),
-            None => Ok(None),
+        if let Some(second) = self.second(name) {
+            let message =
+                format!("found a second column `{name}`, expected one; rename or remove one of them");
+            return Err(self.error(ErrorKind::Measurement, second, message));
         }
+        Ok(self.named.get(name).map(|(first, _)| *first))
+    }
+
+    /// Index of a second column of this name, if there is one.
+    pub(super) fn second(&self, name: &str) -> Option<usize> {
+        self.named.get(name)?.1
     }
 
     /// Number of columns with this name.

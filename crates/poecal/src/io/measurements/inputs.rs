@@ -131,17 +131,11 @@ impl<'a> InputReader<'a> {
     pub(super) fn take_readings(&mut self, row: &Row<'_>) -> Result<()> {
         self.readings.clear();
         for (input, value) in self.values.iter().take(self.joints).enumerate() {
-            match value {
-                Some(value) => self.readings.push(*value),
-                None => {
-                    return Err(self.error(
-                        row,
-                        input,
-                        "found an empty cell",
-                        "a joint reading: add it, or leave out the row",
-                    ));
-                }
-            }
+            let Some(value) = value else {
+                let expected = "a joint reading: add it, or leave out the row";
+                return Err(self.error(row, input, "found an empty cell", expected));
+            };
+            self.readings.push(*value);
         }
         Ok(())
     }

@@ -83,6 +83,7 @@ fn of_blocks<'p>(
     while let Some(mut rows) = table.next_block()? {
         while let Some(row) = rows.next()? {
             inputs.read(&row)?;
+            inputs.include_in_ranges();
             watch.observe(&row, &inputs);
             inputs.take_readings(&row)?;
             joints.readings.extend_from_slice(inputs.readings());
@@ -98,7 +99,7 @@ fn of_blocks<'p>(
         let message = "found a header and no rows, expected at least one row of joint readings";
         return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
     }
-    joints.warnings =
-        watch.finish(path, &layout)?.iter().map(|warning| visible(warning).into_owned()).collect();
+    let warnings = watch.finish(path, &layout, &inputs.ranges)?;
+    joints.warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
     Ok(joints)
 }

@@ -9,15 +9,16 @@ use crate::error::Result;
 use crate::robot::Robot;
 
 /// Source of a row's set; numbers are columns of the file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) enum SetRule {
+    #[default]
     Unstated,
     Words(usize),
     Where(usize, FitWhere),
 }
 
 /// Columns of a row by meaning.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct ColumnLayout {
     /// Readings in the robot's order, then measured numbers.
     pub(super) inputs: Vec<Input>,
@@ -42,11 +43,7 @@ impl ColumnLayout {
         map: &ColumnMap,
     ) -> Result<Self> {
         let mut builder = Builder::new(header, robot, map)?;
-        let targets = if map.targets.is_empty() {
-            vec![builder.single_target()?]
-        } else {
-            map.targets.iter().map(|target| builder.named_target(target)).collect::<Result<_>>()?
-        };
+        let targets = builder.targets()?;
         builder.check_distinct()?;
         let target_column = match &map.target {
             Some(column) => Some(builder.text_column(column, "for the target's name")?),
@@ -60,17 +57,14 @@ impl ColumnLayout {
             None => builder.optional_text_column("instrument")?,
         };
         let id = builder.id_column()?;
-        let rule = options.fit_where.clone().or_else(|| {
-            map.set.as_ref().map(|set| FitWhere { column: set.column.clone(), values: set.fit.clone() })
-        });
-        let words = builder.optional_text_column("set")?;
+        let rule = options.fit_where.as_ref().or(map.set.as_ref()).cloned();
+        let words = builder.optional_text_column("set")?.filter(|_| !options.ignore_sets);
         let set = match (rule, words) {
             (Some(rule), _) if options.ignore_sets => {
                 // A known column is not listed as ignored.
                 builder.optional_text_column(&rule.column)?;
                 SetRule::Unstated
             }
-            (None, Some(_)) if options.ignore_sets => SetRule::Unstated,
             (Some(rule), _) => {
                 SetRule::Where(builder.text_column(&rule.column, "that says which rows are fitted")?, rule)
             }
@@ -78,7 +72,7 @@ impl ColumnLayout {
             (None, None) => SetRule::Unstated,
         };
         let ignored = builder.ignored();
-        let Builder { inputs, .. } = builder;
+        let inputs = builder.inputs;
         Ok(ColumnLayout { inputs, targets, target_column, instrument, id, set, pose: map.pose, ignored })
     }
 
@@ -87,15 +81,6 @@ impl ColumnLayout {
         let mut builder = Builder::new(header, robot, map)?;
         builder.check_distinct()?;
         let id = builder.id_column()?;
-        Ok(ColumnLayout {
-            inputs: builder.inputs,
-            targets: Vec::new(),
-            target_column: None,
-            instrument: None,
-            id,
-            set: SetRule::Unstated,
-            pose: map.pose,
-            ignored: Vec::new(),
-        })
+        Ok(ColumnLayout { inputs: builder.inputs, id, ..ColumnLayout::default() })
     }
 }

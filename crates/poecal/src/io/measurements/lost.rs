@@ -10,8 +10,8 @@ use super::inputs::InputReader;
 use super::table::Row;
 use crate::error::{Error, Result};
 
-/// Most lines in a message.
-const NAMED_LINES: usize = 5;
+/// Most lines in a warning.
+pub(super) const NAMED_LINES: usize = 5;
 
 /// Measurements omitted because the device did not see the target: their position is empty, or exactly zero in all coordinates.
 ///
@@ -89,24 +89,27 @@ impl LostBeams {
     /// Omitted measurements in words; `None` if there are none.
     #[must_use]
     pub fn words(&self) -> Option<String> {
-        let lines: Vec<String> = self.first_lines.iter().map(usize::to_string).collect();
-        let (what, line_word) = match (self.count, lines.len()) {
-            (0, _) => return None,
-            (1, _) => ("1 measurement".to_owned(), "line"),
-            (count, 1) => (format!("{count} measurements"), "line"),
-            (count, _) => (format!("{count} measurements"), "lines"),
+        let what = match self.count {
+            0 => return None,
+            1 => "1 measurement".to_owned(),
+            count => format!("{count} measurements"),
         };
-        let more = if self.count > NAMED_LINES { ", …" } else { "" };
-        Some(format!(
-            "{what} with an empty or zero position, as of a lost beam ({line_word} {}{more})",
-            lines.join(", ")
-        ))
+        let lines = named_lines(self.count, &self.first_lines);
+        Some(format!("{what} with an empty or zero position, as of a lost beam ({lines})"))
     }
 
     /// Warning for a file.
     pub(super) fn warning(&self, path: &Path) -> Option<String> {
         Some(format!("{}: skipped {}; --strict refuses them", path.display(), self.words()?))
     }
+}
+
+/// The first few lines of so many cases, in words.
+pub(super) fn named_lines(count: usize, first_lines: &[usize]) -> String {
+    let lines: Vec<String> = first_lines.iter().map(usize::to_string).collect();
+    let word = if lines.len() == 1 { "line" } else { "lines" };
+    let more = if count > NAMED_LINES { ", …" } else { "" };
+    format!("{word} {}{more}", lines.join(", "))
 }
 
 /// State of a target in the current row.

@@ -8,12 +8,13 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
+use super::FitWhere;
 use super::cells::Separator;
 use super::number::DecimalSign;
 use super::orientation::OrientationForm;
 use super::units::{Quantity, Unit};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::source_text::{self, position};
+use crate::io::source_text;
 
 /// A mapping of a file's columns to ours, as TOML (docs/file-formats.md, "Mapping file").
 ///
@@ -39,7 +40,7 @@ pub struct ColumnMap {
     pub(super) target: Option<String>,
     pub(super) target_name: Option<String>,
     pub(super) instrument: Option<String>,
-    pub(super) set: Option<SetSpec>,
+    pub(super) set: Option<FitWhere>,
     pub(super) units: UnitDefaults,
     pub(super) joints: BTreeMap<String, ColumnSpec>,
     pub(super) position: Option<PositionSpec>,
@@ -79,21 +80,15 @@ impl UnitDefaults {
 }
 
 /// One column, a sum of columns, or a constant. In TOML a column's name, or a table.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(remote = "Self", deny_unknown_fields)]
 pub(super) struct ColumnSpec {
     pub(super) column: Option<String>,
-    /// Columns with their factors; empty if it is no sum.
-    pub(super) columns: BTreeMap<String, f64>,
+    /// Columns with their factors.
+    pub(super) columns: Option<BTreeMap<String, f64>>,
     pub(super) value: Option<f64>,
+    #[serde(default, deserialize_with = "any_unit")]
     pub(super) unit: Option<Unit>,
-}
-
-/// Training rows.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SetSpec {
-    pub(super) column: String,
-    pub(super) fit: Vec<String>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -156,13 +151,10 @@ impl ColumnMap {
                            that the file's poses point"
                     .to_owned();
             }
-            let error_at = Error::new(ErrorKind::Syntax, message);
+            let found = Error::new(ErrorKind::Syntax, message);
             match error.span() {
-                Some(span) => {
-                    let (line, column) = position(text, span.start);
-                    error_at.at(path, line, column)
-                }
-                None => error_at.in_file(path),
+                Some(span) => found.at_offset(path, text, span.start),
+                None => found.in_file(path),
             }
         })?;
         map.path = path.to_path_buf();
@@ -197,7 +189,7 @@ impl ColumnMap {
                 return error(format!("found two targets named `{}`, expected unique names", target.name));
             }
         }
-        if self.set.as_ref().is_some_and(|set| set.fit.is_empty()) {
+        if self.set.as_ref().is_some_and(|set| set.values.is_empty()) {
             return error("found no value in `fit`, expected the values that mark a row to fit".to_owned());
         }
         Ok(())
@@ -232,16 +224,6 @@ impl<'de> Deserialize<'de> for ColumnSpec {
 
 struct ColumnSpecVisitor;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ColumnFields {
-    column: Option<String>,
-    columns: Option<BTreeMap<String, f64>>,
-    value: Option<f64>,
-    #[serde(default, deserialize_with = "any_unit")]
-    unit: Option<Unit>,
-}
-
 impl<'de> Visitor<'de> for ColumnSpecVisitor {
     type Value = ColumnSpec;
 
@@ -254,11 +236,11 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<ColumnSpec, A::Error> {
-        let fields = ColumnFields::deserialize(MapAccessDeserializer::new(map))?;
+        let spec = ColumnSpec::deserialize(MapAccessDeserializer::new(map))?;
         let given = [
-            ("column", fields.column.is_some()),
-            ("columns", fields.columns.is_some()),
-            ("value", fields.value.is_some()),
+            ("column", spec.column.is_some()),
+            ("columns", spec.columns.is_some()),
+            ("value", spec.value.is_some()),
         ];
         let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
         if let (Some(first), Some(second)) = (given.next(), given.next()) {
@@ -266,18 +248,16 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
                 "found both `{first}` and `{second}`, expected one of them"
             )));
         }
-        let columns = fields.columns.map(checked_columns::<A::Error>).transpose()?.unwrap_or_default();
-        if fields.value.is_some_and(|value| !value.is_finite()) {
+        spec.columns.as_ref().map_or(Ok(()), check_columns)?;
+        if spec.value.is_some_and(|value| !value.is_finite()) {
             return Err(A::Error::custom("found a value that is not finite, expected a finite number"));
         }
-        Ok(ColumnSpec { column: fields.column, columns, value: fields.value, unit: fields.unit })
+        Ok(spec)
     }
 }
 
-/// Columns of a sum: at least one, with finite factors other than zero.
-fn checked_columns<E: serde::de::Error>(
-    columns: BTreeMap<String, f64>,
-) -> std::result::Result<BTreeMap<String, f64>, E> {
+/// The columns of a sum must be some, with factors that say something.
+fn check_columns<E: serde::de::Error>(columns: &BTreeMap<String, f64>) -> std::result::Result<(), E> {
     if columns.is_empty() {
         return Err(E::custom(
             "found no column in `columns`, expected columns with their factors, like { J2 = -1, J3 = 1 }",
@@ -289,7 +269,7 @@ fn checked_columns<E: serde::de::Error>(
         );
         return Err(E::custom(message));
     }
-    Ok(columns)
+    Ok(())
 }
 
 /// A string for `parse`; its error becomes the TOML error's message.

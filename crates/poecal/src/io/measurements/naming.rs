@@ -1,19 +1,39 @@
 //! Names that all rows have or none: targets and instruments.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use super::table::Row;
 use crate::error::Result;
 
-/// Whether the first row has a name, and its place.
+/// The names so far. `first` is whether the first row has a name, and its place.
 #[derive(Default)]
-pub(super) struct Naming {
+pub(super) struct Names {
     first: Option<(bool, PathBuf, usize)>,
+    indices: BTreeMap<String, usize>,
 }
 
-impl Naming {
-    /// Refuses a row that differs from the first in having a name. `what` is the named thing, with advice for rows without one.
-    pub(super) fn check(
+impl Names {
+    /// Index of a row's name, the next one for a name that is new. `what` is named, with what to say of none.
+    pub(super) fn index(
+        &mut self,
+        row: &Row<'_>,
+        column: Option<usize>,
+        what: (&str, &str),
+        name: Option<&str>,
+    ) -> Result<usize> {
+        self.check(row, column, what, name)?;
+        let name = name.unwrap_or_default();
+        if let Some(&index) = self.indices.get(name) {
+            return Ok(index);
+        }
+        let next = self.indices.len();
+        self.indices.insert(name.to_owned(), next);
+        Ok(next)
+    }
+
+    /// Refuses a row that names it where the first did not, or the reverse.
+    fn check(
         &mut self,
         row: &Row<'_>,
         column: Option<usize>,

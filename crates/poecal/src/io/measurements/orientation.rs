@@ -33,12 +33,7 @@ impl OrientationForm {
 
     /// Number of columns.
     pub(super) fn len(self) -> usize {
-        match self {
-            OrientationForm::QuaternionXyzw | OrientationForm::QuaternionWxyz => 4,
-            OrientationForm::RotationVector
-            | OrientationForm::Intrinsic(_)
-            | OrientationForm::Extrinsic(_) => 3,
-        }
+        self.part_names().len()
     }
 
     /// Quantity of its columns.
@@ -118,13 +113,11 @@ impl FromStr for OrientationForm {
             },
         };
         form.ok_or_else(|| {
-            Error::new(
-                ErrorKind::Syntax,
-                format!(
-                    "found the orientation form `{text}`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, \
-                     roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz"
-                ),
-            )
+            let message = format!(
+                "found the orientation form `{text}`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, \
+                 roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz"
+            );
+            Error::new(ErrorKind::Syntax, message)
         })
     }
 }

@@ -1,7 +1,6 @@
 //! Reads measurement files.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::builder::TargetLayout;
@@ -9,7 +8,7 @@ use super::inputs::InputReader;
 use super::layout::{ColumnLayout, SetRule};
 use super::lost::LostBeams;
 use super::mapping::ColumnMap;
-use super::naming::Naming;
+use super::naming::Names;
 use super::number::Numbers;
 use super::row::{measurement, sigma};
 use super::scale::{self, JointWatch};
@@ -18,7 +17,7 @@ use super::table::{Row, Table, refuse_more_rows};
 use super::text::Blocks;
 use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
-use super::{Frames, MeasurementFile, ReadOptions};
+use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
 use crate::measurement::{Dataset, Observation, Set, Source};
 use crate::robot::{Robot, check_name};
@@ -75,15 +74,11 @@ struct Reader<'a> {
     robot: &'a Robot,
     options: &'a ReadOptions,
     map: &'a ColumnMap,
-    data: Dataset,
-    target_indices: BTreeMap<String, usize>,
-    target_naming: Naming,
-    station_indices: BTreeMap<String, usize>,
-    station_naming: Naming,
+    targets: Names,
+    stations: Names,
+    /// Which of the values that mark a row to fit were seen.
     fit_values_seen: Vec<bool>,
-    understood: Vec<FileUnderstanding>,
-    sha256: BTreeMap<String, String>,
-    warnings: Vec<String>,
+    found: MeasurementFile,
 }
 
 impl<'a> Reader<'a> {
@@ -92,15 +87,13 @@ impl<'a> Reader<'a> {
             robot,
             options,
             map: options.mapping.as_ref().unwrap_or(no_map),
-            data: Dataset::new(robot.reading_names()),
-            target_indices: BTreeMap::new(),
-            target_naming: Naming::default(),
-            station_indices: BTreeMap::new(),
-            station_naming: Naming::default(),
+            targets: Names::default(),
+            stations: Names::default(),
             fit_values_seen: Vec::new(),
-            understood: Vec::new(),
-            sha256: BTreeMap::new(),
-            warnings: Vec::new(),
+            found: MeasurementFile {
+                data: Dataset::new(robot.reading_names()),
+                ..MeasurementFile::default()
+            },
         }
     }
 
@@ -112,14 +105,17 @@ impl<'a> Reader<'a> {
                            out, or the column";
             return Err(table.header.error(ErrorKind::Measurement, column, message));
         }
-        let mut inputs =
-            InputReader::new(&layout.inputs, self.data.reading_names().len(), Numbers::new(self.map.decimal));
+        let mut inputs = InputReader::new(
+            &layout.inputs,
+            self.found.data.reading_names().len(),
+            Numbers::new(self.map.decimal),
+        );
         let mut watch = JointWatch::new(self.robot);
-        let mut turns = TurnWatch::new();
-        let first = self.data.len();
-        self.data.files.push(path.to_path_buf());
+        let mut turns = TurnWatch::default();
+        let first = self.found.data.len();
+        self.found.data.files.push(path.to_path_buf());
         if layout.id.is_some() {
-            self.data.ids.resize(first, String::new());
+            self.found.data.ids.resize(first, String::new());
         }
         let (mut rows, mut lost) = (0, LostBeams::default());
         while let Some(mut some) = table.next_block()? {
@@ -134,40 +130,35 @@ impl<'a> Reader<'a> {
                 watch.observe(&row, &inputs);
                 turns.observe(&row, &layout, &inputs);
                 self.row(&row, &layout, &inputs)?;
-                refuse_more_rows(self.data.len(), &row)?;
+                refuse_more_rows(self.found.data.len(), &row)?;
             }
         }
-        self.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
+        self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         if rows == 0 {
             let message = "found a header and no rows, expected at least one measurement";
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
         }
-        if self.data.len() == first {
+        if self.found.data.len() == first {
             let message =
                 "found no position in any row, expected at least one that is neither empty nor zero";
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
         }
-        self.warnings.extend(lost.warning(path));
-        self.warnings.extend(watch.finish(path, &layout)?);
+        self.found.warnings.extend(lost.warning(path));
+        self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
         turns.finish(path)?;
-        let new_rows = self.data.observations.get(first..).unwrap_or_default();
-        scale::check_positions(
-            path,
-            self.robot,
-            &layout,
-            scale::unlimited_slides(self.robot, &watch),
-            new_rows,
-        )?;
-        spread::check(path, &table.header, self.robot, &layout, &self.data, first)?;
+        let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
+        let slides_m = watch.unlimited_slides_m(&inputs.ranges);
+        scale::check_positions(path, self.robot, &layout, slides_m, new_rows)?;
+        spread::check(path, &table.header, self.robot, &layout, &self.found.data, first)?;
         let poses = new_rows.iter().filter(|row| row.measurement.sees_orientation()).count();
         let points = new_rows.len() - poses;
-        if !self.data.ids.is_empty() {
-            self.data.ids.resize(self.data.len(), String::new());
+        if !self.found.data.ids.is_empty() {
+            self.found.data.ids.resize(self.found.data.len(), String::new());
         }
         self.warn_of_ignored(path, &layout);
         let turns = turns::warning(&table.header, &layout, self.map);
-        self.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
-        self.understood.push(FileUnderstanding {
+        self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
+        self.found.understood.push(FileUnderstanding {
             path: path.to_path_buf(),
             rows,
             points,
@@ -199,7 +190,7 @@ impl<'a> Reader<'a> {
             more => format!(" and {more} more"),
         };
         let columns = columns.join(", ");
-        self.warnings.push(format!("{}: ignored the columns {columns}{more}", path.display()));
+        self.found.warnings.push(format!("{}: ignored the columns {columns}{more}", path.display()));
     }
 
     fn row(&mut self, row: &Row<'_>, layout: &ColumnLayout, inputs: &InputReader<'_>) -> Result<()> {
@@ -217,15 +208,16 @@ impl<'a> Reader<'a> {
                 sigma_rotation_rad: sigma(row, target.sigma_rotation, inputs)?,
                 set,
                 source: Source {
-                    file: u32::try_from(self.understood.len()).unwrap_or(u32::MAX),
+                    file: u32::try_from(self.found.understood.len()).unwrap_or(u32::MAX),
                     line: u32::try_from(row.line).unwrap_or(u32::MAX),
                 },
             };
-            self.data
+            self.found
+                .data
                 .push_observation(inputs.readings(), observation)
                 .map_err(|error| row.error(0, error.message()))?;
             if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
-                self.data.ids.push(cell.text().into_owned());
+                self.found.data.ids.push(cell.text().into_owned());
             }
         }
         Ok(())
@@ -258,65 +250,52 @@ impl<'a> Reader<'a> {
     fn target(&mut self, row: &Row<'_>, layout: &ColumnLayout, target: &TargetLayout) -> Result<usize> {
         let cell = layout.target_column.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
         let name = cell.as_deref().or(target.name.as_deref()).filter(|name| !name.is_empty());
-        self.target_naming.check(
-            row,
-            layout.target_column,
-            ("target", " (an unnamed target is the tip itself)"),
-            name,
-        )?;
-        let key = name.unwrap_or_default();
-        if let Some(&index) = self.target_indices.get(key) {
-            return Ok(index);
+        let column = layout.target_column;
+        let what = ("target", " (an unnamed target is the tip itself)");
+        let index = self.targets.index(row, column, what, name)?;
+        if index == self.found.data.targets.len() {
+            check_name(name.unwrap_or_default(), "target")
+                .map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
+            self.found.data.targets.push(name.map(str::to_owned));
         }
-        check_name(key, "target")
-            .map_err(|error| row.error(layout.target_column.unwrap_or(0), error.message()))?;
-        let index = self.target_indices.len();
-        self.target_indices.insert(key.to_owned(), index);
-        self.data.targets.push(name.map(str::to_owned));
         Ok(index)
     }
 
     /// Index of the row's station. Either all rows name their instrument or none does.
     fn station(&mut self, row: &Row<'_>, layout: &ColumnLayout) -> Result<usize> {
-        let file = || row.path.display().to_string();
-        let cell = layout.instrument.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
-        let name = match cell {
-            _ if self.options.frames == Frames::PerFile => Some(Cow::Owned(file())),
-            other => other,
+        let column = layout.instrument;
+        let name = match self.options.frames {
+            Frames::PerFile => Some(Cow::Owned(row.path.display().to_string())),
+            Frames::Common => column.and_then(|column| row.cells.get(column)).map(|cell| cell.text()),
         };
         let name = name.as_deref().filter(|name| !name.is_empty());
-        self.station_naming.check(row, layout.instrument, ("instrument", ""), name)?;
-        let Some(name) = name else { return Ok(0) };
-        if let Some(&index) = self.station_indices.get(name) {
-            return Ok(index);
+        let index = self.stations.index(row, column, ("instrument", ""), name)?;
+        if let Some(name) = name.filter(|_| index == self.found.data.stations.len()) {
+            if self.options.frames == Frames::Common {
+                check_name(name, "instrument")
+                    .map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
+            }
+            self.found.data.stations.push(Some(name.to_owned()));
         }
-        if self.options.frames == Frames::Common {
-            check_name(name, "instrument")
-                .map_err(|error| row.error(layout.instrument.unwrap_or(0), error.message()))?;
-        }
-        let index = self.station_indices.len();
-        self.station_indices.insert(name.to_owned(), index);
-        self.data.stations.push(Some(name.to_owned()));
         Ok(index)
     }
 
     fn finish(self) -> Result<MeasurementFile> {
-        let of_map = self.map.set.as_ref().map(|set| (&set.column, &set.fit));
-        let rule = self.options.fit_where.as_ref().map(|rule| (&rule.column, &rule.values)).or(of_map);
-        if let Some((column, values)) = rule
+        let rule = self.options.fit_where.as_ref().or(self.map.set.as_ref());
+        if let Some(FitWhere { column, values }) = rule
             && !self.options.ignore_sets
             && let Some((value, _)) = values.iter().zip(&self.fit_values_seen).find(|(_, seen)| !**seen)
         {
             let message =
                 format!("found no row with `{value}` in column `{column}`, expected at least one to fit");
             let error = Error::new(ErrorKind::Option, message);
-            return Err(match self.data.files.as_slice() {
+            return Err(match self.found.data.files.as_slice() {
                 [only] => error.in_file(only),
                 _ => error,
             });
         }
-        let Reader { data, understood, sha256, warnings, .. } = self;
-        let warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
-        Ok(MeasurementFile { data, understood, sha256, warnings })
+        let mut found = self.found;
+        found.warnings.iter_mut().for_each(|warning| *warning = visible(warning).into_owned());
+        Ok(found)
     }
 }

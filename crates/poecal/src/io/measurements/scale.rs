@@ -4,14 +4,15 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 
-use super::inputs::{Input, InputReader};
+use super::inputs::{Input, InputReader, Range};
 use super::layout::ColumnLayout;
+use super::lost::{NAMED_LINES, named_lines};
 use super::table::Row;
 use super::units::{Quantity, Unit, UnitSource};
 use crate::distributions::median_point;
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Observation;
-use crate::robot::{Joint, Limits, Robot};
+use crate::robot::{Joint, JointKind, Limits, Robot};
 
 /// Without limits, readings beyond this many radians or metres need a stated unit.
 const LARGEST_UNLIMITED: f64 = 50.0;
@@ -23,8 +24,6 @@ const SHARE: f64 = 0.1;
 const REACHES: f64 = 20.0;
 /// Rounding allowed beyond a limit.
 const ROUNDING: f64 = 1e-6;
-/// Most lines in a warning.
-const NAMED_LINES: usize = 5;
 
 /// Collects the joint values of a file.
 pub(super) struct JointWatch<'a> {
@@ -35,8 +34,6 @@ pub(super) struct JointWatch<'a> {
 struct OneJoint<'a> {
     joint: &'a Joint,
     reading: usize,
-    lowest: f64,
-    highest: f64,
     beyond: usize,
     first_lines: Vec<usize>,
     extreme: f64,
@@ -49,8 +46,6 @@ impl<'a> JointWatch<'a> {
         let joints = joints.map(|(joint, reading)| OneJoint {
             joint,
             reading,
-            lowest: f64::INFINITY,
-            highest: f64::NEG_INFINITY,
             beyond: 0,
             first_lines: Vec::new(),
             extreme: 0.0,
@@ -64,8 +59,6 @@ impl<'a> JointWatch<'a> {
         self.rows += 1;
         for one in &mut self.joints {
             let Some(reading) = inputs.value(one.reading) else { continue };
-            one.lowest = one.lowest.min(reading);
-            one.highest = one.highest.max(reading);
             if one.allows(reading, ROUNDING) {
                 continue;
             }
@@ -80,25 +73,42 @@ impl<'a> JointWatch<'a> {
         }
     }
 
-    /// Warnings for joints beyond their limits.
+    /// A warning for each joint beyond its limits; the inputs lie in `ranges`.
     ///
     /// # Errors
     /// [`ErrorKind::Unit`] if only another unit explains the readings.
-    pub(super) fn finish(&self, path: &Path, layout: &ColumnLayout) -> Result<Vec<String>> {
+    pub(super) fn finish(&self, path: &Path, layout: &ColumnLayout, ranges: &[Range]) -> Result<Vec<String>> {
         let mut warnings = Vec::new();
         for one in self.joints.iter().filter(|one| one.beyond > 0) {
-            let Some(input) = layout.inputs.get(one.reading) else { continue };
-            if let Some(likely) = one.other_unit(input, self.rows) {
+            let (Some(input), Some(range)) = (layout.inputs.get(one.reading), ranges.get(one.reading)) else {
+                continue;
+            };
+            let Some((lowest, highest)) = range.0 else { continue };
+            if let Some(likely) = one.other_unit(input, [lowest, highest], self.rows) {
                 let (line, column) = one.extreme_place;
-                return Err(
-                    Error::new(ErrorKind::Unit, one.unit_message(input, likely)).at(path, line, column)
-                );
+                let message = one.unit_message(input, likely);
+                return Err(Error::new(ErrorKind::Unit, message).at(path, line, column));
             }
             if let Some(limits) = one.joint.limits {
                 warnings.push(one.limit_warning(path, limits, input.unit.quantity().si_unit()));
             }
         }
         Ok(warnings)
+    }
+
+    /// How far the slides without limits move in all (metres), by the ranges of the inputs.
+    pub(super) fn unlimited_slides_m(&self, ranges: &[Range]) -> f64 {
+        let slides = self
+            .joints
+            .iter()
+            .filter(|one| one.joint.kind == JointKind::Prismatic && one.joint.limits.is_none());
+        slides
+            .filter_map(|one| {
+                let (lowest, highest) = ranges.get(one.reading)?.0?;
+                Some((one.joint.reading.multiplier * (highest - lowest)).abs())
+            })
+            .filter(|span| span.is_finite())
+            .sum()
     }
 }
 
@@ -113,7 +123,7 @@ impl OneJoint<'_> {
     }
 
     /// The unit that explains readings far outside.
-    fn other_unit(&self, input: &Input, rows: usize) -> Option<Unit> {
+    fn other_unit(&self, input: &Input, extremes: [f64; 2], rows: usize) -> Option<Unit> {
         let candidates: &[&str] = match input.unit.symbol() {
             "rad" => &["deg", "mrad"],
             "m" => &["mm", "um"],
@@ -122,13 +132,14 @@ impl OneJoint<'_> {
             _ => &[],
         };
         let quantity = input.unit.quantity();
-        if !self.is_far_outside(quantity, input.unit_from) || (self.beyond as f64) < SHARE * rows as f64 {
+        let is_rare = (self.beyond as f64) < SHARE * rows as f64;
+        if is_rare || !self.is_far_outside(quantity, extremes, input.unit_from) {
             return None;
         }
         let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
         candidates.iter().find_map(|symbol| {
             let unit = Unit::parse(symbol, quantity).ok()?;
-            let fits = [self.lowest, self.highest].into_iter().all(|reading| {
+            let fits = extremes.into_iter().all(|reading| {
                 let reading = unit.to_si(input.unit.from_si(reading));
                 let plausible = self.joint.limits.is_some() || reading.abs() <= LARGEST_OTHERWISE;
                 plausible && self.allows(reading, 0.1 * span)
@@ -138,7 +149,7 @@ impl OneJoint<'_> {
     }
 
     /// Whether a reading is so far outside that the joint cannot have been there.
-    fn is_far_outside(&self, quantity: Quantity, unit_from: UnitSource) -> bool {
+    fn is_far_outside(&self, quantity: Quantity, extremes: [f64; 2], unit_from: UnitSource) -> bool {
         match self.joint.limits {
             Some(limits) => {
                 let span = limits.upper - limits.lower;
@@ -147,7 +158,7 @@ impl OneJoint<'_> {
                     Quantity::Length => (5.0, 5.0),
                     Quantity::Angle | Quantity::Number => (std::f64::consts::TAU, 0.5),
                 };
-                [self.lowest, self.highest]
+                extremes
                     .into_iter()
                     .any(|reading| reading.abs() > large && !self.allows(reading, spans * span))
             }
@@ -179,18 +190,16 @@ impl OneJoint<'_> {
     }
 
     fn limit_warning(&self, path: &Path, limits: Limits, unit: Unit) -> String {
-        let lines: Vec<String> = self.first_lines.iter().map(usize::to_string).collect();
-        let more = if self.beyond > lines.len() { ", …" } else { "" };
-        let (rows, line_word) = if self.beyond == 1 { ("row", "line") } else { ("rows", "lines") };
         format!(
-            "{}: joint `{}` lies beyond its limits {} to {} {} in {} {rows} ({line_word} {}{more})",
+            "{}: joint `{}` lies beyond its limits {} to {} {} in {} {} ({})",
             path.display(),
             self.joint.name,
             short(limits.lower),
             short(limits.upper),
             unit.symbol(),
             self.beyond,
-            lines.join(", ")
+            if self.beyond == 1 { "row" } else { "rows" },
+            named_lines(self.beyond, &self.first_lines)
         )
     }
 }
@@ -242,14 +251,4 @@ pub(super) fn check_positions(
 /// A number to four significant digits.
 pub(super) fn short(value: f64) -> String {
     format!("{value:.3e}").parse::<f64>().unwrap_or(value).to_string()
-}
-
-/// Total travel of the prismatic joints without limits (metres).
-pub(super) fn unlimited_slides(robot: &Robot, watch: &JointWatch<'_>) -> f64 {
-    let slides = robot.joints.iter().zip(&watch.joints);
-    slides
-        .filter(|(joint, _)| joint.kind == crate::robot::JointKind::Prismatic && joint.limits.is_none())
-        .map(|(joint, one)| (joint.reading.multiplier * (one.highest - one.lowest)).abs())
-        .filter(|span| span.is_finite())
-        .sum()
 }

@@ -42,7 +42,7 @@ impl<'a> Blocks<'a> {
     /// The blocks of a file; `expected` describes it in messages.
     pub(super) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
         let source = TextSource::File(Hashing::new(source::open(path, expected, LARGEST_TABLE)?));
-        Ok(Blocks { expected, ..Blocks::of(path, source, BLOCK) })
+        Ok(Blocks::of(path, expected, source, BLOCK))
     }
 
     /// The blocks of a text; messages call it `path`.
@@ -52,11 +52,11 @@ impl<'a> Blocks<'a> {
 
     /// The same with another number of bytes per read.
     pub(super) fn sized(path: &'a Path, text: &'a [u8], size: usize) -> Self {
-        Blocks::of(path, TextSource::Text(text), size)
+        Blocks::of(path, "a table (CSV)", TextSource::Text(text), size)
     }
 
-    fn of(path: &'a Path, source: TextSource<'a>, size: usize) -> Self {
-        let (expected, text, rest) = ("a table (CSV)", String::new(), Vec::new());
+    fn of(path: &'a Path, expected: &'a str, source: TextSource<'a>, size: usize) -> Self {
+        let (text, rest) = (String::new(), Vec::new());
         Blocks { path, expected, source, size, text, rest, newline: None, lines: 0 }
     }
 
@@ -249,7 +249,7 @@ mod tests {
         let path = Path::new("x.csv");
         let source = TextSource::File(Hashing::new(Input::of(Box::new(Broken))));
         let expected = "a measurement file (CSV)";
-        let error = Blocks { expected, ..Blocks::of(path, source, BLOCK) }.advance().unwrap_err().to_string();
+        let error = Blocks::of(path, expected, source, BLOCK).advance().unwrap_err().to_string();
         assert_eq!(
             error,
             "x.csv: the file cannot be read (the cable was pulled), expected a measurement file (CSV)"

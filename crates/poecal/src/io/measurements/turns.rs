@@ -18,6 +18,7 @@ const SHARE: f64 = 0.1;
 const ROUNDING: f64 = 1e-3;
 
 /// Collects the angles of a file's orientations.
+#[derive(Default)]
 pub(super) struct TurnWatch {
     rows: usize,
     beyond: usize,
@@ -35,10 +36,6 @@ struct First {
 }
 
 impl TurnWatch {
-    pub(super) fn new() -> Self {
-        TurnWatch { rows: 0, beyond: 0, largest: 0.0, first: None }
-    }
-
     /// Adds the orientations of a row.
     pub(super) fn observe(&mut self, row: &Row<'_>, layout: &ColumnLayout, inputs: &InputReader<'_>) {
         for (form, columns) in layout.targets.iter().filter_map(|target| target.orientation.as_ref()) {

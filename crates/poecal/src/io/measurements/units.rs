@@ -71,42 +71,37 @@ pub struct Unit {
     // Lengths are divided by a power of ten, which is exact; 0.001 is not.
     factor: f64,
     divisor: f64,
+    /// What else it is called, large letters or small.
+    names: &'static str,
 }
 
-const fn unit(symbol: &'static str, quantity: Quantity, factor: f64, divisor: f64) -> Unit {
-    Unit { symbol, quantity, factor, divisor }
+const fn unit(
+    symbol: &'static str,
+    quantity: Quantity,
+    (factor, divisor): (f64, f64),
+    names: &'static str,
+) -> Unit {
+    Unit { symbol, quantity, factor, divisor, names }
 }
 
-const METRE: Unit = unit("m", Quantity::Length, 1.0, 1.0);
-const RADIAN: Unit = unit("rad", Quantity::Angle, 1.0, 1.0);
-const ONE: Unit = unit("1", Quantity::Number, 1.0, 1.0);
+const METRE: Unit = unit("m", Quantity::Length, (1.0, 1.0), "metre metres meter meters");
+const RADIAN: Unit = unit("rad", Quantity::Angle, (1.0, 1.0), "radian radians");
+const ONE: Unit = unit("1", Quantity::Number, (1.0, 1.0), "");
+
 const UNITS: [Unit; 12] = [
     METRE,
-    unit("cm", Quantity::Length, 1.0, 1e2),
-    unit("mm", Quantity::Length, 1.0, 1e3),
-    unit("um", Quantity::Length, 1.0, 1e6),
-    unit("nm", Quantity::Length, 1.0, 1e9),
+    unit("cm", Quantity::Length, (1.0, 1e2), "centimetre centimetres centimeter centimeters"),
+    unit("mm", Quantity::Length, (1.0, 1e3), "millimetre millimetres millimeter millimeters"),
+    unit("um", Quantity::Length, (1.0, 1e6), "micrometre micrometres micrometer micrometers micron microns"),
+    unit("nm", Quantity::Length, (1.0, 1e9), ""),
     // 25.4 mm exactly.
-    unit("in", Quantity::Length, 254.0, 1e4),
+    unit("in", Quantity::Length, (254.0, 1e4), "inch inches"),
     RADIAN,
-    unit("mrad", Quantity::Angle, 1.0, 1e3),
-    unit("deg", Quantity::Angle, PI / 180.0, 1.0),
-    unit("arcmin", Quantity::Angle, PI / 10_800.0, 1.0),
-    unit("arcsec", Quantity::Angle, PI / 648_000.0, 1.0),
+    unit("mrad", Quantity::Angle, (1.0, 1e3), "milliradian milliradians"),
+    unit("deg", Quantity::Angle, (PI / 180.0, 1.0), "degree degrees"),
+    unit("arcmin", Quantity::Angle, (PI / 10_800.0, 1.0), "arcminute arcminutes"),
+    unit("arcsec", Quantity::Angle, (PI / 648_000.0, 1.0), "arcsecond arcseconds"),
     ONE,
-];
-/// Other names of units, case ignored.
-const OTHER_NAMES: [(&str, &[&str]); 10] = [
-    ("m", &["metre", "metres", "meter", "meters"]),
-    ("cm", &["centimetre", "centimetres", "centimeter", "centimeters"]),
-    ("mm", &["millimetre", "millimetres", "millimeter", "millimeters"]),
-    ("um", &["micrometre", "micrometres", "micrometer", "micrometers", "micron", "microns"]),
-    ("in", &["inch", "inches"]),
-    ("rad", &["radian", "radians"]),
-    ("mrad", &["milliradian", "milliradians"]),
-    ("deg", &["degree", "degrees"]),
-    ("arcmin", &["arcminute", "arcminutes"]),
-    ("arcsec", &["arcsecond", "arcseconds"]),
 ];
 
 impl Unit {
@@ -132,14 +127,9 @@ impl Unit {
             }
             _ => String::new(),
         };
-        Err(Error::new(
-            ErrorKind::Unit,
-            format!(
-                "found the unit `{symbol}`{purpose}, expected {} ({}){hint}",
-                quantity.words(),
-                symbols.join(", ")
-            ),
-        ))
+        let (words, symbols) = (quantity.words(), symbols.join(", "));
+        let message = format!("found the unit `{symbol}`{purpose}, expected {words} ({symbols}){hint}");
+        Err(Error::new(ErrorKind::Unit, message))
     }
 
     /// The unit of this symbol, of any quantity.
@@ -147,16 +137,12 @@ impl Unit {
     /// # Errors
     /// [`ErrorKind::Unit`] if it is unknown.
     pub fn parse_any(symbol: &str) -> Result<Unit> {
-        Unit::parse(symbol, Quantity::Length).or_else(|_| Unit::parse(symbol, Quantity::Angle)).map_err(
-            |_| {
-                let symbols: Vec<&str> =
-                    UNITS.iter().filter(|unit| **unit != ONE).map(|unit| unit.symbol).collect();
-                Error::new(
-                    ErrorKind::Unit,
-                    format!("found the unit `{symbol}`, expected one of {}", symbols.join(", ")),
-                )
-            },
-        )
+        let unit = Unit::parse(symbol, Quantity::Length).or_else(|_| Unit::parse(symbol, Quantity::Angle));
+        unit.map_err(|_| {
+            let symbols = UNITS.iter().filter(|unit| **unit != ONE).map(|unit| unit.symbol);
+            let symbols = symbols.collect::<Vec<_>>().join(", ");
+            Error::new(ErrorKind::Unit, format!("found the unit `{symbol}`, expected one of {symbols}"))
+        })
     }
 
     /// Converts a value in this unit to metres or radians.
@@ -186,12 +172,12 @@ impl Unit {
 
 /// The symbol for any name of a unit.
 fn plain(name: &str) -> &str {
-    let is_named = |words: &[&str]| words.iter().any(|word| word.eq_ignore_ascii_case(name));
+    let is_named = |unit: &&Unit| unit.names.split_whitespace().any(|word| word.eq_ignore_ascii_case(name));
     match name {
         "µm" | "μm" => "um",
         "°" => "deg",
         "-" => "1",
-        other => OTHER_NAMES.iter().find(|(_, words)| is_named(words)).map_or(other, |(symbol, _)| symbol),
+        other => UNITS.iter().find(is_named).map_or(other, |unit| unit.symbol),
     }
 }
 
@@ -211,9 +197,9 @@ mod tests {
 
     #[test]
     fn units_have_other_names() {
-        for (symbol, names) in OTHER_NAMES {
-            for name in names {
-                assert_eq!(Unit::parse_any(name).unwrap().symbol(), symbol);
+        for unit in UNITS {
+            for name in unit.names.split_whitespace() {
+                assert_eq!(Unit::parse_any(name).unwrap(), unit);
             }
         }
         assert_eq!(Unit::parse("Inches", Quantity::Length).unwrap().to_si(1.0), 0.0254);

@@ -39,10 +39,9 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
 /// Units of the readings: degrees and millimetres.
 pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>> {
     let (deg, mm) = (Unit::parse("deg", Quantity::Angle)?, Unit::parse("mm", Quantity::Length)?);
-    let of = |name: &String| robot.joints.iter().find(|joint| joint.reading.name == *name);
-    let unit = |name: &String| match of(name).map(|joint| joint.kind) {
-        Some(JointKind::Prismatic) => mm,
-        Some(JointKind::Revolute) | None => deg,
+    let unit = |name: &String| match robot.reading_kind(name) {
+        JointKind::Prismatic => mm,
+        JointKind::Revolute => deg,
     };
     Ok(names.iter().map(unit).collect())
 }

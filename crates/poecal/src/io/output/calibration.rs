@@ -2,7 +2,6 @@
 
 use super::contents::REPORT;
 use super::{FilePlace, FolderPlace, NewFile, Page, Written, robot_files, write_files};
-use crate::calibration::Calibration;
 use crate::error::Result;
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::model::Model;
@@ -36,27 +35,14 @@ pub struct Results<'a> {
     pub report: Option<Page>,
 }
 
-/// Writes a calibration's files: first to a staging folder, where they are read back and compared with the fitted robot in 1,000
-/// configurations, then to their place. The report goes to `elsewhere` if given.
+/// Writes a calibration's files, of the calibrated robot with its targets. They are written to a staging folder first, read back and
+/// compared with the robot on 1,000 configurations, and only then put in place. The report goes to the place `elsewhere` if there is
+/// one.
 ///
 /// # Errors
 /// [`ErrorKind::File`](crate::ErrorKind::File) if something cannot be written; [`ErrorKind::Export`](crate::ErrorKind::Export) if
 /// a file read back differs from the fit by more than 1e-9 m or rad. Nothing is left behind then.
 pub fn write(
-    place: FolderPlace,
-    elsewhere: Option<FilePlace>,
-    model: &Model,
-    calibration: &Calibration,
-    results: Results<'_>,
-) -> Result<Written> {
-    write_robot(place, elsewhere, model, &calibration.robot_with_targets(), results)
-}
-
-/// [`write()`] for a calibrated robot with its targets, without the calibration itself.
-///
-/// # Errors
-/// As [`write()`].
-pub fn write_robot(
     place: FolderPlace,
     elsewhere: Option<FilePlace>,
     model: &Model,

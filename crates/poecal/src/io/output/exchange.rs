@@ -28,11 +28,6 @@ impl FolderPlace {
         })
     }
 
-    /// Folder of the new files.
-    pub(super) fn new_files(&self) -> std::path::PathBuf {
-        self.staging.new_files()
-    }
-
     /// Puts new files of these names in place, and removes other files of an earlier run. Returns messages. The caller holds
     /// [`interrupted::undisturbed`].
     pub(super) fn put(mut self, names: &[String]) -> Result<Vec<String>> {
@@ -159,10 +154,11 @@ impl FolderPlace {
         let (disk, folder) = (disk.as_ref(), self.folder.clone());
         let error = |message: String| Err(refused(&self.named, message));
         let put = |name: &String| {
-            let name = name.clone();
-            if replaced.contains(&name) { Step::Put(name) } else { Step::Add(name) }
+            let step = if replaced.contains(name) { Step::Put } else { Step::Add };
+            (step, name.clone())
         };
-        let stale = replaced.iter().filter(|name| !names.contains(name)).cloned().map(Step::Remove);
+        let stale = replaced.iter().filter(|name| !names.contains(name));
+        let stale = stale.map(|name| (Step::Remove, name.clone()));
         let journal = Journal(names.iter().map(put).chain(stale).collect());
         let kept = keep_old(disk, &self.staging, &folder, replaced)
             .and_then(|()| journal.keep(disk, &staging, &journal.back(replaced)));

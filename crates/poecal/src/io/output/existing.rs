@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::staging;
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::disk::{Disk, Object, ObjectKind};
 use crate::io::named_files;
@@ -43,14 +44,11 @@ pub(super) fn refused(path: &Path, message: impl Into<String>) -> Error {
 
 /// The object at a path, if there is one.
 pub(super) fn found(disk: &dyn Disk, path: &Path) -> Result<Option<Object>> {
-    match disk.look(path) {
-        Ok(found) => Ok(Some(found)),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(refused(
-            path,
-            format!("the place cannot be looked at ({error}), expected one to write to: choose another"),
-        )),
-    }
+    staging::there(disk, path).map_err(|error| {
+        let message =
+            format!("the place cannot be looked at ({error}), expected one to write to: choose another");
+        refused(path, message)
+    })
 }
 
 /// Path without links of a new file in an existing folder.
@@ -83,17 +81,15 @@ pub(super) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Object)> 
 
 /// Refuses to replace an input of the same run, by whatever path.
 pub(super) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {
-    match inputs.iter().find(|input| named_files::are_same(disk, input, path)) {
-        Some(input) => Err(refused(
-            path,
-            format!(
-                "found a file that this run reads ({}), expected another place to write to: an input is never replaced, choose another \
-                 with --out",
-                input.display()
-            ),
-        )),
-        None => Ok(()),
-    }
+    let Some(input) = inputs.iter().find(|input| named_files::are_same(disk, input, path)) else {
+        return Ok(());
+    };
+    let message = format!(
+        "found a file that this run reads ({}), expected another place to write to: an input is never replaced, choose another \
+         with --out",
+        input.display()
+    );
+    Err(refused(path, message))
 }
 
 /// Whether poecal wrote a file.

@@ -79,27 +79,24 @@ impl FilePlace {
             None => None,
         };
         let at = there.as_ref().map_or(path, |(actual, _)| actual);
-        let kind = there.as_ref().map(|(_, found)| found.kind);
-        if kind.is_none_or(|kind| kind == ObjectKind::File) {
-            leftovers::settle(disk.as_ref(), &new_place(disk.as_ref(), at)?.1, say);
-        }
-        match kind {
+        match there.as_ref().map(|(_, found)| found.kind) {
             Some(ObjectKind::Folder) => {
                 return Err(refused(path, "found a directory, expected a file to write: name the file"));
             }
             Some(ObjectKind::Other | ObjectKind::Link) => {
                 return Ok(FilePlace { named, way: Way::Stream(at.to_owned()) });
             }
-            Some(ObjectKind::File) => {
-                refuse_input(disk.as_ref(), path, inputs)?;
-                if !may_go(disk.as_ref(), at, existing) {
-                    return Err(refused(path, IN_THE_WAY));
-                }
-            }
-            None => {}
+            Some(ObjectKind::File) | None => {}
         }
-        let replaces = there.is_some();
         let (parent, place) = new_place(disk.as_ref(), at)?;
+        leftovers::settle(disk.as_ref(), &place, say);
+        let replaces = there.is_some();
+        if replaces {
+            refuse_input(disk.as_ref(), path, inputs)?;
+            if !may_go(disk.as_ref(), at, existing) {
+                return Err(refused(path, IN_THE_WAY));
+            }
+        }
         let prefix = staging::prefix(place.file_name());
         let staging = Staging::new(&disk, &parent, &prefix).map_err(|error| unwritable(path, &error))?;
         Ok(FilePlace { named, way: Way::Staged { path: place, existing, replaces, staging } })

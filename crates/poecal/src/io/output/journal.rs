@@ -5,7 +5,7 @@ use std::io::{self, Read as _, Write as _};
 use std::path::Path;
 
 use super::contents::Contents;
-use super::staging::{JOURNAL, JOURNAL_BACK, NEW, OLD, UNFINISHED_JOURNAL, gone};
+use super::staging::{JOURNAL, JOURNAL_BACK, NEW, OLD, UNFINISHED_JOURNAL, gone, there};
 use crate::io::disk::{Disk, ObjectKind};
 use crate::io::named_files;
 
@@ -17,33 +17,45 @@ const END: &str = "end";
 const LONGEST: u64 = 1 << 20;
 
 /// One step of an exchange. Steps are idempotent.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     /// Moves a file from the new folder to its place, replacing another one.
-    Put(String),
+    Put,
     /// Moves a file from the new folder to its place, which is empty.
-    Add(String),
+    Add,
     /// Moves a file from the old folder back to its place.
-    Back(String),
+    Back,
     /// Removes a file.
-    Remove(String),
+    Remove,
     /// Removes a file if it was added.
-    Take(String),
+    Take,
 }
 
-/// The steps of an exchange.
+impl Step {
+    const WORDS: [(&'static str, Step); 5] = [
+        ("put", Step::Put),
+        ("add", Step::Add),
+        ("back", Step::Back),
+        ("remove", Step::Remove),
+        ("take", Step::Take),
+    ];
+
+    fn of_word(word: &str) -> Option<Self> {
+        Self::WORDS.iter().find(|(known, _)| *known == word).map(|&(_, step)| step)
+    }
+
+    fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, step)| *step == self).map_or("", |&(word, _)| word)
+    }
+}
+
+/// The steps of an exchange, each with the name of its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Journal(pub(super) Vec<Step>);
+pub(super) struct Journal(pub(super) Vec<(Step, String)>);
 
 impl Journal {
     fn text(&self) -> String {
-        let line = |step: &Step| match step {
-            Step::Put(name) => format!("put {name}\n"),
-            Step::Add(name) => format!("add {name}\n"),
-            Step::Back(name) => format!("back {name}\n"),
-            Step::Remove(name) => format!("remove {name}\n"),
-            Step::Take(name) => format!("take {name}\n"),
-        };
+        let line = |(step, name): &(Step, String)| format!("{} {name}\n", step.word());
         format!("{HEAD}\n{}{END}\n", self.0.iter().map(line).collect::<String>())
     }
 
@@ -54,14 +66,7 @@ impl Journal {
             let (word, name) = line.split_once(' ')?;
             // Other names were never to be written.
             let name = Contents::is_of_any(name).then(|| name.to_owned())?;
-            match word {
-                "put" => Some(Step::Put(name)),
-                "add" => Some(Step::Add(name)),
-                "back" => Some(Step::Back(name)),
-                "remove" => Some(Step::Remove(name)),
-                "take" => Some(Step::Take(name)),
-                _ => None,
-            }
+            Some((Step::of_word(word)?, name))
         };
         lines.lines().map(step).collect::<Option<_>>().map(Journal)
     }
@@ -106,37 +111,24 @@ impl Journal {
         folder: &Path,
         again: bool,
     ) -> io::Result<()> {
-        for step in &self.0 {
-            if let Step::Put(name) | Step::Remove(name) = step
-                && is_changed(disk, &staging.join(OLD).join(name), &folder.join(name))?
-            {
-                let is_done = matches!(step, Step::Put(_)) && !is_file(disk, &staging.join(NEW).join(name))?;
+        for (step, name) in &self.0 {
+            let (new, old) = (staging.join(NEW).join(name), staging.join(OLD).join(name));
+            let place = folder.join(name);
+            if matches!(step, Step::Put | Step::Remove) && is_changed(disk, &old, &place)? {
+                let is_done = *step == Step::Put && !is_file(disk, &new)?;
                 if !is_done && !again {
                     return Err(io::Error::other(format!("{name} was changed meanwhile")));
                 }
                 continue;
             }
             match step {
-                Step::Remove(name) if is_file(disk, &folder.join(name))? => {
-                    disk.remove_file(&folder.join(name))?
-                }
-                Step::Remove(_) => {}
-                Step::Add(name) if again && is_file(disk, &folder.join(name))? => {}
-                Step::Take(name) => {
-                    if !is_file(disk, &staging.join(NEW).join(name))? && is_file(disk, &folder.join(name))? {
-                        disk.remove_file(&folder.join(name))?;
-                    }
-                }
-                Step::Add(name) if is_file(disk, &staging.join(NEW).join(name))? => {
-                    disk.rename_new(&staging.join(NEW).join(name), &folder.join(name))?;
-                }
-                Step::Put(name) if is_file(disk, &staging.join(NEW).join(name))? => {
-                    disk.rename(&staging.join(NEW).join(name), &folder.join(name))?;
-                }
-                Step::Back(name) if is_file(disk, &staging.join(OLD).join(name))? => {
-                    disk.rename(&staging.join(OLD).join(name), &folder.join(name))?;
-                }
-                Step::Put(_) | Step::Add(_) | Step::Back(_) => {}
+                Step::Put if is_file(disk, &new)? => disk.rename(&new, &place)?,
+                Step::Add if again && is_file(disk, &place)? => {}
+                Step::Add if is_file(disk, &new)? => disk.rename_new(&new, &place)?,
+                Step::Back if is_file(disk, &old)? => disk.rename(&old, &place)?,
+                Step::Remove if is_file(disk, &place)? => disk.remove_file(&place)?,
+                Step::Take if !is_file(disk, &new)? && is_file(disk, &place)? => disk.remove_file(&place)?,
+                Step::Put | Step::Add | Step::Back | Step::Remove | Step::Take => {}
             }
         }
         Ok(())
@@ -144,11 +136,9 @@ impl Journal {
 
     /// The journal that undoes this one, however far it was executed; the earlier files named in `replaced` are kept.
     pub(super) fn back(&self, replaced: &BTreeSet<String>) -> Self {
-        let added = self.0.iter().filter_map(|step| match step {
-            Step::Add(name) => Some(Step::Take(name.clone())),
-            Step::Put(_) | Step::Back(_) | Step::Remove(_) | Step::Take(_) => None,
-        });
-        Journal(added.chain(replaced.iter().cloned().map(Step::Back)).collect())
+        let added = self.0.iter().filter(|(step, _)| *step == Step::Add);
+        let taken = added.map(|(_, name)| (Step::Take, name.clone()));
+        Journal(taken.chain(replaced.iter().map(|name| (Step::Back, name.clone()))).collect())
     }
 
     /// Ends an exchange.
@@ -178,11 +168,7 @@ fn is_changed(disk: &dyn Disk, kept: &Path, place: &Path) -> io::Result<bool> {
 
 /// Whether there is a file.
 fn is_file(disk: &dyn Disk, path: &Path) -> io::Result<bool> {
-    match disk.look(path) {
-        Ok(found) => Ok(found.kind == ObjectKind::File),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(error),
-    }
+    Ok(there(disk, path)?.is_some_and(|found| found.kind == ObjectKind::File))
 }
 
 #[cfg(test)]
@@ -193,11 +179,11 @@ mod tests {
     fn a_journal_reads_back_and_leads_nowhere_else() {
         let name = |name: &str| name.to_owned();
         let journal = Journal(vec![
-            Step::Put(name("calibration.json")),
-            Step::Add(name("figure-accuracy.svg")),
-            Step::Remove(name("report.html")),
-            Step::Back(name("residuals.csv")),
-            Step::Take(name("robot.urdf")),
+            (Step::Put, name("calibration.json")),
+            (Step::Add, name("figure-accuracy.svg")),
+            (Step::Remove, name("report.html")),
+            (Step::Back, name("residuals.csv")),
+            (Step::Take, name("robot.urdf")),
         ]);
         assert_eq!(Journal::parse(&journal.text()), Some(journal.clone()));
         let text = journal.text();

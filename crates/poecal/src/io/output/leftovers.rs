@@ -53,15 +53,13 @@ fn told(staging: &Path, place: &Path, settled: io::Result<bool>) -> String {
             )
         }
         Ok(false) => format!("{}: removed what an interrupted run left", staging.display()),
-        Err(error) => unsettled(staging, &error),
+        Err(error) => {
+            format!(
+                "{}: an interrupted run left this, and it cannot be settled ({error}): look into it",
+                staging.display()
+            )
+        }
     }
-}
-
-fn unsettled(staging: &Path, error: &io::Error) -> String {
-    format!(
-        "{}: an interrupted run left this, and it cannot be settled ({error}): look into it",
-        staging.display()
-    )
 }
 
 /// Settles remains beside a path; `target` is the folder there, if there is one, which may have been exchanged.
@@ -100,10 +98,7 @@ pub(super) fn give_back(
             }
         }
     }
-    match disk.remove_folder(folder) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        removed => removed,
-    }
+    staging::gone(disk.remove_folder(folder))
 }
 
 /// Removes staged files of this process after waiting for those being put in place, and blocks further ones: for a program that is about to

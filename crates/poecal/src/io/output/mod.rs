@@ -18,7 +18,7 @@ mod reproduction;
 mod simulation;
 mod staging;
 
-pub use calibration::{Results, write, write_robot};
+pub use calibration::{Results, write};
 pub use contents::{Contents, REPORT};
 pub use existing::Existing;
 pub use file::FilePlace;
@@ -137,13 +137,11 @@ fn prove(files: &[NewFile], folder: &Path, final_folder: &Path) -> Result<Differ
         let difference = reference.difference(&read);
         known = Some(reference);
         if !difference.is_within(TOLERANCE, TOLERANCE) {
-            return Err(Error::new(
-                ErrorKind::Export,
-                format!(
-                    "{} read back differs from its robot by {:.1e} m and {:.1e} rad, expected at most 1e-9: nothing was written",
-                    file.name, difference.position_m, difference.rotation_rad
-                ),
-            ));
+            let message = format!(
+                "{} read back differs from its robot by {:.1e} m and {:.1e} rad, expected at most 1e-9: nothing was written",
+                file.name, difference.position_m, difference.rotation_rad
+            );
+            return Err(Error::new(ErrorKind::Export, message));
         }
         largest.position_m = largest.position_m.max(difference.position_m);
         largest.rotation_rad = largest.rotation_rad.max(difference.rotation_rad);
@@ -188,7 +186,7 @@ fn write_files(
         place.stage(file)?;
     }
     let folder = place.named.clone();
-    let largest = prove(files, &place.new_files(), &folder)?;
+    let largest = prove(files, &place.staging.new_files(), &folder)?;
     let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
     let elsewhere = elsewhere.map(|(mut file, page)| file.stage(page).map(|()| file)).transpose()?;
     let _undisturbed = interrupted::undisturbed();

@@ -8,7 +8,7 @@ use super::contents::{self, Contents, REPORT};
 use super::existing::{Existing, found, is_of_poecal, led_to, new_place, refuse_input, refused};
 use super::staging::{self, Staging};
 use super::{FilePlace, leftovers};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::io::disk::{self, Disk, ObjectKind};
 
 /// A reserved place for files. Nothing in it has changed yet, and nothing will unless all is written.
@@ -44,7 +44,7 @@ impl FolderPlace {
     /// are completed or removed first, with messages. `inputs` are files of this run, which are never replaced.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] if the folder is not empty and `existing` does not allow replacement, if something there is no regular file or
+    /// [`ErrorKind::File`](crate::ErrorKind::File) if the folder holds something and `existing` does not let it go, if something there is no regular file or
     /// is an input, or if the folder cannot be written to.
     pub fn reserve(
         folder: &Path,
@@ -189,5 +189,5 @@ const SCHEMA: &str = "\"schema\": \"poecal-calibration-";
 /// The error for a file in the way.
 pub(super) fn taken(path: &Path) -> Error {
     let message = "found this file, expected none: a project never overwrites what may have been filled in, choose another folder with --out";
-    Error::new(ErrorKind::File, message).in_file(path)
+    refused(path, message)
 }

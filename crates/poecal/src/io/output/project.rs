@@ -67,20 +67,17 @@ impl Project<'_> {
     /// A text with the project's names filled in.
     fn filled(&self, text: &str) -> String {
         let links = [("base_link", &self.chain.base_link), ("tip_link", &self.chain.tip_link)];
-        let line = |(key, link): &(&str, &Option<String>)| match link {
-            Some(link) => format!("{key} = {}\n", toml::Value::String(link.clone())),
-            None => String::new(),
-        };
-        let words = |(key, link): &(&str, &Option<String>)| match link {
-            Some(link) => format!(" --{} '{}'", key.replace('_', "-"), link.replace('\'', "'\\''")),
-            None => String::new(),
+        let links = || links.into_iter().filter_map(|(key, link)| Some((key, link.as_ref()?)));
+        let line = |(key, link): (&str, &String)| format!("{key} = {}\n", toml::Value::String(link.clone()));
+        let words = |(key, link): (&str, &String)| {
+            format!(" --{} '{}'", key.replace('_', "-"), link.replace('\'', "'\\''"))
         };
         let orientation = if self.kind.sees_orientation() { ROTATION_NOISE } else { "" };
         let name = visible(&self.model.robot.name).into_owned();
         let replaced = [
             ("{model}", self.model_name().to_owned()),
-            ("{chain}\n", links.iter().map(line).collect()),
-            ("{chain options}", links.iter().map(words).collect()),
+            ("{chain}\n", links().map(line).collect()),
+            ("{chain options}", links().map(words).collect()),
             ("{rotation noise}\n", orientation.to_owned()),
             ("{kind}", self.kind.word().to_owned()),
             ("{count}", self.count.to_string()),

@@ -3,8 +3,10 @@
 use serde::Serialize;
 
 use super::{FolderPlace, NewFile, Written, robot_files, write_files};
-use crate::error::{Error, ErrorKind, Result};
-use crate::io::calibration_file::{FrameEntry, FrameWord, JointEntry, PoseEntry, RobotEntry};
+use crate::calibration::DeviceFrameKnowledge;
+use crate::error::Result;
+use crate::io::calibration_file::{FrameEntry, JointEntry, PoseEntry, RobotEntry};
+use crate::io::json_text;
 use crate::io::measurements;
 use crate::io::model::Model;
 use crate::measurement::{Dataset, Noise};
@@ -75,18 +77,15 @@ impl TruthFile {
             robot: RobotEntry::new(&made.actual, &made.nominal),
             joints: JointEntry::of_robot(&made.actual, &made.nominal),
             measurement_frame: FrameEntry {
-                known: if simulation.device_anywhere { FrameWord::Unknown } else { FrameWord::Base },
+                known: if simulation.device_anywhere {
+                    DeviceFrameKnowledge::Unknown
+                } else {
+                    DeviceFrameKnowledge::Base
+                },
                 base_from_device: (&made.device_from_base.inverse()).into(),
             },
             tool: (&made.actual.last_joint_from_tip()).into(),
         }
-    }
-
-    fn to_text(&self) -> Result<String> {
-        let text = serde_json::to_string_pretty(self).map_err(|error| {
-            Error::new(ErrorKind::Export, format!("the truth cannot be written: {error}"))
-        })?;
-        Ok(text + "\n")
     }
 }
 
@@ -114,6 +113,6 @@ pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSe
         let text = measurements::text(held_out, &made.nominal, &exact, &comment)?;
         files.push(NewFile::new("held_out.csv", text));
     }
-    files.push(NewFile::new("truth.json", TruthFile::new(session).to_text()?));
+    files.push(NewFile::new("truth.json", json_text(&TruthFile::new(session), "truth")?));
     write_files(place, &files, None, notes)
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{NewFile, interrupted};
-use crate::io::disk::{Disk, Lock, ObjectKind, Output};
+use crate::io::disk::{Disk, Lock, Object, ObjectKind, Output};
 
 /// Folder of new files in a staging folder.
 pub(super) const NEW: &str = "new";
@@ -179,6 +179,14 @@ pub(super) fn keep(disk: &dyn Disk, from: &Path, to: &Path) -> io::Result<()> {
     copy.sync()
 }
 
+/// The object at a path, if there is one.
+pub(super) fn there(disk: &dyn Disk, path: &Path) -> io::Result<Option<Object>> {
+    match disk.look(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        found => found.map(Some),
+    }
+}
+
 /// Ignores the error of removing an object that does not exist.
 pub(super) fn gone(removed: io::Result<()>) -> io::Result<()> {
     match removed {
@@ -206,9 +214,8 @@ pub(super) fn is_staging(name: &OsStr, prefix: &OsStr) -> bool {
 /// Whether a staging folder and its contents are as expected and this user's: others with access to the parent folder could have put links
 /// there.
 fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
-    let is = |path: &Path, kind: ObjectKind| match disk.look(path) {
-        Ok(found) => found.kind == kind && found.is_mine,
-        Err(error) => error.kind() == io::ErrorKind::NotFound,
+    let is = |path: &Path, kind: ObjectKind| {
+        there(disk, path).is_ok_and(|found| found.is_none_or(|found| found.kind == kind && found.is_mine))
     };
     is(folder, ObjectKind::Folder)
         && [NEW, OLD].into_iter().all(|half| is(&folder.join(half), ObjectKind::Folder))

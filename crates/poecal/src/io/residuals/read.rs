@@ -43,8 +43,7 @@ impl Residuals {
             });
             is_head = false;
             done.map_err(|(offset, message)| {
-                let (line, column) = source_text::position(text, start + offset);
-                Error::new(ErrorKind::Syntax, message).at(path.as_ref(), line, column)
+                Error::new(ErrorKind::Syntax, message).at_offset(path.as_ref(), text, start + offset)
             })?;
         }
         Ok(found)
@@ -188,18 +187,6 @@ impl<'a> Cells<'a> {
         if number.is_finite() { Ok(number) } else { Err(self.wrong(cell, "a finite number")) }
     }
 
-    /// As many numbers, or none if their cells are all empty.
-    fn numbers<const N: usize>(&mut self) -> std::result::Result<Option<[f64; N]>, Wrong> {
-        if self.are_empty(N) {
-            return Ok(None);
-        }
-        let mut values = [0.0; N];
-        for value in &mut values {
-            *value = self.number()?;
-        }
-        Ok(Some(values))
-    }
-
     /// Whether the next cells are all empty; then they are skipped.
     fn are_empty(&mut self, count: usize) -> bool {
         let here = self.cells.get(self.next..self.next + count);
@@ -209,8 +196,14 @@ impl<'a> Cells<'a> {
     }
 
     fn errors(&mut self) -> std::result::Result<Option<ModelErrors>, Wrong> {
-        let numbers: Option<[f64; 6]> = self.numbers()?;
-        Ok(numbers.map(|[a, b, c, x, y, z]| ModelErrors { models: [a, b, c], residual: [x, y, z] }))
+        if self.are_empty(6) {
+            return Ok(None);
+        }
+        let mut errors = ModelErrors { models: [0.0; 3], residual: [0.0; 3] };
+        for value in errors.models.iter_mut().chain(&mut errors.residual) {
+            *value = self.number()?;
+        }
+        Ok(Some(errors))
     }
 
     fn judged(&mut self) -> std::result::Result<Option<RowDiagnostics>, Wrong> {

@@ -6,7 +6,7 @@ use super::{ModelErrors, ResidualRow, Residuals, RowDiagnostics};
 use crate::calibration::{Calibration, RowError, RowInfluence, row_errors};
 use crate::estimate::Estimate;
 use crate::measurement::Dataset;
-use crate::robot::{JointKind, Robot};
+use crate::robot::JointKind;
 
 /// Input for computing any row.
 pub(super) struct RowSource<'a> {
@@ -29,7 +29,7 @@ impl<'a> RowSource<'a> {
             files: data.files.iter().map(|path| path.display().to_string()).collect(),
             targets: data.targets.iter().map(|name| name.clone().unwrap_or_default()).collect(),
             stations: stations(data),
-            readings: readings.map(|name| (name.clone(), kind(&calibration.nominal, name))).collect(),
+            readings: readings.map(|name| (name.clone(), calibration.nominal.reading_kind(name))).collect(),
             ..Residuals::default()
         };
         RowSource { data, calibration, influence: RowInfluence::new(calibration, data), held_out, names }
@@ -78,12 +78,6 @@ impl<'a> RowSource<'a> {
 fn stations(data: &Dataset) -> Vec<String> {
     let names = data.stations.iter().map(|name| name.clone().unwrap_or_default());
     if data.station_count() > 1 { names.collect() } else { Vec::new() }
-}
-
-/// Quantity of a reading, by the joint that it moves.
-fn kind(robot: &Robot, reading: &str) -> JointKind {
-    let joint = robot.joints.iter().find(|joint| joint.reading.name == reading);
-    joint.map_or(JointKind::Revolute, |joint| joint.kind)
 }
 
 /// A reading in the unit of its column.

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector3;
 use toml::Spanned;
 
-use super::context::{Context, TABLE_ROUNDING};
+use super::context::{Context, TABLE_ROUNDING, span};
 use super::file::{Convention, File, JointTable, PoseTable, ScrewTable};
 use crate::error::Result;
-use crate::io::mimic::{self, Mimic};
+use crate::io::mimic;
 use crate::lie::{Pose, Screw, Twist};
 use crate::robot::{DhConvention, DhRow, Joint, JointKind, Limits, Reading, Robot, Tolerance};
 
@@ -93,13 +93,9 @@ fn check_joint_names(context: &Context, file: &File) -> Result<()> {
 }
 
 fn from_screws(context: &Context, file: &File, name: &str) -> Result<Robot> {
-    for (key, table) in [("base", &file.base), ("tool", &file.tool)] {
-        if let Some(table) = table {
-            let message =
-                format!("found [{key}] in a model of screws, expected [home] only: it holds the tip's pose");
-            return Err(context.error(table.span(), message));
-        }
-    }
+    context.refuse([("base", span(&file.base)), ("tool", span(&file.tool))], |key| {
+        format!("found [{key}] in a model of screws, expected [home] only: it holds the tip's pose")
+    })?;
     let Some(home) = &file.home else {
         let message =
             "found no [home], expected it: the tip's pose in the base at zero joint values".to_owned();
@@ -116,7 +112,7 @@ fn size_m(context: &Context, file: &File, home: &Pose) -> f64 {
     let metres = |numbers: [f64; 3]| context.length.to_metres(Vector3::from(numbers).norm());
     file.joint
         .iter()
-        .filter(|joint| joint.kind() == JointKind::Revolute)
+        .filter(|joint| joint.kind == JointKind::Revolute)
         .filter_map(|joint| joint.screw.as_ref())
         .map(|screw| metres(screw.get_ref().v))
         .fold(home.translation.norm().max(0.01), f64::max)
@@ -124,22 +120,20 @@ fn size_m(context: &Context, file: &File, home: &Pose) -> f64 {
 
 fn screw_joint(context: &Context, table: &JointTable, size_m: f64) -> Result<Joint> {
     let name = table.name();
-    for (key, value) in [("a", &table.a), ("alpha", &table.alpha), ("d", &table.d), ("theta", &table.theta)] {
-        if let Some(value) = value {
-            let message = format!(
-                "joint `{name}` has the DH parameter `{key}`, expected `screw`, or `point` and `direction`: for a DH table state convention = \"standard_dh\" or \"modified_dh\""
-            );
-            return Err(context.error(value.span(), message));
-        }
-    }
-    if let Some(fixed) = &table.fixed {
-        let message = format!(
-            "joint `{name}` has `fixed`, expected it in a DH table only: a screw says where its axis stands in the base, whatever \
+    let dh = [("a", &table.a), ("alpha", &table.alpha), ("d", &table.d), ("theta", &table.theta)];
+    context.refuse(dh.map(|(key, value)| (key, span(value))), |key| {
+        format!(
+            "joint `{name}` has the DH parameter `{key}`, expected `screw`, or `point` and `direction`: for a DH table state convention = \"standard_dh\" or \"modified_dh\""
+        )
+    })?;
+    context.refuse([("fixed", span(&table.fixed))], |key| {
+        format!(
+            "joint `{name}` has `{key}`, expected it in a DH table only: a screw says where its axis stands in the base, whatever \
              lies between"
-        );
-        return Err(context.error(fixed.span(), message));
-    }
-    let kind = table.kind();
+        )
+    })?;
+    let kind = table.kind;
+    let error = |message: String| Err(context.error(table.name.span(), message));
     match (&table.screw, &table.point, &table.direction) {
         (Some(screw), None, None) => {
             let screw = screw_of_table(context, name, kind, screw, size_m)?;
@@ -148,24 +142,17 @@ fn screw_joint(context: &Context, table: &JointTable, size_m: f64) -> Result<Joi
         (None, point, Some(direction)) if kind == JointKind::Prismatic || point.is_some() => {
             joint_of_line(context, name, kind, point.as_ref(), direction)
         }
-        (Some(_), ..) => Err(context.error(
-            table.name.span(),
-            format!("joint `{name}` has a screw and a point or direction, expected one or the other"),
-        )),
-        _ => Err(context.error(
-            table.name.span(),
-            format!(
-                "joint `{name}` has no axis, expected screw = {{ v = [...], w = [...] }}, or point and direction (a prismatic joint: direction)"
-            ),
+        (Some(_), ..) => {
+            error(format!("joint `{name}` has a screw and a point or direction, expected one or the other"))
+        }
+        _ => error(format!(
+            "joint `{name}` has no axis, expected screw = {{ v = [...], w = [...] }}, or point and direction (a prismatic joint: direction)"
         )),
     }
 }
 
 fn joint_of_screw(name: &str, kind: JointKind, screw: Screw, origin: Option<Vector3<f64>>) -> Joint {
-    let mut joint = match kind {
-        JointKind::Revolute => Joint::revolute(name, screw),
-        JointKind::Prismatic => Joint::prismatic(name, screw),
-    };
+    let mut joint = Joint::with_screw(name, kind, screw);
     joint.frame.translation = origin.unwrap_or(joint.frame.translation);
     joint
 }
@@ -188,10 +175,7 @@ fn joint_of_line(
     let point = point
         .map(|point| context.metres(*point.get_ref(), point.span(), &of).map(Vector3::from))
         .transpose()?;
-    let screw = match kind {
-        JointKind::Revolute => Screw::revolute(&axis, &point.unwrap_or_default()),
-        JointKind::Prismatic => Screw::prismatic(&axis),
-    };
+    let screw = kind.screw(&axis, &point.unwrap_or_default());
     Ok(joint_of_screw(name, kind, screw, point))
 }
 
@@ -238,12 +222,11 @@ fn screw_of_table(
 }
 
 fn from_dh(context: &Context, file: &File, name: &str, convention: DhConvention) -> Result<Robot> {
-    if let Some(home) = &file.home {
-        let message =
-            "found [home] in a DH model, expected [base] and [tool]: the home pose follows from the table"
-                .to_owned();
-        return Err(context.error(home.span(), message));
-    }
+    context.refuse([("home", span(&file.home))], |key| {
+        format!(
+            "found [{key}] in a DH model, expected [base] and [tool]: the home pose follows from the table"
+        )
+    })?;
     let rows = file.joint.iter().map(|joint| dh_row(context, joint)).collect::<Result<Vec<_>>>()?;
     let pose = |table: &Option<Spanned<PoseTable>>, of| match table {
         Some(table) => context.pose(table.get_ref(), of),
@@ -255,18 +238,11 @@ fn from_dh(context: &Context, file: &File, name: &str, convention: DhConvention)
 
 fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
     let of = format!("joint `{}`", table.name());
-    let screw_keys = [
-        ("screw", table.screw.as_ref().map(Spanned::span)),
-        ("point", table.point.as_ref().map(Spanned::span)),
-        ("direction", table.direction.as_ref().map(Spanned::span)),
-    ];
-    for (key, span) in screw_keys {
-        if let Some(span) = span {
-            let message =
-                format!("{of} has `{key}`, expected a, alpha, d and theta: the model is a DH table");
-            return Err(context.error(span, message));
-        }
-    }
+    let screw =
+        [("screw", span(&table.screw)), ("point", span(&table.point)), ("direction", span(&table.direction))];
+    context.refuse(screw, |key| {
+        format!("{of} has `{key}`, expected a, alpha, d and theta: the model is a DH table")
+    })?;
     let length = |value: &Option<Spanned<f64>>| match value {
         Some(value) => context.metres([*value.get_ref()], value.span(), &of).map(|[only]| only),
         None => Ok(0.0),
@@ -277,12 +253,11 @@ fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
     };
     Ok(DhRow {
         name: table.name().to_owned(),
-        kind: table.kind(),
+        kind: table.kind,
         a_m: length(&table.a)?,
         alpha_rad: angle(&table.alpha)?,
         d_m: length(&table.d)?,
         theta_rad: angle(&table.theta)?,
-        limits: None,
         fixed: match &table.fixed {
             Some(fixed) => context.pose(fixed.get_ref(), &format!("`fixed` of {of}"))?,
             None => Pose::identity(),
@@ -293,7 +268,7 @@ fn dh_row(context: &Context, table: &JointTable) -> Result<DhRow> {
 fn limits(context: &Context, table: &JointTable) -> Result<Option<Limits>> {
     let Some(limits) = &table.limits else { return Ok(None) };
     let of = format!("limits of joint `{}`", table.name());
-    let values = limits.get_ref().map(|value| context.joint_value(table.kind(), value));
+    let values = limits.get_ref().map(|value| context.joint_value(table.kind, value));
     let [lower, upper] = context.checked(values, limits.span(), &of)?;
     if lower >= upper {
         let [lower, upper] = limits.get_ref();
@@ -307,32 +282,26 @@ fn limits(context: &Context, table: &JointTable) -> Result<Option<Limits>> {
 /// Reading of a joint, through mimic relations. A leader outside the chain is read beside it, in the follower's unit.
 fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &JointTable) -> Result<Reading> {
     let find = |name: &str| tables.get(name).copied();
-    let mimic_of = |name: &str| -> Result<Option<Mimic>> {
+    let follows = |name: &str| -> Result<Option<Reading>> {
         let Some((follower, mimic)) = find(name).and_then(|joint| Some((joint, joint.mimic.as_ref()?)))
         else {
             return Ok(None);
         };
         let table = mimic.get_ref();
         let of = format!("mimic of joint `{name}`");
-        let leader = find(&table.joint).map_or(follower.kind(), JointTable::kind);
+        let leader = find(&table.joint).map_or(follower.kind, |joint| joint.kind);
         let unit = |kind| context.joint_value(kind, 1.0);
-        let multiplier = if leader == follower.kind() {
+        let multiplier = if leader == follower.kind {
             table.multiplier
         } else {
-            table.multiplier * unit(follower.kind()) / unit(leader)
+            table.multiplier * unit(follower.kind) / unit(leader)
         };
-        let offset = context.joint_value(follower.kind(), table.offset);
+        let offset = context.joint_value(follower.kind, table.offset);
         let [multiplier, offset] = context.checked([multiplier, offset], mimic.span(), &of)?;
         if table.joint.trim().is_empty() {
             return Err(context.error(mimic.span(), format!("{of} names no joint, expected its leader")));
         }
-        Ok(Some(Mimic { leader: table.joint.clone(), multiplier, offset }))
+        Ok(Some(Reading { name: table.joint.clone(), multiplier, offset }))
     };
-    mimic::reading(table.name(), mimic_of)?.ok_or_else(|| {
-        let message = format!(
-            "joint `{}` mimics itself through its leaders, expected a leader that is measured",
-            table.name()
-        );
-        context.error(table.name.span(), message)
-    })
+    mimic::reading(table.name(), follows, |message| context.error(table.name.span(), message))
 }

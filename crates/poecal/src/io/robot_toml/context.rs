@@ -9,7 +9,6 @@ use toml::Spanned;
 use super::file::{AngleUnit, LengthUnit, PoseTable};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::io::source_text::position;
 use crate::lie::{Pose, rotation};
 use crate::robot::{JointKind, check_name};
 
@@ -24,10 +23,26 @@ pub(super) struct Context<'a> {
     pub(super) angle: AngleUnit,
 }
 
+/// Where a value stands, if it is there.
+pub(super) fn span<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
+    value.as_ref().map(Spanned::span)
+}
+
 impl Context<'_> {
     pub(super) fn error(&self, span: Range<usize>, message: String) -> Error {
-        let (line, column) = position(self.text, span.start);
-        Error::new(ErrorKind::Model, message).at(self.path, line, column)
+        Error::new(ErrorKind::Model, message).at_offset(self.path, self.text, span.start)
+    }
+
+    /// Refuses the first of the keys that is there.
+    pub(super) fn refuse<const N: usize>(
+        &self,
+        keys: [(&str, Option<Range<usize>>); N],
+        message: impl Fn(&str) -> String,
+    ) -> Result<()> {
+        match keys.into_iter().find_map(|(key, span)| Some((key, span?))) {
+            Some((key, span)) => Err(self.error(span, message(key))),
+            None => Ok(()),
+        }
     }
 
     /// The numbers, if all are finite and of plausible size.
@@ -93,11 +108,7 @@ impl Context<'_> {
 
     pub(super) fn pose(&self, table: &PoseTable, of: &str) -> Result<Pose> {
         let position = self.metres(*table.position.get_ref(), table.position.span(), of)?;
-        let given = [
-            table.quaternion_xyzw.as_ref().map(Spanned::span),
-            table.rpy.as_ref().map(Spanned::span),
-            table.rotation.as_ref().map(Spanned::span),
-        ];
+        let given = [span(&table.quaternion_xyzw), span(&table.rpy), span(&table.rotation)];
         if let Some(second) = given.into_iter().flatten().nth(1) {
             let message = format!(
                 "{of} has more than one orientation, expected one of quaternion_xyzw, rpy and rotation"

@@ -25,42 +25,38 @@ pub(super) struct File {
 }
 
 #[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(super) enum LengthUnit {
-    #[serde(rename = "m")]
-    Metre,
-    #[serde(rename = "cm")]
-    Centimetre,
-    #[serde(rename = "mm")]
-    Millimetre,
-    #[serde(rename = "um")]
-    Micrometre,
+    M,
+    Cm,
+    Mm,
+    Um,
 }
 
 impl LengthUnit {
     /// Divided, not multiplied: 834 mm are exactly the number 0.834.
     pub(super) fn to_metres(self, length: f64) -> f64 {
         match self {
-            LengthUnit::Metre => length,
-            LengthUnit::Centimetre => length / 1e2,
-            LengthUnit::Millimetre => length / 1e3,
-            LengthUnit::Micrometre => length / 1e6,
+            LengthUnit::M => length,
+            LengthUnit::Cm => length / 1e2,
+            LengthUnit::Mm => length / 1e3,
+            LengthUnit::Um => length / 1e6,
         }
     }
 }
 
 #[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(super) enum AngleUnit {
-    #[serde(rename = "rad")]
-    Radian,
-    #[serde(rename = "deg")]
-    Degree,
+    Rad,
+    Deg,
 }
 
 impl AngleUnit {
     pub(super) fn to_radians(self, angle: f64) -> f64 {
         match self {
-            AngleUnit::Radian => angle,
-            AngleUnit::Degree => angle.to_radians(),
+            AngleUnit::Rad => angle,
+            AngleUnit::Deg => angle.to_radians(),
         }
     }
 }
@@ -74,20 +70,12 @@ pub(super) enum Convention {
     ModifiedDh,
 }
 
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum JointWord {
-    #[default]
-    Revolute,
-    Prismatic,
-}
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct JointTable {
     pub(super) name: Spanned<String>,
-    #[serde(default, rename = "type")]
-    pub(super) kind: JointWord,
+    #[serde(default = "revolute", rename = "type")]
+    pub(super) kind: JointKind,
     pub(super) screw: Option<Spanned<ScrewTable>>,
     pub(super) point: Option<Spanned<[f64; 3]>>,
     pub(super) direction: Option<Spanned<[f64; 3]>>,
@@ -104,13 +92,6 @@ pub(super) struct JointTable {
 impl JointTable {
     pub(super) fn name(&self) -> &str {
         self.name.get_ref()
-    }
-
-    pub(super) fn kind(&self) -> JointKind {
-        match self.kind {
-            JointWord::Revolute => JointKind::Revolute,
-            JointWord::Prismatic => JointKind::Prismatic,
-        }
     }
 }
 
@@ -137,6 +118,10 @@ pub(super) struct MimicTable {
 pub(super) struct ToleranceTable {
     pub(super) angle: f64,
     pub(super) length: f64,
+}
+
+fn revolute() -> JointKind {
+    JointKind::Revolute
 }
 
 fn one() -> f64 {

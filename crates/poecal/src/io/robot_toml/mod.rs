@@ -88,6 +88,6 @@ fn syntax_error(error: &toml::de::Error, text: &str, path: &Path) -> Error {
             None => complaint,
         },
     };
-    let (line, column) = source_text::position(text, error.span().map_or(0, |span| span.start));
-    Error::new(ErrorKind::Syntax, message).at(path, line, column)
+    let offset = error.span().map_or(0, |span| span.start);
+    Error::new(ErrorKind::Syntax, message).at_offset(path, text, offset)
 }

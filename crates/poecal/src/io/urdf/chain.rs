@@ -38,38 +38,23 @@ fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {
 
 /// The only end link below a moving joint (below `base`, if given).
 fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
+    let error = |message: String| Err(error(&tree.source, message));
     let mut tips = ends::ends(tree, base);
     if tips.len() > 1 {
         tips.retain(|end| !end.only_leads);
     }
     match tips.as_slice() {
         [end] => Ok(end.link),
-        [] => Err(error(
-            &tree.source,
-            format!(
-                "found no end link with a moving joint above it{}, expected a serial chain: choose one with --base-link and --tip-link",
-                base.map_or(String::new(), |base| format!(" below base link `{}`", tree.link_name(base)))
-            ),
+        [] => error(format!(
+            "found no end link with a moving joint above it{}, expected a serial chain: choose one with --base-link and --tip-link",
+            base.map_or(String::new(), |base| format!(" below base link `{}`", tree.link_name(base)))
         )),
-        several => Err(error(
-            &tree.source,
-            format!(
-                "found {} end links with a moving joint above them ({}), expected one: choose it with --tip-link, and the base, if it is not the root, with --base-link",
-                several.len(),
-                list(several.iter().map(|end| tree.link_name(end.link)))
-            ),
+        several => error(format!(
+            "found {} end links with a moving joint above them ({}), expected one: choose it with --tip-link, and the base, if it is not the root, with --base-link",
+            several.len(),
+            list(several.iter().map(|end| tree.link_name(end.link)))
         )),
     }
-}
-
-/// Names of the moving joints of a chain.
-fn moving<'a>(tree: &'a Tree, chain: &'a UrdfChain) -> impl Iterator<Item = &'a str> {
-    chain
-        .joints
-        .iter()
-        .filter_map(|&joint| tree.joints.get(joint))
-        .filter(|joint| joint.kind.moves())
-        .map(|joint| joint.name)
 }
 
 /// Path from `tip` up to `base`, or to the root.
@@ -87,15 +72,13 @@ fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<UrdfChain> {
     match base {
         Some(base) if base != at => {
             let above: Vec<_> = tree.ancestors(tip).map(|(_, joint)| tree.link_name(joint.parent)).collect();
-            Err(error(
-                &tree.source,
-                format!(
-                    "tip link `{}` is not below base link `{}`, expected a base link above the tip ({})",
-                    tree.link_name(tip),
-                    tree.link_name(base),
-                    if above.is_empty() { "there is none".to_owned() } else { list(above) }
-                ),
-            ))
+            let message = format!(
+                "tip link `{}` is not below base link `{}`, expected a base link above the tip ({})",
+                tree.link_name(tip),
+                tree.link_name(base),
+                if above.is_empty() { "there is none".to_owned() } else { list(above) }
+            );
+            Err(error(&tree.source, message))
         }
         _ => Ok(UrdfChain { base: at, tip, joints }),
     }
@@ -103,7 +86,8 @@ fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<UrdfChain> {
 
 fn check_joints(tree: &Tree, chain: &UrdfChain) -> Result<()> {
     let (base, tip) = (tree.link_name(chain.base), tree.link_name(chain.tip));
-    for joint in chain.joints.iter().filter_map(|&joint| tree.joints.get(joint)) {
+    let joints = || chain.joints.iter().filter_map(|&joint| tree.joints.get(joint));
+    for joint in joints() {
         if !joint.kind.moves() && joint.kind != super::tree::JointType::Fixed {
             let message = format!(
                 "joint `{}` between `{base}` and `{tip}` is {}, expected revolute, continuous, prismatic or fixed: choose a chain without it with --base-link and --tip-link",
@@ -113,7 +97,7 @@ fn check_joints(tree: &Tree, chain: &UrdfChain) -> Result<()> {
             return Err(tree.source.error(joint.node, message));
         }
     }
-    if moving(tree, chain).next().is_none() {
+    if !joints().any(|joint| joint.kind.moves()) {
         let message = format!(
             "found no moving joint between base link `{base}` and tip link `{tip}`, expected at least one: choose others with --base-link and --tip-link"
         );

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use roxmltree::Document;
 
 pub use patch::PatchedUrdf;
-pub use write::{NewUrdf, write_new};
+pub use write::write_new;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::source_text;
@@ -86,10 +86,9 @@ impl UrdfDocument {
     pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
         if let Some(offset) = crowded_element(text) {
-            let (line, column) = source_text::position(text, offset);
             let message =
                 "found an element with more than 1000 attributes, expected a URDF robot description";
-            return Err(Error::new(ErrorKind::Syntax, message).at(path, line, column));
+            return Err(Error::new(ErrorKind::Syntax, message).at_offset(path, text, offset));
         }
         let document = Document::parse(text).map_err(|error| xml_error(&error, path))?;
         let source = XmlSource { document: &document, path };

@@ -9,8 +9,8 @@ use super::chain::UrdfChain;
 use super::tree::{JointType, Tree, TreeJoint};
 use super::xml::{XmlSource, value_range};
 use crate::error::{Result, nearest_or_all};
-use crate::io::mimic::{self, Mimic};
-use crate::lie::{Pose, Screw};
+use crate::io::mimic;
+use crate::lie::Pose;
 use crate::robot::{Joint, JointKind, Limits, Reading};
 
 /// A fixed or moving joint of the chain, with the places for writing it back.
@@ -56,16 +56,15 @@ pub(super) fn read(tree: &Tree, chain: &UrdfChain) -> Result<(Vec<Part>, Vec<Joi
 
 fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {
     let direction = base_from_joint.rotation * axis;
-    let (kind, screw) = match joint.kind {
-        JointType::Prismatic => (JointKind::Prismatic, Screw::prismatic(&direction)),
+    let kind = match joint.kind {
+        JointType::Prismatic => JointKind::Prismatic,
         JointType::Revolute
         | JointType::Continuous
         | JointType::Fixed
         | JointType::Floating
-        | JointType::Planar => {
-            (JointKind::Revolute, Screw::revolute(&direction, &base_from_joint.translation))
-        }
+        | JointType::Planar => JointKind::Revolute,
     };
+    let screw = kind.screw(&direction, &base_from_joint.translation);
     Ok(Joint {
         name: joint.name.to_owned(),
         kind,
@@ -146,20 +145,11 @@ fn read_limits<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Opti
 
 /// The reading that gives a joint its value, through all mimic relations.
 fn read_reading(tree: &Tree, joint: &TreeJoint) -> Result<Reading> {
-    let reading = mimic::reading(joint.name, |name| match tree.joint(name) {
-        Some(follower) => read_mimic(tree, follower),
-        None => Ok(None),
-    })?;
-    reading.ok_or_else(|| {
-        let message = format!(
-            "joint `{}` mimics itself through its leaders, expected a leader that is measured",
-            joint.name
-        );
-        tree.source.error(joint.node, message)
-    })
+    let follows = |name: &str| tree.joint(name).map_or(Ok(None), |follower| read_mimic(tree, follower));
+    mimic::reading(joint.name, follows, |message| tree.source.error(joint.node, message))
 }
 
-fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Mimic>> {
+fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Reading>> {
     let source = &tree.source;
     let of = format!("joint `{}`", follower.name);
     let Some(node) = source.only_child(follower.node, "mimic", &of, false)? else { return Ok(None) };
@@ -180,8 +170,8 @@ fn read_mimic<'a>(tree: &Tree<'a>, follower: &TreeJoint<'a>) -> Result<Option<Mi
     let number = |name, default| {
         source.numbers::<1>(node, name, &of).map(|number| number.map_or(default, |[only]| only))
     };
-    Ok(Some(Mimic {
-        leader: name.to_owned(),
+    Ok(Some(Reading {
+        name: name.to_owned(),
         multiplier: number("multiplier", 1.0)?,
         offset: number("offset", 0.0)?,
     }))

@@ -81,10 +81,8 @@ impl UrdfDocument {
 
     fn check_same_joints(&self, calibrated: &Robot) -> Result<()> {
         let error = |found: String| {
-            Err(Error::new(
-                ErrorKind::Export,
-                format!("{found}, expected the robot that was read from {}", self.path.display()),
-            ))
+            let message = format!("{found}, expected the robot that was read from {}", self.path.display());
+            Err(Error::new(ErrorKind::Export, message))
         };
         let names = |robot: &Robot| robot.joints.iter().map(|j| (j.name.clone(), j.kind)).collect::<Vec<_>>();
         if names(calibrated) != names(&self.robot) {

@@ -65,13 +65,21 @@ pub(super) struct Tree<'a> {
 impl<'a> Tree<'a> {
     pub(super) fn read(source: XmlSource<'a>) -> Result<Self> {
         let robot = source.document.root_element();
-        let (links, index) = read_links(source, robot)?;
+        let (mut links, mut link_indices) = (Vec::new(), BTreeMap::new());
+        for node in source.children(robot, "link") {
+            let (name, _) = source.required(node, "name", "the link")?;
+            if link_indices.insert(name, links.len()).is_some() {
+                let message = format!("found a second link named `{name}`, expected unique link names");
+                return Err(source.error(node, message));
+            }
+            links.push(name);
+        }
         let mut tree = Tree {
             source,
             joint_above: vec![None; links.len()],
             links,
             joints: Vec::new(),
-            link_indices: index,
+            link_indices,
             joint_indices: BTreeMap::new(),
         };
         for node in source.children(robot, "joint") {
@@ -136,46 +144,21 @@ impl<'a> Tree<'a> {
     fn check_no_loop(&self) -> Result<()> {
         let mut rooted = vec![false; self.links.len()];
         for link in 0..self.links.len() {
-            let mut way = vec![link];
-            while let Some(&at) = way.last() {
-                if rooted.get(at).copied().unwrap_or(true) {
-                    break;
-                }
-                let Some((_, joint)) = self.above(at) else { break };
-                // A path longer than the number of links visits one of them twice.
-                if way.len() > self.links.len() {
-                    let message = format!(
-                        "joint `{}` closes a loop of links, expected a tree with one root link",
-                        joint.name
-                    );
-                    return Err(self.source.error(joint.node, message));
-                }
-                way.push(joint.parent);
+            let above = self.ancestors(link).map(|(_, joint)| joint.parent);
+            let way = std::iter::once(link).chain(above).take_while(|&at| !rooted[at]);
+            // A path longer than the number of links visits one of them twice.
+            let way: Vec<usize> = way.take(self.links.len() + 1).collect();
+            if let Some((_, joint)) = way.get(self.links.len()).and_then(|&at| self.above(at)) {
+                let message = format!(
+                    "joint `{}` closes a loop of links, expected a tree with one root link",
+                    joint.name
+                );
+                return Err(self.source.error(joint.node, message));
             }
-            for at in way {
-                if let Some(flag) = rooted.get_mut(at) {
-                    *flag = true;
-                }
-            }
+            way.into_iter().for_each(|at| rooted[at] = true);
         }
         Ok(())
     }
-}
-
-/// The links' names in the order of the file, and their indices by name.
-type Links<'a> = (Vec<&'a str>, BTreeMap<&'a str, usize>);
-
-fn read_links<'a>(source: XmlSource<'a>, robot: Node<'a, 'a>) -> Result<Links<'a>> {
-    let (mut links, mut index) = (Vec::new(), BTreeMap::new());
-    for node in source.children(robot, "link") {
-        let (name, _) = source.required(node, "name", "the link")?;
-        if index.insert(name, links.len()).is_some() {
-            let message = format!("found a second link named `{name}`, expected unique link names");
-            return Err(source.error(node, message));
-        }
-        links.push(name);
-    }
-    Ok((links, index))
 }
 
 fn read_joint<'a>(
@@ -187,12 +170,10 @@ fn read_joint<'a>(
     let of = format!("joint `{name}`");
     let (word, attribute) = source.required(node, "type", &of)?;
     let kind = JointType::of_word(word).ok_or_else(|| {
-        source.error_at(
-            attribute.range_value().start,
-            format!(
-                "{of} has type `{word}`, expected revolute, continuous, prismatic, fixed, floating or planar"
-            ),
-        )
+        let message = format!(
+            "{of} has type `{word}`, expected revolute, continuous, prismatic, fixed, floating or planar"
+        );
+        source.error_at(attribute.range_value().start, message)
     })?;
     let link = |role: &'static str| -> Result<usize> {
         let Some(element) = source.only_child(node, role, &of, false)? else {
@@ -202,10 +183,8 @@ fn read_joint<'a>(
         links.get(link).copied().ok_or_else(|| {
             let names: Vec<&str> = links.keys().copied().collect();
             let known = nearest_or_all(link, &names);
-            source.error_at(
-                attribute.range_value().start,
-                format!("{of} names link `{link}`, expected a link of this file, {known}"),
-            )
+            let message = format!("{of} names link `{link}`, expected a link of this file, {known}");
+            source.error_at(attribute.range_value().start, message)
         })
     };
     Ok(TreeJoint { name, kind, parent: link("parent")?, child: link("child")?, node })

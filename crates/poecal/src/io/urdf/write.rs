@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::patch::{frame_on_axis, origin_values};
 use super::splice::{escaped, triple};
 use crate::error::{Error, ErrorKind, Result};
+use crate::io::model::Converted;
 use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
 use crate::robot::{Joint, JointKind, Robot};
@@ -12,7 +13,7 @@ use crate::robot::{Joint, JointKind, Robot};
 /// Limit for a prismatic joint without limits, metres: URDF requires one.
 const WIDE_LIMIT_M: f64 = 1000.0;
 
-/// A new URDF text.
+/// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -27,19 +28,10 @@ const WIDE_LIMIT_M: f64 = 1000.0;
 /// assert!((a.translation - b.translation).norm() < 1e-15);
 /// # Ok::<(), poecal::Error>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NewUrdf {
-    /// The whole text.
-    pub text: String,
-    /// Losses and additions, a sentence each.
-    pub notes: Vec<String>,
-}
-
-/// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint.
 ///
 /// # Errors
 /// [`ErrorKind::Export`] if URDF cannot express a joint's reading (a factor or offset on its own reading).
-pub fn write_new(robot: &Robot) -> Result<NewUrdf> {
+pub fn write_new(robot: &Robot) -> Result<Converted> {
     let mut writer = Writer { text: String::new(), notes: Vec::new(), links: Vec::new() };
     writer.line(0, "<?xml version=\"1.0\"?>");
     writer.line(0, &format!("<robot name=\"{}\">", escaped(&robot.name)));
@@ -66,11 +58,7 @@ pub fn write_new(robot: &Robot) -> Result<NewUrdf> {
     if !robot.targets.is_empty() {
         writer.notes.push("targets are not part of a URDF and were left out".to_owned());
     }
-    Ok(NewUrdf { text: writer.text, notes: writer.notes })
-}
-
-fn export(message: String) -> Error {
-    Error::new(ErrorKind::Export, message)
+    Ok(Converted { text: writer.text, notes: writer.notes })
 }
 
 struct Writer {
@@ -177,10 +165,11 @@ impl Writer {
             );
             self.line(2, &format!("<mimic joint=\"{}\" {relation}/>", escaped(&reading.name)));
         } else if reading.multiplier != 1.0 || reading.offset != 0.0 {
-            return Err(export(format!(
+            let message = format!(
                 "joint `{}` has a factor or an offset on its own reading, expected factor 1 and offset 0: URDF has them for mimic joints only",
                 joint.name
-            )));
+            );
+            return Err(Error::new(ErrorKind::Export, message));
         }
         self.line(1, "</joint>");
         Ok(origin)

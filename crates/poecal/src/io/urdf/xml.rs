@@ -46,8 +46,7 @@ pub(super) struct XmlSource<'a> {
 impl<'a> XmlSource<'a> {
     /// An error at a byte offset of the text.
     pub(super) fn error_at(&self, offset: usize, message: String) -> Error {
-        let (line, column) = position(self.document.input_text(), offset);
-        Error::new(ErrorKind::Model, message).at(self.path, line, column)
+        Error::new(ErrorKind::Model, message).at_offset(self.path, self.document.input_text(), offset)
     }
 
     /// An error at the start of an element.
@@ -57,8 +56,8 @@ impl<'a> XmlSource<'a> {
 
     /// The same for a text that is no URDF at all.
     pub(super) fn syntax_error(&self, node: Node<'a, 'a>, message: String) -> Error {
-        let (line, column) = position(self.document.input_text(), node.range().start);
-        Error::new(ErrorKind::Syntax, message).at(self.path, line, column)
+        let text = self.document.input_text();
+        Error::new(ErrorKind::Syntax, message).at_offset(self.path, text, node.range().start)
     }
 
     /// Child elements of this name.

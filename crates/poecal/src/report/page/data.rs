@@ -8,8 +8,9 @@ use serde::Serialize;
 
 use super::{reading_index, readings_of};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::calibration_file::{CalibrationFile, KindWord, PoseEntry, ScrewEntry};
+use crate::io::calibration_file::{CalibrationFile, PoseEntry, ScrewEntry};
 use crate::io::residuals::{ModelErrors, ResidualRow, Residuals};
+use crate::robot::JointKind;
 use crate::text::visible;
 
 /// Rows that charts draw at most; how many of them are chosen for being suspected, and for being far off.
@@ -39,7 +40,7 @@ struct Data<'a> {
 #[derive(Serialize)]
 struct JointData<'a> {
     name: Cow<'a, str>,
-    kind: KindWord,
+    kind: JointKind,
     screw: &'a ScrewEntry,
     nominal_screw: &'a ScrewEntry,
     origin_m: [f64; 3],

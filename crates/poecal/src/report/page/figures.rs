@@ -2,9 +2,10 @@
 
 use maud::{Markup, PreEscaped};
 
-use crate::io::calibration_file::{CalibrationFile, KindWord};
+use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::{ResidualRow, Residuals};
 use crate::report::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
+use crate::robot::JointKind;
 use crate::threads;
 
 /// Points of a distribution.
@@ -85,7 +86,7 @@ pub(super) fn corrections(file: &CalibrationFile) -> Vec<Markup> {
     };
     let tilts = file.corrections.iter().map(|it| row(&it.joint, it.tilt_deg, it.sigma_tilt_deg));
     let shifts =
-        file.corrections.iter().zip(&file.joints).filter(|(_, joint)| joint.kind == KindWord::Revolute);
+        file.corrections.iter().zip(&file.joints).filter(|(_, joint)| joint.kind == JointKind::Revolute);
     let shifts: Vec<RangeRow> =
         shifts.map(|(it, _)| row(&it.joint, it.shift_mm, it.sigma_shift_mm)).collect();
     let mut plots = vec![plot("Tilt of each axis", "degrees from nominal", tilts.collect())];
@@ -98,8 +99,8 @@ pub(super) fn corrections(file: &CalibrationFile) -> Vec<Markup> {
 /// What was sampled of each joint's range: those that turn, and those that slide.
 pub(super) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
     let kinds = [
-        (KindWord::Revolute, "Joints that turn", "degrees", 1f64.to_degrees()),
-        (KindWord::Prismatic, "Joints that slide", "mm", 1e3),
+        (JointKind::Revolute, "Joints that turn", "degrees", 1f64.to_degrees()),
+        (JointKind::Prismatic, "Joints that slide", "mm", 1e3),
     ];
     let plots = kinds.into_iter().filter_map(|(kind, title, unit, factor)| {
         let joints = file.coverage.iter().filter(|found| {

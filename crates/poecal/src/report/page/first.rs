@@ -6,11 +6,12 @@ use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
 use super::trust::direction_words;
 use crate::analysis::Direction;
-use crate::calibration::{Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
-use crate::io::calibration_file::{CalibrationFile, FrameWord, KindWord};
+use crate::calibration::{DeviceFrameKnowledge, Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
+use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::report::summary::{Place, Point, expected, look_at};
 use crate::report::table::STATISTICS;
+use crate::robot::JointKind;
 
 /// A model: its word, and how to take it from a set.
 type Model = (&'static str, fn(&SetAccuracy) -> &ModelAccuracy);
@@ -95,8 +96,8 @@ fn lead_table(
         ),
     };
     let nominal = match file.measurement_frame.known {
-        FrameWord::Unknown => "nominal, tool and device fitted",
-        FrameWord::Base => "nominal, tool fitted",
+        DeviceFrameKnowledge::Unknown => "nominal, tool and device fitted",
+        DeviceFrameKnowledge::Base => "nominal, tool fitted",
     };
     let mut rows = vec![
         (nominal.to_owned(), &set.registered, format!("{key}.registered")),
@@ -119,7 +120,7 @@ fn lead_table(
 
 /// How many joints of which kind, and from where to where.
 fn kinds(file: &CalibrationFile) -> Markup {
-    let sliding = file.joints.iter().filter(|joint| joint.kind == KindWord::Prismatic).count();
+    let sliding = file.joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
     let words = [(file.joints.len() - sliding, "revolute"), (sliding, "prismatic")];
     let words: Vec<String> =
         words.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();

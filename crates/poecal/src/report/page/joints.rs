@@ -4,7 +4,8 @@ use maud::{Markup, html};
 
 use super::figures;
 use super::html::{HtmlTable, decimal, figure, figure_or, folded, plots, quoted, section};
-use crate::io::calibration_file::{CalibrationFile, JointEntry, KindWord, ScrewEntry};
+use crate::io::calibration_file::{CalibrationFile, JointEntry, ScrewEntry};
+use crate::robot::JointKind;
 
 pub(super) fn sections(file: &CalibrationFile) -> Markup {
     html! { (view(file)) (corrections(file)) }
@@ -39,19 +40,12 @@ fn axis(
     (k, joint): (usize, &JointEntry),
     (model, screw, key): (&str, &ScrewEntry, &str),
 ) {
-    let turns = joint.kind == KindWord::Revolute;
+    let turns = joint.kind == JointKind::Revolute;
     let (direction, part) = if turns { (screw.w, "w") } else { (screw.v_m, "v_m") };
     let [x, y, z] = [0, 1, 2].map(|i| figure(direction[i], format_args!("joints.{k}.{key}.{part}.{i}")));
     let point = cross(screw.w, screw.v_m).map(|it| if turns { decimal(1e3 * it, 3) } else { "–".to_owned() });
     let name = quoted(&joint.name, format_args!("joints.{k}.name"));
-    table.row(&[&name, &kind_words(joint.kind), &model, &x, &y, &z, &point[0], &point[1], &point[2]]);
-}
-
-fn kind_words(kind: KindWord) -> &'static str {
-    match kind {
-        KindWord::Revolute => "revolute",
-        KindWord::Prismatic => "prismatic",
-    }
+    table.row(&[&name, &joint.kind.word(), &model, &x, &y, &z, &point[0], &point[1], &point[2]]);
 }
 
 /// The point of an axis nearest to the origin, from its direction and its linear part.
@@ -64,7 +58,7 @@ fn corrections(file: &CalibrationFile) -> Markup {
     let mut table = HtmlTable::new("Corrections of the joints", 1, &head);
     for (k, found) in file.corrections.iter().enumerate() {
         let slides =
-            file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == KindWord::Prismatic);
+            file.joints.iter().any(|joint| joint.name == found.joint && joint.kind == JointKind::Prismatic);
         let figure = |value, name| figure_or(value, format_args!("corrections.{k}.{name}"), "not determined");
         let shift = |value, name| {
             if slides {

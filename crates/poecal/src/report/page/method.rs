@@ -4,7 +4,8 @@ use maud::{Markup, html};
 
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, folded, path, plots, quoted, section};
-use crate::io::calibration_file::{CalibrationFile, FrameWord};
+use crate::calibration::DeviceFrameKnowledge;
+use crate::io::calibration_file::CalibrationFile;
 use crate::solve::Termination;
 
 /// A number of the trace beyond which its table would only be long.
@@ -34,7 +35,7 @@ fn solver(file: &CalibrationFile) -> Markup {
     };
     let names = file.stations.iter().enumerate().filter_map(|(k, it)| Some((k, it.instrument.as_deref()?)));
     let device = match file.measurement_frame.known {
-        FrameWord::Unknown => html! {
+        DeviceFrameKnowledge::Unknown => html! {
             "fitted with the robot"
             @if file.stations.len() > 1 {
                 ", one for each of the instruments "
@@ -43,7 +44,7 @@ fn solver(file: &CalibrationFile) -> Markup {
                 }
             }
         },
-        FrameWord::Base => html! { "measured in the robot's base frame" },
+        DeviceFrameKnowledge::Base => html! { "measured in the robot's base frame" },
     };
     let unknowns = html! {
         (quoted(&solver.formulation, "solver.formulation")) " formulation, "

@@ -6,8 +6,9 @@ use super::figures;
 use super::html::{HtmlTable, count, decimal, figure, figure_or, list, plots, quoted, scaled, section};
 use crate::analysis::Direction;
 use crate::io::calibration_file::{
-    CalibrationFile, CrossValidationEntry, KindWord, LeftOutEntry, RangeEntry, UncertaintyEntry,
+    CalibrationFile, CrossValidationEntry, LeftOutEntry, RangeEntry, UncertaintyEntry,
 };
+use crate::robot::JointKind;
 use crate::uncertainty::Attribution;
 
 pub(super) fn sections(file: &CalibrationFile) -> Markup {
@@ -22,7 +23,7 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
 
 /// The factor and unit by which a joint's values are shown.
 fn unit_of(file: &CalibrationFile, joint: &str) -> (f64, &'static str) {
-    let slides = file.joints.iter().any(|it| it.name == joint && it.kind == KindWord::Prismatic);
+    let slides = file.joints.iter().any(|it| it.name == joint && it.kind == JointKind::Prismatic);
     if slides { (1e3, " mm") } else { (1f64.to_degrees(), "°") }
 }
 

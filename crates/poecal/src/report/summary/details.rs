@@ -7,7 +7,8 @@ use super::super::outliers;
 use super::super::table::{accuracy_table, line, number};
 use crate::calibration::{FormulationWords, NoiseSource};
 use crate::error::shown;
-use crate::io::calibration_file::{CalibrationFile, KindWord};
+use crate::io::calibration_file::CalibrationFile;
+use crate::robot::JointKind;
 use crate::solve::Termination;
 use crate::text::visible;
 
@@ -36,7 +37,7 @@ pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
 }
 
 fn robot_words(file: &CalibrationFile) -> String {
-    let sliding = file.joints.iter().filter(|joint| joint.kind == KindWord::Prismatic).count();
+    let sliding = file.joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
     let kinds = [(file.joints.len() - sliding, "revolute"), (sliding, "prismatic")];
     let kinds: Vec<String> =
         kinds.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use super::super::table::{line, number};
-use crate::calibration::{ModelAccuracy, SetAccuracy, Statistic};
-use crate::io::calibration_file::{CalibrationFile, FrameWord};
+use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy, Statistic};
+use crate::io::calibration_file::CalibrationFile;
 
 /// Width of the labels.
 const LABEL: usize = 36;
@@ -22,8 +22,8 @@ pub(super) fn table(out: &mut String, file: &CalibrationFile) {
     };
     let name = if held_out.is_some() { "held out" } else { "fitted" };
     let nominal = match file.measurement_frame.known {
-        FrameWord::Unknown => "nominal, tool and device fitted",
-        FrameWord::Base => "nominal, tool fitted",
+        DeviceFrameKnowledge::Unknown => "nominal, tool and device fitted",
+        DeviceFrameKnowledge::Base => "nominal, tool fitted",
     };
     let without = format!("calibrated, without {suspected} suspected");
     let mut rows: Vec<(&str, &ModelAccuracy)> =
