@@ -21,7 +21,7 @@ const LIMIT: usize = 60;
 /// What is compared: formulation, residual of poses, method.
 type Way = (Formulation, Residual, Method);
 
-const POSE_WAYS: [Way; 9] = [
+const WAYS: [Way; 9] = [
     (Formulation::Adjoint, Residual::Tool, Method::GaussNewton),
     (Formulation::Screw, Residual::Tool, Method::GaussNewton),
     (Formulation::ScrewOffsets, Residual::Tool, Method::GaussNewton),
@@ -33,26 +33,20 @@ const POSE_WAYS: [Way; 9] = [
     (Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt),
 ];
 
-/// Points have one residual only.
-const POINT_WAYS: [Way; 5] = [
-    (Formulation::Adjoint, Residual::Tool, Method::GaussNewton),
-    (Formulation::Screw, Residual::Tool, Method::GaussNewton),
-    (Formulation::ScrewOffsets, Residual::Tool, Method::GaussNewton),
-    (Formulation::AdjointOffsets, Residual::Tool, Method::GaussNewton),
-    (Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt),
-];
-
 /// All comparisons: one session of configurations for each kind of measurement, its noise drawn anew in every trial, the same for
 /// every way.
 pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
     let mut found = Vec::new();
-    for (seen, ways) in [(Seen::Poses, &POSE_WAYS[..]), (Seen::Points, &POINT_WAYS[..])] {
+    for seen in [Seen::Poses, Seen::Points] {
+        // Points have one residual only.
+        let is_own = |way: &Way| seen == Seen::Poses || way.1 == Residual::Tool;
+        let ways: Vec<Way> = WAYS.into_iter().filter(is_own).collect();
         let rows_seed = derived(seed, Purpose::Fits, 0);
         let session = Session::new(&tables::nominal(), runs::truth(false), seen, ROWS, rows_seed);
         let (bound_rms_m, unknowns) = bound(&session)?;
         let trials: Vec<Vec<Option<f64>>> = (0..trials as u64)
             .into_par_iter()
-            .map(|trial| fits(&session, ways, derived(seed, Purpose::FitNoise, trial)))
+            .map(|trial| fits(&session, &ways, derived(seed, Purpose::FitNoise, trial)))
             .collect::<Result<_>>()?;
         for (k, &way) in ways.iter().enumerate() {
             let ends: Vec<Option<f64>> = trials.iter().map(|ends| ends[k]).collect();
@@ -145,9 +139,9 @@ mod tests {
 
     #[test]
     fn without_any_fit_there_is_no_ratio() {
-        let none = summary(Seen::Poses, POSE_WAYS[0], &[None, None], 1e-5, 30);
+        let none = summary(Seen::Poses, WAYS[0], &[None, None], 1e-5, 30);
         assert!(none.converged == 0 && none.ratio.is_nan() && none.held_out_rms_m.is_nan());
-        let some = summary(Seen::Poses, POSE_WAYS[0], &[Some(4e-10), None], 1e-5, 30);
+        let some = summary(Seen::Poses, WAYS[0], &[Some(4e-10), None], 1e-5, 30);
         assert!((some.ratio - 2.0).abs() < 1e-12 && (some.ratio_sigma - 2.0 / 60_f64.sqrt()).abs() < 1e-12);
         assert!(!some.exceeds(&none) && !none.exceeds(&some));
     }

@@ -1,6 +1,5 @@
 //! Sections III.B and V: the adjoint error, and the two simulations.
 
-use super::super::runs::Ended;
 use super::super::{Claim, Run, Seen, tables};
 use super::{Evidence, RECOVERED, ROUNDING, said};
 use crate::Formulation;
@@ -14,8 +13,8 @@ const NEARLY_TWICE: f64 = 1.5;
 
 pub(super) fn constraints(evidence: &Evidence<'_>) -> Result<Claim> {
     let largest = |free: bool, of: fn(&Run) -> f64| {
-        let runs = evidence.runs.iter().filter(|ended| ended.plan.formulation.has_free_screws() == free);
-        runs.map(|ended: &Ended| of(&ended.run)).fold(0.0, f64::max)
+        let runs = evidence.found.runs.iter().filter(|run| run.formulation.has_free_screws() == free);
+        runs.map(of).fold(0.0, f64::max)
     };
     let pitch = |free| largest(free, |run| run.constraint_miss_pitch_m);
     let length = |free| largest(free, |run| run.constraint_miss_length);
@@ -42,7 +41,7 @@ pub(super) fn constraints(evidence: &Evidence<'_>) -> Result<Claim> {
 
 /// The noise-free run of the adjoint form without offsets in the truth.
 fn adjoint<'a>(evidence: &'a Evidence<'_>, seen: Seen) -> Result<&'a Run> {
-    evidence.run(Formulation::Adjoint, seen, false).map(|ended| &ended.run)
+    evidence.run(Formulation::Adjoint, seen, false)
 }
 
 fn iterations(run: &Run) -> String {
@@ -91,11 +90,10 @@ pub(super) fn twice_as_many(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn table(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = &evidence.run(Formulation::Adjoint, Seen::Poses, false)?.run;
-    let points = evidence.run(Formulation::Adjoint, Seen::Points, false)?;
+    let (poses, points) = (adjoint(evidence, Seen::Poses)?, adjoint(evidence, Seen::Points)?);
     let prescribed = tables::prescribed().home.translation;
-    let point = (points.estimate.base_from_target[0].translation - prescribed).amax();
-    let largest = poses.screw_error_max.max(points.run.screw_error_max).max(point);
+    let point = (evidence.end_of_points()?.base_from_target[0].translation - prescribed).amax();
+    let largest = poses.screw_error_max.max(points.screw_error_max).max(point);
     Ok(said(
         "The screws and the point of Table II are recovered.",
         "Table II.",
@@ -108,8 +106,8 @@ pub(super) fn table(evidence: &Evidence<'_>) -> Result<Claim> {
              {point:.1e} m.",
             poses.screw_error_max_v_m,
             poses.screw_error_max_omega,
-            points.run.screw_error_max_v_m,
-            points.run.screw_error_max_omega
+            points.screw_error_max_v_m,
+            points.screw_error_max_omega
         ),
     ))
 }

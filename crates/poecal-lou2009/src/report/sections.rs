@@ -187,13 +187,7 @@ fn offsets(found: &Reproduction) -> String {
     let screw = off(found.offsets.iter().map(|row| row.screw_offsets_deg).collect());
     let adjoint = off(found.offsets.iter().map(|row| row.adjoint_offsets_deg).collect());
     let held_out = |formulation: Formulation| {
-        let run = found.runs.iter().find(|run| {
-            run.formulation == formulation
-                && run.measurement == Seen::Poses
-                && run.offsets_in_truth
-                && !run.noise
-        });
-        run.map_or(String::new(), |run| {
+        found.exact_run(formulation, Seen::Poses, true).map_or(String::new(), |run| {
             format!(
                 " Its error of prediction on configurations that were not measured is {} mm.",
                 mm(run.held_out_rms_m)
