@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use poecal::io::measurements::{ColumnMap, Frames, ReadOptions};
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::urdf::ChainSelection;
 
+use super::words::{FRAMES, one_of};
 use crate::console::Console;
 
 /// Which chain of a URDF.
@@ -24,15 +25,6 @@ impl Chain {
     pub(crate) fn selection(&self) -> ChainSelection {
         ChainSelection { base_link: self.base_link.clone(), tip_link: self.tip_link.clone() }
     }
-}
-
-/// What is known of the measuring device's frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Frame {
-    /// The device stands anywhere
-    Unknown,
-    /// Measurements are in the robot's base frame
-    Base,
 }
 
 /// What columns of files mean.
@@ -58,30 +50,12 @@ pub(crate) struct Strictness {
     pub(crate) strict: bool,
 }
 
-/// Which rows share a device frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FramesWord {
-    /// All, or those of one name in the column `instrument`
-    Common,
-    /// Those of a file
-    PerFile,
-}
-
-impl From<FramesWord> for Frames {
-    fn from(word: FramesWord) -> Self {
-        match word {
-            FramesWord::Common => Frames::Common,
-            FramesWord::PerFile => Frames::PerFile,
-        }
-    }
-}
-
 /// Where the measuring device stood.
 #[derive(Args, Debug)]
 pub(crate) struct DeviceFrames {
     /// Which rows share a frame of the measuring device: per-file if it was moved between the files
-    #[arg(long, value_enum, default_value = "common")]
-    pub(crate) frames: FramesWord,
+    #[arg(long, value_parser = one_of(FRAMES), default_value = "common")]
+    pub(crate) frames: Frames,
 }
 
 /// How to read measurement files.
@@ -101,7 +75,7 @@ pub(crate) struct Reading {
 impl Reading {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
-        let (strict, frames) = (self.strictness.strict, self.frames.frames.into());
+        let (strict, frames) = (self.strictness.strict, self.frames.frames);
         Ok(ReadOptions { fit_where, strict, frames, ..self.columns.options()? })
     }
 }

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal::calibration::{
-    Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, Stage, calibrate_with_progress, settle_sets,
+    Calibration, CalibrationOptions, Level, Stage, calibrate_with_progress, settle_sets,
 };
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
@@ -15,10 +15,10 @@ use poecal::io::residuals::{Residuals, Rows};
 use poecal::measurement::Dataset;
 use poecal::report::Detail;
 use poecal::{Error, ErrorKind, Result, report};
-use poecal_lou2009::{Formulation, Residual, formulated};
+use poecal_lou2009::{Residual, formulated};
 
 use super::typed::command;
-use crate::args::{Calibrate, Frame, ReportPlace};
+use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
 use crate::style::{labelled, shown};
 use crate::timings::Timings;
@@ -33,11 +33,10 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments);
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
-    let residual = Residual::from(arguments.residual);
-    if residual != Residual::default() && !poses {
+    if arguments.residual != Residual::default() && !poses {
         console.warning(format!(
             "--residual {} has no effect: it is about measured frames, and there are points only",
-            residual.word()
+            arguments.residual.word()
         ));
     }
     timings.end("read");
@@ -103,7 +102,7 @@ impl Said {
 /// What a calibration that has been written ends with.
 fn code(arguments: &Calibrate, calibration: &Calibration) -> u8 {
     let level = calibration.verdict.level;
-    let worse = arguments.require.is_some_and(|required| level < required.into());
+    let worse = arguments.require.is_some_and(|required| level < required);
     let converged = calibration.solver.termination.is_success();
     if worse || level == Level::DoNotUse || !converged { WORSE } else { DONE }
 }
@@ -164,20 +163,16 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
 
 fn options(arguments: &Calibrate) -> CalibrationOptions {
     let usual = CalibrationOptions::default();
-    let formulation: Formulation = arguments.formulation.into();
-    let method = arguments.method.map_or(formulation.usual_method(), Into::into);
+    let method = arguments.method.unwrap_or(arguments.formulation.usual_method());
     CalibrationOptions {
-        frame: match arguments.frame {
-            Frame::Unknown => DeviceFrameKnowledge::Unknown,
-            Frame::Base => DeviceFrameKnowledge::Base,
-        },
+        frame: arguments.frame,
         sigma_position_m: arguments.sigma_position,
         sigma_rotation_rad: arguments.sigma_rotation,
         tolerance: arguments.tolerance.0,
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
-        robust: arguments.robust.into(),
-        formulation: formulated(formulation, arguments.residual.into(), method),
+        robust: arguments.robust,
+        formulation: formulated(arguments.formulation, arguments.residual, method),
         ..usual
     }
 }

@@ -1,12 +1,13 @@
 //! `poecal check`: how files are understood.
 
+use poecal::calibration::DeviceFrameKnowledge;
 use poecal::forensics::{Options, diagnose};
 use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::{Result, report};
 
 use crate::DONE;
-use crate::args::{Check, Frame};
+use crate::args::Check;
 use crate::console::Console;
 
 pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
@@ -18,7 +19,7 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
         Some(measurements::read(&arguments.measurements, &model.robot, &options)?)
     };
     let found = measurements.as_ref().map_or_else(Vec::new, |file| {
-        let device_free = arguments.frame == Frame::Unknown;
+        let device_free = arguments.frame == DeviceFrameKnowledge::Unknown;
         let options = Options { device_free, ..Options::default() };
         diagnose(&model.robot, &file.data, &file.data.all_rows(), &options)
     });

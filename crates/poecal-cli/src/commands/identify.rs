@@ -1,6 +1,7 @@
 //! `poecal identify`: what measuring in some configurations would tell.
 
 use poecal::analysis::{Session, identify as foresee};
+use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::io::named_files::refuse_repeats;
@@ -8,7 +9,7 @@ use poecal::measurement::Noise;
 use poecal::{Result, report};
 
 use crate::DONE;
-use crate::args::{Frame, Identify};
+use crate::args::Identify;
 use crate::console::Console;
 
 pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
@@ -25,12 +26,12 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     }
     let usual = Session::default();
     let session = Session {
-        kind: arguments.kind.into(),
+        kind: arguments.kind,
         noise: Noise {
             position_m: arguments.sigma_position.unwrap_or(usual.noise.position_m),
             rotation_rad: arguments.sigma_rotation.unwrap_or(usual.noise.rotation_rad),
         },
-        device_free: arguments.frame == Frame::Unknown,
+        device_free: arguments.frame == DeviceFrameKnowledge::Unknown,
     };
     let found = foresee(&model.robot, &readings, &session)?;
     let files: Vec<String> = arguments.joints.iter().map(|path| path.display().to_string()).collect();

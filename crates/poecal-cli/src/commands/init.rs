@@ -14,7 +14,7 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     let project = Project {
         model: &model,
         chain: &chain,
-        kind: arguments.measure.into(),
+        kind: arguments.measure,
         count: arguments.count as usize,
         seed: arguments.seed,
     };

@@ -20,7 +20,7 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     for warning in &joints.warnings {
         console.warning(warning);
     }
-    let (frame, target) = (arguments.frame.into(), arguments.target.as_deref());
+    let (frame, target) = (arguments.frame, arguments.target.as_deref());
     let text = predictions::predict(&model, &joints, frame, target, arguments.with_uncertainty)?;
     console.deliver(text, place)?;
     Ok(DONE)

@@ -1,12 +1,13 @@
 //! `poecal simulate`: a robot with known errors, and what a device would measure of it.
 
 use poecal::Result;
+use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::model::Model;
 use poecal::io::output::{self, Contents, Existing, FolderPlace, Session};
-use poecal::simulate::{Kind, Simulation};
+use poecal::simulate::Simulation;
 use poecal::text::visible;
 
-use crate::args::{Chain, Frame, Simulate};
+use crate::args::{Chain, Simulate};
 use crate::console::Console;
 use crate::style::{labelled, shown};
 
@@ -27,15 +28,15 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         noise_rotation_rad: arguments.noise.angle_rad,
         count: arguments.count as usize,
         seed: arguments.seed,
-        device_anywhere: arguments.frame == Frame::Unknown,
+        device_anywhere: arguments.frame == DeviceFrameKnowledge::Unknown,
     };
-    let kind = Kind::from(arguments.kind);
+    let kind = arguments.kind;
     let made = simulation.run(&model.robot, kind)?;
     let held_out = match arguments.held_out_count {
         0 => None,
         count => Some(simulation.held_out(&made, kind, count as usize)?),
     };
-    let command = command(arguments, kind);
+    let command = command(arguments);
     let session = Session {
         simulation: &simulation,
         kind,
@@ -52,15 +53,16 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
 }
 
 /// The command that makes the same files anywhere: with every option that they depend on, and no output folder.
-fn command(arguments: &Simulate, kind: Kind) -> String {
+fn command(arguments: &Simulate) -> String {
     let Chain { base_link, tip_link } = &arguments.chain;
     let mut words = vec!["poecal simulate".to_owned(), arguments.model.display().to_string()];
     for (option, link) in [("--base-link", base_link), ("--tip-link", tip_link)] {
         words.extend(link.as_ref().map(|link| format!("{option} {link}")));
     }
-    words.push(format!("--kind {} --count {} --seed {}", kind.word(), arguments.count, arguments.seed));
+    let (kind, count, seed) = (arguments.kind.word(), arguments.count, arguments.seed);
+    words.push(format!("--kind {kind} --count {count} --seed {seed}"));
     words.push(format!("--errors {} --noise {}", arguments.errors.text, arguments.noise.text));
-    if arguments.frame == Frame::Base {
+    if arguments.frame == DeviceFrameKnowledge::Base {
         words.push("--frame base".to_owned());
     }
     if arguments.held_out_count > 0 {
