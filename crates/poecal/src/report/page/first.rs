@@ -7,36 +7,23 @@ use super::html::{Table, count, facts, figure, figure_or, list, path, plots, quo
 use super::trust::direction_words;
 use crate::analysis::Direction;
 use crate::calibration::{Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
-use crate::io::calibration_file::{CalibrationFile, FrameWord, KindWord};
+use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
-use crate::report::summary::{Place, Point, expected, look_at};
-use crate::report::table::STATISTICS;
-
-/// A model: its word, and how to take it from a set.
-type Model = (&'static str, fn(&SetAccuracy) -> &ModelAccuracy);
-
-const MODELS: [Model; 3] = [
-    ("nominal", |set| &set.nominal),
-    ("registered", |set| &set.registered),
-    ("calibrated", |set| &set.calibrated),
-];
-
-/// Names of the statistics in the file.
-const STATISTIC_KEYS: [&str; 4] = ["mean", "rms", "p95", "max"];
+use crate::report::summary::{ModelRow, Place, Point, expected, leading, look_at};
+use crate::report::table::{MODELS, STATISTICS, joints_words};
 
 pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let held_out = file.accuracy.held_out.as_ref();
-    let (set, of, key) = match held_out {
-        Some(set) => (set, "rows held out", "accuracy.held_out.count"),
-        None => {
-            (&file.accuracy.training, "the fitted rows, since none was held out", "accuracy.training.count")
-        }
+    let (of, key) = match held_out {
+        Some(_) => ("rows held out", "accuracy.held_out.count"),
+        None => ("the fitted rows, since none was held out", "accuracy.training.count"),
     };
-    let position = lead_table(&format!("Position error on {of}, mm"), file, "position_mm", |model| {
+    let (set, rows) = leading(file);
+    let position = lead_table(&format!("Position error on {of}, mm"), &rows, "position_mm", |model| {
         Some(model.position_mm)
     });
     let rotation = || {
-        lead_table(&format!("Rotation error on {of}, degrees"), file, "rotation_deg", |model| {
+        lead_table(&format!("Rotation error on {of}, degrees"), &rows, "rotation_deg", |model| {
             model.rotation_deg
         })
     };
@@ -74,43 +61,14 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
 /// Errors before and after, of the rows held out or, if there are none, of those fitted.
 fn lead_table(
     caption: &str,
-    file: &CalibrationFile,
+    rows: &[ModelRow<'_>],
     quantity: &str,
     of: fn(&ModelAccuracy) -> Option<Statistic>,
 ) -> Table {
-    let (set, key, rest, rest_key, suspected) = match &file.accuracy.held_out {
-        Some(set) => (
-            set,
-            "accuracy.held_out",
-            &file.robust.held_out_without_suspected,
-            "robust.held_out_without_suspected",
-            file.robust.suspected_held_out,
-        ),
-        None => (
-            &file.accuracy.training,
-            "accuracy.training",
-            &file.robust.training_without_suspected,
-            "robust.training_without_suspected",
-            file.robust.suspected_fit,
-        ),
-    };
-    let nominal = match file.measurement_frame.known {
-        FrameWord::Unknown => "nominal, tool and device fitted",
-        FrameWord::Base => "nominal, tool fitted",
-    };
-    let mut rows = vec![
-        (nominal.to_owned(), &set.registered, format!("{key}.registered")),
-        ("calibrated".to_owned(), &set.calibrated, format!("{key}.calibrated")),
-    ];
-    if let Some(rest) = rest {
-        let name = format!("calibrated, without {suspected} suspected");
-        rows.push((name, &rest.calibrated, format!("{rest_key}.calibrated")));
-    }
     let mut table = Table::new(caption, 1, &["", "mean", "RMS", "95 %", "max"]);
     for (name, model, key) in rows {
-        let cells = STATISTICS.iter().zip(STATISTIC_KEYS).map(|((_, value), statistic)| {
-            let value = of(model).map(|it| value(&it));
-            figure_or(value, format_args!("{key}.{quantity}.{statistic}"), "")
+        let cells = STATISTICS.map(|(_, statistic, value)| {
+            figure_or(of(model).map(value), format_args!("{key}.{quantity}.{statistic}"), "")
         });
         table.cells(std::iter::once(name.render()).chain(cells));
     }
@@ -119,12 +77,8 @@ fn lead_table(
 
 /// How many joints of which kind, and from where to where.
 fn kinds(file: &CalibrationFile) -> Markup {
-    let sliding = file.joints.iter().filter(|joint| joint.kind == KindWord::Prismatic).count();
-    let words = [(file.joints.len() - sliding, "revolute"), (sliding, "prismatic")];
-    let words: Vec<String> =
-        words.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
     html! {
-        (words.join(", ")) " joints, from " (quoted(&file.robot.base_link, "robot.base_link"))
+        (joints_words(file.joints.iter().map(|joint| joint.kind.into()))) " joints, from " (quoted(&file.robot.base_link, "robot.base_link"))
         " to " (quoted(&file.robot.tip_link, "robot.tip_link"))
     }
 }
@@ -202,10 +156,9 @@ fn error_table(
     of: fn(&ModelAccuracy) -> Option<Statistic>,
 ) -> Table {
     let mut table = Table::new(caption, 1, &["", "nominal", "registered", "calibrated"]);
-    for ((label, value), statistic) in STATISTICS.iter().zip(STATISTIC_KEYS) {
-        let cells = MODELS.iter().map(|(name, model)| {
-            let value = of(model(set)).map(|it| value(&it));
-            figure_or(value, format_args!("{key}.{name}.{quantity}.{statistic}"), "")
+    for (label, statistic, value) in STATISTICS {
+        let cells = MODELS.map(|(name, model)| {
+            figure_or(of(model(set)).map(value), format_args!("{key}.{name}.{quantity}.{statistic}"), "")
         });
         table.cells(std::iter::once(label.render()).chain(cells));
     }

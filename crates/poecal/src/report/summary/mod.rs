@@ -4,10 +4,13 @@ mod details;
 mod errors;
 mod look;
 
+use std::mem::discriminant;
+
+pub(super) use errors::{ModelRow, leading};
 use look::reasons;
 pub(super) use look::{Place, Point, look_at};
 
-use super::table::{line, number};
+use super::table::{line, lines, number};
 use crate::analysis::{Cause, Direction};
 use crate::calibration::Level;
 use crate::io::calibration_file::CalibrationFile;
@@ -101,9 +104,7 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
 /// What needs attention.
 fn points(out: &mut String, file: &CalibrationFile, detail: Detail) {
     let (shown, rest) = shown(look_at(file), detail);
-    for (k, point) in shown.iter().enumerate() {
-        line(out, if k == 0 { "look at" } else { "" }, &point.text);
-    }
+    lines(out, "look at", shown.iter().map(|point| &point.text));
     if !rest.is_empty() {
         line(out, "", &format!("… and {} more, in the report", rest.len()));
     }
@@ -114,8 +115,9 @@ fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
     if points.len() <= MOST || detail == Detail::Full {
         return (points, Vec::new());
     }
-    let earlier =
-        |k: usize| points[..k].iter().filter(|it| it.place.sort() == points[k].place.sort()).count();
+    // Points of one sort compete for room.
+    let sort = |k: usize| discriminant(&points[k].place);
+    let earlier = |k: usize| (0..k).filter(|&other| sort(other) == sort(k)).count();
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by_key(|&k| (earlier(k), k));
     let chosen = &order[..MOST - 1];
