@@ -119,6 +119,10 @@ impl Console {
         }
     }
 
+    pub(crate) fn warnings(&self, messages: &[String]) {
+        messages.iter().for_each(|message| self.warning(message));
+    }
+
     /// A line about the run itself, asked for and so never suppressed.
     pub(crate) fn note(&self, line: impl Display) {
         let line = visible(&line.to_string()).into_owned();

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
+use poecal::report::table::{INDENT as LABELS, WIDTH, broken, lines};
 use poecal::text::visible;
 
 /// Of the word before an error.
@@ -12,10 +13,6 @@ pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 const GOOD: Style = AnsiColor::Green.on_default().bold();
 const LABEL: Style = Style::new().bold();
 
-/// Width of the column of labels.
-const LABELS: usize = 14;
-/// Width of lines that are not as wide as a terminal.
-const WIDTH: usize = 80;
 /// Labels of what a reader must look at.
 const LOOK: [&str; 4] = ["look at", "outliers", "warnings", "diagnosis"];
 /// How each verdict begins.
@@ -29,15 +26,14 @@ pub(crate) fn shown(path: &Path) -> String {
 
 /// A labelled paragraph as reports have them, in lines of 80 characters where words are not longer.
 pub(crate) fn labelled(label: &str, text: &str) -> String {
-    let mut out = format!("{label:LABELS$}");
-    for (k, line) in text.lines().enumerate() {
-        if k > 0 {
-            out.push_str(&" ".repeat(LABELS));
-        }
-        out.push_str(&broken(line, LABELS, LABELS, WIDTH));
-        out.push('\n');
-    }
+    let mut out = String::new();
+    lines(&mut out, label, text.lines());
     out
+}
+
+/// Which files have been written to a folder.
+pub(crate) fn written(folder: &Path, files: &[String]) -> String {
+    labelled("written", &format!("{}\n{}", shown(folder), files.join(", ")))
 }
 
 /// A message in lines of a width; the first one begins behind `before` characters, the others are indented by two.
@@ -60,25 +56,6 @@ pub(crate) fn narrowed(text: &str, width: usize) -> String {
         }
     });
     lines.collect()
-}
-
-/// A text with line breaks in place of blanks where it would be wider than `width`.
-fn broken(text: &str, before: usize, indent: usize, width: usize) -> String {
-    let (mut out, mut used) = (String::new(), before);
-    for (k, word) in text.split(' ').enumerate() {
-        let length = word.chars().count();
-        if k > 0 && used + 1 + length > width {
-            out.push('\n');
-            out.push_str(&" ".repeat(indent));
-            used = indent;
-        } else if k > 0 {
-            out.push(' ');
-            used += 1;
-        }
-        out.push_str(word);
-        used += length;
-    }
-    out
 }
 
 /// A report with its labels and its verdict in colours.

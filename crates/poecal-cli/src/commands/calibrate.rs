@@ -20,7 +20,7 @@ use poecal_lou2009::{Residual, formulated};
 use super::typed::command;
 use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style::{self, labelled, shown};
 use crate::timings::Timings;
 use crate::{DONE, WORSE};
 
@@ -54,9 +54,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let file = CalibrationFile::new(&calibration, &data, inputs);
     let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
     let said = if arguments.json { Said::Json(file.to_text()?) } else { Said::table(&file, detail) };
-    for warning in said.beside(&file, detail) {
-        console.warning(warning);
-    }
+    console.warnings(&said.beside(&file, detail));
     let code = code(arguments, &calibration);
     let written = write(places, arguments, (&model, &data, &calibration), file, console)?;
     timings.end("write");
@@ -139,9 +137,7 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
         let file = measurements::read(paths, &model.robot, &options)?;
         inputs.measurements.extend(paths.iter().map(|path| path.display().to_string()));
         inputs.sha256.extend(file.sha256);
-        for warning in &file.warnings {
-            console.warning(warning);
-        }
+        console.warnings(&file.warnings);
         Ok(file.data)
     };
     let mut data = read(&arguments.measurements)?;
@@ -217,11 +213,9 @@ fn write(
     let residuals = residuals.as_ref().map_or(Rows::Of(data, calibration), Rows::AtHand);
     let results = Results { file, residuals, report };
     let written = output::write(places.folder, places.report, model, calibration, results)?;
-    for note in &written.notes {
-        console.warning(note);
-    }
-    let others = written.files.iter().filter(|name| *name != output::REPORT).cloned().collect::<Vec<_>>();
-    let mut words = labelled("written", &format!("{}\n{}", shown(&written.folder), others.join(", ")));
+    console.warnings(&written.notes);
+    let others: Vec<String> = written.files.iter().filter(|name| *name != output::REPORT).cloned().collect();
+    let mut words = style::written(&written.folder, &others);
     if arguments.verbose {
         let text = format!(
             "read back within {:.1e} m and {:.1e} rad in 1,000 configurations",

@@ -31,9 +31,7 @@ pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
         model.robot = into_screws(&model.robot, &offsets)?;
     }
     let converted = model::convert(&model, form)?;
-    for note in &converted.notes {
-        console.warning(note);
-    }
+    console.warnings(&converted.notes);
     console.deliver(converted.text, place)?;
     Ok(DONE)
 }

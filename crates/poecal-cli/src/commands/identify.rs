@@ -19,9 +19,7 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     let mut readings = Vec::new();
     for path in &arguments.joints {
         let joints = measurements::read_joints(path, &model.robot, &options)?;
-        for warning in &joints.warnings {
-            console.warning(warning);
-        }
+        console.warnings(&joints.warnings);
         readings.extend(joints.readings);
     }
     let usual = Session::default();

@@ -9,7 +9,7 @@ use poecal::text::visible;
 
 use crate::args::{Chain, Simulate};
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style;
 
 pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     let existing = Existing::forced(arguments.force);
@@ -45,11 +45,8 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         command: &command,
     };
     let written = output::write_simulation(place, &model, &session)?;
-    for note in &written.notes {
-        console.warning(note);
-    }
-    let words = labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", ")));
-    Ok(console.say_of(&words, &written.folder))
+    console.warnings(&written.notes);
+    Ok(console.say_of(&style::written(&written.folder, &written.files), &written.folder))
 }
 
 /// The command that makes the same files anywhere: with every option that they depend on, and no output folder.

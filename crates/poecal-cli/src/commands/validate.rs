@@ -24,9 +24,7 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     let options = ReadOptions { ignore_sets: true, strict, frames, ..arguments.columns.options()? };
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
     let judgement = file.judge(&read.data, arguments.refit_frame, arguments.refit_tool).map_err(in_file)?;
-    for warning in &read.warnings {
-        console.warning(warning);
-    }
+    console.warnings(&read.warnings);
     if arguments.json {
         console.data(&report::json(&judgement)?)?;
     } else {

@@ -121,29 +121,42 @@ pub(super) fn kinds_words(poses: usize, points: usize) -> String {
     }
 }
 
+/// Width of the column of labels.
+pub const INDENT: usize = 14;
+/// Width of all lines.
+pub const WIDTH: usize = 80;
+
 /// A labelled line, broken at 80 columns with the text aligned.
 pub fn line(out: &mut String, label: &str, text: &str) {
-    const INDENT: usize = 14;
-    let mut width = INDENT;
-    let _ = write!(out, "{label:<INDENT$}");
-    for (k, word) in visible(text).split(' ').enumerate() {
-        let length = word.chars().count();
-        if k > 0 && width + 1 + length > 80 {
-            let _ = write!(out, "\n{:INDENT$}", "");
-            width = INDENT;
-        } else if k > 0 {
-            out.push(' ');
-            width += 1;
-        }
-        out.push_str(word);
-        width += length;
-    }
-    out.push('\n');
+    let text = broken(&visible(text), INDENT, INDENT, WIDTH);
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "{label:<INDENT$}{text}");
 }
 
 /// Paragraphs under one label.
-pub(super) fn lines<T: AsRef<str>>(out: &mut String, label: &str, texts: impl IntoIterator<Item = T>) {
+pub fn lines<T: AsRef<str>>(out: &mut String, label: &str, texts: impl IntoIterator<Item = T>) {
     for (k, text) in texts.into_iter().enumerate() {
         line(out, if k == 0 { label } else { "" }, text.as_ref());
     }
+}
+
+/// A text with line breaks in place of blanks where it would be wider than `width`: behind `before` characters, and further lines
+/// indented.
+#[must_use]
+pub fn broken(text: &str, before: usize, indent: usize, width: usize) -> String {
+    let (mut out, mut used) = (String::new(), before);
+    for (k, word) in text.split(' ').enumerate() {
+        let length = word.chars().count();
+        if k > 0 && used + 1 + length > width {
+            out.push('\n');
+            out.push_str(&" ".repeat(indent));
+            used = indent;
+        } else if k > 0 {
+            out.push(' ');
+            used += 1;
+        }
+        out.push_str(word);
+        used += length;
+    }
+    out
 }
