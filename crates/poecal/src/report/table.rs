@@ -67,7 +67,7 @@ fn set_rows(out: &mut String, name: &str, set: &SetAccuracy, of: fn(&ModelAccura
 }
 
 /// A row of a table: a label, and cells that end below each other.
-pub(super) fn row(
+pub fn row(
     out: &mut String,
     label: &str,
     [label_width, width]: [usize; 2],

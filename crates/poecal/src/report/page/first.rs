@@ -12,6 +12,13 @@ use crate::io::residuals::Residuals;
 use crate::report::summary::{ModelRow, Place, Point, expected, leading, look_at};
 use crate::report::table::{MODELS, STATISTICS, joints_words};
 
+/// A kind of error: its name in the file, and how to take it from a model's.
+type Quantity = (&'static str, fn(&ModelAccuracy) -> Option<Statistic>);
+
+pub(super) const POSITION: Quantity = ("position_mm", |model| Some(model.position_mm));
+/// None where no orientation was measured.
+pub(super) const ROTATION: Quantity = ("rotation_deg", |model| model.rotation_deg);
+
 pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let held_out = file.accuracy.held_out.as_ref();
     let (of, key) = match held_out {
@@ -19,14 +26,8 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         None => ("the fitted rows, since none was held out", "accuracy.training.count"),
     };
     let (set, rows) = leading(file);
-    let position = lead_table(&format!("Position error on {of}, mm"), &rows, "position_mm", |model| {
-        Some(model.position_mm)
-    });
-    let rotation = || {
-        lead_table(&format!("Rotation error on {of}, degrees"), &rows, "rotation_deg", |model| {
-            model.rotation_deg
-        })
-    };
+    let position = lead_table(&format!("Position error on {of}, mm"), &rows, POSITION);
+    let rotation = || lead_table(&format!("Rotation error on {of}, degrees"), &rows, ROTATION);
     let caption = html! { (count(set.count, key)) " " (of) ". Nominal: the model before calibration. Registered: tool and device fitted to it." };
     html! {
         header {
@@ -59,12 +60,7 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
 }
 
 /// Errors before and after, of the rows held out or, if there are none, of those fitted.
-fn lead_table(
-    caption: &str,
-    rows: &[ModelRow<'_>],
-    quantity: &str,
-    of: fn(&ModelAccuracy) -> Option<Statistic>,
-) -> Table {
+fn lead_table(caption: &str, rows: &[ModelRow<'_>], (quantity, of): Quantity) -> Table {
     let mut table = Table::new(caption, 1, &["", "mean", "RMS", "95 %", "max"]);
     for (name, model, key) in rows {
         let cells = STATISTICS.map(|(_, statistic, value)| {
@@ -138,23 +134,8 @@ fn verdict_words(level: Level) -> &'static str {
     }
 }
 
-/// Errors of position of the three models.
-pub(super) fn position_table(caption: &str, set: &SetAccuracy, key: &str) -> Table {
-    error_table(caption, set, key, "position_mm", |model| Some(model.position_mm))
-}
-
-/// Errors of rotation, where orientation was measured.
-pub(super) fn rotation_table(caption: &str, set: &SetAccuracy, key: &str) -> Table {
-    error_table(caption, set, key, "rotation_deg", |model| model.rotation_deg)
-}
-
-fn error_table(
-    caption: &str,
-    set: &SetAccuracy,
-    key: &str,
-    quantity: &str,
-    of: fn(&ModelAccuracy) -> Option<Statistic>,
-) -> Table {
+/// Errors of the three models.
+pub(super) fn error_table(caption: &str, set: &SetAccuracy, key: &str, (quantity, of): Quantity) -> Table {
     let mut table = Table::new(caption, 1, &["", "nominal", "registered", "calibrated"]);
     for (label, statistic, value) in STATISTICS {
         let cells = MODELS.map(|(name, model)| {

@@ -94,7 +94,7 @@ impl Ruler {
         let (mut low, mut high) = if largest.is_nan() {
             (0, 1)
         } else {
-            (decade(smallest.log10().floor()), decade(largest.log10().ceil()))
+            (smallest.log10().floor() as i32, largest.log10().ceil() as i32)
         };
         low = low.max(high - MOST_DECADES);
         if low == high {
@@ -150,10 +150,6 @@ impl Ruler {
             .collect();
         ruler
     }
-}
-
-fn decade(power: f64) -> i32 {
-    power as i32
 }
 
 /// Smallest and largest finite value.

@@ -143,10 +143,9 @@ fn known(out: &mut String, file: &CalibrationFile) {
         "determined",
         &format!("{} of {} unknowns{weak}, from {fitted} of {all} rows", found.rank, found.parameters),
     );
-    let mut label = "undetermined";
+    let mut undetermined = Vec::new();
     if found.rank == 0 && found.parameters > 0 {
-        line(out, label, "everything: the residual is as large as the effect of the unknowns");
-        label = "";
+        undetermined.push("everything: the residual is as large as the effect of the unknowns".to_owned());
     } else if found.rank < found.parameters {
         let mut joints: Vec<&str> = Vec::new();
         for name in found.unidentifiable.iter().flat_map(|direction| &direction.joints) {
@@ -157,13 +156,11 @@ fn known(out: &mut String, file: &CalibrationFile) {
         let open = found.parameters - found.rank;
         let plural = if open == 1 { "" } else { "s" };
         let of = if joints.is_empty() { String::new() } else { format!(" of {}", names(&joints)) };
-        line(out, label, &format!("{open} unknown{plural}{of}"));
-        label = "";
+        undetermined.push(format!("{open} unknown{plural}{of}"));
     }
-    for direction in found.structural.iter().filter(|it| it.cause == Cause::NoOrientation) {
-        line(out, label, &direction.description);
-        label = "";
-    }
+    let structural = found.structural.iter().filter(|it| it.cause == Cause::NoOrientation);
+    undetermined.extend(structural.map(|direction| direction.description.clone()));
+    lines(out, "undetermined", undetermined);
 }
 
 /// Some names, the first few of many.
