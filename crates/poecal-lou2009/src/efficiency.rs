@@ -8,7 +8,7 @@ use super::{Efficiency, LENGTH_M, NOISE, Seen, runs, tables};
 use crate::{Formulation, Method, Residual};
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal::error::Result;
-use poecal::estimate::{Chain, Estimate, Linkage};
+use poecal::estimate::{Chain, Linkage};
 use poecal::lie::TargetTwist;
 use poecal::problem::Problem;
 use poecal::solve::{LeastSquares, Options};
@@ -107,30 +107,20 @@ fn bound(session: &Session) -> Result<(f64, usize)> {
     let upper = problem.normal(&session.truth).gram;
     let gram = DMatrix::from_fn(n, n, |a, b| upper[a.min(b) * n + a.max(b)]);
     let Some(factor) = gram.cholesky() else { return Ok((f64::INFINITY, n)) };
-    let sum = variance(session, &problem, &session.truth, |row| factor.solve(row).dot(row));
-    Ok(((sum / session.unseen.rows() as f64).sqrt(), n))
-}
-
-/// Sum over unseen configurations and coordinates of the variance of the predicted position.
-fn variance(
-    session: &Session,
-    problem: &Problem<'_>,
-    truth: &Estimate,
-    of_row: impl Fn(&DVector<f64>) -> f64,
-) -> f64 {
-    let linkage = Linkage::new(truth);
+    let linkage = Linkage::new(&session.truth);
     let mut chain = Chain::default();
-    let mut twists: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); problem.dim()];
+    let mut twists: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
+    // Over unseen configurations and coordinates, the variance of the predicted position.
     let mut sum = 0.0;
     for row in 0..session.unseen.rows() {
         chain.evaluate(&linkage, &session.unseen, row, 0);
         problem.layout().target_twists(&chain, 0, &mut twists);
         for axis in 0..3 {
-            let derivative = DVector::from_iterator(twists.len(), twists.iter().map(|(v, _)| v[axis]));
-            sum += of_row(&derivative);
+            let derivative = DVector::from_iterator(n, twists.iter().map(|(v, _)| v[axis]));
+            sum += factor.solve(&derivative).dot(&derivative);
         }
     }
-    sum
+    Ok(((sum / session.unseen.rows() as f64).sqrt(), n))
 }
 
 #[cfg(test)]

@@ -278,6 +278,12 @@ impl Reproduction {
         self.runs.iter().find(|run| run.is_exact(formulation, seen, offsets))
     }
 
+    /// How many statements hold, and how many there are: of the paper's, or of the findings that it leaves out.
+    pub(crate) fn holding(&self, said_by_paper: bool) -> (usize, usize) {
+        let claims = || self.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper);
+        (claims().filter(|claim| claim.holds).count(), claims().count())
+    }
+
     /// The fits of a formulation with noise by plain Gauss-Newton.
     pub(crate) fn noisy_fits(
         &self,

@@ -13,8 +13,7 @@ const LAST_RANK: usize = 27;
 const ROUNDED_MM: f64 = 1e-6;
 
 pub(super) fn redundancy(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = evidence.run(Formulation::Adjoint, Seen::Poses, false)?;
-    let points = evidence.run(Formulation::Adjoint, Seen::Points, false)?;
+    let [poses, points] = evidence.both_runs(Formulation::Adjoint, false)?;
     let redundant = |run: &Run| run.rank < run.parameters && run.rank == run.unknowns;
     Ok(left_out(
         "The components of η are redundant.",

@@ -30,6 +30,11 @@ impl Evidence<'_> {
         run.ok_or_else(|| missing("run", formulation, seen))
     }
 
+    /// The noise-free runs from poses and from points.
+    fn both_runs(&self, formulation: Formulation, offsets: bool) -> Result<[&Run; 2]> {
+        Ok([self.run(formulation, Seen::Poses, offsets)?, self.run(formulation, Seen::Points, offsets)?])
+    }
+
     /// Where the noise-free run of the adjoint form from points ended.
     fn end_of_points(&self) -> Result<&Estimate> {
         let ended = exact(self.runs, Formulation::Adjoint, Seen::Points, false);

@@ -16,8 +16,7 @@ fn screws_recovered(run: &Run) -> bool {
 }
 
 pub(super) fn original_without_offsets(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = evidence.run(Formulation::Screw, Seen::Poses, false)?;
-    let points = evidence.run(Formulation::Screw, Seen::Points, false)?;
+    let [poses, points] = evidence.both_runs(Formulation::Screw, false)?;
     let words = |run: &Run| {
         format!(
             "{} iterations, screws within {:.1e} m in v and {:.1e} in ω, held-out error {:.1e} m",
@@ -118,8 +117,7 @@ pub(super) fn equivalence(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn proposition(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = evidence.run(Formulation::ScrewOffsets, Seen::Poses, true)?;
-    let points = evidence.run(Formulation::ScrewOffsets, Seen::Points, true)?;
+    let [poses, points] = evidence.both_runs(Formulation::ScrewOffsets, true)?;
     let joints = tables::PRESCRIBED_OFFSETS_DEG.len();
     let without = |run: &Run| run.parameters - run.rank;
     Ok(said(
@@ -142,8 +140,7 @@ pub(super) fn proposition(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn can_be_left_out(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = evidence.run(Formulation::Adjoint, Seen::Poses, true)?;
-    let points = evidence.run(Formulation::Adjoint, Seen::Points, true)?;
+    let [poses, points] = evidence.both_runs(Formulation::Adjoint, true)?;
     Ok(said(
         "Joint offsets need not be considered at all.",
         "Section III.A: \"there is no need to consider joint offset errors at all!\"; Section VI: \"they can be ignored without any \

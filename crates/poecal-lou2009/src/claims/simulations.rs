@@ -39,11 +39,6 @@ pub(super) fn constraints(evidence: &Evidence<'_>) -> Result<Claim> {
     ))
 }
 
-/// The noise-free run of the adjoint form without offsets in the truth.
-fn adjoint<'a>(evidence: &'a Evidence<'_>, seen: Seen) -> Result<&'a Run> {
-    evidence.run(Formulation::Adjoint, seen, false)
-}
-
 fn iterations(run: &Run) -> String {
     let residual = run.trace.last().map_or(f64::NAN, |end| end.residual_rms_m);
     format!(
@@ -59,7 +54,7 @@ fn within(most: usize) -> String {
 }
 
 pub(super) fn poses_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = adjoint(evidence, Seen::Poses)?;
+    let run = evidence.run(Formulation::Adjoint, Seen::Poses, false)?;
     Ok(said(
         "From poses, the parameters are identified within 6 iterations.",
         "Section V: \"After 6 iterations, the kinematic parameters are successfully identified\".",
@@ -69,7 +64,7 @@ pub(super) fn poses_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn points_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = adjoint(evidence, Seen::Points)?;
+    let run = evidence.run(Formulation::Adjoint, Seen::Points, false)?;
     Ok(said(
         "From points, the parameters are identified within 10 iterations.",
         "Section V: \"10 iterations are required to achieve the same accuracy\".",
@@ -79,7 +74,7 @@ pub(super) fn points_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn twice_as_many(evidence: &Evidence<'_>) -> Result<Claim> {
-    let (poses, points) = (adjoint(evidence, Seen::Poses)?, adjoint(evidence, Seen::Points)?);
+    let [poses, points] = evidence.both_runs(Formulation::Adjoint, false)?;
     let ratio = points.iterations as f64 / poses.iterations as f64;
     Ok(said(
         "Points take nearly twice as many iterations as poses.",
@@ -90,7 +85,7 @@ pub(super) fn twice_as_many(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn table(evidence: &Evidence<'_>) -> Result<Claim> {
-    let (poses, points) = (adjoint(evidence, Seen::Poses)?, adjoint(evidence, Seen::Points)?);
+    let [poses, points] = evidence.both_runs(Formulation::Adjoint, false)?;
     let prescribed = tables::prescribed().home.translation;
     let point = (evidence.end_of_points()?.base_from_target[0].translation - prescribed).amax();
     let largest = poses.screw_error_max.max(points.screw_error_max).max(point);

@@ -124,20 +124,16 @@ fn setting(found: &Reproduction) -> String {
 }
 
 fn holding(found: &Reproduction) -> String {
-    let said = || found.claims.iter().filter(|claim| claim.said_by_paper);
+    let (holding, all) = found.holding(true);
     format!(
-        "{} of {} statements hold as they are made; the table says by which criterion. Where one does not, the measured column says what does.",
-        said().filter(|claim| claim.holds).count(),
-        said().count()
+        "{holding} of {all} statements hold as they are made; the table says by which criterion. Where one does not, the measured column says what does."
     )
 }
 
 fn left_out(found: &Reproduction) -> String {
-    let findings = || found.claims.iter().filter(|claim| !claim.said_by_paper);
+    let (holding, all) = found.holding(false);
     format!(
-        "Findings that the paper does not mention, and that its statements are not counted by: {} of {} hold in this run.",
-        findings().filter(|claim| claim.holds).count(),
-        findings().count()
+        "Findings that the paper does not mention, and that its statements are not counted by: {holding} of {all} hold in this run."
     )
 }
 
