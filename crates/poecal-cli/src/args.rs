@@ -27,7 +27,7 @@ use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 
 use crate::quantity::threads;
-use shared::{Columns, DeviceFrames, OutFile, Reading, Strictness};
+use shared::{Columns, Meaning, OutFile, Reading};
 use words::{FORM, FRAME, PREDICT_IN, REQUIRED_LEVEL, one_of};
 
 /// What the program ends with.
@@ -88,11 +88,7 @@ pub(crate) struct Validate {
     #[arg(required = true)]
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) columns: Columns,
-    #[command(flatten)]
-    pub(crate) strictness: Strictness,
-    #[command(flatten)]
-    pub(crate) frames: DeviceFrames,
+    pub(crate) meaning: Meaning,
     /// Refit the measuring device's frame to these measurements
     #[arg(long)]
     pub(crate) refit_frame: bool,

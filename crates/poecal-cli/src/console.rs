@@ -92,6 +92,16 @@ impl Console {
         self.data(&if plain { text } else { style::painted(&text) })
     }
 
+    /// A result as JSON, or as a table that `--quiet` suppresses.
+    pub(crate) fn json_or_table(
+        &self,
+        is_json: bool,
+        json: impl FnOnce() -> Result<String>,
+        table: impl FnOnce() -> String,
+    ) -> Result<()> {
+        if is_json { self.data(&json()?) } else { self.say(&table()) }
+    }
+
     /// A result about what has been written. If it cannot be said, what was written is there all the same: gives the code to end with.
     pub(crate) fn say_of(&self, text: &str, written: &Path) -> u8 {
         self.told(self.say(text), written)

@@ -68,8 +68,8 @@ fn painted_line(line: &str) -> String {
     let style = if LOOK.contains(&label) { WARNING } else { LABEL };
     let gap = rest.len() - rest.trim_start().len();
     let (gap, rest) = rest.split_at(gap);
-    let verdict = VERDICTS.iter().find(|(words, _)| label == "verdict" && rest.starts_with(words));
-    let rest = match verdict.and_then(|(words, style)| Some((words, style, rest.strip_prefix(words)?))) {
+    let mut verdicts = VERDICTS.iter().filter(|_| label == "verdict");
+    let rest = match verdicts.find_map(|(words, style)| Some((words, style, rest.strip_prefix(*words)?))) {
         Some((words, style, rest)) => format!("{style}{words}{style:#}{rest}"),
         None => rest.to_owned(),
     };

@@ -95,7 +95,7 @@ impl Calibrate {
 
     /// Every file that is read.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
-        let mapping = self.reading.columns.columns.iter();
+        let mapping = self.reading.meaning.columns.columns.iter();
         let files = self.model.iter().chain(&self.measurements).chain(&self.validate).chain(&self.settings);
         files.chain(mapping).map(PathBuf::as_path).collect()
     }

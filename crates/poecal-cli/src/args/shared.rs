@@ -42,31 +42,30 @@ impl Columns {
     }
 }
 
-/// How to treat lost beams.
+/// What measurement files mean.
 #[derive(Args, Debug)]
-pub(crate) struct Strictness {
+pub(crate) struct Meaning {
+    #[command(flatten)]
+    pub(crate) columns: Columns,
     /// Refuse lost beams (empty or zero positions) instead of skipping them with a warning
     #[arg(long)]
     pub(crate) strict: bool,
-}
-
-/// Where the measuring device stood.
-#[derive(Args, Debug)]
-pub(crate) struct DeviceFrames {
     /// Which rows share a frame of the measuring device: per-file if it was moved between the files
     #[arg(long, value_parser = one_of(FRAMES), default_value = "common")]
     pub(crate) frames: Frames,
+}
+
+impl Meaning {
+    pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
+        Ok(ReadOptions { strict: self.strict, frames: self.frames, ..self.columns.options()? })
+    }
 }
 
 /// How to read measurement files.
 #[derive(Args, Debug)]
 pub(crate) struct Reading {
     #[command(flatten)]
-    pub(crate) columns: Columns,
-    #[command(flatten)]
-    pub(crate) strictness: Strictness,
-    #[command(flatten)]
-    pub(crate) frames: DeviceFrames,
+    pub(crate) meaning: Meaning,
     /// Fit only rows whose COLUMN has one of these values, and hold out all others
     #[arg(long, value_name = "COLUMN=VALUE[,VALUE]")]
     pub(crate) fit_where: Option<String>,
@@ -75,8 +74,7 @@ pub(crate) struct Reading {
 impl Reading {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
-        let (strict, frames) = (self.strictness.strict, self.frames.frames);
-        Ok(ReadOptions { fit_where, strict, frames, ..self.columns.options()? })
+        Ok(ReadOptions { fit_where, ..self.meaning.options()? })
     }
 }
 

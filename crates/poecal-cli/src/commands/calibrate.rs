@@ -53,48 +53,39 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let calibration = calibration?;
     let file = CalibrationFile::new(&calibration, &data, inputs);
     let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
-    let said = if arguments.json { Said::Json(file.to_text()?) } else { Said::table(&file, detail) };
-    console.warnings(&said.beside(&file, detail));
+    let (text, unsaid) = if arguments.json {
+        (file.to_text()?, doubts(&file))
+    } else {
+        (table(&file, detail), report::unsaid(&file, detail))
+    };
+    console.warnings(&unsaid);
     let code = code(arguments, &calibration);
     let written = write(places, arguments, (&model, &data, &calibration), file, console)?;
     timings.end("write");
     if arguments.timings {
         console.note(timings.line(|| calibration.solve_again(&data, &options)));
     }
-    let told = match said {
-        Said::Json(json) => console.data_of(&json, &arguments.out),
-        Said::Table(table) => console.say_of(&(table + &written), &arguments.out),
+    let told = if arguments.json {
+        console.data_of(&text, &arguments.out)
+    } else {
+        console.say_of(&(text + &written), &arguments.out)
     };
     Ok(code.max(told))
 }
 
-/// What goes to standard output.
-enum Said {
-    Table(String),
-    Json(String),
+/// The table, and how to see more of it.
+fn table(file: &CalibrationFile, detail: Detail) -> String {
+    let more = match detail {
+        Detail::Short => labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, joints"),
+        Detail::Full => String::new(),
+    };
+    report::summary(file, detail) + &more
 }
 
-impl Said {
-    fn table(file: &CalibrationFile, detail: Detail) -> Self {
-        let more = match detail {
-            Detail::Short => {
-                labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, joints")
-            }
-            Detail::Full => String::new(),
-        };
-        Said::Table(report::summary(file, detail) + &more)
-    }
-
-    /// The warnings and diagnoses that it does not hold, or not where people read.
-    fn beside(&self, file: &CalibrationFile, detail: Detail) -> Vec<String> {
-        match self {
-            Said::Table(_) => report::unsaid(file, detail),
-            Said::Json(_) => {
-                let found = file.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
-                file.warnings.iter().chain(found).cloned().collect()
-            }
-        }
-    }
+/// All warnings and diagnoses: what JSON says of them is not where people read.
+fn doubts(file: &CalibrationFile) -> Vec<String> {
+    let found = file.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
+    file.warnings.iter().chain(found).cloned().collect()
 }
 
 /// What a calibration that has been written ends with.
@@ -127,7 +118,7 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
     // With --validate the files themselves say what is held out.
     let ignore_sets = !arguments.validate.is_empty();
     let options = ReadOptions { ignore_sets, ..arguments.reading.options()? };
-    let mapping = arguments.reading.columns.columns.iter();
+    let mapping = arguments.reading.meaning.columns.columns.iter();
     let mut inputs = Inputs {
         model: model.path.display().to_string(),
         sha256: Inputs::checksums(std::iter::once(&model.path).chain(mapping).map(PathBuf::as_path))?,

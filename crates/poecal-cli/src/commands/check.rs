@@ -24,10 +24,6 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
         diagnose(&model.robot, &file.data, &file.data.all_rows(), &options)
     });
     let check = report::Check::new(&model, measurements.as_ref(), &found);
-    if arguments.json {
-        console.data(&report::json(&check)?)?;
-    } else {
-        console.say(&check.text())?;
-    }
+    console.json_or_table(arguments.json, || report::json(&check), || check.text())?;
     Ok(DONE)
 }

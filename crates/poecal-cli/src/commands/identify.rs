@@ -34,10 +34,6 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     let found = foresee(&model.robot, &readings, &session)?;
     let files: Vec<String> = arguments.joints.iter().map(|path| path.display().to_string()).collect();
     let report = report::Identify::new(&model, &files, &session, &found);
-    if arguments.json {
-        console.data(&report::json(&report)?)?;
-    } else {
-        console.say(&report.text())?;
-    }
+    console.json_or_table(arguments.json, || report::json(&report), || report.text())?;
     Ok(DONE)
 }

@@ -20,17 +20,15 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     };
     let calibrated = file.robot().map_err(in_file)?;
     // Every row counts, whatever set the files say.
-    let (strict, frames) = (arguments.strictness.strict, arguments.frames.frames);
-    let options = ReadOptions { ignore_sets: true, strict, frames, ..arguments.columns.options()? };
+    let options = ReadOptions { ignore_sets: true, ..arguments.meaning.options()? };
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
     let judgement = file.judge(&read.data, arguments.refit_frame, arguments.refit_tool).map_err(in_file)?;
     console.warnings(&read.warnings);
-    if arguments.json {
-        console.data(&report::json(&judgement)?)?;
-    } else {
+    let table = || {
         let calibration = arguments.calibration.display().to_string();
-        console.say(&report::judgement(&calibration, &named(arguments, &file), &judgement))?;
-    }
+        report::judgement(&calibration, &named(arguments, &file), &judgement)
+    };
+    console.json_or_table(arguments.json, || report::json(&judgement), table)?;
     if let Some(doubt) = file.doubt(&judgement) {
         console.warning(doubt);
     }
