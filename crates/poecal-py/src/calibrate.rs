@@ -70,8 +70,10 @@ pub(crate) fn calibrate(
     };
     let options = CalibrationOptions {
         frame: frame_word(frame)?,
-        sigma_position_m: sigma("sigma_position_mm", sigma_position_mm, from_mm)?,
-        sigma_rotation_rad: sigma("sigma_rotation_deg", sigma_rotation_deg, f64::to_radians)?,
+        sigma_position_m: sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm)).transpose()?,
+        sigma_rotation_rad: sigma_rotation_deg
+            .map(|it| sigma("sigma_rotation_deg", it, f64::to_radians))
+            .transpose()?,
         tolerance: tolerance_deg_mm.map(tolerance).transpose()?,
         held_out: held_out.unwrap_or(usual.held_out),
         seed: seed.unwrap_or(usual.seed),
@@ -178,11 +180,8 @@ fn inputs(robot: &Robot, measurements: &Measurements, validate: Option<&Measurem
 
 /// A tolerance in SI.
 fn tolerance((angle_deg, length_mm): (f64, f64)) -> PyResult<Tolerance> {
-    let angle_rad = sigma("tolerance_deg_mm", Some(angle_deg), f64::to_radians)?;
-    let length_m = sigma("tolerance_deg_mm", Some(length_mm), from_mm)?;
-    let usual = Tolerance::default();
     Ok(Tolerance {
-        angle_rad: angle_rad.unwrap_or(usual.angle_rad),
-        length_m: length_m.unwrap_or(usual.length_m),
+        angle_rad: sigma("tolerance_deg_mm", angle_deg, f64::to_radians)?,
+        length_m: sigma("tolerance_deg_mm", length_mm, from_mm)?,
     })
 }

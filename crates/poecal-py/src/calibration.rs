@@ -207,7 +207,7 @@ impl Calibration {
             .detach(|| predicted(model, &joints.readings, frame, target, with_uncertainty))
             .map_err(raise)?;
         match found.doubts {
-            Some(doubts) => Prediction::new(found.poses, doubts).into_bound_py_any(py),
+            Some(doubts) => Prediction { poses: found.poses, doubts }.into_bound_py_any(py),
             None => poses(py, &found.poses, joints.single),
         }
     }

@@ -126,14 +126,14 @@ pub(crate) fn identify(
 ) -> PyResult<Findings> {
     let model = &robot.model;
     let joints = Joints::of(joints, &model.robot)?;
+    let position_m = sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm));
+    let rotation_rad = sigma_rotation_deg.map(|it| sigma("sigma_rotation_deg", it, f64::to_radians));
     let usual = Session::default();
     let session = Session {
         kind: kind_word(kind)?,
         noise: Noise {
-            position_m: sigma("sigma_position_mm", sigma_position_mm, from_mm)?
-                .unwrap_or(usual.noise.position_m),
-            rotation_rad: sigma("sigma_rotation_deg", sigma_rotation_deg, f64::to_radians)?
-                .unwrap_or(usual.noise.rotation_rad),
+            position_m: position_m.transpose()?.unwrap_or(usual.noise.position_m),
+            rotation_rad: rotation_rad.transpose()?.unwrap_or(usual.noise.rotation_rad),
         },
         device_free: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
     };
@@ -216,17 +216,17 @@ pub(crate) fn reproduce(
         |folder: &PathBuf| reserved_folder(py, folder, Contents::Reproduction, Existing::forced(force), &[]);
     let place = out.as_ref().map(reserved).transpose()?;
     let work = || {
-        let (files, words, json) = match experiment {
+        let (json, words, files) = match experiment {
             Experiment::Lou2009 => {
                 let found = experiments::lou2009(&options)?;
-                (reproduced::reproduction_files(&found)?, reproduced::claims(&found), report::json(&found)?)
+                (report::json(&found)?, reproduced::claims(&found), reproduced::reproduction_files(&found)?)
             }
             Experiment::Breakdown => {
                 let found = experiments::breakdown(&options)?;
                 (
-                    reproduced::breakdown_files(&found)?,
-                    reproduced::breakdown_table(&found),
                     report::json(&found)?,
+                    reproduced::breakdown_table(&found),
+                    reproduced::breakdown_files(&found)?,
                 )
             }
         };

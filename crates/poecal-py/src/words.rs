@@ -47,14 +47,12 @@ pub(crate) fn from_mm(value: f64) -> f64 {
     value / 1e3
 }
 
-/// A standard deviation in SI, if it is given.
-pub(crate) fn sigma(name: &str, value: Option<f64>, to_si: fn(f64) -> f64) -> PyResult<Option<f64>> {
-    match value {
-        Some(value) if !(value > 0.0 && value.is_finite()) => {
-            Err(argument(name, format!("found {value}, expected a standard deviation above 0")))
-        }
-        value => Ok(value.map(to_si)),
+/// A standard deviation in SI.
+pub(crate) fn sigma(name: &str, value: f64, to_si: fn(f64) -> f64) -> PyResult<f64> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(to_si(value));
     }
+    Err(argument(name, format!("found {value}, expected a standard deviation above 0")))
 }
 
 /// A size of errors or noise in SI.
