@@ -8,24 +8,27 @@ mod report;
 mod reproduce;
 mod shared;
 mod simulate;
+mod words;
 
-pub(crate) use calibrate::{Calibrate, RequiredLevel};
+pub(crate) use calibrate::Calibrate;
 pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
 pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
-pub(crate) use shared::{ChainArgs, Frame};
+pub(crate) use shared::ChainArgs;
 pub(crate) use simulate::Simulate;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
+use poecal::calibration::{DeviceFrameKnowledge, Level};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 
 use crate::quantity::threads;
-use shared::{ColumnArgs, DeviceFrames, OutFile, Reading, Strictness};
+use shared::{ColumnArgs, Meaning, OutFile, Reading};
+use words::{FORM, FRAME, PREDICT_IN, REQUIRED_LEVEL, one_of};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
@@ -85,11 +88,7 @@ pub(crate) struct Validate {
     #[arg(required = true)]
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) columns: ColumnArgs,
-    #[command(flatten)]
-    pub(crate) strictness: Strictness,
-    #[command(flatten)]
-    pub(crate) frames: DeviceFrames,
+    pub(crate) meaning: Meaning,
     /// Refit the measuring device's frame to these measurements
     #[arg(long)]
     pub(crate) refit_frame: bool,
@@ -98,29 +97,11 @@ pub(crate) struct Validate {
     pub(crate) refit_tool: bool,
     /// End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
-    #[arg(long, value_enum, value_name = "VERDICT")]
-    pub(crate) require: Option<RequiredLevel>,
+    #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT")]
+    pub(crate) require: Option<Level>,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-/// The frame of predicted poses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PredictIn {
-    /// The robot's base
-    Base,
-    /// The measuring device of a calibration
-    Device,
-}
-
-impl From<PredictIn> for PredictionFrame {
-    fn from(frame: PredictIn) -> Self {
-        match frame {
-            PredictIn::Base => PredictionFrame::Base,
-            PredictIn::Device => PredictionFrame::Device,
-        }
-    }
 }
 
 /// Arguments of `poecal predict`.
@@ -135,8 +116,8 @@ pub(crate) struct Predict {
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
     /// The frame of the poses
-    #[arg(long, value_enum, default_value = "base")]
-    pub(crate) frame: PredictIn,
+    #[arg(long, value_parser = one_of(PREDICT_IN), default_value = "base")]
+    pub(crate) frame: PredictionFrame,
     /// Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json)
     #[arg(long)]
     pub(crate) with_uncertainty: bool,
@@ -159,29 +140,11 @@ pub(crate) struct Check {
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// The measuring device's frame: `base` looks for mistakes in it too
-    #[arg(long, value_enum, default_value = "unknown")]
-    pub(crate) frame: Frame,
+    #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
+    pub(crate) frame: DeviceFrameKnowledge,
     /// Print JSON instead of text
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-/// The forms that a model can be written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Form {
-    /// A new URDF of links, joints and a tip
-    Urdf,
-    /// A table of screws
-    Toml,
-}
-
-impl From<Form> for ModelFormat {
-    fn from(form: Form) -> Self {
-        match form {
-            Form::Urdf => ModelFormat::Urdf,
-            Form::Toml => ModelFormat::Toml,
-        }
-    }
 }
 
 /// Arguments of `poecal convert`.
@@ -192,8 +155,8 @@ pub(crate) struct Convert {
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
     /// The form to write [default: as the extension of --out says]
-    #[arg(long, value_enum)]
-    pub(crate) to: Option<Form>,
+    #[arg(long, value_parser = one_of(FORM))]
+    pub(crate) to: Option<ModelFormat>,
     /// Write the screws and home pose of the robot with this added to the joint's value, like joint2=0.5deg or slide=1.2mm
     /// (repeatable). Mimic joints that follow it stay: an error of its encoder would move them too
     #[arg(long, value_name = "JOINT=ANGLE|LENGTH")]

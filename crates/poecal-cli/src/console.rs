@@ -92,6 +92,16 @@ impl Console {
         self.data(&if plain { text } else { style::painted(&text) })
     }
 
+    /// A result as JSON, or as a table that `--quiet` suppresses.
+    pub(crate) fn json_or_table(
+        &self,
+        is_json: bool,
+        json: impl FnOnce() -> Result<String>,
+        table: impl FnOnce() -> String,
+    ) -> Result<()> {
+        if is_json { self.data(&json()?) } else { self.say(&table()) }
+    }
+
     /// A result about written files. If it cannot be printed, the files exist all the same: returns the exit code.
     pub(crate) fn say_of(&self, text: &str, written: &Path) -> u8 {
         self.told(self.say(text), written)
@@ -117,6 +127,10 @@ impl Console {
         if !self.quiet {
             tell("warning:", style::WARNING, &message.to_string());
         }
+    }
+
+    pub(crate) fn warnings(&self, messages: &[String]) {
+        messages.iter().for_each(|message| self.warning(message));
     }
 
     /// A line about the run itself, which was asked for and is never suppressed.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
+use poecal::report::table::{INDENT as LABELS, WIDTH, broken, lines};
 use poecal::text::visible;
 
 /// For the word before an error.
@@ -12,10 +13,6 @@ pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 const GOOD: Style = AnsiColor::Green.on_default().bold();
 const LABEL: Style = Style::new().bold();
 
-/// Width of the column of labels.
-const LABELS: usize = 14;
-/// Default width of lines.
-const WIDTH: usize = 80;
 /// Labels of warnings for the reader.
 const LOOK: [&str; 4] = ["look at", "outliers", "warnings", "diagnosis"];
 /// First words of each verdict.
@@ -29,15 +26,14 @@ pub(crate) fn shown(path: &Path) -> String {
 
 /// A labelled paragraph as in reports, in lines of 80 characters where words are not longer.
 pub(crate) fn labelled(label: &str, text: &str) -> String {
-    let mut out = format!("{label:LABELS$}");
-    for (k, line) in text.lines().enumerate() {
-        if k > 0 {
-            out.push_str(&" ".repeat(LABELS));
-        }
-        out.push_str(&broken(line, LABELS, LABELS, WIDTH));
-        out.push('\n');
-    }
+    let mut out = String::new();
+    lines(&mut out, label, text.lines());
     out
+}
+
+/// Which files have been written to a folder.
+pub(crate) fn written(folder: &Path, files: &[String]) -> String {
+    labelled("written", &format!("{}\n{}", shown(folder), files.join(", ")))
 }
 
 /// A message in lines of a width; the first begins after `before` characters, the others are indented by two.
@@ -62,25 +58,6 @@ pub(crate) fn narrowed(text: &str, width: usize) -> String {
     lines.collect()
 }
 
-/// A text with line breaks in place of blanks where a line would exceed `width`.
-fn broken(text: &str, before: usize, indent: usize, width: usize) -> String {
-    let (mut out, mut used) = (String::new(), before);
-    for (k, word) in text.split(' ').enumerate() {
-        let length = word.chars().count();
-        if k > 0 && used + 1 + length > width {
-            out.push('\n');
-            out.push_str(&" ".repeat(indent));
-            used = indent;
-        } else if k > 0 {
-            out.push(' ');
-            used += 1;
-        }
-        out.push_str(word);
-        used += length;
-    }
-    out
-}
-
 /// A report with coloured labels and verdict.
 pub(crate) fn painted(text: &str) -> String {
     text.split_inclusive('\n').map(painted_line).collect()
@@ -91,8 +68,8 @@ fn painted_line(line: &str) -> String {
     let style = if LOOK.contains(&label) { WARNING } else { LABEL };
     let gap = rest.len() - rest.trim_start().len();
     let (gap, rest) = rest.split_at(gap);
-    let verdict = VERDICTS.iter().find(|(words, _)| label == "verdict" && rest.starts_with(words));
-    let rest = match verdict.and_then(|(words, style)| Some((words, style, rest.strip_prefix(words)?))) {
+    let mut verdicts = VERDICTS.iter().filter(|_| label == "verdict");
+    let rest = match verdicts.find_map(|(words, style)| Some((words, style, rest.strip_prefix(*words)?))) {
         Some((words, style, rest)) => format!("{style}{words}{style:#}{rest}"),
         None => rest.to_owned(),
     };

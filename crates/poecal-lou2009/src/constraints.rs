@@ -58,14 +58,6 @@ impl LeastSquares for Watched<'_> {
         self.0.normal(&state.estimate)
     }
 
-    fn second_order(&self, state: &WatchedState, step: &[f64]) -> Vec<f64> {
-        self.0.second_order(&state.estimate, step)
-    }
-
-    fn curvature(&self, state: &WatchedState) -> Option<Vec<f64>> {
-        self.0.curvature(&state.estimate)
-    }
-
     fn project_constraints(&self, step: &mut [f64]) {
         self.0.project_constraints(step);
     }

@@ -8,7 +8,7 @@ use super::{Efficiency, LENGTH_M, MeasurementKind, NOISE, runs, tables};
 use crate::{Formulation, Method, Residual};
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal::error::Result;
-use poecal::estimate::{Chain, Estimate, Linkage};
+use poecal::estimate::{Chain, Linkage};
 use poecal::lie::TargetTwist;
 use poecal::problem::Problem;
 use poecal::solve::{LeastSquares, Options};
@@ -21,7 +21,7 @@ const LIMIT: usize = 60;
 /// What is compared: formulation, residual of poses, method.
 type Way = (Formulation, Residual, Method);
 
-const POSE_WAYS: [Way; 9] = [
+const WAYS: [Way; 9] = [
     (Formulation::Adjoint, Residual::Tool, Method::GaussNewton),
     (Formulation::Screw, Residual::Tool, Method::GaussNewton),
     (Formulation::ScrewOffsets, Residual::Tool, Method::GaussNewton),
@@ -33,27 +33,20 @@ const POSE_WAYS: [Way; 9] = [
     (Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt),
 ];
 
-/// Points have one residual only.
-const POINT_WAYS: [Way; 5] = [
-    (Formulation::Adjoint, Residual::Tool, Method::GaussNewton),
-    (Formulation::Screw, Residual::Tool, Method::GaussNewton),
-    (Formulation::ScrewOffsets, Residual::Tool, Method::GaussNewton),
-    (Formulation::AdjointOffsets, Residual::Tool, Method::GaussNewton),
-    (Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt),
-];
-
 /// All comparisons: one session of configurations for each kind of measurement, its noise drawn anew in every trial, the same for
 /// every way.
 pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
     let mut found = Vec::new();
-    for (seen, ways) in [(MeasurementKind::Poses, &POSE_WAYS[..]), (MeasurementKind::Points, &POINT_WAYS[..])]
-    {
+    for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
+        // Points have one residual only.
+        let is_own = |way: &Way| seen == MeasurementKind::Poses || way.1 == Residual::Tool;
+        let ways: Vec<Way> = WAYS.into_iter().filter(is_own).collect();
         let rows_seed = derived(seed, Purpose::Fits, 0);
         let session = PaperSession::new(&tables::nominal(), runs::truth(false), seen, ROWS, rows_seed);
         let (bound_rms_m, unknowns) = bound(&session)?;
         let trials: Vec<Vec<Option<f64>>> = (0..trials as u64)
             .into_par_iter()
-            .map(|trial| fits(&session, ways, derived(seed, Purpose::FitNoise, trial)))
+            .map(|trial| fits(&session, &ways, derived(seed, Purpose::FitNoise, trial)))
             .collect::<Result<_>>()?;
         for (k, &way) in ways.iter().enumerate() {
             let ends: Vec<Option<f64>> = trials.iter().map(|ends| ends[k]).collect();
@@ -120,30 +113,20 @@ fn bound(session: &PaperSession) -> Result<(f64, usize)> {
     let upper = problem.normal(&session.truth).gram;
     let gram = DMatrix::from_fn(n, n, |a, b| upper[a.min(b) * n + a.max(b)]);
     let Some(factor) = gram.cholesky() else { return Ok((f64::INFINITY, n)) };
-    let sum = variance(session, &problem, &session.truth, |row| factor.solve(row).dot(row));
-    Ok(((sum / session.unseen.rows() as f64).sqrt(), n))
-}
-
-/// Sum over unseen configurations and coordinates of the variance of the predicted position.
-fn variance(
-    session: &PaperSession,
-    problem: &Problem<'_>,
-    truth: &Estimate,
-    of_row: impl Fn(&DVector<f64>) -> f64,
-) -> f64 {
-    let linkage = Linkage::new(truth);
+    let linkage = Linkage::new(&session.truth);
     let mut chain = Chain::default();
-    let mut twists: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); problem.dim()];
+    let mut twists: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
+    // Over unseen configurations and coordinates, the variance of the predicted position.
     let mut sum = 0.0;
     for row in 0..session.unseen.rows() {
         chain.evaluate(&linkage, &session.unseen, row, 0);
         problem.layout().target_twists(&chain, 0, &mut twists);
         for axis in 0..3 {
-            let derivative = DVector::from_iterator(twists.len(), twists.iter().map(|(v, _)| v[axis]));
-            sum += of_row(&derivative);
+            let derivative = DVector::from_iterator(n, twists.iter().map(|(v, _)| v[axis]));
+            sum += factor.solve(&derivative).dot(&derivative);
         }
     }
-    sum
+    Ok(((sum / session.unseen.rows() as f64).sqrt(), n))
 }
 
 #[cfg(test)]
@@ -152,9 +135,9 @@ mod tests {
 
     #[test]
     fn without_any_fit_there_is_no_ratio() {
-        let none = summary(MeasurementKind::Poses, POSE_WAYS[0], &[None, None], 1e-5, 30);
+        let none = summary(MeasurementKind::Poses, WAYS[0], &[None, None], 1e-5, 30);
         assert!(none.converged == 0 && none.ratio.is_nan() && none.held_out_rms_m.is_nan());
-        let some = summary(MeasurementKind::Poses, POSE_WAYS[0], &[Some(4e-10), None], 1e-5, 30);
+        let some = summary(MeasurementKind::Poses, WAYS[0], &[Some(4e-10), None], 1e-5, 30);
         assert!((some.ratio - 2.0).abs() < 1e-12 && (some.ratio_sigma - 2.0 / 60_f64.sqrt()).abs() < 1e-12);
         assert!(!some.exceeds(&none) && !none.exceeds(&some));
     }

@@ -1,6 +1,6 @@
 //! Results of a reproduction of lou2009: every number of its reports and plots.
 
-use crate::Formulation;
+use crate::{Formulation, Method, Residual};
 use serde::Serialize;
 
 /// Kind of a run's measurements.
@@ -72,6 +72,14 @@ pub struct Run {
     pub offset_error_max_deg: Option<f64>,
     /// By iteration, the start first.
     pub trace: Vec<Iteration>,
+}
+
+impl Run {
+    /// Whether it is the run without noise of a formulation.
+    pub(crate) fn is_exact(&self, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> bool {
+        (self.formulation, self.measurement, self.offsets_in_truth, self.noise)
+            == (formulation, seen, offsets, false)
+    }
 }
 
 /// The state of a run after an iteration.
@@ -173,6 +181,11 @@ impl Efficiency {
     pub fn exceeds(&self, other: &Efficiency) -> bool {
         self.ratio - other.ratio > BEYOND_CHANCE * self.ratio_sigma.hypot(other.ratio_sigma)
     }
+
+    /// The ratio with its chance.
+    pub(crate) fn ratio_words(&self) -> String {
+        format!("{:.3} ± {:.3}", self.ratio, self.ratio_sigma)
+    }
 }
 
 /// The share of random starts from which a formulation reaches the truth.
@@ -257,4 +270,47 @@ pub struct Reproduction {
     pub efficiency: Vec<Efficiency>,
     /// Convergence from afar.
     pub basin: Vec<Basin>,
+}
+
+impl Reproduction {
+    /// The run of a formulation without noise.
+    pub(crate) fn exact_run(
+        &self,
+        formulation: Formulation,
+        seen: MeasurementKind,
+        offsets: bool,
+    ) -> Option<&Run> {
+        self.runs.iter().find(|run| run.is_exact(formulation, seen, offsets))
+    }
+
+    /// How many statements hold, and how many there are: of the paper's, or of the findings that it leaves out.
+    pub(crate) fn holding(&self, said_by_paper: bool) -> (usize, usize) {
+        let claims = || self.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper);
+        (claims().filter(|claim| claim.holds).count(), claims().count())
+    }
+
+    /// The fits of a formulation with noise by plain Gauss-Newton.
+    pub(crate) fn noisy_fits(
+        &self,
+        formulation: Formulation,
+        seen: MeasurementKind,
+        residual: Residual,
+    ) -> Option<&Efficiency> {
+        self.efficiency.iter().find(|it| {
+            (it.formulation, it.measurement, it.residual.as_str(), it.method.as_str())
+                == (formulation, seen, residual.word(), Method::GaussNewton.word())
+        })
+    }
+
+    /// The starts of a formulation from afar, the nearest first.
+    pub(crate) fn basins(
+        &self,
+        formulation: Formulation,
+        seen: MeasurementKind,
+        method: Method,
+    ) -> impl Iterator<Item = &Basin> {
+        self.basin.iter().filter(move |it| {
+            (it.formulation, it.measurement, it.method.as_str()) == (formulation, seen, method.word())
+        })
+    }
 }

@@ -111,10 +111,7 @@ pub fn lou2009(options: &ReproductionOptions) -> Result<Reproduction> {
 
 /// A noise-free run.
 fn exact(ended: &[Ended], formulation: Formulation, seen: MeasurementKind, offsets: bool) -> Option<&Ended> {
-    ended.iter().find(|it| {
-        (it.plan.formulation, it.plan.seen, it.plan.offsets_in_truth, it.plan.noise)
-            == (formulation, seen, offsets, false)
-    })
+    ended.iter().find(|it| it.run.is_exact(formulation, seen, offsets))
 }
 
 fn coordinates(screw: &Screw) -> [f64; 6] {

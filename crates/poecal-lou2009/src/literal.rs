@@ -258,16 +258,6 @@ fn column_scales(robot: &Robot, formulation: Formulation, seen: MeasurementKind,
     scales
 }
 
-/// Singular values of a matrix of finite numbers, the largest first.
-fn sorted_singular_values(matrix: &DMatrix<f64>) -> Vec<f64> {
-    if matrix.is_empty() {
-        return Vec::new();
-    }
-    let mut values: Vec<f64> = matrix.singular_values().iter().copied().collect();
-    values.sort_by(|a, b| b.total_cmp(a));
-    values
-}
-
 /// Share of the largest singular value above which a direction counts to the rank of a noise-free matrix.
 pub const RANK_SHARE: f64 = 1e-9;
 
@@ -282,7 +272,11 @@ pub const RANK_SHARE: f64 = 1e-9;
 /// ```
 #[must_use]
 pub fn singular_values(matrix: &DMatrix<f64>) -> (Vec<f64>, usize) {
-    let values = sorted_singular_values(matrix);
+    if matrix.is_empty() {
+        return (Vec::new(), 0);
+    }
+    let mut values: Vec<f64> = matrix.singular_values().iter().copied().collect();
+    values.sort_by(|a, b| b.total_cmp(a));
     let floor = RANK_SHARE * values.first().copied().unwrap_or(0.0);
     let rank = values.iter().filter(|&&value| value > floor).count();
     (values, rank)

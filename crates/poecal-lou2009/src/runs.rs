@@ -8,15 +8,14 @@ use super::tables;
 use super::{Iteration, LENGTH_M, MeasurementKind, NOISE, Run};
 use crate::{Formulation, Residual, gauss_newton};
 use poecal::error::Result;
-use poecal::estimate::{Estimate, Packed};
+use poecal::estimate::Estimate;
 use poecal::measurement::{Dataset, Noise};
 use poecal::problem::Problem;
-use poecal::robot::Robot;
 use poecal::solve::{Options, Termination};
 
 /// Measurements of each kind that a run fits.
-pub(super) const POSES: usize = 30;
-pub(super) const POINTS: usize = 100;
+const POSES: usize = 30;
+const POINTS: usize = 100;
 
 /// Iterations after which a run has failed.
 const LIMIT: usize = 50;
@@ -29,16 +28,15 @@ const NOISY_FACTOR: f64 = 10.0;
 
 /// What a run is to do.
 #[derive(Clone, Copy)]
-pub(super) struct Plan {
-    pub(super) formulation: Formulation,
-    pub(super) seen: MeasurementKind,
-    pub(super) offsets_in_truth: bool,
-    pub(super) noise: bool,
+struct Plan {
+    formulation: Formulation,
+    seen: MeasurementKind,
+    offsets_in_truth: bool,
+    noise: bool,
 }
 
 /// A run, and where it ended.
 pub(super) struct Ended {
-    pub(super) plan: Plan,
     pub(super) run: Run,
     pub(super) estimate: Estimate,
 }
@@ -68,18 +66,14 @@ pub(super) fn runs(seed: u64) -> Result<Vec<Ended>> {
     Ok(runs)
 }
 
-/// Measurements of a kind that a run fits.
-fn count(seen: MeasurementKind) -> usize {
-    match seen {
-        MeasurementKind::Poses => POSES,
-        MeasurementKind::Points => POINTS,
-    }
-}
-
 /// The configurations of the runs of a kind, and the robot that is there.
 pub(super) fn session(offsets_in_truth: bool, seen: MeasurementKind, seed: u64) -> PaperSession {
+    let count = match seen {
+        MeasurementKind::Poses => POSES,
+        MeasurementKind::Points => POINTS,
+    };
     let seed = derived(seed, Purpose::Runs, 0);
-    PaperSession::new(&tables::nominal(), truth(offsets_in_truth), seen, count(seen), seed)
+    PaperSession::new(&tables::nominal(), truth(offsets_in_truth), seen, count, seed)
 }
 
 /// One run by plain Gauss-Newton, with the paper's residual of poses.
@@ -107,7 +101,7 @@ fn run(plan: Plan, seed: u64) -> Result<Ended> {
         }
     };
     let run = measures(&session, plan, &state, trace, (problem.layout().dim(), termination));
-    Ok(Ended { plan, run, estimate: state.estimate })
+    Ok(Ended { run, estimate: state.estimate })
 }
 
 /// What is told of a run that ended.
@@ -121,7 +115,7 @@ fn measures(
     let estimate = &state.estimate;
     let held_out_rms_m = session.held_out_rms_m(estimate);
     let most = if plan.noise { NOISY_FACTOR * NOISE.position_m } else { REACHED_M };
-    let (parameters, rank) = rank(session, estimate, plan.formulation);
+    let matrix = matrix(session, estimate, plan.formulation);
     let error = ScrewError::of(estimate, &session.truth);
     let equivalent = ScrewError::of(&estimate.without_offsets(), &session.truth.without_offsets());
     Run {
@@ -132,8 +126,8 @@ fn measures(
         measurements: session.packed.rows(),
         iterations: trace.len() - 1,
         converged: termination.is_success() && held_out_rms_m < most,
-        parameters,
-        rank,
+        parameters: matrix.ncols(),
+        rank: literal::singular_values(&matrix).1,
         unknowns,
         held_out_rms_m,
         screw_error_max: error.largest(),
@@ -189,40 +183,19 @@ fn offset_error_deg(found: &Estimate, truth: &Estimate) -> f64 {
     pairs.map(|(a, b)| (a - b).sin().atan2((a - b).cos()).abs().to_degrees()).fold(0.0, f64::max)
 }
 
-/// Columns and rank of the paper's own matrix at an estimate, on the configurations of a session.
-fn rank(session: &PaperSession, estimate: &Estimate, formulation: Formulation) -> (usize, usize) {
-    let matrix = matrix(session, estimate, formulation);
-    (matrix.ncols(), literal::singular_values(&matrix).1)
-}
-
-/// The paper's own matrix at an estimate.
+/// The paper's own matrix at an estimate, on the configurations of a session.
 pub(super) fn matrix(
     session: &PaperSession,
     estimate: &Estimate,
     formulation: Formulation,
 ) -> nalgebra::DMatrix<f64> {
-    let robot = as_robot(&session.nominal, estimate);
-    let values = configurations(&session.packed, estimate);
-    literal::stacked(&robot, &values, formulation, session.seen, LENGTH_M)
-}
-
-/// An estimate's screws and target as a robot; offsets belong to the joint values.
-pub(super) fn as_robot(nominal: &Robot, estimate: &Estimate) -> Robot {
-    let mut robot = nominal.with_screws(&estimate.screws());
+    // Offsets belong to the joint values.
+    let mut robot = session.nominal.with_screws(&estimate.screws());
     robot.home = estimate.base_from_target[0];
-    robot
-}
-
-/// Joint values with the estimate's offsets.
-fn configurations(packed: &Packed, estimate: &Estimate) -> Vec<Vec<f64>> {
-    (0..packed.rows())
-        .map(|row| {
-            packed
-                .joint_values(row)
-                .iter()
-                .zip(&estimate.joint_offset)
-                .map(|(value, offset)| value + offset)
-                .collect()
-        })
-        .collect()
+    let values = |row| {
+        let nominal = session.packed.joint_values(row);
+        nominal.iter().zip(&estimate.joint_offset).map(|(value, offset)| value + offset).collect()
+    };
+    let values: Vec<Vec<f64>> = (0..session.packed.rows()).map(values).collect();
+    literal::stacked(&robot, &values, formulation, session.seen, LENGTH_M)
 }

@@ -6,20 +6,6 @@ use poecal::lie::{Pose, Screw, Twist};
 use poecal::robot::Robot;
 use poecal::simulate;
 
-/// Table I: reach of each joint, degrees.
-pub const RANGES_DEG: [[f64; 2]; 6] =
-    [[-180.0, 180.0], [-105.0, 175.0], [-235.0, 85.0], [-180.0, 180.0], [-40.0, 220.0], [-360.0, 360.0]];
-
-/// Table II, left: the nominal screws `(v; ω)`, v in millimetres. Those of [`simulate::elbow`].
-pub const NOMINAL_SCREWS_MM: [[f64; 6]; 6] = [
-    [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
-    [0.0, 0.0, 150.0, 0.0, 1.0, 0.0],
-    [570.0, 0.0, -150.0, 0.0, -1.0, 0.0],
-    [0.0, -720.0, 0.0, -1.0, 0.0, 0.0],
-    [-720.0, 0.0, 784.0, 0.0, 1.0, 0.0],
-    [0.0, -720.0, 0.0, -1.0, 0.0, 0.0],
-];
-
 /// Table II, right: the identified screws `(v; ω)` as printed, with four decimals and v in millimetres.
 pub const PRINTED_SCREWS_MM: [[f64; 6]; 6] = [
     [0.0222, -0.0144, 0.0009, 0.0194, -0.0317, 0.9993],
@@ -29,9 +15,6 @@ pub const PRINTED_SCREWS_MM: [[f64; 6]; 6] = [
     [-733.2256, -29.1784, 798.2115, -0.0143, 0.9996, 0.0234],
     [-17.1142, -702.2271, -0.9022, -0.9984, 0.0244, -0.0517],
 ];
-
-/// Table II: the nominal point `P_c0`, millimetres.
-pub const NOMINAL_POINT_MM: [f64; 3] = [834.0, 0.0, 720.0];
 
 /// Table II: the identified point `P_c0`, millimetres.
 pub const PRESCRIBED_POINT_MM: [f64; 3] = [839.01, -5.03, 724.974];
@@ -85,21 +68,6 @@ pub fn prescribed() -> Robot {
     robot
 }
 
-/// [`prescribed`] with [`PRESCRIBED_OFFSETS_DEG`] added to its joint readings.
-///
-/// ```
-/// let robot = poecal_lou2009::tables::prescribed_with_offsets();
-/// assert!((robot.joint_values(&[0.0; 6])[0].to_degrees() - 4.0).abs() < 1e-14);
-/// ```
-#[must_use]
-pub fn prescribed_with_offsets() -> Robot {
-    let mut robot = prescribed();
-    for (joint, offset) in robot.joints.iter_mut().zip(PRESCRIBED_OFFSETS_DEG) {
-        joint.reading.offset = offset.to_radians();
-    }
-    robot
-}
-
 /// By how much the printed screws miss the constraints of a revolute screw.
 ///
 /// ```
@@ -127,6 +95,23 @@ pub fn rounding() -> Rounding {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Table I: reach of each joint, degrees.
+    const RANGES_DEG: [[f64; 2]; 6] =
+        [[-180.0, 180.0], [-105.0, 175.0], [-235.0, 85.0], [-180.0, 180.0], [-40.0, 220.0], [-360.0, 360.0]];
+
+    /// Table II, left: the nominal screws `(v; ω)`, v in millimetres. Those of [`simulate::elbow`].
+    const NOMINAL_SCREWS_MM: [[f64; 6]; 6] = [
+        [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        [0.0, 0.0, 150.0, 0.0, 1.0, 0.0],
+        [570.0, 0.0, -150.0, 0.0, -1.0, 0.0],
+        [0.0, -720.0, 0.0, -1.0, 0.0, 0.0],
+        [-720.0, 0.0, 784.0, 0.0, 1.0, 0.0],
+        [0.0, -720.0, 0.0, -1.0, 0.0, 0.0],
+    ];
+
+    /// Table II: the nominal point `P_c0`, millimetres.
+    const NOMINAL_POINT_MM: [f64; 3] = [834.0, 0.0, 720.0];
 
     #[test]
     fn table_is_the_simulated_elbow() {

@@ -32,17 +32,26 @@ impl Numbers {
     pub(crate) fn finite(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
         let numbers = Numbers::of(value, name, expected)?;
         let row_length: usize = numbers.shape.iter().skip(1).product::<usize>().max(1);
-        match numbers.values.iter().position(|number| !number.is_finite()) {
-            Some(at) if numbers.shape.len() > 1 => {
-                let (row, number) = (at / row_length, numbers.values.get(at).copied().unwrap_or_default());
-                Err(argument(name, format!("found {number} in row {row}, expected finite numbers")))
-            }
-            Some(at) => {
-                let number = numbers.values.get(at).copied().unwrap_or_default();
-                Err(argument(name, format!("found {number} at index {at}, expected finite numbers")))
+        match numbers.values.iter().enumerate().find(|(_, number)| !number.is_finite()) {
+            Some((at, number)) => {
+                let place = match numbers.shape.len() {
+                    0 | 1 => format!("at index {at}"),
+                    _ => format!("in row {}", at / row_length),
+                };
+                Err(argument(name, format!("found {number} {place}, expected finite numbers")))
             }
             None => Ok(numbers),
         }
+    }
+
+    /// Finite numbers of the shape `wanted`, as [`Numbers::shaped`].
+    pub(crate) fn finite_of(
+        value: &Bound<'_, PyAny>,
+        name: &str,
+        wanted: &[Option<usize>],
+        expected: &str,
+    ) -> PyResult<Self> {
+        Numbers::finite(value, name, expected)?.shaped(wanted, name, expected)
     }
 
     /// Refuses another shape than `wanted`, in which `None` is any length.
@@ -93,7 +102,7 @@ fn converted<'py>(
 /// The argument `name` as one pose, an array of shape (4, 4).
 pub(crate) fn pose(value: &Bound<'_, PyAny>, name: &str) -> PyResult<Pose> {
     let expected = "a pose of shape (4, 4)";
-    let numbers = Numbers::finite(value, name, expected)?.shaped(&[Some(4), Some(4)], name, expected)?;
+    let numbers = Numbers::finite_of(value, name, &[Some(4), Some(4)], expected)?;
     pose_of(&numbers.values).map_err(|message| argument(name, message))
 }
 
@@ -118,15 +127,9 @@ pub(crate) fn pose_of(numbers: &[f64]) -> Result<Pose, String> {
 
 /// A pose as 16 numbers, row by row.
 fn numbers_of(pose: &Pose) -> [f64; 16] {
-    let mut numbers = [0.0; 16];
-    for (row, chunk) in numbers.chunks_exact_mut(4).take(3).enumerate() {
-        for (column, number) in chunk.iter_mut().take(3).enumerate() {
-            *number = pose.rotation[(row, column)];
-        }
-        chunk[3] = pose.translation[row];
-    }
-    numbers[15] = 1.0;
-    numbers
+    let mut matrix = pose.rotation.to_homogeneous();
+    matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&pose.translation);
+    std::array::from_fn(|k| matrix[(k / 4, k % 4)])
 }
 
 /// A pose as an array of shape (4, 4).

@@ -24,14 +24,11 @@ pub(crate) struct Naming<'a, 'py> {
 impl Naming<'_, '_> {
     /// Names of the joints.
     fn joints(&self, count: usize) -> PyResult<Vec<String>> {
-        match &self.names {
-            Some(names) if names.len() != count => Err(argument(
-                "names",
-                format!("found {} names, expected one for each of {count} joints", names.len()),
-            )),
-            Some(names) => Ok(names.clone()),
-            None => Ok((1..=count).map(|index| format!("joint{index}")).collect()),
-        }
+        let Some(names) = &self.names else {
+            return Ok((1..=count).map(|index| format!("joint{index}")).collect());
+        };
+        check_count("names", names.len(), count)?;
+        Ok(names.clone())
     }
 
     /// Limits as keys of the joints' tables.
@@ -62,6 +59,14 @@ impl Naming<'_, '_> {
         let robot = robot_toml::parse(&text, self.name).map_err(without_place)?;
         Ok(Model { robot, source: ModelSource::Toml, path: self.name.into() })
     }
+}
+
+/// Refuses another number of an argument's entries than one for each joint.
+fn check_count(name: &str, found: usize, joints: usize) -> PyResult<()> {
+    if found == joints {
+        return Ok(());
+    }
+    Err(argument(name, format!("found {found} {name}, expected one for each of {joints} joints")))
 }
 
 /// A TOML string.
@@ -95,7 +100,7 @@ pub(crate) fn from_screws(
     naming: &Naming<'_, '_>,
 ) -> PyResult<Model> {
     let expected = "shape (n, 6): a unit twist a joint";
-    let screws = Numbers::finite(screws, "screws", expected)?.shaped(&[None, Some(6)], "screws", expected)?;
+    let screws = Numbers::finite_of(screws, "screws", &[None, Some(6)], expected)?;
     let count = screws.rows();
     let (names, limits) = (naming.joints(count)?, naming.limits(count)?);
     let mut text = "joint = [\n".to_owned();
@@ -129,15 +134,10 @@ pub(crate) struct DhTable<'a, 'py> {
 pub(crate) fn from_dh(table: &DhTable<'_, '_>, naming: &Naming<'_, '_>) -> PyResult<Model> {
     let words = [("standard", "standard_dh"), ("modified", "modified_dh")];
     let convention = chosen("convention", table.convention, &words)?;
-    let a = Numbers::finite(table.a_m, "a_m", "shape (n,), metres")?.shaped(
-        &[None],
-        "a_m",
-        "shape (n,), metres",
-    )?;
+    let a = Numbers::finite_of(table.a_m, "a_m", &[None], "shape (n,), metres")?;
     let count = a.rows();
     let expected = format!("shape ({count},) as a_m");
-    let column =
-        |value, name| Numbers::finite(value, name, &expected)?.shaped(&[Some(count)], name, &expected);
+    let column = |value, name| Numbers::finite_of(value, name, &[Some(count)], &expected);
     let columns = [
         a.values,
         column(table.alpha_rad, "alpha_rad")?.values,
@@ -145,13 +145,8 @@ pub(crate) fn from_dh(table: &DhTable<'_, '_>, naming: &Naming<'_, '_>) -> PyRes
         column(table.theta_rad, "theta_rad")?.values,
     ];
     let kinds = match &table.kinds {
-        Some(kinds) if kinds.len() != count => {
-            return Err(argument(
-                "kinds",
-                format!("found {} kinds, expected one for each of {count} joints", kinds.len()),
-            ));
-        }
         Some(kinds) => {
+            check_count("kinds", kinds.len(), count)?;
             let words = [("revolute", "revolute"), ("prismatic", "prismatic")];
             kinds.iter().map(|kind| chosen("kinds", kind, &words)).collect::<PyResult<_>>()?
         }

@@ -9,17 +9,14 @@ use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
 use poecal::measurement::Dataset;
 use poecal::robot::Tolerance;
-use poecal_lou2009::{Residual, formulated};
+use poecal_lou2009::{Formulation, Method, Residual, formulated};
 use pyo3::prelude::*;
 
 use crate::calibration::Calibration;
 use crate::errors::raise;
 use crate::measurements::Measurements;
 use crate::robot::Robot;
-use crate::words::{
-    formulation as formulation_word, frame as frame_word, from_deg, from_mm, method as method_word,
-    residual as residual_word, robust as robust_word, sigma,
-};
+use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, sigma};
 
 /// Calibrates a robot from measurements.
 ///
@@ -65,13 +62,18 @@ pub(crate) fn calibrate(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Calibration> {
     let usual = CalibrationOptions::default();
-    let formulation = formulation_word(formulation)?;
-    let residual = residual_word(residual)?;
-    let method = method.map_or(Ok(formulation.usual_method()), method_word)?;
+    let formulation = chosen("formulation", formulation, &Formulation::ALL.map(|it| (it.word(), it)))?;
+    let residual = chosen("residual", residual, &Residual::ALL.map(|it| (it.word(), it)))?;
+    let method = match method {
+        Some(word) => chosen("method", word, &Method::ALL.map(|it| (it.word(), it)))?,
+        None => formulation.usual_method(),
+    };
     let options = CalibrationOptions {
         frame: frame_word(frame)?,
-        sigma_position_m: sigma("sigma_position_mm", sigma_position_mm, from_mm)?,
-        sigma_rotation_rad: sigma("sigma_rotation_deg", sigma_rotation_deg, from_deg)?,
+        sigma_position_m: sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm)).transpose()?,
+        sigma_rotation_rad: sigma_rotation_deg
+            .map(|it| sigma("sigma_rotation_deg", it, f64::to_radians))
+            .transpose()?,
         tolerance: tolerance_deg_mm.map(tolerance).transpose()?,
         held_out: held_out.unwrap_or(usual.held_out),
         seed: seed.unwrap_or(usual.seed),
@@ -89,7 +91,7 @@ pub(crate) fn calibrate(
             Arc::new(poecal::io::measurements::MeasurementFile { data, ..Default::default() })
         }
     };
-    Ok(Calibration::of_fit(robot.same(), found, data, inputs, took))
+    Ok(Calibration::of_fit(robot.clone(), found, data, inputs, took))
 }
 
 /// The fit, without the interpreter's lock, and the time of the library. Warns as the program does.
@@ -178,11 +180,8 @@ fn inputs(robot: &Robot, measurements: &Measurements, validate: Option<&Measurem
 
 /// A tolerance in SI.
 fn tolerance((angle_deg, length_mm): (f64, f64)) -> PyResult<Tolerance> {
-    let angle_rad = sigma("tolerance_deg_mm", Some(angle_deg), from_deg)?;
-    let length_m = sigma("tolerance_deg_mm", Some(length_mm), from_mm)?;
-    let usual = Tolerance::default();
     Ok(Tolerance {
-        angle_rad: angle_rad.unwrap_or(usual.angle_rad),
-        length_m: length_m.unwrap_or(usual.length_m),
+        angle_rad: sigma("tolerance_deg_mm", angle_deg, f64::to_radians)?,
+        length_m: sigma("tolerance_deg_mm", length_mm, from_mm)?,
     })
 }

@@ -18,7 +18,7 @@ use poecal::report;
 use poecal::text::visible_markup;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyTuple};
+use pyo3::types::PyTuple;
 
 use crate::accuracy::{Accuracy, Verdict};
 use crate::arrays::{Joints, pose_array};
@@ -59,13 +59,13 @@ impl Calibration {
     /// The calibrated robot, with the targets in its tip frame.
     #[getter]
     fn robot(&self) -> PyResult<Robot> {
-        Ok(self.calibrated()?.same())
+        Ok(self.calibrated()?.clone())
     }
 
     /// The nominal robot.
     #[getter]
     fn nominal(&self) -> Robot {
-        self.nominal.same()
+        self.nominal.clone()
     }
 
     /// Errors of the nominal, registered and calibrated model on fitted and held-out rows.
@@ -208,7 +208,7 @@ impl Calibration {
             .detach(|| predicted(model, &joints.readings, frame, target, with_uncertainty))
             .map_err(raise)?;
         match found.doubts {
-            Some(doubts) => Prediction::new(found.poses, doubts).into_bound_py_any(py),
+            Some(doubts) => Prediction { poses: found.poses, doubts }.into_bound_py_any(py),
             None => poses(py, &found.poses, joints.single),
         }
     }
@@ -313,8 +313,7 @@ impl Calibration {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let state = self.state()?;
-        pickle::reduce(py, "_calibration", PyBytes::new(py, &pickle::bytes(&state)?))
+        pickle::reduce(py, "_calibration", &self.state()?)
     }
 
     fn __copy__(slf: Bound<'_, Self>) -> Bound<'_, Self> {

@@ -11,7 +11,7 @@ use poecal::text::visible_markup;
 use poecal::{forensics, offsets as explanations, report};
 use poecal_lou2009::{self as experiments, report as reproduced};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyTuple};
+use pyo3::types::PyTuple;
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::Joints;
@@ -21,7 +21,7 @@ use crate::measurements::Measurements;
 use crate::pickle;
 use crate::places::reserved_folder;
 use crate::robot::Robot;
-use crate::words::{chosen, end, frame as frame_word, from_deg, from_mm, kind as kind_word, sigma};
+use crate::words::{chosen, end, frame as frame_word, from_mm, kind as kind_word, sigma};
 
 /// A result: `str` is the program's table, `to_dict` what the program prints with `--json`, and `found["key"]` a part of it.
 #[pyclass(frozen, eq, module = "poecal", name = "Findings")]
@@ -36,10 +36,6 @@ impl Findings {
     pub(crate) fn new(text: String, found: &impl Serialize, warnings: Vec<String>) -> PyResult<Self> {
         let warnings = warnings.iter().map(|warning| crate::errors::python_words(warning)).collect();
         Ok(Findings { text, json: report::json(found).map_err(raise)?, warnings })
-    }
-
-    pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
-        pickle::value(state)
     }
 }
 
@@ -80,7 +76,7 @@ impl Findings {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        pickle::reduce(py, "_findings", PyBytes::new(py, &pickle::bytes(self)?))
+        pickle::reduce(py, "_findings", self)
     }
 }
 
@@ -130,14 +126,14 @@ pub(crate) fn identify(
 ) -> PyResult<Findings> {
     let model = &robot.model;
     let joints = Joints::of(joints, &model.robot)?;
+    let position_m = sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm));
+    let rotation_rad = sigma_rotation_deg.map(|it| sigma("sigma_rotation_deg", it, f64::to_radians));
     let usual = Session::default();
     let session = Session {
         kind: kind_word(kind)?,
         noise: Noise {
-            position_m: sigma("sigma_position_mm", sigma_position_mm, from_mm)?
-                .unwrap_or(usual.noise.position_m),
-            rotation_rad: sigma("sigma_rotation_deg", sigma_rotation_deg, from_deg)?
-                .unwrap_or(usual.noise.rotation_rad),
+            position_m: position_m.transpose()?.unwrap_or(usual.noise.position_m),
+            rotation_rad: rotation_rad.transpose()?.unwrap_or(usual.noise.rotation_rad),
         },
         device_free: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
     };
@@ -167,8 +163,8 @@ pub(crate) fn offsets(
     tip: Option<&str>,
 ) -> PyResult<Findings> {
     let actual = match &actual {
-        RobotOrCalibration::Robot(robot) => robot.get().same(),
-        RobotOrCalibration::Calibration(calibration) => calibration.get().calibrated()?.same(),
+        RobotOrCalibration::Robot(robot) => robot.get().clone(),
+        RobotOrCalibration::Calibration(calibration) => calibration.get().calibrated()?.clone(),
     };
     let (nominal, actual) = (&nominal.model, &actual.model);
     let base = base.map(|word| end("base", word)).transpose()?;
@@ -220,17 +216,17 @@ pub(crate) fn reproduce(
         |folder: &PathBuf| reserved_folder(py, folder, Contents::Reproduction, Existing::forced(force), &[]);
     let place = out.as_ref().map(reserved).transpose()?;
     let work = || {
-        let (files, words, json) = match experiment {
+        let (json, words, files) = match experiment {
             Experiment::Lou2009 => {
                 let found = experiments::lou2009(&options)?;
-                (reproduced::reproduction_files(&found)?, reproduced::claims(&found), report::json(&found)?)
+                (report::json(&found)?, reproduced::claims(&found), reproduced::reproduction_files(&found)?)
             }
             Experiment::Breakdown => {
                 let found = experiments::breakdown(&options)?;
                 (
-                    reproduced::breakdown_files(&found)?,
-                    reproduced::breakdown_table(&found),
                     report::json(&found)?,
+                    reproduced::breakdown_table(&found),
+                    reproduced::breakdown_files(&found)?,
                 )
             }
         };

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, pose_of};
 use crate::errors::{argument, raise, raise_at_row};
-use crate::words::{chosen, from_deg, from_mm};
+use crate::words::{chosen, from_mm};
 
 /// Largest deviation of a quaternion's norm from 1, as in files.
 const QUATERNION_TOLERANCE: f64 = 1e-2;
@@ -58,7 +58,7 @@ pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult
     }
     let sets = sets(columns)?;
     let sigma_position_m = sigma("sigma_position_mm", columns.sigma_position_mm, m, from_mm)?;
-    let sigma_rotation_rad = sigma("sigma_rotation_deg", columns.sigma_rotation_deg, m, from_deg)?;
+    let sigma_rotation_rad = sigma("sigma_rotation_deg", columns.sigma_rotation_deg, m, f64::to_radians)?;
     let at = |values: &[Option<f64>], row: usize| values.get(row).copied().flatten();
     let width = names.len();
     let mut data = Dataset::new(names);
@@ -99,11 +99,7 @@ fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: Unit) -> PyRe
     let names = robot.reading_names();
     let n = names.len();
     let expected = format!("shape (m, {n}): in each row {}", names.join(", "));
-    let joints = Numbers::finite(columns.joints, "joints", &expected)?.shaped(
-        &[None, Some(n)],
-        "joints",
-        &expected,
-    )?;
+    let joints = Numbers::finite_of(columns.joints, "joints", &[None, Some(n)], &expected)?;
     let slides = |name: &String| {
         robot.joints.iter().any(|joint| joint.reading.name == *name && joint.kind == JointKind::Prismatic)
     };
@@ -145,8 +141,7 @@ fn measured(columns: &ArrayColumns<'_, '_>, m: usize, length: Unit) -> PyResult<
 
 fn frames(poses: &Bound<'_, PyAny>, m: usize, length: Unit) -> PyResult<Vec<Measurement>> {
     let expected = format!("shape ({m}, 4, 4): a pose for each row of joints");
-    let wanted = [Some(m), Some(4), Some(4)];
-    let poses = Numbers::finite(poses, "poses", &expected)?.shaped(&wanted, "poses", &expected)?;
+    let poses = Numbers::finite_of(poses, "poses", &[Some(m), Some(4), Some(4)], &expected)?;
     let rows = poses.values.chunks_exact(16).enumerate();
     rows.map(|(row, numbers)| {
         let pose = pose_of(numbers).map_err(|message| argument("poses", format!("row {row}: {message}")))?;
@@ -164,11 +159,7 @@ fn points(
     length: Unit,
 ) -> PyResult<Vec<Measurement>> {
     let expected = format!("shape ({m}, 3): a position for each row of joints");
-    let positions = Numbers::finite(positions, "positions", &expected)?.shaped(
-        &[Some(m), Some(3)],
-        "positions",
-        &expected,
-    )?;
+    let positions = Numbers::finite_of(positions, "positions", &[Some(m), Some(3)], &expected)?;
     let expected = format!("shape ({m}, 4): x, y, z, w of a unit quaternion for each row of joints");
     let name = "quaternions_xyzw";
     let quaternions = quaternions
@@ -208,7 +199,7 @@ fn sigma(
     name: &str,
     value: Option<&Bound<'_, PyAny>>,
     m: usize,
-    to_si: fn(f64) -> PyResult<f64>,
+    to_si: fn(f64) -> f64,
 ) -> PyResult<Vec<Option<f64>>> {
     let Some(value) = value else { return Ok(Vec::new()) };
     let expected = format!("a number, or shape ({m},): one for each row of joints");
@@ -219,7 +210,7 @@ fn sigma(
     let numbers = numbers.shaped(&[Some(m)], name, &expected)?;
     let of_row = |(row, &value): (usize, &f64)| match value {
         value if value.is_nan() => Ok(None),
-        value if value > 0.0 && value.is_finite() => to_si(value).map(Some),
+        value if value > 0.0 && value.is_finite() => Ok(Some(to_si(value))),
         value => {
             Err(argument(name, format!("row {row}: found {value}, expected a standard deviation above 0")))
         }

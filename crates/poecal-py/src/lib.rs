@@ -106,6 +106,6 @@ mod _poecal {
 
     #[pyfunction]
     fn _findings(state: &[u8]) -> PyResult<Findings> {
-        Findings::of_state(state)
+        crate::pickle::value(state)
     }
 }

@@ -12,7 +12,7 @@ use poecal::io::named_files::refuse_repeats;
 use poecal::measurement::{Dataset, Set};
 use poecal::text::visible_markup;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyTuple};
+use pyo3::types::PyTuple;
 use serde::{Deserialize, Serialize};
 
 use crate::arrays::{pose_arrays, table};
@@ -28,6 +28,7 @@ use crate::words::chosen;
 /// Make them by `Measurements.from_csv`, `from_arrays` or `from_dataframe`. Lengths are in metres, angles in radians. Measurements
 /// compare by value, and can be copied and pickled.
 #[pyclass(frozen, module = "poecal", name = "Measurements")]
+#[derive(Clone)]
 pub(crate) struct Measurements {
     pub(crate) file: Arc<MeasurementFile>,
     pub(crate) source: Arc<MeasurementSource>,
@@ -77,11 +78,14 @@ fn options(
 }
 
 impl Measurements {
+    fn new(file: MeasurementFile, source: MeasurementSource) -> Self {
+        Measurements { file: Arc::new(file), source: Arc::new(source) }
+    }
+
     /// Source of rows without a file.
     pub(crate) fn in_memory(data: Dataset, name: &str) -> Self {
-        let file = MeasurementFile { data, ..MeasurementFile::default() };
         let source = MeasurementSource { names: vec![name.to_owned()], ..MeasurementSource::default() };
-        Measurements { file: Arc::new(file), source: Arc::new(source) }
+        Measurements::new(MeasurementFile { data, ..MeasurementFile::default() }, source)
     }
 
     pub(crate) fn data(&self) -> &Dataset {
@@ -109,11 +113,7 @@ impl Measurements {
         let MeasurementState { data, warnings, source } = pickle::value(state)?;
         data.check().map_err(raise)?;
         let file = MeasurementFile { data, warnings, ..MeasurementFile::default() };
-        Ok(Measurements { file: Arc::new(file), source: Arc::new(source) })
-    }
-
-    fn same(&self) -> Self {
-        Measurements { file: Arc::clone(&self.file), source: Arc::clone(&self.source) }
+        Ok(Measurements::new(file, source))
     }
 
     fn words(&self) -> String {
@@ -171,8 +171,7 @@ impl Measurements {
         let (file, sha256) = py.detach(read).map_err(raise)?;
         crate::warn(py, &file.warnings)?;
         let names = paths.iter().map(|path| path.display().to_string()).collect();
-        let source = MeasurementSource { names, sha256, fit_where: fit_where.is_some() };
-        Ok(Measurements { file: Arc::new(file), source: Arc::new(source) })
+        Ok(Measurements::new(file, MeasurementSource { names, sha256, fit_where: fit_where.is_some() }))
     }
 
     /// Measurements of arrays: positions, with orientations or without, or poses.
@@ -258,7 +257,7 @@ impl Measurements {
         let names = vec![from_dataframe::NAME.to_owned()];
         let source =
             MeasurementSource { names, fit_where: fit_where.is_some(), ..MeasurementSource::default() };
-        Ok(Measurements { file: Arc::new(file), source: Arc::new(source) })
+        Ok(Measurements::new(file, source))
     }
 
     fn __len__(&self) -> usize {
@@ -370,14 +369,14 @@ impl Measurements {
             warnings: warnings.clone(),
             source: (*self.source).clone(),
         };
-        pickle::reduce(py, "_measurements", PyBytes::new(py, &pickle::bytes(&state)?))
+        pickle::reduce(py, "_measurements", &state)
     }
 
     fn __copy__(&self) -> Self {
-        self.same()
+        self.clone()
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
-        self.same()
+        self.clone()
     }
 }

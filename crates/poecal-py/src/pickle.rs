@@ -7,20 +7,17 @@ use serde::de::DeserializeOwned;
 
 use crate::errors::argument;
 
-/// Result of `__reduce__`: the function of this name, and its argument.
+/// What `__reduce__` gives: the function of this name, and its argument, the state as bytes. Numbers read back as they were, to the
+/// last digit.
 pub(crate) fn reduce<'py>(
     py: Python<'py>,
     function: &str,
-    state: Bound<'py, PyBytes>,
+    state: &impl Serialize,
 ) -> PyResult<Bound<'py, PyTuple>> {
+    let bytes = serde_json::to_vec(state)
+        .map_err(|error| argument("pickle", format!("the object cannot be written: {error}")))?;
     let function = py.import("poecal._poecal")?.getattr(function)?;
-    PyTuple::new(py, [function, PyTuple::new(py, [state])?.into_any()])
-}
-
-/// A state as bytes, with exact numbers.
-pub(crate) fn bytes(state: &impl Serialize) -> PyResult<Vec<u8>> {
-    serde_json::to_vec(state)
-        .map_err(|error| argument("pickle", format!("the object cannot be written: {error}")))
+    PyTuple::new(py, [function, PyTuple::new(py, [PyBytes::new(py, &bytes)])?.into_any()])
 }
 
 /// A state from bytes.

@@ -10,15 +10,11 @@ use crate::arrays::pose_arrays;
 /// Predicted poses of m configurations, and the expected error of each.
 #[pyclass(frozen, module = "poecal", name = "Prediction")]
 pub(crate) struct Prediction {
-    poses: Vec<Pose>,
-    doubts: Vec<(PredictedError, bool)>,
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) doubts: Vec<(PredictedError, bool)>,
 }
 
 impl Prediction {
-    pub(crate) fn new(poses: Vec<Pose>, doubts: Vec<(PredictedError, bool)>) -> Self {
-        Prediction { poses, doubts }
-    }
-
     fn array<'py>(&self, py: Python<'py>, of: impl Fn(&PredictedError) -> f64) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_vec(py, self.doubts.iter().map(|(error, _)| of(error)).collect())
     }

@@ -17,7 +17,7 @@ use poecal::robot::{Joint, JointKind};
 use poecal::text::visible_markup;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyTuple};
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::arrays::{Joints, pose_array, pose_arrays, table};
 use crate::build::{DhTable, Naming, from_dh, from_screws};
@@ -324,15 +324,15 @@ impl Robot {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        pickle::reduce(py, "_robot", PyBytes::new(py, &pickle::bytes(&self.state()?)?))
+        pickle::reduce(py, "_robot", &self.state()?)
     }
 
     fn __copy__(&self) -> Self {
-        self.same()
+        self.clone()
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
-        self.same()
+        self.clone()
     }
 }
 

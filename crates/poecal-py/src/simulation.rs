@@ -15,7 +15,7 @@ use crate::errors::raise;
 use crate::measurements::Measurements;
 use crate::places::reserved_folder;
 use crate::robot::Robot;
-use crate::words::{frame as frame_word, from_deg, from_mm, kind as kind_word, size};
+use crate::words::{frame as frame_word, from_mm, kind as kind_word, size};
 
 /// Most rows of a simulation, as by the program.
 const MOST: usize = 10_000_000;
@@ -36,7 +36,7 @@ impl Simulation {
     /// The nominal robot.
     #[getter]
     fn nominal(&self) -> Robot {
-        self.nominal.same()
+        self.nominal.clone()
     }
 
     /// The actual robot.
@@ -123,10 +123,10 @@ pub(crate) fn simulate(
         }
     }
     let simulation = simulated::Simulation {
-        error_rotation_rad: size("error_rotation_deg", error_rotation_deg, from_deg)?,
+        error_rotation_rad: size("error_rotation_deg", error_rotation_deg, f64::to_radians)?,
         error_position_m: size("error_position_mm", error_position_mm, from_mm)?,
         noise_position_m: size("noise_position_mm", noise_position_mm, from_mm)?,
-        noise_rotation_rad: size("noise_rotation_deg", noise_rotation_deg, from_deg)?,
+        noise_rotation_rad: size("noise_rotation_deg", noise_rotation_deg, f64::to_radians)?,
         count,
         seed,
         device_anywhere: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
@@ -149,5 +149,5 @@ pub(crate) fn simulate(
         visible(&robot.model.path.display().to_string()),
         kind.word()
     );
-    Ok(Simulation { nominal: robot.same(), simulation, kind, made, held_out, command })
+    Ok(Simulation { nominal: robot.clone(), simulation, kind, made, held_out, command })
 }

@@ -1,14 +1,12 @@
 //! Arguments that are one of a few words, and numbers with a unit in their name.
 
 use poecal::calibration::{DeviceFrameKnowledge, Loss, Robust};
-use poecal::io::measurements::{Quantity, Unit};
 use poecal::nearest;
 use poecal::offsets::End;
 use poecal::simulate::Kind;
-use poecal_lou2009::{Formulation, Method, Residual};
 use pyo3::prelude::*;
 
-use crate::errors::{argument, raise};
+use crate::errors::argument;
 
 /// Meaning of `word`, which must be one of these.
 pub(crate) fn chosen<T: Copy>(name: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
@@ -40,51 +38,27 @@ pub(crate) fn robust(word: &str) -> PyResult<Robust> {
     chosen("robust", word, &words)
 }
 
-pub(crate) fn formulation(word: &str) -> PyResult<Formulation> {
-    chosen("formulation", word, &Formulation::ALL.map(|it| (it.word(), it)))
-}
-
-pub(crate) fn residual(word: &str) -> PyResult<Residual> {
-    chosen("residual", word, &Residual::ALL.map(|it| (it.word(), it)))
-}
-
-pub(crate) fn method(word: &str) -> PyResult<Method> {
-    chosen("method", word, &Method::ALL.map(|it| (it.word(), it)))
-}
-
 pub(crate) fn end(name: &str, word: &str) -> PyResult<End> {
     chosen(name, word, &[End::Free, End::Kept].map(|end| (end.word(), end)))
 }
 
 /// Millimetres in metres.
-pub(crate) fn from_mm(value: f64) -> PyResult<f64> {
-    Ok(Unit::parse("mm", Quantity::Length).map_err(raise)?.to_si(value))
+pub(crate) fn from_mm(value: f64) -> f64 {
+    value / 1e3
 }
 
-/// Degrees in radians.
-pub(crate) fn from_deg(value: f64) -> PyResult<f64> {
-    Ok(Unit::parse("deg", Quantity::Angle).map_err(raise)?.to_si(value))
-}
-
-/// A standard deviation in SI, if given.
-pub(crate) fn sigma(
-    name: &str,
-    value: Option<f64>,
-    to_si: fn(f64) -> PyResult<f64>,
-) -> PyResult<Option<f64>> {
-    match value {
-        Some(value) if !(value > 0.0 && value.is_finite()) => {
-            Err(argument(name, format!("found {value}, expected a standard deviation above 0")))
-        }
-        Some(value) => to_si(value).map(Some),
-        None => Ok(None),
+/// A standard deviation in SI.
+pub(crate) fn sigma(name: &str, value: f64, to_si: fn(f64) -> f64) -> PyResult<f64> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(to_si(value));
     }
+    Err(argument(name, format!("found {value}, expected a standard deviation above 0")))
 }
 
 /// A size of errors or noise in SI.
-pub(crate) fn size(name: &str, value: f64, to_si: fn(f64) -> PyResult<f64>) -> PyResult<f64> {
+pub(crate) fn size(name: &str, value: f64, to_si: fn(f64) -> f64) -> PyResult<f64> {
     if value >= 0.0 && value.is_finite() {
-        return to_si(value);
+        return Ok(to_si(value));
     }
     Err(argument(name, format!("found {value}, expected a finite number not below 0")))
 }

@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use poecal::calibration::DeviceFrameKnowledge;
+use poecal::simulate::Kind;
 
-use super::shared::{ChainArgs, ColumnArgs, Frame};
-use super::simulate::SimulatedKind;
+use super::shared::{ChainArgs, ColumnArgs};
+use super::words::{FRAME, SIMULATED_KIND, one_of};
 use crate::quantity::{sigma_m, sigma_rad};
 
 /// Arguments of `poecal identify`.
@@ -21,8 +23,8 @@ pub(crate) struct Identify {
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
     /// Kind of the measurements of the tip
-    #[arg(long, value_enum, default_value = "pose")]
-    pub(crate) kind: SimulatedKind,
+    #[arg(long, value_parser = one_of(SIMULATED_KIND), default_value = "pose")]
+    pub(crate) kind: Kind,
     /// Standard deviation of each measured position component [default: 0.05mm]
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]
     pub(crate) sigma_position: Option<f64>,
@@ -30,8 +32,8 @@ pub(crate) struct Identify {
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
     pub(crate) sigma_rotation: Option<f64>,
     /// The measuring device's frame
-    #[arg(long, value_enum, default_value = "unknown")]
-    pub(crate) frame: Frame,
+    #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
+    pub(crate) frame: DeviceFrameKnowledge,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,

@@ -2,29 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use poecal::simulate::Kind;
 
 use super::shared::ChainArgs;
+use super::words::{MEASURED, one_of};
 use crate::quantity::whole;
-
-/// What will be measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Measured {
-    /// Positions of a target, as a laser tracker sees them
-    Points,
-    /// Positions and orientations
-    Poses,
-}
-
-impl From<Measured> for Kind {
-    fn from(measured: Measured) -> Self {
-        match measured {
-            Measured::Points => Kind::Point,
-            Measured::Poses => Kind::Pose,
-        }
-    }
-}
 
 /// Arguments of `poecal init`.
 #[derive(Args, Debug)]
@@ -34,8 +17,8 @@ pub(crate) struct Init {
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
     /// Kind of the measurements
-    #[arg(long, value_enum, default_value = "points")]
-    pub(crate) measure: Measured,
+    #[arg(long, value_parser = one_of(MEASURED), default_value = "points")]
+    pub(crate) measure: Kind,
     /// Number of configurations to suggest
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) count: u32,

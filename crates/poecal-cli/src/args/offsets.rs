@@ -2,28 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
-use poecal::offsets;
+use clap::Args;
+use poecal::offsets::End;
 
 use super::shared::{ChainArgs, OutFile};
-
-/// Whether a frame is the same in both models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum End {
-    /// It is fitted with the offsets
-    Free,
-    /// It is the same in both
-    Kept,
-}
-
-impl From<End> for offsets::End {
-    fn from(end: End) -> Self {
-        match end {
-            End::Free => offsets::End::Free,
-            End::Kept => offsets::End::Kept,
-        }
-    }
-}
+use super::words::{END, one_of};
 
 /// Arguments of `poecal offsets`.
 #[derive(Args, Debug)]
@@ -35,10 +18,10 @@ pub(crate) struct Offsets {
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
     /// The base frame [default: free for a calibration whose device stood anywhere, else kept]
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = one_of(END))]
     pub(crate) base: Option<End>,
     /// The tip frame [default: free for a calibration, else kept]
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = one_of(END))]
     pub(crate) tip: Option<End>,
     /// Print JSON instead of the table
     #[arg(long)]

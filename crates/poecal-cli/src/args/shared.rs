@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use poecal::io::measurements::{ColumnMap, Frames, ReadOptions};
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::urdf::ChainSelection;
 
+use super::words::{FRAMES, one_of};
 use crate::console::Console;
 
 /// Which chain of a URDF.
@@ -26,15 +27,6 @@ impl ChainArgs {
     }
 }
 
-/// What is known of the measuring device's frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Frame {
-    /// The device frame is unknown
-    Unknown,
-    /// Measurements are in the robot's base frame
-    Base,
-}
-
 /// What columns of files mean.
 #[derive(Args, Debug)]
 pub(crate) struct ColumnArgs {
@@ -50,49 +42,30 @@ impl ColumnArgs {
     }
 }
 
-/// How to treat lost beams.
+/// What measurement files mean.
 #[derive(Args, Debug)]
-pub(crate) struct Strictness {
+pub(crate) struct Meaning {
+    #[command(flatten)]
+    pub(crate) columns: ColumnArgs,
     /// Refuse lost beams (empty or zero positions) instead of skipping them with a warning
     #[arg(long)]
     pub(crate) strict: bool,
-}
-
-/// Which rows share a device frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FramesWord {
-    /// All, or those of one name in the column `instrument`
-    Common,
-    /// Those of a file
-    PerFile,
-}
-
-impl From<FramesWord> for Frames {
-    fn from(word: FramesWord) -> Self {
-        match word {
-            FramesWord::Common => Frames::Common,
-            FramesWord::PerFile => Frames::PerFile,
-        }
-    }
-}
-
-/// Where the measuring device stood.
-#[derive(Args, Debug)]
-pub(crate) struct DeviceFrames {
     /// Which rows share a frame of the measuring device: per-file if it was moved between the files
-    #[arg(long, value_enum, default_value = "common")]
-    pub(crate) frames: FramesWord,
+    #[arg(long, value_parser = one_of(FRAMES), default_value = "common")]
+    pub(crate) frames: Frames,
+}
+
+impl Meaning {
+    pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
+        Ok(ReadOptions { strict: self.strict, frames: self.frames, ..self.columns.options()? })
+    }
 }
 
 /// How to read measurement files.
 #[derive(Args, Debug)]
 pub(crate) struct Reading {
     #[command(flatten)]
-    pub(crate) columns: ColumnArgs,
-    #[command(flatten)]
-    pub(crate) strictness: Strictness,
-    #[command(flatten)]
-    pub(crate) frames: DeviceFrames,
+    pub(crate) meaning: Meaning,
     /// Fit only rows whose COLUMN has one of these values, and hold out all others
     #[arg(long, value_name = "COLUMN=VALUE[,VALUE]")]
     pub(crate) fit_where: Option<String>,
@@ -101,8 +74,7 @@ pub(crate) struct Reading {
 impl Reading {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
-        let (strict, frames) = (self.strictness.strict, self.frames.frames.into());
-        Ok(ReadOptions { fit_where, strict, frames, ..self.columns.options()? })
+        Ok(ReadOptions { fit_where, ..self.meaning.options()? })
     }
 }
 

@@ -2,32 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use poecal::calibration::DeviceFrameKnowledge;
 use poecal::simulate::Kind;
 
-use super::shared::{ChainArgs, Frame};
+use super::shared::ChainArgs;
+use super::words::{FRAME, SIMULATED_KIND, one_of};
 use crate::quantity::LengthAndAngle;
-
-/// What a simulated device sees.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SimulatedKind {
-    /// Positions and orientations
-    Pose,
-    /// Positions
-    Point,
-    /// Both in turn
-    Mixed,
-}
-
-impl From<SimulatedKind> for Kind {
-    fn from(kind: SimulatedKind) -> Self {
-        match kind {
-            SimulatedKind::Pose => Kind::Pose,
-            SimulatedKind::Point => Kind::Point,
-            SimulatedKind::Mixed => Kind::Mixed,
-        }
-    }
-}
 
 /// Arguments of `poecal simulate`.
 #[derive(Args, Debug)]
@@ -49,11 +30,11 @@ pub(crate) struct Simulate {
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Kind of the measurements
-    #[arg(long, value_enum, default_value = "pose")]
-    pub(crate) kind: SimulatedKind,
+    #[arg(long, value_parser = one_of(SIMULATED_KIND), default_value = "pose")]
+    pub(crate) kind: Kind,
     /// The measuring device's frame: unknown, or the robot's base
-    #[arg(long, value_enum, default_value = "unknown")]
-    pub(crate) frame: Frame,
+    #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
+    pub(crate) frame: DeviceFrameKnowledge,
     /// Number of further measurements, free of noise, to judge a calibration by
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=10_000_000))]
     pub(crate) held_out_count: u32,

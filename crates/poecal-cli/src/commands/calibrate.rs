@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal::calibration::{
-    Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, Stage, calibrate_with_progress, settle_sets,
+    Calibration, CalibrationOptions, Level, Stage, calibrate_with_progress, settle_sets,
 };
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
@@ -15,12 +15,12 @@ use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::measurement::Dataset;
 use poecal::report::Detail;
 use poecal::{Error, ErrorKind, Result, report};
-use poecal_lou2009::{Formulation, Residual, formulated};
+use poecal_lou2009::{Residual, formulated};
 
 use super::typed::command;
-use crate::args::{Calibrate, Frame, ReportPlace};
+use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style::{self, labelled, shown};
 use crate::timings::Timings;
 use crate::{DONE, WORSE};
 
@@ -33,11 +33,10 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments);
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
-    let residual = Residual::from(arguments.residual);
-    if residual != Residual::default() && !poses {
+    if arguments.residual != Residual::default() && !poses {
         console.warning(format!(
             "--residual {} has no effect: it is about measured frames, and there are points only",
-            residual.word()
+            arguments.residual.word()
         ));
     }
     timings.end("read");
@@ -54,56 +53,45 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let calibration = calibration?;
     let file = CalibrationFile::new(&calibration, &data, inputs);
     let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
-    let said = if arguments.json { Said::Json(file.to_text()?) } else { Said::table(&file, detail) };
-    for warning in said.beside(&file, detail) {
-        console.warning(warning);
-    }
+    let (text, unsaid) = if arguments.json {
+        (file.to_text()?, doubts(&file))
+    } else {
+        (table(&file, detail), report::unsaid(&file, detail))
+    };
+    console.warnings(&unsaid);
     let code = code(arguments, &calibration);
     let written = write(places, arguments, (&model, &data, &calibration), file, console)?;
     timings.end("write");
     if arguments.timings {
         console.note(timings.line(|| calibration.solve_again(&data, &options)));
     }
-    let told = match said {
-        Said::Json(json) => console.data_of(&json, &arguments.out),
-        Said::Table(table) => console.say_of(&(table + &written), &arguments.out),
+    let told = if arguments.json {
+        console.data_of(&text, &arguments.out)
+    } else {
+        console.say_of(&(text + &written), &arguments.out)
     };
     Ok(code.max(told))
 }
 
-/// Standard output.
-enum Said {
-    Table(String),
-    Json(String),
+/// The table, and how to see more of it.
+fn table(file: &CalibrationFile, detail: Detail) -> String {
+    let more = match detail {
+        Detail::Short => labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, joints"),
+        Detail::Full => String::new(),
+    };
+    report::summary(file, detail) + &more
 }
 
-impl Said {
-    fn table(file: &CalibrationFile, detail: Detail) -> Self {
-        let more = match detail {
-            Detail::Short => {
-                labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, joints")
-            }
-            Detail::Full => String::new(),
-        };
-        Said::Table(report::summary(file, detail) + &more)
-    }
-
-    /// Warnings and diagnoses that it does not contain.
-    fn beside(&self, file: &CalibrationFile, detail: Detail) -> Vec<String> {
-        match self {
-            Said::Table(_) => report::unsaid(file, detail),
-            Said::Json(_) => {
-                let found = file.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
-                file.warnings.iter().chain(found).cloned().collect()
-            }
-        }
-    }
+/// All warnings and diagnoses: what JSON says of them is not where people read.
+fn doubts(file: &CalibrationFile) -> Vec<String> {
+    let found = file.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
+    file.warnings.iter().chain(found).cloned().collect()
 }
 
 /// Exit code after a written calibration.
 fn code(arguments: &Calibrate, calibration: &Calibration) -> u8 {
     let level = calibration.verdict.level;
-    let worse = arguments.require.is_some_and(|required| level < required.into());
+    let worse = arguments.require.is_some_and(|required| level < required);
     let converged = calibration.solver.termination.is_success();
     if worse || level == Level::DoNotUse || !converged { WORSE } else { DONE }
 }
@@ -130,7 +118,7 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
     // With --validate the sets are given by the files' roles.
     let ignore_sets = !arguments.validate.is_empty();
     let options = ReadOptions { ignore_sets, ..arguments.reading.options()? };
-    let mapping = arguments.reading.columns.columns.iter();
+    let mapping = arguments.reading.meaning.columns.columns.iter();
     let mut inputs = Inputs {
         model: model.path.display().to_string(),
         sha256: Inputs::checksums(std::iter::once(&model.path).chain(mapping).map(PathBuf::as_path))?,
@@ -140,9 +128,7 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
         let file = measurements::read(paths, &model.robot, &options)?;
         inputs.measurements.extend(paths.iter().map(|path| path.display().to_string()));
         inputs.sha256.extend(file.sha256);
-        for warning in &file.warnings {
-            console.warning(warning);
-        }
+        console.warnings(&file.warnings);
         Ok(file.data)
     };
     let mut data = read(&arguments.measurements)?;
@@ -164,20 +150,16 @@ fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) ->
 
 fn options(arguments: &Calibrate) -> CalibrationOptions {
     let usual = CalibrationOptions::default();
-    let formulation: Formulation = arguments.formulation.into();
-    let method = arguments.method.map_or(formulation.usual_method(), Into::into);
+    let method = arguments.method.unwrap_or(arguments.formulation.usual_method());
     CalibrationOptions {
-        frame: match arguments.frame {
-            Frame::Unknown => DeviceFrameKnowledge::Unknown,
-            Frame::Base => DeviceFrameKnowledge::Base,
-        },
+        frame: arguments.frame,
         sigma_position_m: arguments.sigma_position,
         sigma_rotation_rad: arguments.sigma_rotation,
         tolerance: arguments.tolerance.0,
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
-        robust: arguments.robust.into(),
-        formulation: formulated(formulation, arguments.residual.into(), method),
+        robust: arguments.robust,
+        formulation: formulated(arguments.formulation, arguments.residual, method),
         ..usual
     }
 }
@@ -221,13 +203,11 @@ fn write(
     let report = residuals.as_ref().map(|rows| report::calibration_page(&file, rows)).transpose()?;
     let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);
     let results = Results { file, residuals, report };
-    let robot = calibration.robot_with_targets();
-    let written = output::write(places.folder, places.report, model, &robot, results)?;
-    for note in &written.notes {
-        console.warning(note);
-    }
-    let others = written.files.iter().filter(|name| *name != output::REPORT).cloned().collect::<Vec<_>>();
-    let mut words = labelled("written", &format!("{}\n{}", shown(&written.folder), others.join(", ")));
+    let written =
+        output::write(places.folder, places.report, model, &calibration.robot_with_targets(), results)?;
+    console.warnings(&written.notes);
+    let others: Vec<String> = written.files.iter().filter(|name| *name != output::REPORT).cloned().collect();
+    let mut words = style::written(&written.folder, &others);
     if arguments.verbose {
         let text = format!(
             "read back within {:.1e} m and {:.1e} rad in 1,000 configurations",

@@ -1,12 +1,13 @@
 //! `poecal check`: how files are read.
 
+use poecal::calibration::DeviceFrameKnowledge;
 use poecal::forensics::{DiagnosisOptions, diagnose};
 use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::{Result, report};
 
 use crate::DONE;
-use crate::args::{Check, Frame};
+use crate::args::Check;
 use crate::console::Console;
 
 pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
@@ -18,15 +19,11 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
         Some(measurements::read(&arguments.measurements, &model.robot, &options)?)
     };
     let found = measurements.as_ref().map_or_else(Vec::new, |file| {
-        let device_free = arguments.frame == Frame::Unknown;
+        let device_free = arguments.frame == DeviceFrameKnowledge::Unknown;
         let options = DiagnosisOptions { device_free, ..DiagnosisOptions::default() };
         diagnose(&model.robot, &file.data, &file.data.all_rows(), &options)
     });
     let check = report::Check::new(&model, measurements.as_ref(), &found);
-    if arguments.json {
-        console.data(&report::json(&check)?)?;
-    } else {
-        console.say(&check.text())?;
-    }
+    console.json_or_table(arguments.json, || report::json(&check), || check.text())?;
     Ok(DONE)
 }

@@ -31,9 +31,7 @@ pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
         model.robot = into_screws(&model.robot, &offsets)?;
     }
     let converted = model::convert(&model, form)?;
-    for note in &converted.notes {
-        console.warning(note);
-    }
+    console.warnings(&converted.notes);
     console.deliver(converted.text, place)?;
     Ok(DONE)
 }
@@ -76,7 +74,7 @@ fn unknown_joint(name: &str, robot: &Robot) -> String {
 
 fn form(arguments: &Convert) -> Result<ModelFormat> {
     let named = arguments.place.out.as_ref().and_then(ModelFormat::of_path);
-    arguments.to.map(ModelFormat::from).or(named).ok_or_else(|| {
+    arguments.to.or(named).ok_or_else(|| {
         let message = match &arguments.place.out {
             Some(out) => format!(
                 "found no form in the name `{}`, expected .urdf or .toml, or --to urdf|toml",

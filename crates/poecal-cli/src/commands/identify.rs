@@ -1,6 +1,7 @@
 //! `poecal identify`: identifiability by measurements in given configurations.
 
 use poecal::analysis::{Session, identify as foresee};
+use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::io::named_files::refuse_repeats;
@@ -8,7 +9,7 @@ use poecal::measurement::Noise;
 use poecal::{Result, report};
 
 use crate::DONE;
-use crate::args::{Frame, Identify};
+use crate::args::Identify;
 use crate::console::Console;
 
 pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
@@ -18,27 +19,21 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     let mut readings = Vec::new();
     for path in &arguments.joints {
         let joints = measurements::read_joints(path, &model.robot, &options)?;
-        for warning in &joints.warnings {
-            console.warning(warning);
-        }
+        console.warnings(&joints.warnings);
         readings.extend(joints.readings);
     }
     let usual = Session::default();
     let session = Session {
-        kind: arguments.kind.into(),
+        kind: arguments.kind,
         noise: Noise {
             position_m: arguments.sigma_position.unwrap_or(usual.noise.position_m),
             rotation_rad: arguments.sigma_rotation.unwrap_or(usual.noise.rotation_rad),
         },
-        device_free: arguments.frame == Frame::Unknown,
+        device_free: arguments.frame == DeviceFrameKnowledge::Unknown,
     };
     let found = foresee(&model.robot, &readings, &session)?;
     let files: Vec<String> = arguments.joints.iter().map(|path| path.display().to_string()).collect();
     let report = report::Identify::new(&model, &files, &session, &found);
-    if arguments.json {
-        console.data(&report::json(&report)?)?;
-    } else {
-        console.say(&report.text())?;
-    }
+    console.json_or_table(arguments.json, || report::json(&report), || report.text())?;
     Ok(DONE)
 }

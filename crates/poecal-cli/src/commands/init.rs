@@ -6,7 +6,7 @@ use poecal::io::output::{Contents, Existing, FolderPlace, Project, write_project
 
 use crate::args::Init;
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style::{self, labelled, shown};
 
 pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     let chain = arguments.chain.selection();
@@ -14,19 +14,18 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     let project = Project {
         model: &model,
         chain: &chain,
-        kind: arguments.measure.into(),
+        kind: arguments.measure,
         count: arguments.count as usize,
         seed: arguments.seed,
     };
     let (contents, existing) = (Contents::Project, Existing::Kept);
     let place = FolderPlace::reserve(&arguments.out, contents, existing, &[], &mut console.warner())?;
     let written = write_project(place, &project)?;
-    written.notes.iter().for_each(|note| console.warning(note));
+    console.warnings(&written.notes);
     let next = format!(
         "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
         shown(&written.folder.join("README.md"))
     );
-    let files = format!("{}\n{}", shown(&written.folder), written.files.join(", "));
-    let words = labelled("written", &files) + &labelled("next", &next);
+    let words = style::written(&written.folder, &written.files) + &labelled("next", &next);
     Ok(console.say_of(&words, &written.folder))
 }

@@ -21,8 +21,8 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
         ["toml", "json"].map(OsStr::new).contains(&arguments.actual.extension().unwrap_or_default());
     let whole = ChainSelection::default();
     let actual = Model::read(&arguments.actual, if one_chain { &whole } else { &selection })?;
-    let ends = [arguments.base, arguments.tip].map(|end| end.map(Into::into));
-    let [(base, base_reason), (tip, tip_reason)] = report::offset_ends(ends[0], ends[1], &actual);
+    let [(base, base_reason), (tip, tip_reason)] =
+        report::offset_ends(arguments.base, arguments.tip, &actual);
     let options = OffsetOptions { base, tip, ..OffsetOptions::default() };
     let explanation =
         explain(&nominal.robot, &actual.robot, &options).map_err(|error| error.in_file(&arguments.actual))?;

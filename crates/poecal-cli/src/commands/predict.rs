@@ -17,10 +17,8 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     let place = arguments.place.reserve(&inputs, console)?;
     let model = Model::read(&arguments.model, &arguments.chain.selection())?;
     let joints = measurements::read_joints(&arguments.joints, &model.robot, &arguments.columns.options()?)?;
-    for warning in &joints.warnings {
-        console.warning(warning);
-    }
-    let (frame, target) = (arguments.frame.into(), arguments.target.as_deref());
+    console.warnings(&joints.warnings);
+    let (frame, target) = (arguments.frame, arguments.target.as_deref());
     let text = predictions::predict(&model, &joints, frame, target, arguments.with_uncertainty)?;
     console.deliver(text, place)?;
     Ok(DONE)

@@ -6,7 +6,7 @@ use poecal_lou2009::{ReproductionOptions, breakdown, lou2009, report};
 
 use crate::args::{Experiment, Reproduce};
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style;
 
 pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> {
     let existing = Existing::forced(arguments.force);
@@ -28,7 +28,7 @@ pub(crate) fn reproduce(arguments: &Reproduce, console: &Console) -> Result<u8> 
     bar.finish_and_clear();
     let (files, words) = found?;
     let written = output::write_reproduction(place, &files)?;
-    written.notes.iter().for_each(|note| console.warning(note));
-    let files = labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", ")));
+    console.warnings(&written.notes);
+    let files = style::written(&written.folder, &written.files);
     Ok(console.say_of(&(words + &files), &written.folder))
 }

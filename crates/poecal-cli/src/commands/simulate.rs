@@ -1,14 +1,15 @@
 //! `poecal simulate`: a robot with known errors, and its measurements.
 
 use poecal::Result;
+use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::model::Model;
 use poecal::io::output::{self, Contents, Existing, FolderPlace, SimulatedSession};
-use poecal::simulate::{Kind, Simulation};
+use poecal::simulate::Simulation;
 use poecal::text::visible;
 
-use crate::args::{ChainArgs, Frame, Simulate};
+use crate::args::{ChainArgs, Simulate};
 use crate::console::Console;
-use crate::style::{labelled, shown};
+use crate::style;
 
 pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
     let existing = Existing::forced(arguments.force);
@@ -27,15 +28,15 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         noise_rotation_rad: arguments.noise.angle_rad,
         count: arguments.count as usize,
         seed: arguments.seed,
-        device_anywhere: arguments.frame == Frame::Unknown,
+        device_anywhere: arguments.frame == DeviceFrameKnowledge::Unknown,
     };
-    let kind = Kind::from(arguments.kind);
+    let kind = arguments.kind;
     let made = simulation.run(&model.robot, kind)?;
     let held_out = match arguments.held_out_count {
         0 => None,
         count => Some(simulation.held_out(&made, kind, count as usize)?),
     };
-    let command = command(arguments, kind);
+    let command = command(arguments);
     let session = SimulatedSession {
         simulation: &simulation,
         kind,
@@ -44,23 +45,21 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         command: &command,
     };
     let written = output::write_simulation(place, &model, &session)?;
-    for note in &written.notes {
-        console.warning(note);
-    }
-    let words = labelled("written", &format!("{}\n{}", shown(&written.folder), written.files.join(", ")));
-    Ok(console.say_of(&words, &written.folder))
+    console.warnings(&written.notes);
+    Ok(console.say_of(&style::written(&written.folder, &written.files), &written.folder))
 }
 
 /// The command that reproduces the files: all options that they depend on, and no output folder.
-fn command(arguments: &Simulate, kind: Kind) -> String {
+fn command(arguments: &Simulate) -> String {
     let ChainArgs { base_link, tip_link } = &arguments.chain;
     let mut words = vec!["poecal simulate".to_owned(), arguments.model.display().to_string()];
     for (option, link) in [("--base-link", base_link), ("--tip-link", tip_link)] {
         words.extend(link.as_ref().map(|link| format!("{option} {link}")));
     }
-    words.push(format!("--kind {} --count {} --seed {}", kind.word(), arguments.count, arguments.seed));
+    let (kind, count, seed) = (arguments.kind.word(), arguments.count, arguments.seed);
+    words.push(format!("--kind {kind} --count {count} --seed {seed}"));
     words.push(format!("--errors {} --noise {}", arguments.errors.text, arguments.noise.text));
-    if arguments.frame == Frame::Base {
+    if arguments.frame == DeviceFrameKnowledge::Base {
         words.push("--frame base".to_owned());
     }
     if arguments.held_out_count > 0 {

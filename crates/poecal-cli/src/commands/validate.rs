@@ -3,7 +3,6 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use poecal::calibration::Level;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::named_files::{actual, refuse_repeats};
@@ -21,23 +20,19 @@ pub(crate) fn validate(arguments: &Validate, console: &Console) -> Result<u8> {
     };
     let calibrated = file.robot().map_err(in_file)?;
     // Every row counts, whatever its set.
-    let (strict, frames) = (arguments.strictness.strict, arguments.frames.frames.into());
-    let options = ReadOptions { ignore_sets: true, strict, frames, ..arguments.columns.options()? };
+    let options = ReadOptions { ignore_sets: true, ..arguments.meaning.options()? };
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
     let judgement = file.judge(&read.data, arguments.refit_frame, arguments.refit_tool).map_err(in_file)?;
-    for warning in &read.warnings {
-        console.warning(warning);
-    }
-    if arguments.json {
-        console.data(&report::json(&judgement)?)?;
-    } else {
+    console.warnings(&read.warnings);
+    let table = || {
         let calibration = arguments.calibration.display().to_string();
-        console.say(&report::judgement(&calibration, &named(arguments, &file), &judgement))?;
-    }
+        report::judgement(&calibration, &named(arguments, &file), &judgement)
+    };
+    console.json_or_table(arguments.json, || report::json(&judgement), table)?;
     if let Some(doubt) = file.doubt(&judgement) {
         console.warning(doubt);
     }
-    let Some(required) = arguments.require.map(Level::from) else { return Ok(DONE) };
+    let Some(required) = arguments.require else { return Ok(DONE) };
     let Some(reason) = judgement.falls_short(required) else { return Ok(DONE) };
     console.warning(format!("not what --require {} asks for: {reason}", required.word()));
     Ok(WORSE)

@@ -1,6 +1,6 @@
 //! Accuracy with noise, and convergence from afar.
 
-use super::super::{Basin, Claim, Efficiency, MeasurementKind};
+use super::super::{Basin, Claim, MeasurementKind};
 use super::{Evidence, said};
 use crate::{Formulation, Method, Residual};
 use poecal::error::Result;
@@ -9,24 +9,19 @@ use poecal::error::Result;
 const ROBUST_SHARE: f64 = 0.99;
 const ROBUST_DEG: f64 = 10.0;
 
-/// A ratio to the bound with its chance.
-pub(super) fn ratio(it: &Efficiency) -> String {
-    format!("{:.3} ± {:.3}", it.ratio, it.ratio_sigma)
-}
-
 pub(super) fn normalisation(evidence: &Evidence<'_>) -> Result<Claim> {
     let mut told = Vec::new();
     let (mut at_truth, mut worse) = (true, true);
     for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
-        let screw = evidence.efficiency(Formulation::Screw, seen, Residual::Tool)?;
-        let adjoint = evidence.efficiency(Formulation::Adjoint, seen, Residual::Tool)?;
-        at_truth &= evidence.run(Formulation::Screw, seen, false)?.run.converged;
+        let screw = evidence.noisy_fits(Formulation::Screw, seen, Residual::Tool)?;
+        let adjoint = evidence.noisy_fits(Formulation::Adjoint, seen, Residual::Tool)?;
+        at_truth &= evidence.run(Formulation::Screw, seen, false)?.converged;
         worse &= screw.exceeds(adjoint);
         told.push(format!(
             "{} from {}, where the adjoint form has {}",
-            ratio(screw),
+            screw.ratio_words(),
             seen.word(),
-            ratio(adjoint)
+            adjoint.ratio_words()
         ));
     }
     let without = if at_truth {

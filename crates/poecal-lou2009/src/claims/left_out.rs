@@ -1,7 +1,6 @@
 //! What the paper leaves out.
 
 use super::super::{Claim, MeasurementKind, Run, literal, runs, tables};
-use super::accuracy::ratio;
 use super::{Evidence, left_out};
 use crate::{Formulation, Residual};
 use poecal::error::Result;
@@ -14,8 +13,7 @@ const LAST_RANK: usize = 27;
 const ROUNDED_MM: f64 = 1e-6;
 
 pub(super) fn redundancy(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = &evidence.run(Formulation::Adjoint, MeasurementKind::Poses, false)?.run;
-    let points = &evidence.run(Formulation::Adjoint, MeasurementKind::Points, false)?.run;
+    let [poses, points] = evidence.both_runs(Formulation::Adjoint, false)?;
     let redundant = |run: &Run| run.rank < run.parameters && run.rank == run.unknowns;
     Ok(left_out(
         "The components of η are redundant.",
@@ -38,7 +36,7 @@ pub(super) fn point_on_axis(evidence: &Evidence<'_>) -> Result<Claim> {
         literal::singular_values(&runs::matrix(&session, estimate, Formulation::Adjoint)).1
     };
     let start = rank(&session.start());
-    let end = rank(&evidence.run(Formulation::Adjoint, MeasurementKind::Points, false)?.estimate);
+    let end = rank(evidence.end_of_points()?);
     Ok(left_out(
         "The nominal point lies on axis 6, so the first Jacobian has rank 25.",
         "Table II puts the nominal point on nominal axis 6; nothing is said of it.",
@@ -54,7 +52,7 @@ pub(super) fn point_on_axis(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn lever_arm(evidence: &Evidence<'_>) -> Result<Claim> {
-    let of = |residual| evidence.efficiency(Formulation::Adjoint, MeasurementKind::Poses, residual);
+    let of = |residual| evidence.noisy_fits(Formulation::Adjoint, MeasurementKind::Poses, residual);
     let (spatial, tool) = (of(Residual::Spatial)?, of(Residual::Tool)?);
     Ok(left_out(
         "The spatial logarithm costs accuracy.",
@@ -69,8 +67,8 @@ pub(super) fn lever_arm(evidence: &Evidence<'_>) -> Result<Claim> {
              held-out error is {} times the Cramér-Rao bound; position and rotation at the tool, weighted by the same noise, give {}.",
             1e3 * evidence.found.noise_position_m,
             evidence.found.noise_rotation_rad.to_degrees(),
-            ratio(spatial),
-            ratio(tool)
+            spatial.ratio_words(),
+            tool.ratio_words()
         ),
     ))
 }

@@ -6,9 +6,10 @@ mod offsets;
 mod simulations;
 
 use super::runs::Ended;
-use super::{Basin, Claim, Efficiency, MeasurementKind, Reproduction};
+use super::{Basin, Claim, Efficiency, MeasurementKind, Reproduction, Run, exact};
 use crate::{Formulation, Method, Residual};
 use poecal::error::{Error, ErrorKind, Result};
+use poecal::estimate::Estimate;
 
 /// Difference below which a coordinate is recovered and a prediction right: metres, or of a unit vector.
 const RECOVERED: f64 = 1e-9;
@@ -24,35 +25,41 @@ pub(super) struct Evidence<'a> {
 
 impl Evidence<'_> {
     /// A noise-free run.
-    fn run(&self, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> Result<&Ended> {
-        let of = |ended: &&Ended| {
-            let plan = ended.plan;
-            (plan.formulation, plan.seen, plan.offsets_in_truth, plan.noise)
-                == (formulation, seen, offsets, false)
-        };
-        self.runs.iter().find(of).ok_or_else(|| missing("run", formulation, seen))
+    fn run(&self, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> Result<&Run> {
+        let run = self.found.exact_run(formulation, seen, offsets);
+        run.ok_or_else(|| missing("run", formulation, seen))
+    }
+
+    /// The noise-free runs from poses and from points.
+    fn both_runs(&self, formulation: Formulation, offsets: bool) -> Result<[&Run; 2]> {
+        Ok([
+            self.run(formulation, MeasurementKind::Poses, offsets)?,
+            self.run(formulation, MeasurementKind::Points, offsets)?,
+        ])
+    }
+
+    /// Where the noise-free run of the adjoint form from points ended.
+    fn end_of_points(&self) -> Result<&Estimate> {
+        let ended = exact(self.runs, Formulation::Adjoint, MeasurementKind::Points, false);
+        ended
+            .map(|it| &it.estimate)
+            .ok_or_else(|| missing("run", Formulation::Adjoint, MeasurementKind::Points))
     }
 
     /// The fits with noise by plain Gauss-Newton.
-    fn efficiency(
+    fn noisy_fits(
         &self,
         formulation: Formulation,
         seen: MeasurementKind,
         residual: Residual,
     ) -> Result<&Efficiency> {
-        let of = |it: &&Efficiency| {
-            (it.formulation, it.measurement, it.residual.as_str(), it.method.as_str())
-                == (formulation, seen, residual.word(), Method::GaussNewton.word())
-        };
-        self.found.efficiency.iter().find(of).ok_or_else(|| missing("noisy fit", formulation, seen))
+        let fits = self.found.noisy_fits(formulation, seen, residual);
+        fits.ok_or_else(|| missing("noisy fit", formulation, seen))
     }
 
     /// The starts from afar, the nearest first.
     fn basins(&self, formulation: Formulation, seen: MeasurementKind, method: Method) -> Result<Vec<&Basin>> {
-        let of = |it: &&Basin| {
-            (it.formulation, it.measurement, it.method.as_str()) == (formulation, seen, method.word())
-        };
-        let basins: Vec<&Basin> = self.found.basin.iter().filter(of).collect();
+        let basins: Vec<&Basin> = self.found.basins(formulation, seen, method).collect();
         if basins.is_empty() {
             return Err(missing("start from afar", formulation, seen));
         }

@@ -16,8 +16,7 @@ fn screws_recovered(run: &Run) -> bool {
 }
 
 pub(super) fn original_without_offsets(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = &evidence.run(Formulation::Screw, MeasurementKind::Poses, false)?.run;
-    let points = &evidence.run(Formulation::Screw, MeasurementKind::Points, false)?.run;
+    let [poses, points] = evidence.both_runs(Formulation::Screw, false)?;
     let words = |run: &Run| {
         format!(
             "{} iterations, screws within {:.1e} m in v and {:.1e} in ω, held-out error {:.1e} m",
@@ -43,7 +42,7 @@ pub(super) fn original_without_offsets(evidence: &Evidence<'_>) -> Result<Claim>
 }
 
 pub(super) fn original_parameters_with_offsets(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = &evidence.run(Formulation::ScrewOffsets, MeasurementKind::Poses, true)?.run;
+    let run = evidence.run(Formulation::ScrewOffsets, MeasurementKind::Poses, true)?;
     let offset = run.offset_error_max_deg.unwrap_or(f64::NAN);
     Ok(said(
         "With joint offsets, the original formulation does not return the prescribed errors.",
@@ -58,7 +57,7 @@ pub(super) fn original_parameters_with_offsets(evidence: &Evidence<'_>) -> Resul
 }
 
 pub(super) fn original_prediction_with_offsets(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = &evidence.run(Formulation::ScrewOffsets, MeasurementKind::Poses, true)?.run;
+    let run = evidence.run(Formulation::ScrewOffsets, MeasurementKind::Poses, true)?;
     let predicts = run.converged && run.held_out_rms_m < RECOVERED;
     let measured = if predicts {
         format!(
@@ -118,8 +117,7 @@ pub(super) fn equivalence(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn proposition(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = &evidence.run(Formulation::ScrewOffsets, MeasurementKind::Poses, true)?.run;
-    let points = &evidence.run(Formulation::ScrewOffsets, MeasurementKind::Points, true)?.run;
+    let [poses, points] = evidence.both_runs(Formulation::ScrewOffsets, true)?;
     let joints = tables::PRESCRIBED_OFFSETS_DEG.len();
     let without = |run: &Run| run.parameters - run.rank;
     Ok(said(
@@ -142,8 +140,7 @@ pub(super) fn proposition(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn can_be_left_out(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = &evidence.run(Formulation::Adjoint, MeasurementKind::Poses, true)?.run;
-    let points = &evidence.run(Formulation::Adjoint, MeasurementKind::Points, true)?.run;
+    let [poses, points] = evidence.both_runs(Formulation::Adjoint, true)?;
     Ok(said(
         "Joint offsets need not be considered at all.",
         "Section III.A: \"there is no need to consider joint offset errors at all!\"; Section VI: \"they can be ignored without any \

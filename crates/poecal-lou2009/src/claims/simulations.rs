@@ -1,6 +1,5 @@
 //! Sections III.B and V: the adjoint error, and the two simulations.
 
-use super::super::runs::Ended;
 use super::super::{Claim, MeasurementKind, Run, tables};
 use super::{Evidence, RECOVERED, ROUNDING, said};
 use crate::Formulation;
@@ -14,8 +13,8 @@ const NEARLY_TWICE: f64 = 1.5;
 
 pub(super) fn constraints(evidence: &Evidence<'_>) -> Result<Claim> {
     let largest = |free: bool, of: fn(&Run) -> f64| {
-        let runs = evidence.runs.iter().filter(|ended| ended.plan.formulation.has_free_screws() == free);
-        runs.map(|ended: &Ended| of(&ended.run)).fold(0.0, f64::max)
+        let runs = evidence.found.runs.iter().filter(|run| run.formulation.has_free_screws() == free);
+        runs.map(of).fold(0.0, f64::max)
     };
     let pitch = |free| largest(free, |run| run.constraint_miss_pitch_m);
     let length = |free| largest(free, |run| run.constraint_miss_length);
@@ -40,11 +39,6 @@ pub(super) fn constraints(evidence: &Evidence<'_>) -> Result<Claim> {
     ))
 }
 
-/// The noise-free run of the adjoint form without offsets in the truth.
-fn adjoint<'a>(evidence: &'a Evidence<'_>, seen: MeasurementKind) -> Result<&'a Run> {
-    evidence.run(Formulation::Adjoint, seen, false).map(|ended| &ended.run)
-}
-
 fn iterations(run: &Run) -> String {
     let residual = run.trace.last().map_or(f64::NAN, |end| end.residual_rms_m);
     format!(
@@ -60,7 +54,7 @@ fn within(most: usize) -> String {
 }
 
 pub(super) fn poses_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = adjoint(evidence, MeasurementKind::Poses)?;
+    let run = evidence.run(Formulation::Adjoint, MeasurementKind::Poses, false)?;
     Ok(said(
         "From poses, the parameters are identified within 6 iterations.",
         "Section V: \"After 6 iterations, the kinematic parameters are successfully identified\".",
@@ -70,7 +64,7 @@ pub(super) fn poses_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn points_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
-    let run = adjoint(evidence, MeasurementKind::Points)?;
+    let run = evidence.run(Formulation::Adjoint, MeasurementKind::Points, false)?;
     Ok(said(
         "From points, the parameters are identified within 10 iterations.",
         "Section V: \"10 iterations are required to achieve the same accuracy\".",
@@ -80,8 +74,7 @@ pub(super) fn points_iterations(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn twice_as_many(evidence: &Evidence<'_>) -> Result<Claim> {
-    let (poses, points) =
-        (adjoint(evidence, MeasurementKind::Poses)?, adjoint(evidence, MeasurementKind::Points)?);
+    let [poses, points] = evidence.both_runs(Formulation::Adjoint, false)?;
     let ratio = points.iterations as f64 / poses.iterations as f64;
     Ok(said(
         "Points take nearly twice as many iterations as poses.",
@@ -92,11 +85,10 @@ pub(super) fn twice_as_many(evidence: &Evidence<'_>) -> Result<Claim> {
 }
 
 pub(super) fn table(evidence: &Evidence<'_>) -> Result<Claim> {
-    let poses = &evidence.run(Formulation::Adjoint, MeasurementKind::Poses, false)?.run;
-    let points = evidence.run(Formulation::Adjoint, MeasurementKind::Points, false)?;
+    let [poses, points] = evidence.both_runs(Formulation::Adjoint, false)?;
     let prescribed = tables::prescribed().home.translation;
-    let point = (points.estimate.base_from_target[0].translation - prescribed).amax();
-    let largest = poses.screw_error_max.max(points.run.screw_error_max).max(point);
+    let point = (evidence.end_of_points()?.base_from_target[0].translation - prescribed).amax();
+    let largest = poses.screw_error_max.max(points.screw_error_max).max(point);
     Ok(said(
         "The screws and the point of Table II are recovered.",
         "Table II.",
@@ -109,8 +101,8 @@ pub(super) fn table(evidence: &Evidence<'_>) -> Result<Claim> {
              {point:.1e} m.",
             poses.screw_error_max_v_m,
             poses.screw_error_max_omega,
-            points.run.screw_error_max_v_m,
-            points.run.screw_error_max_omega
+            points.screw_error_max_v_m,
+            points.screw_error_max_omega
         ),
     ))
 }

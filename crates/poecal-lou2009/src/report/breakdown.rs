@@ -1,11 +1,12 @@
 //! What gross errors do to a calibration: a figure, a table and a file.
 
-use std::fmt::Write as _;
-
 use crate::{Breakdown, BreakdownEntry};
 use poecal::error::Result;
 use poecal::report::plot::{Axis, Line, LinePlot, Scale};
+use poecal::report::table::row;
 
+/// Widths of the shares and of each loss.
+const WIDTHS: [usize; 2] = [7, 17];
 /// The losses in the order of the figure.
 const ORDER: [&str; 4] = ["off", "huber", "cauchy", "tukey"];
 
@@ -44,25 +45,19 @@ pub fn breakdown_files(found: &Breakdown) -> Result<Vec<(String, String)>> {
 pub fn breakdown_table(found: &Breakdown) -> String {
     let mut out = format!(
         "held-out error by share of gross errors, times that without them\n\
-         (median and 95 % of {} sessions of {} rows; seed {})\n\n  share",
+         (median and 95 % of {} sessions of {} rows; seed {})\n\n",
         found.sessions, found.rows, found.seed
     );
-    // Writing to a String cannot fail.
-    for word in ORDER {
-        let _ = write!(out, "{word:>17}");
-    }
-    out.push('\n');
+    row(&mut out, "  share", WIDTHS, ORDER);
     for entry in entries(found, ORDER[0]) {
         let share = entry.share_percent;
-        let _ = write!(out, "{share:>5} %");
-        for word in ORDER {
+        let cells = ORDER.map(|word| {
             let cell = entries(found, word).find(|entry| entry.share_percent == share);
-            let cell = cell.map_or_else(String::new, |entry| {
+            cell.map_or_else(String::new, |entry| {
                 format!("{:.2} {:.2}", entry.error_ratio_median, entry.error_ratio_p95)
-            });
-            let _ = write!(out, "{cell:>17}");
-        }
-        out.push('\n');
+            })
+        });
+        row(&mut out, &format!("{share:>5} %"), WIDTHS, cells);
     }
     out
 }

@@ -8,10 +8,9 @@ use poecal::report::table::line;
 pub fn claims(found: &Reproduction) -> String {
     let mut out = String::new();
     for (said_by_paper, title) in [(true, "What the paper says"), (false, "What the paper leaves out")] {
-        let claims = || found.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper);
         out.push_str(title);
         out.push_str("\n\n");
-        for claim in claims() {
+        for claim in found.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper) {
             line(&mut out, if claim.holds { "holds" } else { "not so" }, &claim.claim);
             line(&mut out, "  paper", &claim.paper);
             line(&mut out, "  measured", &claim.measured);
@@ -19,8 +18,8 @@ pub fn claims(found: &Reproduction) -> String {
             out.push('\n');
         }
         if said_by_paper {
-            let holding = claims().filter(|claim| claim.holds).count();
-            line(&mut out, "claims", &format!("{holding} of {} hold as they are made", claims().count()));
+            let (holding, all) = found.holding(true);
+            line(&mut out, "claims", &format!("{holding} of {all} hold as they are made"));
             out.push('\n');
         }
     }

@@ -1,8 +1,7 @@
 //! The original formulation beside the adjoint one, in words that the numbers choose.
 
 use super::numbers::{mm, number, percent, stated};
-use crate::{Basin, Efficiency, MeasurementKind, Reproduction, Run};
-use crate::{Formulation, Method};
+use crate::{Formulation, MeasurementKind, Method, Reproduction, Residual, Run};
 
 /// Without noise, with noise, with offsets, from afar: a paragraph for each that the findings can tell.
 pub(super) fn sentences(found: &Reproduction) -> Vec<String> {
@@ -12,16 +11,10 @@ pub(super) fn sentences(found: &Reproduction) -> Vec<String> {
         .collect()
 }
 
-fn run(found: &Reproduction, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> Option<&Run> {
-    found.runs.iter().find(|run| {
-        (run.formulation, run.measurement, run.offsets_in_truth, run.noise)
-            == (formulation, seen, offsets, false)
-    })
-}
-
 fn without_noise(found: &Reproduction) -> Option<String> {
     let pair = |seen| {
-        Some((run(found, Formulation::Screw, seen, false)?, run(found, Formulation::Adjoint, seen, false)?))
+        let run = |formulation| found.exact_run(formulation, seen, false);
+        Some((run(Formulation::Screw)?, run(Formulation::Adjoint)?))
     };
     let (poses, points) = (pair(MeasurementKind::Poses)?, pair(MeasurementKind::Points)?);
     let as_good = |(screw, adjoint): (&Run, &Run)| {
@@ -48,13 +41,7 @@ fn without_noise(found: &Reproduction) -> Option<String> {
 }
 
 fn with_noise(found: &Reproduction) -> Option<String> {
-    let fits = |formulation, seen| {
-        let way = |it: &&Efficiency| {
-            (it.formulation, it.measurement, it.residual.as_str(), it.method.as_str())
-                == (formulation, seen, "tool", Method::GaussNewton.word())
-        };
-        found.efficiency.iter().find(way)
-    };
+    let fits = |formulation, seen| found.noisy_fits(formulation, seen, Residual::Tool);
     let (mut told, mut worse) = (Vec::new(), 0);
     for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
         let (screw, adjoint) = (fits(Formulation::Screw, seen)?, fits(Formulation::Adjoint, seen)?);
@@ -69,8 +56,8 @@ fn with_noise(found: &Reproduction) -> Option<String> {
         told.push(format!(
             "From {}, {verdict}: {} times the Cramér-Rao bound, `adjoint` {} times.",
             seen.word(),
-            with_chance(screw),
-            with_chance(adjoint)
+            screw.ratio_words(),
+            adjoint.ratio_words()
         ));
     }
     let reason = " The six free numbers of an axis contain its length, which acts as a gear factor, and its pitch; the data pay for \
@@ -82,12 +69,8 @@ fn with_noise(found: &Reproduction) -> Option<String> {
     ))
 }
 
-fn with_chance(it: &Efficiency) -> String {
-    format!("{:.3} ± {:.3}", it.ratio, it.ratio_sigma)
-}
-
 fn with_offsets(found: &Reproduction) -> Option<String> {
-    let of = |formulation| run(found, formulation, MeasurementKind::Poses, true);
+    let of = |formulation| found.exact_run(formulation, MeasurementKind::Poses, true);
     let (original, adjoint) = (of(Formulation::ScrewOffsets)?, of(Formulation::Adjoint)?);
     let verdict = match (original.converged, adjoint.converged) {
         (true, true) => "predicts as well as `adjoint` without any",
@@ -107,12 +90,8 @@ fn with_offsets(found: &Reproduction) -> Option<String> {
 
 fn from_afar(found: &Reproduction) -> Option<String> {
     let furthest = found.basin.iter().map(|row| row.error_deg).fold(0.0, f64::max);
-    let row = |formulation, method: Method| -> Option<&Basin> {
-        found.basin.iter().find(|row| {
-            (row.formulation, row.measurement, row.method.as_str())
-                == (formulation, MeasurementKind::Points, method.word())
-                && row.error_deg == furthest
-        })
+    let row = |formulation, method| {
+        found.basins(formulation, MeasurementKind::Points, method).find(|row| row.error_deg == furthest)
     };
     let (screw, adjoint) =
         (row(Formulation::Screw, Method::GaussNewton)?, row(Formulation::Adjoint, Method::GaussNewton)?);

@@ -1,5 +1,7 @@
 //! The figures of the report.
 
+use std::ops::Range;
+
 use super::document::Figure;
 use super::numbers::stated;
 use super::tables::distinct;
@@ -90,68 +92,61 @@ pub(super) fn screw_errors(found: &Reproduction) -> Figure {
 
 /// Figure 3: nominal and identified screws against the prescribed ones.
 pub(super) fn deviations(found: &Reproduction) -> Figure {
+    let identified: [fn(&ScrewRow) -> &[f64; 6]; 3] =
+        [|row| &row.nominal, |row| &row.from_poses, |row| &row.from_points];
+    let screws = |part: Range<usize>, factor| {
+        identified.map(|of| {
+            let parts =
+                found.screws.iter().map(|row| (&of(row)[part.clone()], &row.prescribed[part.clone()]));
+            parts.flat_map(|(values, prescribed)| differences(values, prescribed, factor)).collect()
+        })
+    };
+    let point = |of: &[f64; 3]| differences(of, &found.point.prescribed, 1e3);
+    let names = |part: &str| -> Vec<String> {
+        found.screws.iter().flat_map(|row| AXES.map(|axis| format!("{} {part}{axis}", row.joint))).collect()
+    };
+    let [nominal, from_poses, from_points]: [Vec<Option<f64>>; 3] = screws(0..3, 1e3);
+    let of_v = deviation_plot(
+        ("v and of the point", "v and point", "mm"),
+        [names("v"), AXES.map(|axis| format!("point P_c0 {axis}")).to_vec()].concat(),
+        [
+            [nominal, point(&found.point.nominal)].concat(),
+            [from_poses, vec![None; 3]].concat(),
+            [from_points, point(&found.point.from_points)].concat(),
+        ],
+    );
+    let of_omega = deviation_plot(("ω", "ω", "no unit"), names("ω"), screws(3..6, 1.0));
     Figure {
         caption: "Figure 3. Distance of each coordinate from its prescribed value: before (nominal) and after identification, without noise.".to_owned(),
         plots: vec![
-            named_dots("3-deviations-v".to_owned(), deviations_of_v(found)),
-            named_dots("3-deviations-omega".to_owned(), deviations_of_omega(found)),
+            named_dots("3-deviations-v".to_owned(), of_v),
+            named_dots("3-deviations-omega".to_owned(), of_omega),
         ],
     }
 }
 
-fn deviations_of_v(found: &Reproduction) -> DotPlot {
-    let mut rows = coordinate_names(&found.screws, "v");
-    rows.extend(AXES.map(|axis| format!("point P_c0 {axis}")));
-    let point = |of: &[f64; 3]| differences_mm(of, &found.point.prescribed);
-    let series = |name: &str, style, of: fn(&ScrewRow) -> &[f64; 6], point: Vec<Option<f64>>| {
-        let screws = found.screws.iter().flat_map(|row| differences_mm(&of(row)[..3], &row.prescribed[..3]));
-        Dots { name: name.to_owned(), style, values: screws.chain(point).collect() }
-    };
+/// Distances from prescribed: of the nominal coordinates, and of those identified from poses and from points.
+fn deviation_plot(
+    (title, what, unit): (&str, &str, &str),
+    rows: Vec<String>,
+    values: [Vec<Option<f64>>; 3],
+) -> DotPlot {
+    let names = ["nominal", "from poses", "from points"].into_iter().zip(values).enumerate();
+    let dots = |(style, (name, values)): (usize, (&str, _))| Dots { name: name.to_owned(), style, values };
     DotPlot {
-        title: "Deviation of v and of the point".to_owned(),
-        description: "Differences of nominal and identified v and point from the prescribed ones.".to_owned(),
-        x: Axis::new("distance from prescribed, mm", Scale::Log),
+        title: format!("Deviation of {title}"),
+        description: format!("Differences of nominal and identified {what} from the prescribed ones."),
+        x: Axis::new(&format!("distance from prescribed, {unit}"), Scale::Log),
         rows,
-        series: vec![
-            series("nominal", 0, |row| &row.nominal, point(&found.point.nominal)),
-            series("from poses", 1, |row| &row.from_poses, vec![None; 3]),
-            series("from points", 2, |row| &row.from_points, point(&found.point.from_points)),
-        ],
+        series: names.map(dots).collect(),
         joined: true,
         mark: None,
     }
 }
 
-fn deviations_of_omega(found: &Reproduction) -> DotPlot {
-    let series = |name: &str, style, of: fn(&ScrewRow) -> &[f64; 6]| {
-        let values = found.screws.iter().flat_map(|row| differences(&of(row)[3..], &row.prescribed[3..]));
-        Dots { name: name.to_owned(), style, values: values.collect() }
-    };
-    DotPlot {
-        title: "Deviation of ω".to_owned(),
-        description: "Differences of nominal and identified ω from the prescribed ones.".to_owned(),
-        x: Axis::new("distance from prescribed, no unit", Scale::Log),
-        rows: coordinate_names(&found.screws, "ω"),
-        series: vec![
-            series("nominal", 0, |row| &row.nominal),
-            series("from poses", 1, |row| &row.from_poses),
-            series("from points", 2, |row| &row.from_points),
-        ],
-        joined: true,
-        mark: None,
-    }
-}
-
-fn coordinate_names(screws: &[ScrewRow], part: &str) -> Vec<String> {
-    screws.iter().flat_map(|row| AXES.map(|axis| format!("{} {part}{axis}", row.joint))).collect()
-}
-
-fn differences(values: &[f64], prescribed: &[f64]) -> Vec<Option<f64>> {
-    values.iter().zip(prescribed).map(|(value, prescribed)| Some((value - prescribed).abs())).collect()
-}
-
-fn differences_mm(values: &[f64], prescribed: &[f64]) -> Vec<Option<f64>> {
-    differences(values, prescribed).into_iter().map(|value| value.map(|metres| 1e3 * metres)).collect()
+fn differences(values: &[f64], prescribed: &[f64], factor: f64) -> Vec<Option<f64>> {
+    let pairs = values.iter().zip(prescribed);
+    pairs.map(|(value, prescribed)| Some(factor * (value - prescribed).abs())).collect()
 }
 
 /// Figure 4: offsets.

@@ -1,39 +1,29 @@
 //! A report as Markdown, with its plots in files beside it.
 
-use std::fmt::Write as _;
-
 use super::document::{Block, Document, DocumentTable};
+use poecal::report::plot::NamedPlot;
 
 pub(super) fn markdown(document: &Document) -> String {
     let mut out = format!("# {}\n", plain(&document.title));
     for block in &document.blocks {
         out.push('\n');
-        // Writing to a String cannot fail.
-        let _ = match block {
-            Block::Heading(text) => writeln!(out, "## {}", plain(text)),
-            Block::Text(text) => writeln!(out, "{}", with_code(text)),
-            Block::Code(text) => writeln!(
-                out,
-                "{}",
-                text.lines().map(|line| format!("    {line}")).collect::<Vec<_>>().join("\n")
-            ),
-            Block::Table(table) => {
-                write_table(&mut out, table);
-                Ok(())
-            }
+        out += &match block {
+            Block::Heading(text) => format!("## {}\n", plain(text)),
+            Block::Text(text) => format!("{}\n", with_code(text)),
+            Block::Code(text) => text.lines().map(|line| format!("    {line}\n")).collect(),
+            Block::Table(table) => of_table(table),
             Block::Figure(figure) => {
-                for plot in &figure.plots {
-                    let _ = writeln!(out, "![{}]({}.svg)", plain(&plot.title), plot.name);
-                }
-                writeln!(out, "\n{}", plain(&figure.caption))
+                let plot = |it: &NamedPlot| format!("![{}]({}.svg)\n", plain(&it.title), it.name);
+                let plots: String = figure.plots.iter().map(plot).collect();
+                format!("{plots}\n{}\n", plain(&figure.caption))
             }
         };
     }
     out
 }
 
-fn write_table(out: &mut String, table: &DocumentTable) {
-    let _ = writeln!(out, "{}\n", plain(&table.caption));
+fn of_table(table: &DocumentTable) -> String {
+    let mut out = format!("{}\n\n", plain(&table.caption));
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     out.push_str(&row(table.head.iter().map(|cell| plain(cell)).collect()));
     let rule = |k: usize| if k < table.words { "---" } else { "---:" }.to_owned();
@@ -41,6 +31,7 @@ fn write_table(out: &mut String, table: &DocumentTable) {
     for cells in &table.rows {
         out.push_str(&row(cells.iter().map(|cell| plain(cell)).collect()));
     }
+    out
 }
 
 /// Text in which words between backticks are code, which needs no escapes.

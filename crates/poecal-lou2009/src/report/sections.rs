@@ -124,20 +124,16 @@ fn setting(found: &Reproduction) -> String {
 }
 
 fn holding(found: &Reproduction) -> String {
-    let said = || found.claims.iter().filter(|claim| claim.said_by_paper);
+    let (holding, all) = found.holding(true);
     format!(
-        "{} of {} statements hold as they are made; the table says by which criterion. Where one does not, the measured column says what does.",
-        said().filter(|claim| claim.holds).count(),
-        said().count()
+        "{holding} of {all} statements hold as they are made; the table says by which criterion. Where one does not, the measured column says what does."
     )
 }
 
 fn left_out(found: &Reproduction) -> String {
-    let findings = || found.claims.iter().filter(|claim| !claim.said_by_paper);
+    let (holding, all) = found.holding(false);
     format!(
-        "Findings that the paper does not mention, and that its statements are not counted by: {} of {} hold in this run.",
-        findings().filter(|claim| claim.holds).count(),
-        findings().count()
+        "Findings that the paper does not mention, and that its statements are not counted by: {holding} of {all} hold in this run."
     )
 }
 
@@ -187,13 +183,7 @@ fn offsets(found: &Reproduction) -> String {
     let screw = off(found.offsets.iter().map(|row| row.screw_offsets_deg).collect());
     let adjoint = off(found.offsets.iter().map(|row| row.adjoint_offsets_deg).collect());
     let held_out = |formulation: Formulation| {
-        let run = found.runs.iter().find(|run| {
-            run.formulation == formulation
-                && run.measurement == MeasurementKind::Poses
-                && run.offsets_in_truth
-                && !run.noise
-        });
-        run.map_or(String::new(), |run| {
+        found.exact_run(formulation, MeasurementKind::Poses, true).map_or(String::new(), |run| {
             format!(
                 " Its error of prediction on configurations that were not measured is {} mm.",
                 mm(run.held_out_rms_m)

@@ -17,6 +17,7 @@ use crate::errors::raise;
 /// Make one by `Robot.read` (any file), `from_urdf`, `from_toml`, `from_screws` or `from_dh`. Lengths are in metres, angles in
 /// radians. Robots compare by value, and can be copied and pickled.
 #[pyclass(frozen, module = "poecal", name = "Robot")]
+#[derive(Clone)]
 pub(crate) struct Robot {
     pub(crate) model: Arc<Model>,
     /// SHA-256 of the file that it was read from, by its name.
@@ -32,11 +33,6 @@ impl Robot {
     pub(super) fn of_file(model: Model) -> PyResult<Self> {
         let sha256 = Inputs::checksums([model.path.as_path()].into_iter()).map_err(raise)?;
         Ok(Robot { model: Arc::new(model), sha256: Arc::new(sha256) })
-    }
-
-    /// The same robot and file.
-    pub(crate) fn same(&self) -> Self {
-        Robot { model: Arc::clone(&self.model), sha256: Arc::clone(&self.sha256) }
     }
 
     pub(super) fn robot(&self) -> &poecal::robot::Robot {

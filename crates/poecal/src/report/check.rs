@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::table::{kinds_words, line, robot_words};
+use super::table::{kinds_words, line, lines, robot_words};
 use crate::error::first_few;
 use crate::forensics::Diagnosis;
+use crate::io::calibration_file::PoseEntry;
 use crate::io::measurements::{
     ColumnUnderstanding, DecimalSign, FileUnderstanding, MeasurementFile, Quantity, Separator, Unit,
     UnitSource,
@@ -16,7 +17,6 @@ use crate::io::model::{Model, ModelSource};
 use crate::measurement::Set;
 use crate::robot::{Joint, JointKind};
 use crate::text::visible;
-use nalgebra::Vector3;
 
 /// Widest name of ours, and of a column, that the table of columns keeps on one line.
 const WIDEST: usize = 22;
@@ -50,7 +50,7 @@ struct ModelCheck {
     base: String,
     tip: String,
     joints: Vec<JointCheck>,
-    base_from_tip_at_zero: PoseCheck,
+    base_from_tip_at_zero: PoseEntry,
     targets: Vec<TargetCheck>,
 }
 
@@ -68,15 +68,9 @@ struct JointCheck {
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-struct PoseCheck {
-    position_m: [f64; 3],
-    quaternion_xyzw: [f64; 4],
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
 struct TargetCheck {
     name: String,
-    tip_from_target: PoseCheck,
+    tip_from_target: PoseEntry,
 }
 
 /// How many rows state their set.
@@ -112,14 +106,11 @@ impl Check {
                 base: robot.base_name.clone(),
                 tip: robot.tip_name.clone(),
                 joints: robot.joints.iter().map(JointCheck::of).collect(),
-                base_from_tip_at_zero: PoseCheck::of(&robot.home),
+                base_from_tip_at_zero: (&robot.home).into(),
                 targets: robot
                     .targets
                     .iter()
-                    .map(|(name, pose)| TargetCheck {
-                        name: name.clone(),
-                        tip_from_target: PoseCheck::of(pose),
-                    })
+                    .map(|(name, pose)| TargetCheck { name: name.clone(), tip_from_target: pose.into() })
                     .collect(),
             },
             files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
@@ -137,14 +128,11 @@ impl Check {
         let model = &self.model;
         line(&mut out, "model", &format!("{} ({})", model.path, model.form));
         line(&mut out, "robot", &self.robot_words);
-        for (index, joint) in model.joints.iter().enumerate() {
-            line(&mut out, if index == 0 { "joints" } else { "" }, &joint.words());
-        }
-        line(&mut out, "tip at zero", &model.base_from_tip_at_zero.words());
-        for (index, target) in model.targets.iter().enumerate() {
-            let words = format!("{}: {} in the tip frame", target.name, target.tip_from_target.words());
-            line(&mut out, if index == 0 { "targets" } else { "" }, &words);
-        }
+        lines(&mut out, "joints", model.joints.iter().map(JointCheck::words));
+        line(&mut out, "tip at zero", &pose_words(&model.base_from_tip_at_zero));
+        let words =
+            |it: &TargetCheck| format!("{}: {} in the tip frame", it.name, pose_words(&it.tip_from_target));
+        lines(&mut out, "targets", model.targets.iter().map(words));
         for file in &self.files {
             out.push('\n');
             file_text(&mut out, file);
@@ -153,12 +141,8 @@ impl Check {
             out.push('\n');
             line(&mut out, "sets", &sets.words());
         }
-        for (index, warning) in self.warnings.iter().enumerate() {
-            line(&mut out, if index == 0 { "warnings" } else { "" }, warning);
-        }
-        for (index, found) in self.diagnosis.iter().enumerate() {
-            line(&mut out, if index == 0 { "diagnosis" } else { "" }, &found.statement);
-        }
+        lines(&mut out, "warnings", &self.warnings);
+        lines(&mut out, "diagnosis", self.diagnosis.iter().map(|found| &found.statement));
         out
     }
 }
@@ -208,20 +192,13 @@ impl JointCheck {
     }
 }
 
-impl PoseCheck {
-    fn of(pose: &crate::lie::Pose) -> Self {
-        PoseCheck { position_m: pose.translation.into(), quaternion_xyzw: pose.quaternion_xyzw() }
+fn pose_words(pose: &PoseEntry) -> String {
+    let position = rounded(pose.position_m, 1e3, 3);
+    if let [0.0, 0.0, 0.0, _] = pose.quaternion_xyzw {
+        return format!("{position} mm");
     }
-
-    fn words(&self) -> String {
-        let position = rounded(self.position_m, 1e3, 3);
-        let [x, y, z, w] = self.quaternion_xyzw;
-        if Vector3::new(x, y, z) == Vector3::zeros() {
-            return format!("{position} mm");
-        }
-        let parts = [x, y, z, w].map(|part| short(part, 6)).join(", ");
-        format!("{position} mm, quaternion x, y, z, w ({parts})")
-    }
+    let parts = pose.quaternion_xyzw.map(|part| short(part, 6)).join(", ");
+    format!("{position} mm, quaternion x, y, z, w ({parts})")
 }
 
 impl SetCounts {

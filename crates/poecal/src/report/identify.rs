@@ -4,12 +4,15 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::table::{identifiability_lines, kinds_words, line, number, robot_words};
-use crate::analysis::{Foresight, JointCoverage, Session};
+use super::table::{kinds_words, line, number, robot_words};
+use crate::analysis::{Cause, Foresight, JointCoverage, Session};
 use crate::io::calibration_file::IdentifiabilityEntry;
 use crate::io::model::Model;
 use crate::robot::JointKind;
 use crate::text::visible;
+
+/// Directions of a kind that the terminal names.
+const MOST_DIRECTIONS: usize = 6;
 
 /// What configurations would determine, for a person to look over or a machine to read.
 ///
@@ -41,8 +44,6 @@ pub struct Identify {
     robot_words: String,
     #[serde(skip)]
     kinds: Vec<JointKind>,
-    #[serde(skip)]
-    foresight: Foresight,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -84,7 +85,6 @@ impl Identify {
             coverage: found.coverage.clone(),
             robot_words: robot_words(&model.robot),
             kinds: model.robot.joints.iter().map(|joint| joint.kind).collect(),
-            foresight: found.clone(),
         }
     }
 
@@ -103,14 +103,10 @@ impl Identify {
             self.noise.sigma_rotation_deg.map_or_else(String::new, |deg| format!(", {} deg", number(deg)));
         let noise = format!("{} mm{rotation} each component", number(self.noise.sigma_position_mm));
         line(&mut out, "noise", &noise);
-        identifiability_lines(&mut out, &self.foresight.identifiability);
+        identifiability_lines(&mut out, &self.identifiability);
         line(&mut out, "observability", &self.observability_words());
         line(&mut out, "expected", &self.expected_words());
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "joint", "sampled", "limits", "share");
-        for (joint, &kind) in self.coverage.iter().zip(&self.kinds) {
-            let _ = writeln!(out, "{}", coverage_row(joint, kind));
-        }
+        coverage_table(&mut out, self.coverage.iter().zip(self.kinds.iter().copied()));
         out
     }
 
@@ -149,7 +145,46 @@ impl Identify {
     }
 }
 
-pub(super) fn coverage_row(joint: &JointCoverage, kind: JointKind) -> String {
+/// Which unknowns measurements determine, do not determine, determine weakly, and could not determine.
+fn identifiability_lines(out: &mut String, found: &IdentifiabilityEntry) {
+    let condition = found.condition.map_or_else(String::new, |it| format!(", condition {it:.3e}"));
+    line(out, "determined", &format!("{} of {} unknowns{condition}", found.rank, found.parameters));
+    if found.rank == 0 && found.parameters > 0 {
+        let words = "undetermined: everything, since the residual is as large as the effect of the unknowns";
+        line(out, "", words);
+    } else {
+        for (label, directions) in
+            [("undetermined", &found.unidentifiable), ("weakly determined", &found.weak)]
+        {
+            for direction in directions.iter().take(MOST_DIRECTIONS) {
+                let count = direction.directions;
+                let times = if count > 1 { format!(" ({count} directions)") } else { String::new() };
+                line(out, "", &format!("{label}: {}{times}", direction.description));
+            }
+            if directions.len() > MOST_DIRECTIONS {
+                let rest = directions.len() - MOST_DIRECTIONS;
+                line(out, "", &format!("{label}: {rest} more, in calibration.json"));
+            }
+        }
+    }
+    for direction in found.structural.iter().filter(|it| it.cause == Cause::NoOrientation) {
+        line(out, "", &direction.description);
+    }
+}
+
+/// What was sampled of each joint's range.
+pub(super) fn coverage_table<'a>(
+    out: &mut String,
+    joints: impl Iterator<Item = (&'a JointCoverage, JointKind)>,
+) {
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "joint", "sampled", "limits", "share");
+    for (joint, kind) in joints {
+        let _ = writeln!(out, "{}", coverage_row(joint, kind));
+    }
+}
+
+fn coverage_row(joint: &JointCoverage, kind: JointKind) -> String {
     let (scale, unit) = match kind {
         JointKind::Revolute => (1f64.to_degrees(), "deg"),
         JointKind::Prismatic => (1e3, "mm"),

@@ -1,8 +1,6 @@
 //! The table of a calibration judged on other measurements.
 
-use std::fmt::Write as _;
-
-use super::table::{STATISTICS, line, number};
+use super::table::{STATISTICS, WIDTHS, line, number, number_or_dash, row};
 use crate::calibration::{Judgement, ModelAccuracy, PartCoverage, Refitted, Statistic};
 
 /// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
@@ -77,18 +75,9 @@ fn block(
 ) {
     let nominal = judgement.nominal.as_ref().map(|model| ("nominal", model));
     let columns: Vec<_> = nominal.into_iter().chain([("calibrated", &judgement.calibrated)]).collect();
-    // Writing to a String cannot fail.
-    let _ = write!(out, "{title:<26}");
-    for (head, _) in &columns {
-        let _ = write!(out, "{head:>14}");
-    }
-    out.push('\n');
-    for (label, value) in STATISTICS {
-        let _ = write!(out, "  {label:<24}");
-        for (_, model) in &columns {
-            let cell = of(model).map_or_else(|| "-".to_owned(), |statistic| number(value(&statistic)));
-            let _ = write!(out, "{cell:>14}");
-        }
-        out.push('\n');
+    row(out, title, WIDTHS, columns.iter().map(|(head, _)| head));
+    for (label, _, value) in STATISTICS {
+        let cells = columns.iter().map(|(_, model)| number_or_dash(of(model).map(value)));
+        row(out, &format!("  {label}"), WIDTHS, cells);
     }
 }

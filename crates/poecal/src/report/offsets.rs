@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::table::{line, number, robot_words};
 use crate::calibration::DeviceFrameKnowledge;
+use crate::io::calibration_file::PoseEntry;
 use crate::io::model::{Model, ModelSource};
 use crate::lie::{Pose, rotation};
 use crate::offsets::{End, Explanation, TipError};
@@ -48,13 +49,7 @@ pub struct Offsets {
 struct EndEntry {
     frame: &'static str,
     reason: String,
-    motion: Motion,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-struct Motion {
-    position_m: [f64; 3],
-    quaternion_xyzw: [f64; 4],
+    motion: PoseEntry,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -189,12 +184,7 @@ impl Offsets {
 
 impl EndEntry {
     fn new(end: End, reason: &str, motion: &Pose) -> Self {
-        let (position_m, quaternion_xyzw) = (motion.translation.into(), motion.quaternion_xyzw());
-        EndEntry {
-            frame: end.word(),
-            reason: reason.to_owned(),
-            motion: Motion { position_m, quaternion_xyzw },
-        }
+        EndEntry { frame: end.word(), reason: reason.to_owned(), motion: motion.into() }
     }
 
     fn words(&self) -> String {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::table::{line, number};
+use super::table::{line, number, number_or_dash};
 use crate::io::calibration_file::{CalibrationFile, OutlierSet};
 use crate::text::visible;
 
@@ -36,7 +36,7 @@ pub(super) fn suspected(out: &mut String, file: &CalibrationFile) {
             "{:14}{:>12}{:>12}{:>9.3}  {}:{}{held_out}",
             "",
             number(outlier.residual_mm),
-            outlier.residual_deg.map_or_else(|| "-".to_owned(), number),
+            number_or_dash(outlier.residual_deg),
             outlier.weight,
             visible(&outlier.file),
             outlier.row

@@ -1,71 +1,44 @@
 //! What all tables of 80 columns have in common: labelled lines, figures, errors of the three models.
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 
-use crate::analysis::{Cause, Identifiability};
 use crate::calibration::{ModelAccuracy, SetAccuracy, Statistic};
 use crate::error::shown;
 use crate::robot::{JointKind, Robot};
 use crate::text::visible;
 
-/// Columns of the table: their heads and how to take them from the accuracy of a set.
-type Column<'a> = (&'a str, fn(&SetAccuracy) -> &ModelAccuracy);
+/// A model: its word, and how to take it from the accuracy of a set.
+type Model = (&'static str, fn(&SetAccuracy) -> &ModelAccuracy);
 
-/// A row of statistics: its label and how to take it.
-type StatisticRow = (&'static str, fn(&Statistic) -> f64);
+/// The three models.
+pub(super) const MODELS: [Model; 3] = [
+    ("nominal", |set| &set.nominal),
+    ("registered", |set| &set.registered),
+    ("calibrated", |set| &set.calibrated),
+];
+
+/// A row of statistics: its label, its name in files, and how to take it.
+type StatisticRow = (&'static str, &'static str, fn(Statistic) -> f64);
 
 /// The rows of every table of errors.
-pub(super) const STATISTICS: [StatisticRow; 4] =
-    [("mean", |s| s.mean), ("RMS", |s| s.rms), ("95 %", |s| s.p95), ("max", |s| s.max)];
+pub(super) const STATISTICS: [StatisticRow; 4] = [
+    ("mean", "mean", |s| s.mean),
+    ("RMS", "rms", |s| s.rms),
+    ("95 %", "p95", |s| s.p95),
+    ("max", "max", |s| s.max),
+];
 
-/// Directions of a kind that the terminal names.
-const MOST_DIRECTIONS: usize = 6;
-
-/// Which unknowns measurements determine, do not determine, determine weakly, and could not determine.
-pub(super) fn identifiability_lines(out: &mut String, found: &Identifiability) {
-    let condition = if found.condition.is_finite() {
-        format!(", condition {:.3e}", found.condition)
-    } else {
-        String::new()
-    };
-    line(out, "determined", &format!("{} of {} unknowns{condition}", found.rank, found.parameters));
-    for (label, directions) in [("undetermined", &found.unidentifiable), ("weakly determined", &found.weak)] {
-        if found.rank == 0 && found.parameters > 0 {
-            line(
-                out,
-                "",
-                "undetermined: everything, since the residual is as large as the effect of the unknowns",
-            );
-            break;
-        }
-        for (k, direction) in directions.iter().enumerate() {
-            if k == MOST_DIRECTIONS {
-                line(out, "", &format!("{label}: {} more, in calibration.json", directions.len() - k));
-                break;
-            }
-            let count = direction.directions;
-            let times = if count > 1 { format!(" ({count} directions)") } else { String::new() };
-            line(out, "", &format!("{label}: {}{times}", direction.description));
-        }
-    }
-    for direction in found.structural.iter().filter(|it| it.cause == Cause::NoOrientation) {
-        line(out, "", &direction.description);
-    }
-}
+/// Widths of the label and of each cell in tables of models.
+pub(super) const WIDTHS: [usize; 2] = [26, 14];
 
 /// Position and rotation errors of the three models, training and held out apart.
 pub(super) fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccuracy>) -> String {
-    let columns: [Column<'_>; 3] = [
-        ("nominal", |set| &set.nominal),
-        ("registered", |set| &set.registered),
-        ("calibrated", |set| &set.calibrated),
-    ];
     let mut out = String::new();
-    block(&mut out, "position, mm", &columns, training, held_out, |model| Some(model.position_mm));
+    block(&mut out, "position, mm", training, held_out, |model| Some(model.position_mm));
     let turned = |set: &SetAccuracy| set.calibrated.rotation_deg.is_some();
     if turned(training) || held_out.is_some_and(turned) {
         out.push('\n');
-        block(&mut out, "rotation, deg", &columns, training, held_out, |model| model.rotation_deg);
+        block(&mut out, "rotation, deg", training, held_out, |model| model.rotation_deg);
     }
     out
 }
@@ -73,40 +46,39 @@ pub(super) fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccura
 fn block(
     out: &mut String,
     title: &str,
-    columns: &[Column<'_>],
     training: &SetAccuracy,
     held_out: Option<&SetAccuracy>,
-    of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
+    of: fn(&ModelAccuracy) -> Option<Statistic>,
 ) {
-    // Writing to a String cannot fail.
-    let _ = write!(out, "{title:<26}");
-    for (head, _) in columns {
-        let _ = write!(out, "{head:>14}");
-    }
-    out.push('\n');
-    set_rows(out, "training", columns, training, &of);
+    row(out, title, WIDTHS, MODELS.map(|(word, _)| word));
+    set_rows(out, "training", training, of);
     match held_out {
-        Some(set) => set_rows(out, "held out", columns, set, &of),
+        Some(set) => set_rows(out, "held out", set, of),
         None => out.push_str("  held out        none: every measurement was fitted\n"),
     }
 }
 
-fn set_rows(
-    out: &mut String,
-    name: &str,
-    columns: &[Column<'_>],
-    set: &SetAccuracy,
-    of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
-) {
-    for (k, (label, value)) in STATISTICS.iter().enumerate() {
+fn set_rows(out: &mut String, name: &str, set: &SetAccuracy, of: fn(&ModelAccuracy) -> Option<Statistic>) {
+    for (k, (label, _, value)) in STATISTICS.into_iter().enumerate() {
         let head = if k == 0 { format!("{name} ({})", set.count) } else { String::new() };
-        let _ = write!(out, "  {head:<17} {label:<6}");
-        for (_, model) in columns {
-            let cell = of(model(set)).map_or_else(|| "-".to_owned(), |s| number(value(&s)));
-            let _ = write!(out, "{cell:>14}");
-        }
-        out.push('\n');
+        let cells = MODELS.map(|(_, model)| number_or_dash(of(model(set)).map(value)));
+        row(out, &format!("  {head:<17} {label:<6}"), WIDTHS, cells);
     }
+}
+
+/// A row of a table: a label, and cells that end below each other.
+pub fn row(
+    out: &mut String,
+    label: &str,
+    [label_width, width]: [usize; 2],
+    cells: impl IntoIterator<Item = impl Display>,
+) {
+    // Writing to a String cannot fail.
+    let _ = write!(out, "{label:<label_width$}");
+    for cell in cells {
+        let _ = write!(out, "{cell:>width$}");
+    }
+    out.push('\n');
 }
 
 /// Four digits that matter, without an exponent where people read lengths.
@@ -121,15 +93,22 @@ pub fn number(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
+/// [`number`], or a dash for what does not exist.
+pub(super) fn number_or_dash(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), number)
+}
+
 pub(super) fn robot_words(robot: &Robot) -> String {
-    let sliding = robot.joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
-    let turning = robot.joints.len() - sliding;
-    let kinds = match (turning, sliding) {
-        (turning, 0) => format!("{turning} revolute"),
-        (0, sliding) => format!("{sliding} prismatic"),
-        (turning, sliding) => format!("{turning} revolute, {sliding} prismatic"),
-    };
+    let kinds = joints_words(robot.joints.iter().map(|joint| joint.kind));
     format!("{}: {kinds}, from {} to {}", shown(&robot.name), shown(&robot.base_name), shown(&robot.tip_name))
+}
+
+/// How many joints turn, and how many slide.
+pub(super) fn joints_words(kinds: impl Iterator<Item = JointKind>) -> String {
+    let (turning, sliding): (Vec<_>, Vec<_>) = kinds.partition(|kind| *kind == JointKind::Revolute);
+    let words = [(turning.len(), "revolute"), (sliding.len(), "prismatic")];
+    let words = words.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}"));
+    words.collect::<Vec<_>>().join(", ")
 }
 
 /// How many poses and points.
@@ -142,22 +121,42 @@ pub(super) fn kinds_words(poses: usize, points: usize) -> String {
     }
 }
 
+/// Width of the column of labels.
+pub const INDENT: usize = 14;
+/// Width of all lines.
+pub const WIDTH: usize = 80;
+
 /// A labelled line, broken at 80 columns with the text aligned.
 pub fn line(out: &mut String, label: &str, text: &str) {
-    const INDENT: usize = 14;
-    let mut width = INDENT;
-    let _ = write!(out, "{label:<INDENT$}");
-    for (k, word) in visible(text).split(' ').enumerate() {
+    let text = broken(&visible(text), INDENT, INDENT, WIDTH);
+    // Writing to a String cannot fail.
+    let _ = writeln!(out, "{label:<INDENT$}{text}");
+}
+
+/// Paragraphs under one label.
+pub fn lines<T: AsRef<str>>(out: &mut String, label: &str, texts: impl IntoIterator<Item = T>) {
+    for (k, text) in texts.into_iter().enumerate() {
+        line(out, if k == 0 { label } else { "" }, text.as_ref());
+    }
+}
+
+/// A text with line breaks in place of blanks where it would be wider than `width`: behind `before` characters, and further lines
+/// indented.
+#[must_use]
+pub fn broken(text: &str, before: usize, indent: usize, width: usize) -> String {
+    let (mut out, mut used) = (String::new(), before);
+    for (k, word) in text.split(' ').enumerate() {
         let length = word.chars().count();
-        if k > 0 && width + 1 + length > 80 {
-            let _ = write!(out, "\n{:INDENT$}", "");
-            width = INDENT;
+        if k > 0 && used + 1 + length > width {
+            out.push('\n');
+            out.push_str(&" ".repeat(indent));
+            used = indent;
         } else if k > 0 {
             out.push(' ');
-            width += 1;
+            used += 1;
         }
         out.push_str(word);
-        width += length;
+        used += length;
     }
-    out.push('\n');
+    out
 }

@@ -6,41 +6,28 @@ use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
 use super::trust::direction_words;
 use crate::analysis::Direction;
-use crate::calibration::{DeviceFrameKnowledge, Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
+use crate::calibration::{Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
-use crate::report::summary::{Place, Point, expected, look_at};
-use crate::report::table::STATISTICS;
-use crate::robot::JointKind;
+use crate::report::summary::{ModelRow, Place, Point, expected, leading, look_at};
+use crate::report::table::{MODELS, STATISTICS, joints_words};
 
-/// A model: its word, and how to take it from a set.
-type Model = (&'static str, fn(&SetAccuracy) -> &ModelAccuracy);
+/// A kind of error: its name in the file, and how to take it from a model's.
+type Quantity = (&'static str, fn(&ModelAccuracy) -> Option<Statistic>);
 
-const MODELS: [Model; 3] = [
-    ("nominal", |set| &set.nominal),
-    ("registered", |set| &set.registered),
-    ("calibrated", |set| &set.calibrated),
-];
-
-/// Names of the statistics in the file.
-const STATISTIC_KEYS: [&str; 4] = ["mean", "rms", "p95", "max"];
+pub(super) const POSITION: Quantity = ("position_mm", |model| Some(model.position_mm));
+/// None where no orientation was measured.
+pub(super) const ROTATION: Quantity = ("rotation_deg", |model| model.rotation_deg);
 
 pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let held_out = file.accuracy.held_out.as_ref();
-    let (set, of, key) = match held_out {
-        Some(set) => (set, "rows held out", "accuracy.held_out.count"),
-        None => {
-            (&file.accuracy.training, "the fitted rows, since none was held out", "accuracy.training.count")
-        }
+    let (of, key) = match held_out {
+        Some(_) => ("rows held out", "accuracy.held_out.count"),
+        None => ("the fitted rows, since none was held out", "accuracy.training.count"),
     };
-    let position = lead_table(&format!("Position error on {of}, mm"), file, "position_mm", |model| {
-        Some(model.position_mm)
-    });
-    let rotation = || {
-        lead_table(&format!("Rotation error on {of}, degrees"), file, "rotation_deg", |model| {
-            model.rotation_deg
-        })
-    };
+    let (set, rows) = leading(file);
+    let position = lead_table(&format!("Position error on {of}, mm"), &rows, POSITION);
+    let rotation = || lead_table(&format!("Rotation error on {of}, degrees"), &rows, ROTATION);
     let caption = html! { (count(set.count, key)) " " (of) ". Nominal: the model before calibration. Registered: tool and device fitted to it." };
     html! {
         header {
@@ -73,45 +60,11 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
 }
 
 /// Errors before and after, of the rows held out or, if there are none, of those fitted.
-fn lead_table(
-    caption: &str,
-    file: &CalibrationFile,
-    quantity: &str,
-    of: fn(&ModelAccuracy) -> Option<Statistic>,
-) -> HtmlTable {
-    let (set, key, rest, rest_key, suspected) = match &file.accuracy.held_out {
-        Some(set) => (
-            set,
-            "accuracy.held_out",
-            &file.robust.held_out_without_suspected,
-            "robust.held_out_without_suspected",
-            file.robust.suspected_held_out,
-        ),
-        None => (
-            &file.accuracy.training,
-            "accuracy.training",
-            &file.robust.training_without_suspected,
-            "robust.training_without_suspected",
-            file.robust.suspected_fit,
-        ),
-    };
-    let nominal = match file.measurement_frame.known {
-        DeviceFrameKnowledge::Unknown => "nominal, tool and device fitted",
-        DeviceFrameKnowledge::Base => "nominal, tool fitted",
-    };
-    let mut rows = vec![
-        (nominal.to_owned(), &set.registered, format!("{key}.registered")),
-        ("calibrated".to_owned(), &set.calibrated, format!("{key}.calibrated")),
-    ];
-    if let Some(rest) = rest {
-        let name = format!("calibrated, without {suspected} suspected");
-        rows.push((name, &rest.calibrated, format!("{rest_key}.calibrated")));
-    }
+fn lead_table(caption: &str, rows: &[ModelRow<'_>], (quantity, of): Quantity) -> HtmlTable {
     let mut table = HtmlTable::new(caption, 1, &["", "mean", "RMS", "95 %", "max"]);
     for (name, model, key) in rows {
-        let cells = STATISTICS.iter().zip(STATISTIC_KEYS).map(|((_, value), statistic)| {
-            let value = of(model).map(|it| value(&it));
-            figure_or(value, format_args!("{key}.{quantity}.{statistic}"), "")
+        let cells = STATISTICS.map(|(_, statistic, value)| {
+            figure_or(of(model).map(value), format_args!("{key}.{quantity}.{statistic}"), "")
         });
         table.cells(std::iter::once(name.render()).chain(cells));
     }
@@ -120,12 +73,8 @@ fn lead_table(
 
 /// How many joints of which kind, and from where to where.
 fn kinds(file: &CalibrationFile) -> Markup {
-    let sliding = file.joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
-    let words = [(file.joints.len() - sliding, "revolute"), (sliding, "prismatic")];
-    let words: Vec<String> =
-        words.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
     html! {
-        (words.join(", ")) " joints, from " (quoted(&file.robot.base_link, "robot.base_link"))
+        (joints_words(file.joints.iter().map(|joint| joint.kind.into()))) " joints, from " (quoted(&file.robot.base_link, "robot.base_link"))
         " to " (quoted(&file.robot.tip_link, "robot.tip_link"))
     }
 }
@@ -185,28 +134,17 @@ fn verdict_words(level: Level) -> &'static str {
     }
 }
 
-/// Errors of position of the three models.
-pub(super) fn position_table(caption: &str, set: &SetAccuracy, key: &str) -> HtmlTable {
-    error_table(caption, set, key, "position_mm", |model| Some(model.position_mm))
-}
-
-/// Errors of rotation, where orientation was measured.
-pub(super) fn rotation_table(caption: &str, set: &SetAccuracy, key: &str) -> HtmlTable {
-    error_table(caption, set, key, "rotation_deg", |model| model.rotation_deg)
-}
-
-fn error_table(
+/// Errors of the three models.
+pub(super) fn error_table(
     caption: &str,
     set: &SetAccuracy,
     key: &str,
-    quantity: &str,
-    of: fn(&ModelAccuracy) -> Option<Statistic>,
+    (quantity, of): Quantity,
 ) -> HtmlTable {
     let mut table = HtmlTable::new(caption, 1, &["", "nominal", "registered", "calibrated"]);
-    for ((label, value), statistic) in STATISTICS.iter().zip(STATISTIC_KEYS) {
-        let cells = MODELS.iter().map(|(name, model)| {
-            let value = of(model(set)).map(|it| value(&it));
-            figure_or(value, format_args!("{key}.{name}.{quantity}.{statistic}"), "")
+    for (label, statistic, value) in STATISTICS {
+        let cells = MODELS.map(|(name, model)| {
+            figure_or(of(model(set)).map(value), format_args!("{key}.{name}.{quantity}.{statistic}"), "")
         });
         table.cells(std::iter::once(label.render()).chain(cells));
     }

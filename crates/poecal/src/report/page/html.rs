@@ -61,7 +61,7 @@ pub(super) fn decimal(value: f64, decimals: usize) -> String {
 /// A table.
 pub(super) struct HtmlTable {
     caption: String,
-    head: Markup,
+    head: Vec<String>,
     rows: String,
     /// How many columns, from the left, hold words; the others hold numbers.
     words: usize,
@@ -69,10 +69,8 @@ pub(super) struct HtmlTable {
 
 impl HtmlTable {
     pub(super) fn new(caption: &str, words: usize, head: &[&str]) -> Self {
-        let mut table =
-            HtmlTable { caption: caption.to_owned(), head: Markup::default(), rows: String::new(), words };
-        table.head = html! { tr { @for (k, name) in head.iter().enumerate() { th scope="col" class=(table.class(k)) { (name) } } } };
-        table
+        let head = head.iter().map(|name| (*name).to_owned()).collect();
+        HtmlTable { caption: caption.to_owned(), head, rows: String::new(), words }
     }
 
     fn class(&self, column: usize) -> &'static str {
@@ -110,7 +108,7 @@ impl Render for HtmlTable {
             div.scroll tabindex="0" role="region" aria-label=(self.caption) {
                 table {
                     caption { (self.caption) }
-                    thead { (self.head) }
+                    thead { tr { @for (k, name) in self.head.iter().enumerate() { th scope="col" class=(self.class(k)) { (name) } } } }
                     tbody { (PreEscaped(&self.rows)) }
                 }
             }

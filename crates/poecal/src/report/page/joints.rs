@@ -1,6 +1,7 @@
 //! The robot: its axes in three dimensions, and what was corrected at each joint.
 
 use maud::{Markup, html};
+use nalgebra::Vector3;
 
 use super::figures;
 use super::html::{HtmlTable, decimal, figure, figure_or, folded, plots, quoted, section};
@@ -43,14 +44,11 @@ fn axis(
     let turns = joint.kind == JointKind::Revolute;
     let (direction, part) = if turns { (screw.w, "w") } else { (screw.v_m, "v_m") };
     let [x, y, z] = [0, 1, 2].map(|i| figure(direction[i], format_args!("joints.{k}.{key}.{part}.{i}")));
-    let point = cross(screw.w, screw.v_m).map(|it| if turns { decimal(1e3 * it, 3) } else { "–".to_owned() });
+    // The point of the axis nearest to the origin.
+    let point: [f64; 3] = Vector3::from(screw.w).cross(&Vector3::from(screw.v_m)).into();
+    let point = point.map(|it| if turns { decimal(1e3 * it, 3) } else { "–".to_owned() });
     let name = quoted(&joint.name, format_args!("joints.{k}.name"));
     table.row(&[&name, &joint.kind.word(), &model, &x, &y, &z, &point[0], &point[1], &point[2]]);
-}
-
-/// The point of an axis nearest to the origin, from its direction and its linear part.
-fn cross(w: [f64; 3], v: [f64; 3]) -> [f64; 3] {
-    [w[1] * v[2] - w[2] * v[1], w[2] * v[0] - w[0] * v[2], w[0] * v[1] - w[1] * v[0]]
 }
 
 fn corrections(file: &CalibrationFile) -> Markup {

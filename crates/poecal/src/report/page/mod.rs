@@ -85,37 +85,35 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
 
 /// Refuses residuals of another calibration.
 fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
+    let refused = |words: String| {
+        let message = format!("found residuals {words}: name the residuals.csv that was written with it");
+        Err(Error::new(ErrorKind::Problem, message))
+    };
     let held_out = residuals.rows.iter().filter(|row| row.held_out).count();
     let found = (residuals.rows.len() - held_out, held_out);
     let accuracy = &file.accuracy;
     let expected = (accuracy.training.count, accuracy.held_out.as_ref().map_or(0, |set| set.count));
     if found != expected {
-        let message = format!(
-            "found residuals of {} rows fitted and {} held out, expected {} and {} as in the calibration: name the residuals.csv that was \
-             written with it",
+        return refused(format!(
+            "of {} rows fitted and {} held out, expected {} and {} as in the calibration",
             found.0, found.1, expected.0, expected.1
-        );
-        return Err(Error::new(ErrorKind::Problem, message));
+        ));
     }
     for joint in &file.joints {
-        if !residuals.readings.iter().any(|(name, _)| *name == joint.reading.name) {
-            let message = format!(
-                "found residuals without the reading of `{}`, expected a column for each joint of the calibration: name the residuals.csv \
-                 that was written with it",
+        if reading_index(residuals, &joint.reading.name).is_none() {
+            return refused(format!(
+                "without the reading of `{}`, expected a column for each joint of the calibration",
                 joint.reading.name
-            );
-            return Err(Error::new(ErrorKind::Problem, message));
+            ));
         }
     }
     let fitted = residuals.rows.iter().filter(|row| !row.held_out);
     let found = Statistic::of(fitted.map(|row| row.position_mm.models[2]).collect()).map_or(0.0, |it| it.rms);
     let expected = accuracy.training.calibrated.position_mm.rms;
     if (found - expected).abs() > SAME * expected {
-        let message = format!(
-            "found residuals of {found:.6} mm (RMS) on the fitted rows, expected {expected:.6} mm as in the calibration: name the \
-             residuals.csv that was written with it"
-        );
-        return Err(Error::new(ErrorKind::Problem, message));
+        return refused(format!(
+            "of {found:.6} mm (RMS) on the fitted rows, expected {expected:.6} mm as in the calibration"
+        ));
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place, short};
-use super::first::{position_table, rotation_table};
+use super::first::{POSITION, ROTATION, error_table};
 use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, plots, section};
 use super::{figures, readings_of};
 use crate::calibration::Statistic;
@@ -84,9 +84,9 @@ fn set_tables(file: &CalibrationFile) -> Markup {
     html! {
         div.tables {
             @for (words, key, set) in sets.into_iter().filter_map(|(words, key, set)| Some((words, key, set?))) {
-                (position_table(&format!("Position error, mm: {} {words}", set.count), set, key))
+                (error_table(&format!("Position error, mm: {} {words}", set.count), set, key, POSITION))
                 @if set.calibrated.rotation_deg.is_some() {
-                    (rotation_table(&format!("Rotation error, degrees: {} {words}", set.count), set, key))
+                    (error_table(&format!("Rotation error, degrees: {} {words}", set.count), set, key, ROTATION))
                 }
             }
         }

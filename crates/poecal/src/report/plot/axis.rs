@@ -66,6 +66,8 @@ const LARGEST: f64 = 1e300;
 const SMALLEST: f64 = 1e-290;
 /// Room at each end of a linear axis, as a share of it.
 const PADDING: f64 = 0.03;
+/// Digits of powers.
+const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 /// Ticks that an axis aims at.
 const TICKS: f64 = 5.0;
 
@@ -92,7 +94,7 @@ impl Ruler {
         let (mut low, mut high) = if largest.is_nan() {
             (0, 1)
         } else {
-            (decade(smallest.log10().floor()), decade(largest.log10().ceil()))
+            (smallest.log10().floor() as i32, largest.log10().ceil() as i32)
         };
         low = low.max(high - MOST_DECADES);
         if low == high {
@@ -150,10 +152,6 @@ impl Ruler {
     }
 }
 
-fn decade(power: f64) -> i32 {
-    power as i32
-}
-
 /// Smallest and largest finite value.
 fn range(values: &[f64]) -> Option<(f64, f64)> {
     let clipped = values
@@ -204,19 +202,7 @@ fn power_label(factor: f64, power: i32, plain: bool) -> String {
         return format!("{:.decimals$}", factor * 10_f64.powi(power));
     }
     let digits = power.to_string();
-    let raised = digits.chars().map(|c| match c {
-        '-' => '⁻',
-        '0' => '⁰',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        _ => '⁹',
-    });
+    let raised = digits.chars().map(|c| c.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]));
     format!("10{}", raised.collect::<String>())
 }
 

@@ -1,9 +1,8 @@
 //! Dots by category: a row for each, several series in a row, joined where a pair is compared.
 
 use super::Mark;
-use super::axis::{Axis, Ruler};
-use super::frame::{self, Area, Unshown, WIDTH};
-use super::svg::{Anchor, Canvas, text_width};
+use super::axis::Axis;
+use super::frame::{Area, Frame};
 
 /// Height of a row, px, and what each further series adds where they stand below each other.
 const ROW: f64 = 17.0;
@@ -37,29 +36,20 @@ impl DotPlot {
         let values = || self.series.iter().flat_map(|dots| dots.values.iter().flatten());
         let marked = self.mark.iter().map(|mark| mark.at);
         let x = self.x.ruler(values().copied().chain(marked));
-        let mut canvas = Canvas::new();
         let legend: Vec<(usize, &str)> =
             self.series.iter().map(|dots| (dots.style, dots.name.as_str())).collect();
-        let top =
-            frame::head(&mut canvas, &self.title, &legend, false) + frame::mark_room(self.mark.as_ref());
-        let widest = self.rows.iter().map(|row| text_width(row)).fold(0.0, f64::max);
-        let bottom = top + self.row_height() * self.rows.len().max(1) as f64;
-        // Long labels take from the data, but not more than half.
-        let left = (widest + 18.0).clamp(40.0, WIDTH / 2.0);
-        let area = Area { left, top, right: WIDTH - 24.0, bottom };
-        frame::horizontal_axis(&mut canvas, &area, &x, &self.x.title, self.mark.as_ref());
-        for (k, row) in self.rows.iter().enumerate() {
-            let y = self.row_middle(&area, k);
-            canvas.text([area.left - 8.0, y + 4.0], Anchor::End, row);
-            self.join(&mut canvas, (&area, &x), k);
+        let labels: Vec<&str> = self.rows.iter().map(String::as_str).collect();
+        let (rows, x) = ((labels.as_slice(), self.row_height()), (x, self.x.title.as_str()));
+        let mut frame = Frame::of_rows(&self.title, &legend, rows, x, self.mark.as_ref());
+        for (k, row) in labels.iter().enumerate() {
+            frame.row_label(self.row_middle(&frame.area, k), row);
+            self.join(&mut frame, k);
         }
-        canvas.axis_line([area.left, area.top], [area.left, area.bottom]);
-        let mut unshown = Unshown::default();
+        frame.left_line();
         for (k, dots) in self.series.iter().enumerate() {
-            self.draw(&mut canvas, k, dots, (&area, &x), &mut unshown);
+            self.draw(&mut frame, k, dots);
         }
-        let height = frame::foot(&mut canvas, &area, values().next().is_some(), &unshown);
-        canvas.finish(WIDTH, height, &self.title, &self.description)
+        frame.finish(values().next().is_some(), &self.title, &self.description)
     }
 
     fn row_height(&self) -> f64 {
@@ -71,27 +61,21 @@ impl DotPlot {
     }
 
     /// The line from a row's least to its largest value.
-    fn join(&self, canvas: &mut Canvas, (area, x): (&Area, &Ruler), row: usize) {
-        let y = self.row_middle(area, row);
+    fn join(&self, frame: &mut Frame, row: usize) {
+        let y = self.row_middle(&frame.area, row);
         if !self.joined {
-            return canvas.grid_line([area.left, y], [area.right, y]);
+            return frame.canvas.grid_line([frame.area.left, y], [frame.area.right, y]);
         }
         let values = self.series.iter().filter_map(|dots| *dots.values.get(row)?);
-        let places = values.filter_map(|value| x.place(value)).map(|place| area.x(place.share));
+        let places = values.filter_map(|value| frame.across(value));
         let (from, to) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
         if from < to {
-            canvas.axis_line([from, y], [to, y]);
+            frame.canvas.axis_line([from, y], [to, y]);
         }
     }
 
-    fn draw(
-        &self,
-        canvas: &mut Canvas,
-        series: usize,
-        dots: &Dots,
-        (area, x): (&Area, &Ruler),
-        unshown: &mut Unshown,
-    ) {
+    fn draw(&self, frame: &mut Frame, series: usize, dots: &Dots) {
+        let Frame { canvas, area, x, unshown } = frame;
         let middle = (self.series.len() as f64 - 1.0) / 2.0;
         let shift = if self.joined { 0.0 } else { SERIES * (series as f64 - middle) };
         canvas.begin_series(dots.style);
@@ -104,12 +88,8 @@ impl DotPlot {
             if !place.inside {
                 unshown.beyond(value);
             }
-            canvas.marker(
-                dots.style,
-                [area.x(place.share), self.row_middle(area, row) + shift],
-                RADIUS,
-                place.inside,
-            );
+            let at = [area.x(place.share), self.row_middle(area, row) + shift];
+            canvas.marker(dots.style, at, RADIUS, place.inside);
         }
         canvas.end_series();
     }

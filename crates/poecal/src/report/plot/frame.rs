@@ -55,6 +55,104 @@ impl Unshown {
     }
 }
 
+/// A plot in the making: an area for the data, below the title and the legend, and the horizontal axis below it.
+pub(super) struct Frame {
+    pub(super) canvas: Canvas,
+    pub(super) area: Area,
+    /// The horizontal axis.
+    pub(super) x: Ruler,
+    pub(super) unshown: Unshown,
+}
+
+impl Frame {
+    /// A frame around an area, with its horizontal axis, and its mark, for which there is [`mark_room`].
+    pub(super) fn new(canvas: Canvas, area: Area, (x, title): (Ruler, &str), mark: Option<&Mark>) -> Self {
+        let mut frame = Frame { canvas, area, x, unshown: Unshown::default() };
+        frame.horizontal_axis(title, mark);
+        frame
+    }
+
+    /// A frame around rows of a height, with room for their labels.
+    pub(super) fn of_rows(
+        title: &str,
+        legend: &[(usize, &str)],
+        (labels, height): (&[&str], f64),
+        x: (Ruler, &str),
+        mark: Option<&Mark>,
+    ) -> Self {
+        let mut canvas = Canvas::new();
+        let top = head(&mut canvas, title, legend, false) + mark_room(mark);
+        let widest = labels.iter().map(|label| text_width(label)).fold(0.0, f64::max);
+        let bottom = top + height * labels.len().max(1) as f64;
+        // Long labels take from the data, but not more than half.
+        let left = (widest + 18.0).clamp(40.0, WIDTH / 2.0);
+        Frame::new(canvas, Area { left, top, right: WIDTH - 24.0, bottom }, x, mark)
+    }
+
+    /// Where a value is drawn along the horizontal axis, px; nowhere if it is not a number.
+    pub(super) fn across(&self, value: f64) -> Option<f64> {
+        self.x.place(value).map(|place| self.area.x(place.share))
+    }
+
+    /// The label of a row, to the left of the area.
+    pub(super) fn row_label(&mut self, y: f64, label: &str) {
+        self.canvas.text([self.area.left - 8.0, y + 4.0], Anchor::End, label);
+    }
+
+    /// The line to the left of the area.
+    pub(super) fn left_line(&mut self) {
+        let Area { left, top, bottom, .. } = self.area;
+        self.canvas.axis_line([left, top], [left, bottom]);
+    }
+
+    /// Grid, ticks and title of the horizontal axis, and its mark.
+    fn horizontal_axis(&mut self, title: &str, mark: Option<&Mark>) {
+        let Frame { canvas, area, x: ruler, .. } = self;
+        for (share, label) in &ruler.ticks {
+            let x = area.x(*share);
+            canvas.grid_line([x, area.top], [x, area.bottom]);
+            canvas.text([x, area.bottom + 15.0], Anchor::Middle, label);
+        }
+        canvas.axis_line([area.left, area.bottom], [area.right, area.bottom]);
+        canvas.axis_title([(area.left + area.right) / 2.0, area.bottom + 33.0], Anchor::Middle, title);
+        let Some(mark) = mark else { return };
+        let Some(place) = ruler.place(mark.at) else { return };
+        let x = area.x(place.share);
+        canvas.mark_line([x, area.top - 4.0], [x, area.bottom]);
+        // The label ends with the plot at the latest, and begins with it at the earliest.
+        let half = text_width(&mark.label) / 2.0;
+        let middle = x.min(WIDTH - MARGIN - half).max(MARGIN + half);
+        canvas.text([middle, area.top - 8.0], Anchor::Middle, &mark.label);
+    }
+
+    /// The whole plot with notes below its axes. `any` says whether there is a value.
+    pub(super) fn finish(mut self, any: bool, title: &str, description: &str) -> String {
+        let unshown = &self.unshown;
+        let mut notes = Vec::new();
+        if !any {
+            notes.push("There are no values.".to_owned());
+        }
+        for (count, words) in [
+            (unshown.zero, "exactly zero"),
+            (unshown.infinite, "infinite"),
+            (unshown.other, "beyond the axis"),
+        ] {
+            if count > 0 {
+                notes.push(format!("Hollow: {words} ({count})."));
+            }
+        }
+        if unshown.not_numbers > 0 {
+            notes.push(format!("Not drawn: {}, not a number.", unshown.not_numbers));
+        }
+        let mut y = self.area.bottom + 33.0;
+        for note in notes {
+            y += LINE;
+            self.canvas.text([MARGIN, y], Anchor::Start, &note);
+        }
+        self.canvas.finish(WIDTH, y + MARGIN, title, description)
+    }
+}
+
 /// Title and legend; gives the y below them.
 pub(super) fn head(canvas: &mut Canvas, title: &str, legend: &[(usize, &str)], dashes: bool) -> f64 {
     let mut y = MARGIN + 8.0;
@@ -88,31 +186,6 @@ pub(super) fn vertical_title(canvas: &mut Canvas, y: f64, title: &str) -> f64 {
     y + 13.0
 }
 
-/// Grid, ticks and title of the horizontal axis, and its mark.
-pub(super) fn horizontal_axis(
-    canvas: &mut Canvas,
-    area: &Area,
-    ruler: &Ruler,
-    title: &str,
-    mark: Option<&Mark>,
-) {
-    for (share, label) in &ruler.ticks {
-        let x = area.x(*share);
-        canvas.grid_line([x, area.top], [x, area.bottom]);
-        canvas.text([x, area.bottom + 15.0], Anchor::Middle, label);
-    }
-    canvas.axis_line([area.left, area.bottom], [area.right, area.bottom]);
-    canvas.axis_title([(area.left + area.right) / 2.0, area.bottom + 33.0], Anchor::Middle, title);
-    let Some(mark) = mark else { return };
-    let Some(place) = ruler.place(mark.at) else { return };
-    let x = area.x(place.share);
-    canvas.mark_line([x, area.top - 4.0], [x, area.bottom]);
-    // The label ends with the plot at the latest, and begins with it at the earliest.
-    let half = text_width(&mark.label) / 2.0;
-    let middle = x.min(WIDTH - MARGIN - half).max(MARGIN + half);
-    canvas.text([middle, area.top - 8.0], Anchor::Middle, &mark.label);
-}
-
 /// Grid and ticks of the vertical axis.
 pub(super) fn vertical_axis(canvas: &mut Canvas, area: &Area, ruler: &Ruler) {
     for (share, label) in &ruler.ticks {
@@ -126,28 +199,4 @@ pub(super) fn vertical_axis(canvas: &mut Canvas, area: &Area, ruler: &Ruler) {
 /// Room for a mark's label above the data.
 pub(super) fn mark_room(mark: Option<&Mark>) -> f64 {
     if mark.is_some() { LINE } else { 0.0 }
-}
-
-/// Notes below the axes; gives the height of the plot.
-pub(super) fn foot(canvas: &mut Canvas, area: &Area, any: bool, unshown: &Unshown) -> f64 {
-    let mut notes = Vec::new();
-    if !any {
-        notes.push("There are no values.".to_owned());
-    }
-    for (count, words) in
-        [(unshown.zero, "exactly zero"), (unshown.infinite, "infinite"), (unshown.other, "beyond the axis")]
-    {
-        if count > 0 {
-            notes.push(format!("Hollow: {words} ({count})."));
-        }
-    }
-    if unshown.not_numbers > 0 {
-        notes.push(format!("Not drawn: {}, not a number.", unshown.not_numbers));
-    }
-    let mut y = area.bottom + 33.0;
-    for note in notes {
-        y += LINE;
-        canvas.text([MARGIN, y], Anchor::Start, &note);
-    }
-    y + MARGIN
 }

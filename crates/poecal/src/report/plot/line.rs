@@ -2,7 +2,7 @@
 
 use super::Mark;
 use super::axis::{Axis, Ruler};
-use super::frame::{self, Area, Unshown, WIDTH};
+use super::frame::{self, Area, Frame, WIDTH};
 use super::svg::Canvas;
 
 /// Height of the area of the data, px.
@@ -46,26 +46,19 @@ impl LinePlot {
             frame::vertical_title(&mut canvas, below, &self.y.title) + frame::mark_room(self.mark.as_ref());
         let area = Area { left: 56.0, top, right: WIDTH - 20.0, bottom: top + HEIGHT };
         frame::vertical_axis(&mut canvas, &area, &y);
-        frame::horizontal_axis(&mut canvas, &area, &x, &self.x.title, self.mark.as_ref());
-        let mut unshown = Unshown::default();
+        let mut frame = Frame::new(canvas, area, (x, &self.x.title), self.mark.as_ref());
         for (k, line) in self.lines.iter().enumerate() {
             // Lines that coincide stay visible: the later ones have smaller markers.
             let radius = if line.points.len() > MANY { 2.4 } else { (5.2 - 0.8 * k as f64).max(2.4) };
-            draw(&mut canvas, line, radius, (&area, &x, &y), &mut unshown);
+            draw(&mut frame, &y, line, radius);
         }
-        let height = frame::foot(&mut canvas, &area, points().next().is_some(), &unshown);
-        canvas.finish(WIDTH, height, &self.title, &self.description)
+        frame.finish(points().next().is_some(), &self.title, &self.description)
     }
 }
 
 /// Draws a line; where a point is not a number, it is broken.
-fn draw(
-    canvas: &mut Canvas,
-    line: &Line,
-    radius: f64,
-    (area, x, y): (&Area, &Ruler, &Ruler),
-    unshown: &mut Unshown,
-) {
+fn draw(frame: &mut Frame, y: &Ruler, line: &Line, radius: f64) {
+    let Frame { canvas, area, x, unshown } = frame;
     let mut pieces: Vec<Vec<[f64; 2]>> = vec![Vec::new()];
     let mut markers = Vec::new();
     for &[across_value, up_value] in &line.points {

@@ -1,8 +1,7 @@
 //! Ranges by category: a row for each, with a thin line, a thick bar on it, and a dot.
 
-use super::axis::{Axis, Ruler};
-use super::frame::{self, Area, Unshown, WIDTH};
-use super::svg::{Anchor, Canvas, text_width};
+use super::axis::Axis;
+use super::frame::Frame;
 
 /// Height of a row, px.
 const ROW: f64 = 22.0;
@@ -32,23 +31,15 @@ impl RangePlot {
     pub fn svg(&self) -> String {
         let values = || self.rows.iter().flat_map(RangeRow::values);
         let x = self.x.ruler(values());
-        let mut canvas = Canvas::new();
-        let top = frame::head(&mut canvas, &self.title, &[], false);
-        let widest = self.rows.iter().map(|row| text_width(&row.label)).fold(0.0, f64::max);
-        let bottom = top + ROW * self.rows.len().max(1) as f64;
-        // Long labels take from the data, but not more than half.
-        let left = (widest + 18.0).clamp(40.0, WIDTH / 2.0);
-        let area = Area { left, top, right: WIDTH - 24.0, bottom };
-        frame::horizontal_axis(&mut canvas, &area, &x, &self.x.title, None);
-        canvas.axis_line([area.left, area.top], [area.left, area.bottom]);
-        let mut unshown = Unshown::default();
+        let labels: Vec<&str> = self.rows.iter().map(|row| row.label.as_str()).collect();
+        let mut frame = Frame::of_rows(&self.title, &[], (&labels, ROW), (x, &self.x.title), None);
+        frame.left_line();
         for (k, row) in self.rows.iter().enumerate() {
-            let y = area.top + ROW * (k as f64 + 0.5);
-            canvas.text([area.left - 8.0, y + 4.0], Anchor::End, &row.label);
-            row.draw(&mut canvas, (&area, &x), y, &mut unshown);
+            let y = frame.area.top + ROW * (k as f64 + 0.5);
+            frame.row_label(y, &row.label);
+            row.draw(&mut frame, y);
         }
-        let height = frame::foot(&mut canvas, &area, values().next().is_some(), &unshown);
-        canvas.finish(WIDTH, height, &self.title, &self.description)
+        frame.finish(values().next().is_some(), &self.title, &self.description)
     }
 }
 
@@ -57,17 +48,20 @@ impl RangeRow {
         self.line.into_iter().chain(self.bar).flatten().chain(self.dot)
     }
 
-    fn draw(&self, canvas: &mut Canvas, (area, x): (&Area, &Ruler), y: f64, unshown: &mut Unshown) {
-        let at = |value: f64| x.place(value).map(|place| area.x(place.share));
-        let ends = |range: Option<[f64; 2]>| range.and_then(|[from, to]| Some([at(from)?, at(to)?]));
-        if let Some([from, to]) = ends(self.line) {
+    fn draw(&self, frame: &mut Frame, y: f64) {
+        let ends = |range: Option<[f64; 2]>| {
+            range.and_then(|[from, to]| Some([frame.across(from)?, frame.across(to)?]))
+        };
+        let (line, bar) = (ends(self.line), ends(self.bar));
+        let Frame { canvas, area, x, unshown } = frame;
+        if let Some([from, to]) = line {
             canvas.axis_line([from, y], [to, y]);
             for end in [from, to] {
                 canvas.axis_line([end, y - 4.0], [end, y + 4.0]);
             }
         }
         canvas.begin_series(0);
-        if let Some([from, to]) = ends(self.bar) {
+        if let Some([from, to]) = bar {
             canvas.bar([from, y - BAR / 2.0], [to, y + BAR / 2.0]);
         }
         if let Some(value) = self.dot {

@@ -1,14 +1,11 @@
 //! What `--verbose` adds: the robot, the rows, all errors of the fit, what every figure comes from.
 
-use std::fmt::Write as _;
-
-use super::super::identify::coverage_row;
+use super::super::identify::coverage_table;
 use super::super::outliers;
-use super::super::table::{accuracy_table, line, number};
+use super::super::table::{accuracy_table, joints_words, line, number};
 use crate::calibration::{FormulationWords, NoiseSource};
 use crate::error::shown;
 use crate::io::calibration_file::CalibrationFile;
-use crate::robot::JointKind;
 use crate::solve::Termination;
 use crate::text::visible;
 
@@ -33,17 +30,16 @@ pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
         line(out, "condition", &format!("{condition:.3e} over the determined unknowns"));
     }
     trust(out, file);
-    coverage(out, file);
+    if !file.coverage.is_empty() {
+        coverage_table(out, file.coverage.iter().zip(file.joints.iter().map(|joint| joint.kind.into())));
+        out.push('\n');
+    }
 }
 
 fn robot_words(file: &CalibrationFile) -> String {
-    let sliding = file.joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
-    let kinds = [(file.joints.len() - sliding, "revolute"), (sliding, "prismatic")];
-    let kinds: Vec<String> =
-        kinds.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}")).collect();
     let [name, base, tip] =
         [&file.robot.name, &file.robot.base_link, &file.robot.tip_link].map(|name| shown(name));
-    format!("{name}: {}, from {base} to {tip}", kinds.join(", "))
+    format!("{name}: {}, from {base} to {tip}", joints_words(file.joints.iter().map(|it| it.kind.into())))
 }
 
 fn rows_words(file: &CalibrationFile) -> String {
@@ -131,16 +127,4 @@ fn trust(out: &mut String, file: &CalibrationFile) {
             &format!("error (RMS) with this axis alone left nominal: {}", joints.join(", ")),
         );
     }
-}
-
-fn coverage(out: &mut String, file: &CalibrationFile) {
-    if file.coverage.is_empty() {
-        return;
-    }
-    // Writing to a String cannot fail.
-    let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "joint", "sampled", "limits", "share");
-    for (joint, entry) in file.coverage.iter().zip(&file.joints) {
-        let _ = writeln!(out, "{}", coverage_row(joint, entry.kind));
-    }
-    out.push('\n');
 }

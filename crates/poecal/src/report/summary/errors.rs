@@ -1,65 +1,59 @@
 //! The errors that count: of rows that were not fitted, before and after.
 
-use std::fmt::Write as _;
-
-use super::super::table::{line, number};
+use super::super::table::{STATISTICS, line, number, number_or_dash, row};
 use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy, Statistic};
 use crate::io::calibration_file::CalibrationFile;
 
-/// Width of the labels.
-const LABEL: usize = 36;
+/// Widths of the label and of each figure.
+const WIDTHS: [usize; 2] = [36, 11];
 
-/// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.
-pub(super) fn table(out: &mut String, file: &CalibrationFile) {
-    let held_out = file.accuracy.held_out.as_ref();
-    let (set, rest, suspected) = match held_out {
-        Some(set) => (set, file.robust.held_out_without_suspected.as_ref(), file.robust.suspected_held_out),
-        None => (
-            &file.accuracy.training,
-            file.robust.training_without_suspected.as_ref(),
-            file.robust.suspected_fit,
-        ),
+/// The errors of a model: its words, the errors, and their key in `calibration.json`.
+pub(in crate::report) type ModelRow<'a> = (String, &'a ModelAccuracy, String);
+
+/// The rows that a calibration is judged by, those held out or if there are none those fitted, and the errors of the models on them.
+pub(in crate::report) fn leading(file: &CalibrationFile) -> (&SetAccuracy, Vec<ModelRow<'_>>) {
+    let (accuracy, robust) = (&file.accuracy, &file.robust);
+    let (set, key, rest, suspected) = match &accuracy.held_out {
+        Some(set) => (set, "held_out", &robust.held_out_without_suspected, robust.suspected_held_out),
+        None => (&accuracy.training, "training", &robust.training_without_suspected, robust.suspected_fit),
     };
-    let name = if held_out.is_some() { "held out" } else { "fitted" };
     let nominal = match file.measurement_frame.known {
         DeviceFrameKnowledge::Unknown => "nominal, tool and device fitted",
         DeviceFrameKnowledge::Base => "nominal, tool fitted",
     };
-    let without = format!("calibrated, without {suspected} suspected");
-    let mut rows: Vec<(&str, &ModelAccuracy)> =
-        vec![(nominal, &set.registered), ("calibrated", &set.calibrated)];
-    rows.extend(rest.map(|rest| (without.as_str(), &rest.calibrated)));
+    let mut rows = vec![
+        (nominal.to_owned(), &set.registered, format!("accuracy.{key}.registered")),
+        ("calibrated".to_owned(), &set.calibrated, format!("accuracy.{key}.calibrated")),
+    ];
+    rows.extend(rest.as_ref().map(|rest| {
+        let words = format!("calibrated, without {suspected} suspected");
+        (words, &rest.calibrated, format!("robust.{key}_without_suspected.calibrated"))
+    }));
+    (set, rows)
+}
+
+/// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.
+pub(super) fn table(out: &mut String, file: &CalibrationFile) {
+    let (set, rows) = leading(file);
+    let held_out = file.accuracy.held_out.is_some();
+    let name = if held_out { "held out" } else { "fitted" };
     let mut block = |title: &str, of: fn(&ModelAccuracy) -> Option<Statistic>| {
-        head(out, &format!("{name} ({}), {title}", set.count));
-        rows.iter().for_each(|(label, model)| row(out, label, of(model)));
+        let title = format!("{name} ({}), {title}", set.count);
+        row(out, &title, WIDTHS, STATISTICS.map(|(label, ..)| label));
+        for (label, model, _) in &rows {
+            let cells = STATISTICS.map(|(.., value)| number_or_dash(of(model).map(value)));
+            row(out, &format!("  {label}"), WIDTHS, cells);
+        }
     };
     block("position in mm", |model| Some(model.position_mm));
-    if turned(set) {
+    if set.calibrated.rotation_deg.is_some() {
         block("rotation in deg", |model| model.rotation_deg);
     }
-    if held_out.is_none() {
+    if !held_out {
         line(out, "", "no row was held out: these errors are of fitted rows");
         if let Some(found) = &file.cross_validation {
             let rms = number(found.random.position_rms_mm);
             line(out, "", &format!("cross-validation: {rms} mm (RMS) on rows that were not fitted"));
         }
     }
-}
-
-fn turned(set: &SetAccuracy) -> bool {
-    set.calibrated.rotation_deg.is_some()
-}
-
-// Writing to a String cannot fail.
-fn head(out: &mut String, title: &str) {
-    let _ = writeln!(out, "{title:<LABEL$}{:>11}{:>11}{:>11}{:>11}", "mean", "RMS", "95 %", "max");
-}
-
-fn row(out: &mut String, label: &str, statistic: Option<Statistic>) {
-    let _ = write!(out, "{:<LABEL$}", format!("  {label}"));
-    let figures = statistic.map(|it| [it.mean, it.rms, it.p95, it.max].map(number));
-    for cell in figures.unwrap_or_else(|| ["-"; 4].map(str::to_owned)) {
-        let _ = write!(out, "{cell:>11}");
-    }
-    out.push('\n');
 }

@@ -25,21 +25,6 @@ pub(in crate::report) enum Place {
     Weak(usize),
 }
 
-impl Place {
-    /// Points of one sort compete for room.
-    pub(super) fn sort(self) -> u8 {
-        match self {
-            Place::Diagnosis(_) => 0,
-            Place::Warning(_) => 1,
-            Place::Reason => 2,
-            Place::Suspects => 3,
-            Place::Joint(_) => 4,
-            Place::Open(_) => 5,
-            Place::Weak(_) => 6,
-        }
-    }
-}
-
 /// Something to look at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::report) struct Point {

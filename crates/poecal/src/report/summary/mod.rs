@@ -4,10 +4,13 @@ mod details;
 mod errors;
 mod look;
 
+use std::mem::discriminant;
+
+pub(super) use errors::{ModelRow, leading};
 use look::reasons;
 pub(super) use look::{Place, Point, look_at};
 
-use super::table::{line, number};
+use super::table::{line, lines, number};
 use crate::analysis::{Cause, Direction};
 use crate::calibration::Level;
 use crate::io::calibration_file::CalibrationFile;
@@ -101,9 +104,7 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
 /// What needs attention.
 fn points(out: &mut String, file: &CalibrationFile, detail: Detail) {
     let (shown, rest) = shown(look_at(file), detail);
-    for (k, point) in shown.iter().enumerate() {
-        line(out, if k == 0 { "look at" } else { "" }, &point.text);
-    }
+    lines(out, "look at", shown.iter().map(|point| &point.text));
     if !rest.is_empty() {
         line(out, "", &format!("… and {} more, in the report", rest.len()));
     }
@@ -114,8 +115,9 @@ fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
     if points.len() <= MOST || detail == Detail::Full {
         return (points, Vec::new());
     }
-    let earlier =
-        |k: usize| points[..k].iter().filter(|it| it.place.sort() == points[k].place.sort()).count();
+    // Points of one sort compete for room.
+    let sort = |k: usize| discriminant(&points[k].place);
+    let earlier = |k: usize| (0..k).filter(|&other| sort(other) == sort(k)).count();
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by_key(|&k| (earlier(k), k));
     let chosen = &order[..MOST - 1];
@@ -141,10 +143,9 @@ fn known(out: &mut String, file: &CalibrationFile) {
         "determined",
         &format!("{} of {} unknowns{weak}, from {fitted} of {all} rows", found.rank, found.parameters),
     );
-    let mut label = "undetermined";
+    let mut undetermined = Vec::new();
     if found.rank == 0 && found.parameters > 0 {
-        line(out, label, "everything: the residual is as large as the effect of the unknowns");
-        label = "";
+        undetermined.push("everything: the residual is as large as the effect of the unknowns".to_owned());
     } else if found.rank < found.parameters {
         let mut joints: Vec<&str> = Vec::new();
         for name in found.unidentifiable.iter().flat_map(|direction| &direction.joints) {
@@ -155,13 +156,11 @@ fn known(out: &mut String, file: &CalibrationFile) {
         let open = found.parameters - found.rank;
         let plural = if open == 1 { "" } else { "s" };
         let of = if joints.is_empty() { String::new() } else { format!(" of {}", names(&joints)) };
-        line(out, label, &format!("{open} unknown{plural}{of}"));
-        label = "";
+        undetermined.push(format!("{open} unknown{plural}{of}"));
     }
-    for direction in found.structural.iter().filter(|it| it.cause == Cause::NoOrientation) {
-        line(out, label, &direction.description);
-        label = "";
-    }
+    let structural = found.structural.iter().filter(|it| it.cause == Cause::NoOrientation);
+    undetermined.extend(structural.map(|direction| direction.description.clone()));
+    lines(out, "undetermined", undetermined);
 }
 
 /// Some names, the first few of many.

@@ -1,0 +1,98 @@
+//! Options that are one of a few words: of each its help and what it means to the library.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use poecal::calibration::{DeviceFrameKnowledge, Level, Loss, Robust};
+use poecal::io::measurements::Frames;
+use poecal::io::model::ModelFormat;
+use poecal::io::predictions::PredictionFrame;
+use poecal::offsets::End;
+use poecal::simulate::Kind;
+use poecal_lou2009::{Formulation, Method, Residual};
+
+/// Words, each with its help and its meaning.
+type Words<T> = &'static [(&'static str, &'static str, T)];
+
+/// What is known of the measuring device's frame.
+pub(super) const FRAME: Words<DeviceFrameKnowledge> = &[
+    ("unknown", "The device stands anywhere", DeviceFrameKnowledge::Unknown),
+    ("base", "Measurements are in the robot's base frame", DeviceFrameKnowledge::Base),
+];
+
+/// Which rows share a device frame.
+pub(super) const FRAMES: Words<Frames> = &[
+    ("common", "All, or those of one name in the column `instrument`", Frames::Common),
+    ("per-file", "Those of a file", Frames::PerFile),
+];
+
+/// How errors of the joints are parameterised.
+pub(super) const FORMULATION: Words<Formulation> = &[
+    ("adjoint", "Axes move as rigid bodies, without offsets: minimal, unconstrained", Formulation::Adjoint),
+    ("screw", "Screws are free numbers, normalised after every step", Formulation::Screw),
+    ("screw-offsets", "Free screws and joint offsets, 7n + 6 unknowns", Formulation::ScrewOffsets),
+    ("adjoint-offsets", "Axes as rigid bodies, and joint offsets", Formulation::AdjointOffsets),
+];
+
+/// Residuals of measured frames.
+pub(super) const RESIDUAL: Words<Residual> = &[
+    ("tool", "Position and rotation at the target", Residual::Tool),
+    ("spatial", "The twist about the device's origin", Residual::Spatial),
+];
+
+/// Method of the solver.
+pub(super) const METHOD: Words<Method> = &[
+    ("levenberg-marquardt", "Damped steps, taken only if they reduce the cost", Method::LevenbergMarquardt),
+    ("gauss-newton", "Full steps, taken as they are", Method::GaussNewton),
+];
+
+/// How to treat outliers.
+pub(super) const ROBUST: Words<Robust> = &[
+    ("auto", "Least squares, unless outliers are evident: then the tukey loss, and a warning", Robust::Auto),
+    ("off", "Least squares: every row counts in full", Robust::Off),
+    ("huber", "The influence of a residual is bounded", Robust::Loss(Loss::Huber)),
+    ("cauchy", "The influence of a large residual decreases with its size", Robust::Loss(Loss::Cauchy)),
+    ("tukey", "Large residuals have no influence", Robust::Loss(Loss::Tukey)),
+];
+
+/// The verdicts that can be asked for.
+pub(super) const REQUIRED_LEVEL: Words<Level> = &[
+    ("good", "Good to use anywhere within the limits", Level::Good),
+    ("inside_sampled_range", "Good to use inside the sampled range, or better", Level::InsideSampledRange),
+];
+
+/// The frame of predicted poses.
+pub(super) const PREDICT_IN: Words<PredictionFrame> = &[
+    ("base", "The robot's base", PredictionFrame::Base),
+    ("device", "The measuring device of a calibration", PredictionFrame::Device),
+];
+
+/// The forms that a model can be written in.
+pub(super) const FORM: Words<ModelFormat> = &[
+    ("urdf", "A new URDF of links, joints and a tip", ModelFormat::Urdf),
+    ("toml", "A table of screws", ModelFormat::Toml),
+];
+
+/// What a simulated device sees.
+pub(super) const SIMULATED_KIND: Words<Kind> = &[
+    ("pose", "Positions and orientations", Kind::Pose),
+    ("point", "Positions", Kind::Point),
+    ("mixed", "Both in turn", Kind::Mixed),
+];
+
+/// What will be measured.
+pub(super) const MEASURED: Words<Kind> = &[
+    ("points", "Positions of a target, as a laser tracker sees them", Kind::Point),
+    ("poses", "Positions and orientations", Kind::Pose),
+];
+
+/// Whether a frame is the same in both models.
+pub(super) const END: Words<End> =
+    &[("free", "It is fitted with the offsets", End::Free), ("kept", "It is the same in both", End::Kept)];
+
+/// Parser of one of these words for clap.
+pub(super) fn one_of<T: Copy + Send + Sync>(words: Words<T>) -> impl TypedValueParser<Value = T> {
+    let values = words.iter().map(|(word, help, _)| PossibleValue::new(*word).help(*help));
+    PossibleValuesParser::new(values).try_map(|chosen| {
+        let found = words.iter().find(|(word, ..)| *word == chosen);
+        found.map(|(.., meaning)| *meaning).ok_or("expected one of the words")
+    })
+}
