@@ -108,7 +108,7 @@ fn coverage(file: &CalibrationFile) -> Markup {
             None => html! { "none" },
         };
         let kind = file.joints.iter().find(|joint| joint.name == found.joint).map(|joint| joint.kind);
-        let share = kind.and_then(|kind| found.share(kind.into()));
+        let share = kind.and_then(|kind| found.share(kind));
         table.row(&[
             &quoted(&found.joint, format_args!("coverage.{k}.joint")),
             &end(Some(found.sampled_min), "sampled_min"),

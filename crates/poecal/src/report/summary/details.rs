@@ -140,7 +140,7 @@ fn coverage(out: &mut String, file: &CalibrationFile) {
     // Writing to a String cannot fail.
     let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "joint", "sampled", "limits", "share");
     for (joint, entry) in file.coverage.iter().zip(&file.joints) {
-        let _ = writeln!(out, "{}", coverage_row(joint, entry.kind.into()));
+        let _ = writeln!(out, "{}", coverage_row(joint, entry.kind));
     }
     out.push('\n');
 }
