@@ -74,7 +74,7 @@ fn lead_table(caption: &str, rows: &[ModelRow<'_>], (quantity, of): Quantity) ->
 /// How many joints of which kind, and from where to where.
 fn kinds(file: &CalibrationFile) -> Markup {
     html! {
-        (joints_words(file.joints.iter().map(|joint| joint.kind.into()))) " joints, from " (quoted(&file.robot.base_link, "robot.base_link"))
+        (joints_words(file.joints.iter().map(|joint| joint.kind))) " joints, from " (quoted(&file.robot.base_link, "robot.base_link"))
         " to " (quoted(&file.robot.tip_link, "robot.tip_link"))
     }
 }

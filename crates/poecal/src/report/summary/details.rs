@@ -31,7 +31,7 @@ pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
     }
     trust(out, file);
     if !file.coverage.is_empty() {
-        coverage_table(out, file.coverage.iter().zip(file.joints.iter().map(|joint| joint.kind.into())));
+        coverage_table(out, file.coverage.iter().zip(file.joints.iter().map(|joint| joint.kind)));
         out.push('\n');
     }
 }
@@ -39,7 +39,7 @@ pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
 fn robot_words(file: &CalibrationFile) -> String {
     let [name, base, tip] =
         [&file.robot.name, &file.robot.base_link, &file.robot.tip_link].map(|name| shown(name));
-    format!("{name}: {}, from {base} to {tip}", joints_words(file.joints.iter().map(|it| it.kind.into())))
+    format!("{name}: {}, from {base} to {tip}", joints_words(file.joints.iter().map(|it| it.kind)))
 }
 
 fn rows_words(file: &CalibrationFile) -> String {
