@@ -24,7 +24,7 @@ pub(crate) struct Reproduce {
     /// Sessions by which formulations, or losses, are compared
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) trials: u32,
-    /// Random starts for each formulation and size of error (lou1009)
+    /// Random starts for each formulation and size of error (lou2009)
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) starts: u32,
     /// Seed of everything random

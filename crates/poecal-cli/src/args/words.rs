@@ -14,7 +14,7 @@ type Words<T> = &'static [(&'static str, &'static str, T)];
 
 /// What is known of the measuring device's frame.
 pub(super) const FRAME: Words<DeviceFrameKnowledge> = &[
-    ("unknown", "The device stands anywhere", DeviceFrameKnowledge::Unknown),
+    ("unknown", "The device frame is unknown", DeviceFrameKnowledge::Unknown),
     ("base", "Measurements are in the robot's base frame", DeviceFrameKnowledge::Base),
 ];
 

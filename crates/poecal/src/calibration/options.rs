@@ -17,7 +17,7 @@ use super::{Formulation, Robust};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-#[schemars(rename = "FrameWord", description = "What was known of the device's frame.")]
+#[schemars(rename = "FrameWord", description = "Knowledge of the device frame.")]
 pub enum DeviceFrameKnowledge {
     /// The device frame is unknown and is fitted (exactly redundant with the screws, docs/theory.md §8).
     #[default]

@@ -72,12 +72,12 @@ impl Limits {
 #[schemars(rename = "ReadingEntry", description = "`value = multiplier * reading + offset`.")]
 pub struct Reading {
     /// Name of the measured joint: this one, or the leader of a mimic joint.
-    #[schemars(description = "The measured joint.")]
+    #[schemars(description = "Name of the reading.")]
     pub name: String,
     /// Factor on the reading.
     #[schemars(description = "Factor.")]
     pub multiplier: f64,
-    /// Added after the factor, radians or metres.
+    /// Offset, radians or metres.
     pub offset: f64,
 }
 
