@@ -21,14 +21,14 @@ fn folder() -> Folder {
 }
 
 #[test]
-fn what_would_stay_open_is_said_before_anything_is_measured() {
+fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
     let folder = folder();
     let out = folder.done("identify column.toml still.csv --kind point --sigma-position 0.1mm");
     for words in [
         "to measure    40 points: still.csv\n",
         "noise         0.1000 mm each component\n",
         "determined    11 of 13 unknowns",
-        "undetermined: slide never moved: its screw is undetermined (2 directions)\n",
+        "undetermined: slide never moved: its screw is undetermined (2\n              directions)\n",
         "orientation of the tool: no orientation was measured\n",
         "; 993 others",
         " 120.0 to 120.0 mm           0.0 to 500.0 mm     0 %\n",
@@ -36,10 +36,10 @@ fn what_would_stay_open_is_said_before_anything_is_measured() {
         assert!(out.contains(words), "`{words}` is not in\n{out}");
     }
     assert!(out.lines().all(|line| line.chars().count() <= 80), "{out}");
-    // With the slide moving, also in another file, nothing is open.
+    // With the slide moving, also in another file, nothing is undetermined.
     for files in ["all.csv", "still.csv all.csv"] {
         let out = folder.done(&format!("identify column.toml {files} --kind point"));
-        assert!(out.contains("determined    13 of 13 unknowns") && !out.contains("open"), "{out}");
+        assert!(out.contains("determined    13 of 13 unknowns") && !out.contains("undetermined"), "{out}");
     }
 }
 

@@ -111,10 +111,11 @@ impl Robot {
         names.filter(|name| known.insert(name.as_str())).cloned().collect()
     }
 
-    /// Kind of the first joint that moves by a reading.
+    /// Kind of a reading: that of the joint of its name, else of the first joint that follows it.
     pub(crate) fn reading_kind(&self, name: &str) -> JointKind {
-        let joint = self.joints.iter().find(|joint| joint.reading.name == name);
-        joint.map_or(JointKind::Revolute, |joint| joint.kind)
+        let mut users = self.joints.iter().filter(|joint| joint.reading.name == name);
+        let leader = users.clone().find(|joint| joint.name == name);
+        leader.or_else(|| users.next()).map_or(JointKind::Revolute, |joint| joint.kind)
     }
 
     /// For each joint, the index of its reading in [`Robot::reading_names`].
@@ -195,4 +196,20 @@ pub(crate) fn check_name(name: &str, of: &str) -> Result<()> {
     let message =
         format!("found the {of} `{name}`, whose name has {letters} letters, expected at most {LONGEST_NAME}");
     Err(Error::new(ErrorKind::Model, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    #[test]
+    fn a_reading_is_of_the_kind_of_the_joint_of_its_name() {
+        let mut slide = Joint::prismatic("slide", Screw::prismatic(&Vector3::z()));
+        slide.reading = Reading { name: "drive".to_owned(), multiplier: 0.01, offset: 0.0 };
+        let drive = Joint::revolute("drive", Screw::revolute(&Vector3::z(), &Vector3::zeros()));
+        let robot = Robot::new("r", vec![slide, drive], Pose::identity()).unwrap();
+        assert_eq!(robot.reading_kind("drive"), JointKind::Revolute);
+    }
 }

@@ -44,12 +44,11 @@ impl Configurations {
 /// Range of a reading within the limits of all joints that follow it.
 fn range(robot: &Robot, name: &str) -> (JointKind, f64, f64) {
     let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
-    let mut kind = JointKind::Revolute;
+    let kind = robot.reading_kind(name);
     for joint in robot.joints.iter().filter(|joint| joint.reading.name == name) {
-        kind = joint.kind;
         if let Some(limits) = joint.limits
             && joint.reading.multiplier != 0.0
-            && (kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M)
+            && (joint.kind == JointKind::Revolute || limits.upper - limits.lower < Limits::PLACEHOLDER_M)
         {
             let at = |value: f64| (value - joint.reading.offset) / joint.reading.multiplier;
             let (a, b) = (at(limits.lower), at(limits.upper));

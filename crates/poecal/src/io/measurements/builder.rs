@@ -381,11 +381,9 @@ fn clash(name: &str) -> String {
     )
 }
 
-/// Quantity of a reading: that of the joint of its name, else of a joint that follows it.
 fn reading_quantity(robot: &Robot, reading: &str) -> Quantity {
-    let users = || robot.joints.iter().filter(|joint| joint.reading.name == reading);
-    match users().find(|joint| joint.name == reading).or_else(|| users().next()).map(|joint| joint.kind) {
-        Some(JointKind::Prismatic) => Quantity::Length,
-        Some(JointKind::Revolute) | None => Quantity::Angle,
+    match robot.reading_kind(reading) {
+        JointKind::Prismatic => Quantity::Length,
+        JointKind::Revolute => Quantity::Angle,
     }
 }

@@ -121,8 +121,8 @@ fn point_words(file: &CalibrationFile, point: &Point) -> Option<Markup> {
             let words = quoted(joint.suspicious.as_deref()?, format_args!("corrections.{k}.suspicious"));
             Some(html! { (quoted(&joint.joint, format_args!("corrections.{k}.joint"))) ": " (words) })
         }
-        Place::Open(k) => direction("unknown", &known.unidentifiable, "unidentifiable", k),
-        Place::Weak(k) => direction("weak", &known.weak, "weakly determined", k),
+        Place::Open(k) => direction("undetermined", &known.unidentifiable, "unidentifiable", k),
+        Place::Weak(k) => direction("weakly determined", &known.weak, "weak", k),
     }
 }
 
