@@ -19,7 +19,8 @@ ROOT = Path(__file__).resolve().parents[1]
 # What is applied; of advisories, which need the network, and confidence-threshold, which is about texts, only cargo-deny knows.
 KNOWN = {
     "graph": {"all-features"},
-    "advisories": {"yanked"},
+    # What only cargo-deny applies.
+    "advisories": {"yanked", "ignore"},
     "licenses": {"allow", "confidence-threshold"},
     "bans": {"multiple-versions", "wildcards", "allow-wildcard-paths", "deny", "skip"},
     "sources": {"unknown-registry", "unknown-git", "allow-registry"},

@@ -93,8 +93,8 @@ impl TruthFile {
 /// rows, and `truth.json`. Models are read back and compared with their robots in 1,000 configurations.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if something cannot be written; [`ErrorKind::Export`] if a model read back differs by more than 1e-9 m or
-/// rad. Nothing is left behind then.
+/// [`ErrorKind::File`](crate::ErrorKind::File) if something cannot be written; [`ErrorKind::Export`](crate::ErrorKind::Export) if a model
+/// read back differs by more than 1e-9 m or rad. Nothing is left behind then.
 pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSession) -> Result<Written> {
     let SimulatedSession { simulation, made, command, .. } = session;
     let noise =
