@@ -42,8 +42,19 @@ pub fn visible_markup(text: impl Into<String>) -> String {
     shown.unwrap_or(text)
 }
 
+/// Bytes of a text that are looked through together.
+const PIECE: usize = 256;
+
 fn made_visible(text: &str, hides: impl Fn(char) -> bool) -> Cow<'_, str> {
-    if !text.contains(&hides) {
+    // Most pieces are plain, which many bytes at a time show.
+    let hides_breaks = hides('\n');
+    let is_plain = |byte: u8| (b' '..=b'~').contains(&byte) || byte == b'\n' && !hides_breaks;
+    let has_hidden = |start: usize| {
+        let end = text.ceil_char_boundary((start + PIECE).min(text.len()));
+        let piece = &text[text.floor_char_boundary(start)..end];
+        !piece.bytes().fold(true, |plain, byte| plain & is_plain(byte)) && piece.contains(&hides)
+    };
+    if !(0..text.len()).step_by(PIECE).any(has_hidden) {
         return Cow::Borrowed(text);
     }
     let mut out = String::with_capacity(text.len() + 16);
