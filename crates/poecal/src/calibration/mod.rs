@@ -1,6 +1,7 @@
 //! From a robot and measurements to a calibrated robot: the steps by name.
 
 mod accuracy;
+mod count;
 mod coverage_check;
 mod doubts;
 mod fit;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::count::check_count;
 use super::doubts::doubts;
 use super::fit::{self, Task};
 use super::found::Fitted;
@@ -14,18 +15,18 @@ use super::trust::{Finished, trust};
 use super::verdict::{Grounds, verdict};
 use super::{
     Accuracy, Calibration, CalibrationOptions, CoverageCheck, DeviceFrameKnowledge, Level, Models,
-    NoiseSource, PredictedUncertainty, Robustness, Trust, delivered, estimate_noise, measurements_words,
-    noise, radian_m, set_accuracy, split_rows,
+    NoiseSource, PredictedUncertainty, Robustness, Trust, delivered, estimate_noise, noise, radian_m,
+    set_accuracy, split_rows,
 };
 use crate::analysis::{Identifiability, Setup, identifiability};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::estimate::{Estimate, Packed, row_errors};
 use crate::forensics::{self, Diagnosis, DiagnosisKind};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::Parameter;
-use crate::problem::{MOST_UNKNOWNS, Prior};
-use crate::robot::{JointKind, Robot};
+use crate::problem::Prior;
+use crate::robot::Robot;
 use crate::start::{Registration, register, register_again};
 use crate::uncertainty::{PriorInformation, Remainder, View, remainder};
 
@@ -352,55 +353,4 @@ impl<'a> Prepared<'a> {
             again: again.as_ref(),
         })
     }
-}
-
-/// Refuses problems with fewer measured numbers than unknowns that data of this kind can determine.
-fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
-    let screws: usize =
-        robot.joints.iter().map(|joint| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum();
-    let mut is_seen = vec![false; data.targets.len()];
-    fit_rows.iter().for_each(|&row| is_seen[data.observations[row as usize].target] = true);
-    for (is_seen, name) in is_seen.into_iter().zip(&data.targets) {
-        if !is_seen {
-            let name = name.as_deref().unwrap_or("the tip");
-            return Err(Error::new(
-                ErrorKind::Problem,
-                format!(
-                    "found no measurement of target `{name}` to fit, expected at least one of every target: fit some of its rows, or leave its rows out"
-                ),
-            ));
-        }
-    }
-    let targets: usize = data.frames(fit_rows).iter().map(|&is_frame| if is_frame { 6 } else { 3 }).sum();
-    let devices = 6 * (data.station_count() - 1);
-    let needed = screws + targets + devices;
-    if needed > MOST_UNKNOWNS {
-        return Err(Error::new(
-            ErrorKind::Problem,
-            format!(
-                "found {needed} unknowns ({screws} of the screws, {targets} of {} targets{}), expected at most {MOST_UNKNOWNS} in one fit: calibrate with fewer targets, or a shorter chain",
-                data.targets.len(),
-                of_devices(devices)
-            ),
-        ));
-    }
-    let given: usize =
-        fit_rows.iter().map(|&row| data.observations[row as usize].measurement.residual_model().dim()).sum();
-    if given < needed {
-        return Err(Error::new(
-            ErrorKind::Problem,
-            format!(
-                "found {} to fit with {given} measured numbers, expected at least {needed} numbers \
-                 ({screws} of the screws, {targets} of the targets{}): measure more configurations, or hold out fewer",
-                measurements_words(fit_rows.len()),
-                of_devices(devices)
-            ),
-        ));
-    }
-    Ok(())
-}
-
-/// Unknowns of further device frames as part of a list, if there are any.
-fn of_devices(unknowns: usize) -> String {
-    if unknowns > 0 { format!(", {unknowns} of further device frames") } else { String::new() }
 }
