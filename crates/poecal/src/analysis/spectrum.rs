@@ -59,12 +59,6 @@ impl Spectrum {
         Spectrum { values, vectors, undetermined, variance }
     }
 
-    /// The undetermined directions, a column each.
-    #[must_use]
-    pub fn undetermined_space(&self) -> DMatrix<f64> {
-        self.vectors.columns(0, self.undetermined).into_owned()
-    }
-
     /// Standard deviation along an eigenvector, metres: theory.md §7 (36). Infinite where the eigenvalue is not above zero.
     #[must_use]
     pub fn sigma_m(&self, k: usize) -> f64 {

@@ -235,13 +235,13 @@ impl<'a> Builder<'a> {
             return map.targets.iter().map(|target| self.target(target, false)).collect();
         }
         let only = TargetSpec {
-            name: map.target_name.clone().unwrap_or_default(),
+            name: String::new(),
             position: map.position.clone().unwrap_or_default(),
             orientation: map.orientation.clone(),
             sigma_position: map.sigma_position.clone(),
             sigma_rotation: map.sigma_rotation.clone(),
         };
-        Ok(vec![self.target(&only, true)?])
+        Ok(vec![TargetLayout { name: map.target_name.clone(), ..self.target(&only, true)? }])
     }
 
     /// One target of a row; the columns of the only one may have our names.
@@ -258,7 +258,7 @@ impl<'a> Builder<'a> {
         };
         let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Quantity::Length)?;
         let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Quantity::Angle)?;
-        let name = Some(target.name.clone()).filter(|name| !name.is_empty());
+        let name = Some(target.name.clone());
         Ok(TargetLayout { name, position, orientation, sigma_position, sigma_rotation })
     }
 
