@@ -20,13 +20,16 @@ pub(crate) fn man(arguments: &Man, console: &Console) -> Result<u8> {
     };
     let mut page = Vec::new();
     let written = clap_mangen::Man::new(command).render(&mut page);
-    written.map_err(|error| Error::new(ErrorKind::File, format!("the manual page cannot be written ({error})")))?;
+    written.map_err(|error| {
+        Error::new(ErrorKind::File, format!("the manual page cannot be written ({error})"))
+    })?;
     console.data(&String::from_utf8_lossy(&page))?;
     Ok(DONE)
 }
 
 fn unknown(name: &str, program: &clap::Command) -> String {
     let names: Vec<&str> = program.get_subcommands().map(clap::Command::get_name).collect();
-    let hint = nearest(name, names.iter().copied()).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let hint = nearest(name, names.iter().copied())
+        .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     format!("man: found no command `{}`, expected one of {}{hint}", visible(name), names.join(", "))
 }
