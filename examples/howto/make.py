@@ -121,7 +121,8 @@ def hand_camera(robot, path):
             place = camera_from_board[:3, 3]
             distance = np.linalg.norm(place)
             # In the picture, near enough to be sharp, and the board's face not seen too flat.
-            if 0.35 < distance < 0.9 and place[2] > 0.9 * distance and -camera_from_board[:3, 2] @ place > 0.6 * distance and len(rows) < 80:
+            is_seen = place[2] > 0.9 * distance and -camera_from_board[:3, 2] @ place > 0.6 * distance
+            if is_seen and 0.35 < distance < 0.9 and len(rows) < 80:
                 place = place + robot.noise(0.0001, 0.0001, 0.0003)
                 turn = rotation_vector(rotation(robot.noise(0.001, 0.001, 0.0002)) @ camera_from_board[:3, :3])
                 rows.append([*configuration, *(f"{value:.7f}" for value in turn), *(f"{1e3 * value:.4f}" for value in place)])
@@ -129,7 +130,7 @@ def hand_camera(robot, path):
 
 
 def motion_capture(robot, log, take):
-    """Joint readings and a rigid body of a motion capture system, each with its own clock, while the robot goes from one configuration to the next."""
+    """Joint readings and a rigid body of a motion capture system, each with its own clock, on the way through the configurations."""
     system_from_base = pose([-np.pi / 2, 0, 0], [0.4, 0.8, 1.1])    # y is up
     tip_from_body = pose([0.3, -0.2, 0.1], [0.02, -0.03, 0.09])
     stands = [robot.configuration() for _ in range(40)]
@@ -144,12 +145,14 @@ def motion_capture(robot, log, take):
         return np.stack([np.interp(moments, times, column) for column in values.T], axis=1)
 
     moments = np.arange(0.0, time, 0.2)
-    write(log, [["time", *JOINTS], *([f"{moment:.3f}", *(f"{value:.4f}" for value in row)] for moment, row in zip(moments, at(moments), strict=True))])
+    readings = ([f"{moment:.3f}", *(f"{value:.4f}" for value in row)] for moment, row in zip(moments, at(moments), strict=True))
+    write(log, [["time", *JOINTS], *readings])
     # The system was started later than the log of the joints, by this much.
     late = 3.27
     frames = np.arange(late, time, 0.2)
-    head = "Format Version,1.21,Take Name,Elbow,Export Frame Rate,5.000000,Rotation Type,Quaternion,Length Units,Meters,Coordinate Space,Global"
-    rows = [head.split(","), [], ["", "", *["Rigid Body"] * 8], ["", "", *["Tool"] * 8], ["", "", *["0A1B2C"] * 8]]
+    head = ["Format Version", "1.21", "Take Name", "Elbow", "Export Frame Rate", "5.000000"]
+    head += ["Rotation Type", "Quaternion", "Length Units", "Meters", "Coordinate Space", "Global"]
+    rows = [head, [], ["", "", *["Rigid Body"] * 8], ["", "", *["Tool"] * 8], ["", "", *["0A1B2C"] * 8]]
     rows += [["", "", *["Rotation"] * 4, *["Position"] * 3, "Error Per Marker"], ["Frame", "Time", *"XYZWXYZ", ""]]
     for number, (frame, tip) in enumerate(zip(frames, robot.tips(at(frames).round(6).tolist()), strict=True)):
         body = system_from_base @ tip @ tip_from_body
