@@ -19,8 +19,6 @@ LINK = re.compile(
 )
 HEADING = re.compile(rf"{FENCED}|^ {{0,3}}#{{1,6}}[ \t]+(?P<title>[^\n]+?)(?:[ \t]+#+)?[ \t]*$", re.M)
 ANCHOR = re.compile(r"""<\w+\s[^>]*?(?:id|name)="([^"]+)\"""")
-# Written for the documentation site, where the documentation of the crate stands beside the pages.
-ON_THE_SITE_ONLY = {("docs/api-rust.md", "rust/poecal/index.html")}
 
 
 def slug(title):
@@ -65,8 +63,6 @@ def complaints(pages, there):
             path, _, anchor = target.partition("#")
             place = posixpath.normpath(posixpath.join(posixpath.dirname(page), unquote(path))) if path else page
             place = "" if place == "." else place
-            if (page, target) in ON_THE_SITE_ONLY:
-                continue
             if place not in there and place not in folders:
                 wrong.append(f"{page}:{line}: {target}: no such file in git")
             elif anchor and place in pages and unquote(anchor) not in anchors(pages[place]):
