@@ -27,6 +27,11 @@ class Error(Exception):
         super().__init__(message)
         self.path, self.line, self.column, self.row = path, line, column, row
 
+    def add_note(self, note: str, /) -> None:
+        """Adds a note, but for the one of PyO3 that names the argument, which the sentence does."""
+        if not note.startswith("while processing '"):
+            super().add_note(note)
+
 
 class InputError(Error, ValueError):
     """Something is wrong with what was given: a file, an array or an option."""
@@ -54,6 +59,14 @@ class UnitError(InputError):
 
 class OptionError(InputError):
     """An argument that is out of range, of the wrong shape, or contradicts another."""
+
+
+class RowError(OptionError, IndexError):
+    """A row that the measurements do not have."""
+
+
+class PackageError(Error, ImportError):
+    """A Python package that is needed here and not installed."""
 
 
 class ProblemError(Error):
