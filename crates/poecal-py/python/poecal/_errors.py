@@ -28,7 +28,7 @@ class Error(Exception):
         self.path, self.line, self.column, self.row = path, line, column, row
 
     def add_note(self, note: str, /) -> None:
-        """Adds a note, but for the one of PyO3 that names the argument, which the sentence does."""
+        # PyO3 adds one that names the argument, which the sentence does.
         if not note.startswith("while processing '"):
             super().add_note(note)
 

@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
     from ._poecal import Calibration
 
-try:
-    import matplotlib.pyplot as plt
-except ModuleNotFoundError as error:
-    raise PackageError("found no package `matplotlib`, expected it to be installed: pip install matplotlib") from error
-
 SETS = [("fitted", False, "tab:blue", "."), ("held out", True, "tab:orange", "x")]
 
 
 def plot(calibration: Calibration, axes: Sequence[Axes] | None = None) -> Figure | SubFigure:
     """Draws errors of position into two axes, and gives their figure."""
     if axes is None:
+        try:
+            import matplotlib.pyplot as plt
+        except ModuleNotFoundError as error:
+            message = "found no package `matplotlib`, expected it to be installed: pip install matplotlib"
+            raise PackageError(message) from error
         figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained")
         # Notebooks would show it twice, as a figure that is open and as a result.
         plt.close(figure)
@@ -40,9 +40,12 @@ def plot(calibration: Calibration, axes: Sequence[Axes] | None = None) -> Figure
     share = 100 * np.arange(1, judged.sum() + 1) / judged.sum()
     for label, values, colour in models:
         errors.step(np.sort(values[judged]), share, where="post", label=label, color=colour)
-    errors.set(xscale="log", xlabel="error of position, mm", ylabel="% of the rows, at most this error", ylim=(0, 103))
+    errors.set(xscale="log", xlabel="error of position, mm", ylabel="% of the rows with at most this error")
     errors.set_title(f"{calibration.robot.name}: {judged.sum()} {name} rows")
-    errors.legend(loc="upper left")
+    errors.xaxis.set_major_formatter("{x:g}")
+    # Room for the legends above the largest.
+    errors.set(ylim=(0, 118), yticks=range(0, 101, 20))
+    errors.legend(loc="upper right", ncols=len(models))
 
     index = np.arange(len(residuals))
     for label, of_set, colour, marker in SETS:
@@ -52,8 +55,8 @@ def plot(calibration: Calibration, axes: Sequence[Axes] | None = None) -> Figure
     if residuals.suspected.any():
         suspected = residuals.suspected
         rows.plot(index[suspected], residuals.position_calibrated_mm[suspected], "o", mfc="none", color="tab:red", label="suspected")
-    rows.set(xlabel="row", ylabel="error of position, mm", ylim=(0, None), title="calibrated, row by row")
-    rows.legend()
+    rows.set(xlabel="row", ylabel="error of position, mm", ylim=(0, 1.2 * rows.get_ylim()[1]), title="calibrated, row by row")
+    rows.legend(loc="upper right", ncols=len(SETS) + 1)
     for each in (errors, rows):
         each.grid(True, alpha=0.3)
     return errors.figure
