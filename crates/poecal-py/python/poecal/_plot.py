@@ -3,33 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ._errors import PackageError
+from ._errors import OptionError, PackageError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure, SubFigure
+    from matplotlib.figure import Figure
 
     from ._poecal import Calibration
 
 SETS = [("fitted", False, "tab:blue", "."), ("held out", True, "tab:orange", "x")]
 
 
-def plot(calibration: Calibration, axes: Sequence[Axes] | None = None) -> Figure | SubFigure:
+def plot(calibration: Calibration, axes: Sequence[Axes] | NDArray[Any] | None = None) -> Figure:
     """Draws errors of position into two axes, and gives their figure."""
+    try:
+        import matplotlib.pyplot as plt
+        from matplotlib.axes import Axes
+    except ModuleNotFoundError as error:
+        message = "found no package `matplotlib`, expected it to be installed: pip install matplotlib"
+        raise PackageError(message) from error
     if axes is None:
-        try:
-            import matplotlib.pyplot as plt
-        except ModuleNotFoundError as error:
-            message = "found no package `matplotlib`, expected it to be installed: pip install matplotlib"
-            raise PackageError(message) from error
         figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained")
         # Notebooks would show it twice, as a figure that is open and as a result.
         plt.close(figure)
-    errors, rows = axes
+    given = list(axes.flat) if isinstance(axes, np.ndarray) else axes
+    if not isinstance(given, list | tuple) or len(given) != 2 or not all(isinstance(each, Axes) for each in given):
+        raise OptionError(f"axes: found {type(axes).__name__}, expected two axes of matplotlib, as of plt.subplots(1, 2)")
+    errors, rows = given
     residuals = calibration.residuals
     held_out = residuals.held_out
     judged, name = (held_out, "held-out") if held_out.any() else (~held_out, "fitted")
@@ -59,4 +64,4 @@ def plot(calibration: Calibration, axes: Sequence[Axes] | None = None) -> Figure
     rows.legend(loc="upper right", ncols=len(SETS) + 1)
     for each in (errors, rows):
         each.grid(True, alpha=0.3)
-    return errors.figure
+    return cast("Figure", errors.get_figure(root=True))

@@ -6,7 +6,7 @@ import numpy as np
 import pandas  # type: ignore[import-untyped, import-not-found, unused-ignore]
 import polars  # type: ignore[import-not-found, unused-ignore]
 from matplotlib.axes import Axes  # type: ignore[import-not-found, unused-ignore]
-from matplotlib.figure import Figure, SubFigure  # type: ignore[import-not-found, unused-ignore]
+from matplotlib.figure import Figure  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
@@ -53,7 +53,7 @@ _Rows: TypeAlias = slice | int | np.integer[Any] | Sequence[int] | Sequence[bool
 
 class _DataFrame(Protocol):
     @property
-    def columns(self) -> Iterable[Any]: ...
+    def columns(self) -> Any: ...
     def __getitem__(self, key: Any, /) -> Any: ...
 
 _Table: TypeAlias = _DataFrame | Mapping[str, Iterable[object]] | NDArray[np.void]
@@ -834,7 +834,7 @@ class Calibration:
     @property
     def covariance(self) -> Covariance:
         """Covariance of the unknowns; an error if there are no more residuals than unknowns."""
-    def plot(self, axes: Sequence[Axes] | NDArray[Any] | None = None) -> Figure | SubFigure:
+    def plot(self, axes: Sequence[Axes] | NDArray[Any] | None = None) -> Figure:
         """Draws the errors of position before and after, and those of each row. Needs matplotlib.
 
         Parameters
