@@ -16,8 +16,9 @@ use crate::words::chosen;
 /// Most suggested configurations, as by the program.
 const MOST: usize = 100_000;
 
-/// Writes a project folder to start from: the model, a measurement file to fill in, configurations to measure, settings for
-/// `poecal calibrate`, and what to do with them.
+/// Writes a project folder to start from.
+///
+/// It has the model, a measurement file to fill in, configurations to measure, settings for `poecal calibrate`, and instructions.
 ///
 /// Parameters
 /// ----------

@@ -1188,8 +1188,9 @@ def init(
     base_link: str | None = None,
     tip_link: str | None = None,
 ) -> list[str]:
-    """Writes a project folder to start from: the model, a measurement file to fill in, configurations to measure, settings for
-    `poecal calibrate`, and what to do with them.
+    """Writes a project folder to start from.
+
+    It has the model, a measurement file to fill in, configurations to measure, settings for `poecal calibrate`, and instructions.
 
     Parameters
     ----------
