@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 
 class Error(Exception):
     """Any error of poecal: one sentence that says where, what was found, what was expected and what to do.
@@ -27,10 +29,12 @@ class Error(Exception):
         super().__init__(message)
         self.path, self.line, self.column, self.row = path, line, column, row
 
-    def add_note(self, note: str, /) -> None:
-        # PyO3 adds one that names the argument, which the sentence does.
-        if not note.startswith("while processing '"):
-            super().add_note(note)
+    if sys.version_info >= (3, 11):
+
+        def add_note(self, note: str, /) -> None:
+            # PyO3 adds one that names the argument, which the sentence does.
+            if not note.startswith("while processing '"):
+                super().add_note(note)
 
 
 class InputError(Error, ValueError):
