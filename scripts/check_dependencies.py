@@ -135,17 +135,22 @@ def cargo(*arguments):
     return subprocess.run(["cargo", *arguments], cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True).stdout
 
 
+def in_tree(*arguments):
+    """Names and versions of the packages that `cargo tree` shows, on any machine."""
+    tree = cargo("tree", "--locked", "--target", "all", "--prefix", "none", "--format", "{p}", *arguments)
+    return {tuple(line.split()[:2]) for line in tree.splitlines() if line}
+
+
 def main():
     rules = tomllib.loads((ROOT / "deny.toml").read_text(encoding="utf-8"))
     metadata = json.loads(cargo("metadata", "--locked", "--all-features", "--format-version", "1"))
     # The metadata name what a feature of an optional dependency alone mentions; the tree does not.
-    tree = cargo("tree", "--locked", "--workspace", "--all-features", "--target", "all", "--prefix", "none", "--format", "{p}")
-    in_tree = {tuple(line.split()[:2]) for line in tree.splitlines() if line}
+    used = in_tree("--workspace", "--all-features")
     sets = []
     # As for cargo-deny, what only tests need may be there in a second version, but in no other way.
     for kinds in [(None, "build", "dev"), (None, "build")]:
         packages = reached(metadata, kinds)
-        sets.append([it for it in packages if (it["name"], f"v{it['version']}") in in_tree])
+        sets.append([it for it in packages if (it["name"], f"v{it['version']}") in used])
     found = list(complaints(rules, *sets))
     for complaint in found:
         print(complaint)

@@ -30,7 +30,8 @@ PAGES = {
 CODE = r"(?ms:^(?P<fence> *`{3,}).*?^(?P=fence)`* *$)|`[^`\n]+`"
 LINK = re.compile(rf"{CODE}|(?P<text>\[[^\]\n]*\])\((?P<target>[^)\s]+)\)")
 FORMULA = re.compile(rf"(?ms:^(?P<indent> *)```math\n(?P<block>.*?)^ *```$)|{CODE}|(?<![\\$])\$(?P<inline>[^$\n]+)\$")
-COMMENT = re.compile(rf"{CODE}|(?P<comment>(?s:<!--.*?-->)\n?)")
+# Comments are left out; what stands in one that begins with `site:` stands on the site alone.
+COMMENT = re.compile(rf"{CODE}|(?P<comment><!--(?P<site> site: )?(?P<text>(?s:.*?)) *-->\n?)")
 
 # Stands for a formula's TeX until that can no longer be taken for something else.
 PLACEHOLDER = "formula"
@@ -55,7 +56,7 @@ def staged(markdown, source, page, there):
     """A page's Markdown as the site has it."""
     # What follows a language is for other readers, as in rust,no_run.
     markdown = re.sub(r"^( *```\w+),\S*$", r"\1", markdown, flags=re.M)
-    markdown = COMMENT.sub(lambda match: "" if match["comment"] else match[0], markdown)
+    markdown = COMMENT.sub(lambda match: (match["text"] if match["site"] else "") if match["comment"] else match[0], markdown)
     markdown = LINK.sub(lambda match: link(match, source, page, there), markdown)
     glyphs = {}
     markdown = FORMULA.sub(lambda match: formula(match, glyphs), markdown)

@@ -1,11 +1,12 @@
 // Opens the pages of the documentation site in headless Chromium: nothing is loaded from elsewhere or complained of, pages fit narrow and
-// wide windows, axe finds no serious fault, and search finds.
+// wide windows, axe finds no serious fault, and search finds, also in a folder.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, readdirSync } from "node:fs";
 import { createServer } from "node:http";
 import { createRequire } from "node:module";
 import { extname, join, normalize, resolve } from "node:path";
 import { after, before, describe, test } from "node:test";
+import { pathToFileURL } from "node:url";
 import { CHROMIUM, launch } from "./browser.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -38,17 +39,17 @@ function serve() {
 }
 
 describe("documentation site", { skip: skipped() }, () => {
-  let browser, server, address;
+  let browser, server, served;
   before(async () => {
     [browser, server] = [await launch(), await serve()];
-    address = `http://127.0.0.1:${server.address().port}/`;
+    served = `http://127.0.0.1:${server.address().port}/`;
   });
   after(async () => {
     await browser?.close();
     server?.close();
   });
 
-  async function open(name, width, colours) {
+  async function open(name, width, colours, address = served) {
     const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme: colours });
     page.complaints = [];
     page.on("console", (message) => message.type() === "error" && page.complaints.push(message.text()));
@@ -80,13 +81,17 @@ describe("documentation site", { skip: skipped() }, () => {
     });
   }
 
-  test("search finds the reflector", async () => {
-    const page = await open("index.html", 1300, "light");
-    await page.locator(".md-search__input").click();
-    await page.locator(".md-search__input").pressSequentially("reflector");
-    await page.locator(".md-search-result__item").first().waitFor();
-    assert.match(await page.locator(".md-search-result__list").innerText(), /laser tracker/);
-    assert.deepEqual(page.complaints, []);
-    await page.close();
-  });
+  for (const [place, start] of [["a server", () => served], ["a folder", () => `${pathToFileURL(SITE).href}/`]]) {
+    for (const name of ["index.html", "lou2009/report.html"]) {
+      test(`search finds the reflector from ${name} of ${place}`, async () => {
+        const page = await open(name, 1300, "light", start());
+        await page.locator(".md-search__input").click();
+        await page.locator(".md-search__input").pressSequentially("reflector");
+        await page.locator(".md-search-result__item").first().waitFor();
+        assert.match(await page.locator(".md-search-result__list").innerText(), /laser tracker/i);
+        assert.deepEqual(page.complaints, []);
+        await page.close();
+      });
+    }
+  }
 });

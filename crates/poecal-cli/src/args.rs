@@ -77,6 +77,25 @@ pub(crate) enum Command {
     Identify(Identify),
     /// Print the JSON Schema of calibration.json
     Schema,
+    /// Print a script with which a shell completes the program's commands, options and words
+    Completions(Completions),
+    /// Print the manual page of the program, or of a command
+    Man(Man),
+}
+
+/// Arguments of `poecal completions`.
+#[derive(Args, Debug)]
+pub(crate) struct Completions {
+    /// The shell
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// Arguments of `poecal man`.
+#[derive(Args, Debug)]
+pub(crate) struct Man {
+    /// The command [default: the program itself]
+    pub(crate) command: Option<String>,
 }
 
 /// Arguments of `poecal validate`.

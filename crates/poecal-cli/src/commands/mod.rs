@@ -2,9 +2,11 @@
 
 mod calibrate;
 mod check;
+mod completions;
 mod convert;
 mod identify;
 mod init;
+mod man;
 mod offsets;
 mod predict;
 mod report;
@@ -16,9 +18,11 @@ mod validate;
 
 pub(crate) use calibrate::calibrate;
 pub(crate) use check::check;
+pub(crate) use completions::completions;
 pub(crate) use convert::convert;
 pub(crate) use identify::identify;
 pub(crate) use init::init;
+pub(crate) use man::man;
 pub(crate) use offsets::offsets;
 pub(crate) use predict::predict;
 pub(crate) use report::report;

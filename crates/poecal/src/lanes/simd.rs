@@ -44,14 +44,26 @@ impl SimdLevel {
     /// The best level of this machine.
     #[must_use]
     pub fn best() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        let found = V4::try_new().map(SimdLevel::Avx512).or_else(|| V3::try_new().map(SimdLevel::Avx2));
-        #[cfg(target_arch = "aarch64")]
-        let found = Neon::try_new().map(SimdLevel::Neon);
-        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-        let found = None;
-        found.unwrap_or(SimdLevel::BASELINE)
+        detected().unwrap_or(SimdLevel::BASELINE)
     }
+}
+
+/// The best vector instructions of this machine.
+#[cfg(target_arch = "x86_64")]
+fn detected() -> Option<SimdLevel> {
+    V4::try_new().map(SimdLevel::Avx512).or_else(|| V3::try_new().map(SimdLevel::Avx2))
+}
+
+/// The best vector instructions of this machine.
+#[cfg(target_arch = "aarch64")]
+fn detected() -> Option<SimdLevel> {
+    Neon::try_new().map(SimdLevel::Neon)
+}
+
+/// There are none that the kernels are compiled for.
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+fn detected() -> Option<SimdLevel> {
+    None
 }
 
 /// Levels that this machine has, the best first.
@@ -72,10 +84,12 @@ pub fn simd_levels() -> Vec<SimdLevel> {
 }
 
 /// Something that can be used once.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 struct Once;
 
 /// Calls a kernel in a function that is compiled for the instructions of a level. Only a closure that can be called but once is inlined
 /// there; another would be compiled without these instructions.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 macro_rules! vectorize {
     ($level:expr, $simd:expr, $module:ident :: $name:ident ($($argument:ident),*)) => {{
         let once = Once;

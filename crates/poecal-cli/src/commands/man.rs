@@ -1,0 +1,35 @@
+//! `poecal man`: manual pages.
+
+use clap::CommandFactory as _;
+use poecal::text::visible;
+use poecal::{Error, ErrorKind, Result, nearest};
+
+use crate::DONE;
+use crate::args::{Arguments, Man};
+use crate::console::Console;
+
+pub(crate) fn man(arguments: &Man, console: &Console) -> Result<u8> {
+    let mut program = Arguments::command().disable_help_subcommand(true);
+    program.build();
+    let command = match &arguments.command {
+        None => program,
+        Some(name) => {
+            let found = program.find_subcommand(name).cloned();
+            found.ok_or_else(|| Error::new(ErrorKind::Option, unknown(name, &program)))?
+        }
+    };
+    let mut page = Vec::new();
+    let written = clap_mangen::Man::new(command).render(&mut page);
+    written.map_err(|error| {
+        Error::new(ErrorKind::File, format!("the manual page cannot be written ({error})"))
+    })?;
+    console.data(&String::from_utf8_lossy(&page))?;
+    Ok(DONE)
+}
+
+fn unknown(name: &str, program: &clap::Command) -> String {
+    let names: Vec<&str> = program.get_subcommands().map(clap::Command::get_name).collect();
+    let hint = nearest(name, names.iter().copied())
+        .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    format!("man: found no command `{}`, expected one of {}{hint}", visible(name), names.join(", "))
+}

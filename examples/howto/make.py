@@ -1,0 +1,181 @@
+"""Makes the recordings of docs/howto: the elbow of examples/elbow with errors of its axes, seen by instruments of three kinds.
+
+    python make.py POECAL FOLDER
+
+POECAL is the program, FOLDER is written into. All is simulated; every random number follows from SEED.
+"""
+
+import csv
+import random
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+SEED = 7
+MODEL = Path(__file__).resolve().parents[1] / "elbow" / "robot.toml"
+LIMITS = [(-180, 180), (-105, 175), (-235, 85), (-180, 180), (-40, 220), (-360, 360)]
+JOINTS = [f"joint{k}[deg]" for k in range(1, 7)]
+
+
+def rotation(vector):
+    """The matrix of a rotation vector."""
+    angle = np.linalg.norm(vector)
+    if angle == 0:
+        return np.eye(3)
+    x, y, z = np.asarray(vector) / angle
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def quaternion(matrix):
+    """The quaternion x, y, z, w of a rotation matrix."""
+    values, vectors = np.linalg.eigh(
+        np.array(
+            [
+                [matrix[0, 0] - matrix[1, 1] - matrix[2, 2], 0, 0, 0],
+                [matrix[1, 0] + matrix[0, 1], matrix[1, 1] - matrix[0, 0] - matrix[2, 2], 0, 0],
+                [matrix[2, 0] + matrix[0, 2], matrix[2, 1] + matrix[1, 2], matrix[2, 2] - matrix[0, 0] - matrix[1, 1], 0],
+                [matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1], np.trace(matrix)],
+            ]
+        )
+    )
+    found = vectors[:, -1]
+    return found if found[3] >= 0 else -found
+
+
+def rotation_vector(matrix):
+    """The rotation vector of a matrix."""
+    found = quaternion(matrix)
+    size = np.linalg.norm(found[:3])
+    return 2 * np.arctan2(size, found[3]) * found[:3] / size
+
+
+def pose(turn, place):
+    """A pose as a 4×4 matrix."""
+    found = np.eye(4)
+    found[:3, :3], found[:3, 3] = rotation(turn), place
+    return found
+
+
+class Simulated:
+    """The actual robot, and random numbers."""
+
+    def __init__(self, poecal, folder):
+        self.poecal, self.folder = poecal, Path(folder)
+        self.random = random.Random(SEED)
+        self.run("simulate", MODEL, "--errors", "0.2deg,0.5mm", "--seed", SEED, "--count", 1, "--out", self.folder / "robot")
+
+    def run(self, *words):
+        return subprocess.run([self.poecal, *map(str, words), "--quiet"], check=True, capture_output=True, text=True).stdout
+
+    def configuration(self, share=0.95):
+        """One within the middle of the joints' ranges."""
+        return [round(self.random.uniform(low, high) * share + (1 - share) * (low + high) / 2, 4) for low, high in LIMITS]
+
+    def tips(self, configurations):
+        """The actual poses of the tip in the base, m."""
+        table = self.folder / "joints.csv"
+        with table.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerows([JOINTS, *configurations])
+        rows = list(csv.reader(self.run("predict", self.folder / "robot" / "actual.toml", table).splitlines()))[1:]
+        poses = []
+        for row in rows:
+            x, y, z, qx, qy, qz, qw = map(float, row)
+            angle = 2 * np.arctan2(np.linalg.norm([qx, qy, qz]), qw)
+            axis = np.array([qx, qy, qz]) / max(np.linalg.norm([qx, qy, qz]), 1e-300)
+            poses.append(pose(angle * axis, [x, y, z]))
+        return poses
+
+    def noise(self, *sigmas):
+        return np.array([self.random.gauss(0, sigma) for sigma in sigmas])
+
+
+def reflectors(robot, path):
+    """A laser tracker, three reflectors in each configuration, a row a configuration; some are not seen."""
+    places = {"smr1": [0.04, 0, 0.03], "smr2": [-0.03, 0.05, 0.02], "smr3": [-0.02, -0.045, 0.06]}
+    tracker_from_base = pose([0.02, -0.01, 2.1], [3.1, -0.6, -0.9])
+    configurations = [robot.configuration() for _ in range(60)]
+    header = [*JOINTS, *(f"{name}_{axis}[mm]" for name in places for axis in "xyz")]
+    rows = []
+    for configuration, tip in zip(configurations, robot.tips(configurations), strict=True):
+        row = list(configuration)
+        for place in places.values():
+            seen = (tracker_from_base @ tip @ [*place, 1])[:3] * 1e3 + robot.noise(0.03, 0.03, 0.03)
+            row += [f"{value:.4f}" for value in seen] if robot.random.random() > 0.05 else ["", "", ""]
+        rows.append(row)
+    write(path, [header, *rows])
+
+
+def hand_camera(robot, path):
+    """A camera in the hand and a board on the table: rvec and tvec of the board in the camera, where the camera sees it."""
+    tip_from_camera = pose([0, np.pi / 2, 0], [0.05, 0.01, 0.06])
+    base_from_board = pose([0, 0.02, 0.4], [0.55, 0.1, 0.05])
+    rows = []
+    while len(rows) < 80:
+        configurations = [robot.configuration() for _ in range(2000)]
+        for configuration, tip in zip(configurations, robot.tips(configurations), strict=True):
+            camera_from_board = np.linalg.inv(tip @ tip_from_camera) @ base_from_board
+            place = camera_from_board[:3, 3]
+            distance = np.linalg.norm(place)
+            # In the picture, near enough to be sharp, and the board's face not seen too flat.
+            is_seen = place[2] > 0.9 * distance and -camera_from_board[:3, 2] @ place > 0.6 * distance
+            if is_seen and 0.35 < distance < 0.9 and len(rows) < 80:
+                place = place + robot.noise(0.0001, 0.0001, 0.0003)
+                turn = rotation_vector(rotation(robot.noise(0.001, 0.001, 0.0002)) @ camera_from_board[:3, :3])
+                rows.append([*configuration, *(f"{value:.7f}" for value in turn), *(f"{1e3 * value:.4f}" for value in place)])
+    write(path, [[*JOINTS, "rvec_x", "rvec_y", "rvec_z", "tvec_x", "tvec_y", "tvec_z"], *rows])
+
+
+def motion_capture(robot, log, take):
+    """Joint readings and a rigid body of a motion capture system, each with its own clock, on the way through the configurations."""
+    system_from_base = pose([-np.pi / 2, 0, 0], [0.4, 0.8, 1.1])    # y is up
+    tip_from_body = pose([0.3, -0.2, 0.1], [0.02, -0.03, 0.09])
+    stands = [robot.configuration() for _ in range(40)]
+    time, times = 0.0, []
+    for stand, following in zip(stands, [*stands[1:], stands[-1]], strict=True):
+        times += [time, time + robot.random.uniform(1.4, 2.6)]
+        time = times[-1] + 0.3 + max(abs(a - b) for a, b in zip(stand, following, strict=True)) / 250
+    path = [stand for stand in stands for _ in range(2)]
+    values = np.array(path)
+
+    def at(moments):
+        return np.stack([np.interp(moments, times, column) for column in values.T], axis=1)
+
+    moments = np.arange(0.0, time, 0.2)
+    readings = ([f"{moment:.3f}", *(f"{value:.4f}" for value in row)] for moment, row in zip(moments, at(moments), strict=True))
+    write(log, [["time", *JOINTS], *readings])
+    # The system was started later than the log of the joints, by this much.
+    late = 3.27
+    frames = np.arange(late, time, 0.2)
+    head = ["Format Version", "1.21", "Take Name", "Elbow", "Export Frame Rate", "5.000000"]
+    head += ["Rotation Type", "Quaternion", "Length Units", "Meters", "Coordinate Space", "Global"]
+    rows = [head, [], ["", "", *["Rigid Body"] * 8], ["", "", *["Tool"] * 8], ["", "", *["0A1B2C"] * 8]]
+    rows += [["", "", *["Rotation"] * 4, *["Position"] * 3, "Error Per Marker"], ["Frame", "Time", *"XYZWXYZ", ""]]
+    for number, (frame, tip) in enumerate(zip(frames, robot.tips(at(frames).round(6).tolist()), strict=True)):
+        body = system_from_base @ tip @ tip_from_body
+        place = body[:3, 3] + robot.noise(0.0002, 0.0002, 0.0002)
+        turn = quaternion(rotation(robot.noise(0.001, 0.001, 0.001)) @ body[:3, :3])
+        rows.append([number, f"{frame - late:.3f}", *(f"{value:.6f}" for value in [*turn, *place]), "0.000150"])
+    write(take, rows)
+
+
+def write(path, rows):
+    with path.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(rows)
+
+
+def main(poecal, folder):
+    folder = Path(folder)
+    folder.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        robot = Simulated(poecal, scratch)
+        reflectors(robot, folder / "reflectors.csv")
+        hand_camera(robot, folder / "camera.csv")
+        motion_capture(robot, folder / "joints.csv", folder / "take.csv")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
