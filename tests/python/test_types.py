@@ -74,7 +74,7 @@ def test_what_users_write_is_well_typed(tmp_path):
     mypy(["mypy", "--strict", "use.py"], tmp_path)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+@pytest.mark.parametrize("page", ["README.md", "crates/poecal-py/README.md", "docs/python.md"])
 def test_what_pages_show_is_well_typed(page, tmp_path):
     """A page's blocks, one after the other, as a reader would copy them."""
     text = "\n".join(block.text for block in blocks(ROOT / page) if block.language == "python")
