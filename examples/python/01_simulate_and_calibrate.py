@@ -38,7 +38,6 @@ for name, model in [("nominal", held_out.nominal), ("registered", held_out.regis
     print(f"{name:<12} {model.position_mm.rms:8.4f} mm {model.rotation_deg.rms:8.4f} deg (RMS)")
 noise_mm = calibration.to_dict()["noise"]["sigma_position_mm"]
 print(f"noise        {noise_mm:8.4f} mm each component, as the fit estimates it")
-assert calibration.verdict is not None
 print(f"verdict      {calibration.verdict.level}")
 for found in calibration.corrections:
     tilt, sigma_tilt, shift, sigma_shift = (found[key] for key in ["tilt_deg", "sigma_tilt_deg", "shift_mm", "sigma_shift_mm"])

@@ -1,5 +1,7 @@
 """Examples in Python run, and print what their twins in Rust print."""
 
+import ast
+import json
 import os
 import re
 import subprocess
@@ -44,3 +46,26 @@ def test_examples_with_other_packages_run(name, tmp_path):
         if line.startswith("calibrated"):
             # Rounding of a dozen products of poses of some metres.
             assert float(re.search(r"([0-9.e+-]+) mm", line)[1]) < 1e-9
+
+
+NOTEBOOKS = sorted((ROOT / "examples/notebook").glob("*.ipynb"))
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.name)
+def test_notebooks_run_and_show_something(path, monkeypatch):
+    """Each cell in order, its last expression shown as a notebook would show it."""
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    monkeypatch.chdir(path.parent)
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    code = [cell for cell in cells if cell["cell_type"] == "code"]
+    assert len(code) >= 5 and all(cell["outputs"] == [] and cell["execution_count"] is None for cell in code), "it is stored without outputs"
+    names, shown = {"__name__": "__main__"}, []
+    for number, cell in enumerate(code):
+        tree = ast.parse("".join(cell["source"]))
+        last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
+        exec(compile(tree, f"{path.name}, cell {number}", "exec"), names)
+        result = eval(compile(ast.Expression(last.value), f"{path.name}, cell {number}", "eval"), names) if last else None
+        if result is not None:
+            shown.append(getattr(result, "_repr_html_", lambda: None)() or repr(result))
+    assert len(shown) >= 5 and all(shown)
+    print(*shown, sep="\n")

@@ -1,8 +1,10 @@
 //! Errors of models, and the verdict, as attributes.
 
 use poecal::calibration::{self, Level};
+use poecal::report::table::number;
 use pyo3::prelude::*;
 
+use crate::arguments as arg;
 use crate::words::chosen;
 
 /// Mean, root mean square, 95th percentile and maximum of errors.
@@ -22,7 +24,8 @@ pub(crate) struct Statistic {
 #[pymethods]
 impl Statistic {
     fn __repr__(&self) -> String {
-        format!("Statistic(mean={:?}, rms={:?}, p95={:?}, max={:?})", self.mean, self.rms, self.p95, self.max)
+        let [mean, rms, p95, max] = [self.mean, self.rms, self.p95, self.max].map(number);
+        format!("<poecal.Statistic mean {mean}, RMS {rms}, 95 % {p95}, max {max}>")
     }
 }
 
@@ -45,8 +48,8 @@ pub(crate) struct ModelAccuracy {
 #[pymethods]
 impl ModelAccuracy {
     fn __repr__(&self) -> String {
-        let rotation = self.rotation_deg.map_or("None".to_owned(), |it| it.__repr__());
-        format!("ModelAccuracy(position_mm={}, rotation_deg={rotation})", self.position_mm.__repr__())
+        let rotation = self.rotation_deg.map_or_else(String::new, |it| format!(", {} deg", number(it.rms)));
+        format!("<poecal.ModelAccuracy {} mm{rotation} RMS>", number(self.position_mm.rms))
     }
 }
 
@@ -76,12 +79,11 @@ pub(crate) struct SetAccuracy {
 #[pymethods]
 impl SetAccuracy {
     fn __repr__(&self) -> String {
-        let SetAccuracy { count, nominal, registered, calibrated } = self;
+        let [nominal, registered, calibrated] =
+            [self.nominal, self.registered, self.calibrated].map(|it| number(it.position_mm.rms));
         format!(
-            "SetAccuracy(count={count}, nominal={}, registered={}, calibrated={})",
-            nominal.__repr__(),
-            registered.__repr__(),
-            calibrated.__repr__()
+            "<poecal.SetAccuracy of {} rows: nominal {nominal}, registered {registered}, calibrated {calibrated} mm RMS>",
+            self.count
         )
     }
 }
@@ -110,8 +112,11 @@ pub(crate) struct Accuracy {
 #[pymethods]
 impl Accuracy {
     fn __repr__(&self) -> String {
-        let held_out = self.held_out.map_or("None".to_owned(), |it| it.__repr__());
-        format!("Accuracy(training={}, held_out={held_out})", self.training.__repr__())
+        let words = |set: &SetAccuracy, name: &str| {
+            format!("{} mm RMS on {} {name} rows", number(set.calibrated.position_mm.rms), set.count)
+        };
+        let held_out = self.held_out.as_ref().map_or_else(String::new, |set| words(set, "held-out") + ", ");
+        format!("<poecal.Accuracy: {held_out}{}>", words(&self.training, "fitted"))
     }
 }
 
@@ -140,8 +145,18 @@ impl Verdict {
         self.0.reasons.clone()
     }
 
-    /// Whether the level is `level` or a better one.
-    fn is_at_least(&self, level: &str) -> PyResult<bool> {
+    /// Whether a calibration may be used as far as this.
+    ///
+    /// Parameters
+    /// ----------
+    /// level
+    ///     "good", "inside_sampled_range" or "do_not_use".
+    ///
+    /// Returns
+    /// -------
+    /// bool
+    ///     Whether the verdict's level is `level` or a better one.
+    fn is_at_least(&self, #[pyo3(from_py_with = arg::level)] level: &str) -> PyResult<bool> {
         let levels = [Level::Good, Level::InsideSampledRange, Level::DoNotUse];
         Ok(self.0.level >= chosen("level", level, &levels.map(|level| (level.word(), level)))?)
     }

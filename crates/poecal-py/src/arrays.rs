@@ -2,10 +2,12 @@
 
 use nalgebra::Matrix3;
 use numpy::{
-    PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArrayMethods as _,
+    PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods as _,
 };
 use poecal::lie::Pose;
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
 
 use crate::errors::argument;
 
@@ -16,16 +18,26 @@ const ROTATION_TOLERANCE: f64 = 1e-2;
 pub(crate) struct Numbers {
     pub(crate) values: Vec<f64>,
     pub(crate) shape: Vec<usize>,
+    /// Whether some of them were masked: these are NaN.
+    masked: bool,
 }
 
 impl Numbers {
-    /// The numbers of `value`, the argument `name`: float32, integers, lists and arrays of any layout become float64.
+    /// The numbers of `value`, the argument `name`: float32, integers, lists and arrays of any layout become float64, and masked
+    /// numbers NaN.
     pub(crate) fn of(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
+        let unmasked = unmasked(value, name, expected)?;
+        let (value, masked) = (unmasked.as_ref().unwrap_or(value), unmasked.is_some());
         let array = match value.extract::<PyReadonlyArrayDyn<'_, f64>>() {
             Ok(array) if array.is_c_contiguous() => array,
             _ => converted(value, name, expected)?,
         };
-        Ok(Numbers { shape: array.shape().to_vec(), values: array.as_slice()?.to_vec() })
+        Ok(Numbers { shape: array.shape().to_vec(), values: array.as_slice()?.to_vec(), masked })
+    }
+
+    /// A number for each of some rows.
+    pub(crate) fn repeated(number: f64, rows: usize) -> Self {
+        Numbers { values: vec![number; rows], shape: vec![rows], masked: false }
     }
 
     /// The same, refused if a number is not finite.
@@ -38,7 +50,13 @@ impl Numbers {
                     0 | 1 => format!("at index {at}"),
                     _ => format!("in row {}", at / row_length),
                 };
-                Err(argument(name, format!("found {number} {place}, expected finite numbers")))
+                let message = match numbers.masked {
+                    true => format!(
+                        "found a masked number, or {number}, {place}, expected finite numbers: leave such rows out"
+                    ),
+                    false => format!("found {number} {place}, expected finite numbers"),
+                };
+                Err(argument(name, message))
             }
             None => Ok(numbers),
         }
@@ -75,6 +93,47 @@ impl Numbers {
     pub(crate) fn rows(&self) -> usize {
         self.shape.first().copied().unwrap_or(1)
     }
+}
+
+/// A masked array, or a list of some, as an array with NaN for what is masked; `None` where nothing is masked.
+fn unmasked<'py>(
+    value: &Bound<'py, PyAny>,
+    name: &str,
+    expected: &str,
+) -> PyResult<Option<Bound<'py, PyAny>>> {
+    // Whatever is of exactly this type has no mask, and most arguments are.
+    if value.is_exact_instance_of::<PyUntypedArray>() {
+        return Ok(None);
+    }
+    let masked = value.py().import("numpy.ma")?;
+    let class = masked.getattr("MaskedArray")?;
+    let is_masked = |it: &Bound<'py, PyAny>| it.is_instance(&class);
+    let entries = if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        Some(value)
+    } else {
+        None
+    };
+    let mut has_masked = is_masked(value)?;
+    for entry in entries.into_iter().flat_map(|it| it.try_iter()).flatten() {
+        has_masked |= is_masked(&entry?)?;
+    }
+    if !has_masked {
+        return Ok(None);
+    }
+    let wrong =
+        |cause: PyErr| argument(name, format!("found no array of numbers ({cause}), expected {expected}"));
+    let array = masked.call_method1("asarray", (value,)).map_err(wrong)?;
+    if !masked.call_method1("is_masked", (&array,))?.is_truthy()? {
+        return array.getattr("data").map(Some);
+    }
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if !["f", "i", "u"].contains(&kind.as_str()) {
+        return Err(argument(
+            name,
+            format!("found values of type {}, expected {expected}", array.getattr("dtype")?),
+        ));
+    }
+    array.call_method1("astype", ("float64",))?.call_method1("filled", (f64::NAN,)).map(Some)
 }
 
 /// `numpy.ascontiguousarray(value, dtype=float)`, refused where that would be lossy or ambiguous.

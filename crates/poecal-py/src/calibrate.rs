@@ -12,6 +12,7 @@ use poecal::robot::Tolerance;
 use poecal_lou2009::{Formulation, Method, Residual, formulated};
 use pyo3::prelude::*;
 
+use crate::arguments::{self as arg, Function};
 use crate::calibration::Calibration;
 use crate::errors::raise;
 use crate::measurements::Measurements;
@@ -22,44 +23,67 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///
 /// Parameters
 /// ----------
-/// robot : the nominal robot
-/// measurements : its measurements
-/// frame : the measuring device's frame: "unknown" or "base"
-/// sigma_position_mm, sigma_rotation_deg : standard deviation of each measured component, default estimated from the data
-/// tolerance_deg_mm : prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or
-///     None; it decides where the measurements determine nothing
-/// held_out : share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row
-/// seed : seed of that choice (default 1)
-/// robust : how to treat outliers: "auto", "off", "huber", "cauchy" or "tukey"
-/// formulation : parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets"
-/// residual : residual of measured frames: "tool" or "spatial"
-/// method : "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws)
-/// validate : measurements to judge by: all other rows are fitted
-/// progress : called with the next stage, in words
+/// robot
+///     The nominal robot.
+/// measurements
+///     Its measurements.
+/// frame
+///     The measuring device's frame: "unknown" or "base".
+/// sigma_position_mm, sigma_rotation_deg
+///     Standard deviation of each measured component, default estimated from the data.
+/// tolerance_deg_mm
+///     Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
+///     decides where the measurements determine nothing.
+/// held_out
+///     Share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row.
+/// seed
+///     Seed of that choice (default 1).
+/// robust
+///     How to treat outliers: "auto", "off", "huber", "cauchy" or "tukey".
+/// formulation
+///     Parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets".
+/// residual
+///     Residual of measured frames: "tool" or "spatial".
+/// method
+///     "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws).
+/// validate
+///     Measurements to judge by: all other rows are fitted.
+/// progress
+///     Called with the next stage, in words.
+///
+/// Returns
+/// -------
+/// Calibration
+///     The calibrated robot, its errors, and how far to trust it.
 ///
 /// Raises
 /// ------
-/// ProblemError if there are too few measurements, OptionError for options out of range, SolverError if no finite result is reached.
+/// ProblemError
+///     There are too few measurements.
+/// OptionError
+///     An argument is out of range.
+/// SolverError
+///     No finite result is reached.
 #[pyfunction]
 #[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Some((0.5, 5.0)),
                     held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
-    robot: &Robot,
-    measurements: &Measurements,
-    frame: &str,
-    sigma_position_mm: Option<f64>,
-    sigma_rotation_deg: Option<f64>,
-    tolerance_deg_mm: Option<(f64, f64)>,
-    held_out: Option<f64>,
-    seed: Option<u64>,
-    robust: &str,
-    formulation: &str,
-    residual: &str,
-    method: Option<&str>,
-    validate: Option<&Measurements>,
-    progress: Option<Py<PyAny>>,
+    #[pyo3(from_py_with = arg::robot)] robot: &Robot,
+    #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
+    #[pyo3(from_py_with = arg::frame)] frame: &str,
+    #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
+    #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
+    #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Option<(f64, f64)>,
+    #[pyo3(from_py_with = arg::held_out)] held_out: Option<f64>,
+    #[pyo3(from_py_with = arg::seed)] seed: Option<u64>,
+    #[pyo3(from_py_with = arg::robust)] robust: &str,
+    #[pyo3(from_py_with = arg::formulation)] formulation: &str,
+    #[pyo3(from_py_with = arg::residual)] residual: &str,
+    #[pyo3(from_py_with = arg::method)] method: Option<&str>,
+    #[pyo3(from_py_with = arg::validate)] validate: Option<&Measurements>,
+    #[pyo3(from_py_with = arg::progress)] progress: Option<Function>,
 ) -> PyResult<Calibration> {
     let usual = CalibrationOptions::default();
     let formulation = chosen("formulation", formulation, &Formulation::ALL.map(|it| (it.word(), it)))?;
@@ -100,11 +124,11 @@ fn fit(
     nominal: &poecal::robot::Robot,
     data: &Dataset,
     options: &CalibrationOptions,
-    progress: Option<Py<PyAny>>,
+    progress: Option<Function>,
 ) -> PyResult<(poecal::calibration::Calibration, Duration)> {
     let mut raised = None;
     let mut tell = |stage: Stage| {
-        if let (Some(progress), None) = (&progress, &raised) {
+        if let (Some(Function(progress)), None) = (&progress, &raised) {
             raised = Python::attach(|py| progress.call1(py, (stage.words(),)).err());
         }
     };

@@ -7,50 +7,76 @@ use content::part;
 
 use std::path::{Path, PathBuf};
 
-use maud::html;
 use numpy::PyArray2;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
-use poecal::io::residuals::{ResidualRows, Residuals};
-use poecal::report;
-use poecal::text::visible_markup;
+use poecal::io::residuals::{ResidualRows, Residuals as Rows};
+use poecal::report::{self, table::number};
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::accuracy::{Accuracy, Verdict};
+use crate::arguments::{self as arg, Argument, unexpected};
 use crate::arrays::{Joints, pose_array};
+use crate::covariance::Covariance;
 use crate::errors::{python_words, raise};
 use crate::findings::{self, Findings};
 use crate::measurements::Measurements;
+use crate::notebook;
 use crate::pickle;
 use crate::places::{reserved_file, reserved_folder, said};
 use crate::prediction::Prediction;
+use crate::residuals::Residuals;
 use crate::robot::{Robot, poses};
 use crate::words::chosen;
 
 /// Place of a report: among the results, a file, or none.
-#[derive(FromPyObject)]
 enum ReportPlace {
     Among(bool),
     File(PathBuf),
 }
 
+impl<'a, 'py> Argument<'a, 'py> for ReportPlace {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        match value.extract() {
+            Ok(among) => Ok(ReportPlace::Among(among)),
+            Err(_) if value.extract::<PathBuf>().is_ok() => PathBuf::of(value, name).map(ReportPlace::File),
+            Err(_) => Err(unexpected(name, value, "True, False, or the path of a file")),
+        }
+    }
+}
+
 #[pymethods]
 impl Calibration {
-    /// Reads a calibration.json, and the residuals.csv beside it (or `residuals`) if there is one.
+    /// Reads a calibration.json, and the residuals.csv beside it if there is one.
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The calibration.json.
+    /// residuals
+    ///     Another residuals.csv.
+    ///
+    /// Returns
+    /// -------
+    /// Calibration
+    ///     The calibration, which does what it did before it was written.
     #[staticmethod]
     #[pyo3(signature = (path, *, residuals=None))]
-    fn read(path: PathBuf, residuals: Option<PathBuf>) -> PyResult<Self> {
+    fn read(
+        #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::residuals)] residuals: Option<PathBuf>,
+    ) -> PyResult<Self> {
         let file = CalibrationFile::read(&path).map_err(raise)?;
         let in_file = |error: poecal::Error| raise(error.in_file(&path));
         let robot = file.robot().map_err(in_file)?;
         let nominal = file.nominal_robot().map_err(in_file)?;
         let beside = path.with_file_name("residuals.csv");
         let residuals = residuals.or_else(|| beside.is_file().then_some(beside));
-        let residuals = residuals.map(Residuals::read).transpose().map_err(raise)?;
+        let residuals = residuals.map(Rows::read).transpose().map_err(raise)?;
         let summary = report::summary(&file, report::Detail::Short);
         let nominal = Robot::new(Model { robot: nominal, source: ModelSource::Toml, path });
         Ok(Calibration::written(nominal, robot, file, residuals, summary))
@@ -74,9 +100,9 @@ impl Calibration {
         self.errors().into()
     }
 
-    /// Verdict; None for a file without one.
+    /// How far the calibration may be used, and why no farther; an error for a file that does not say so.
     #[getter]
-    fn verdict(&self) -> Option<Verdict> {
+    fn verdict(&self) -> PyResult<Verdict> {
         self.judged().cloned().map(Verdict)
     }
 
@@ -124,35 +150,98 @@ impl Calibration {
         part(py, &self.file().identifiability)
     }
 
+    /// Residuals of each row, fitted or held out; an error if the calibration was read without its residuals.csv.
+    #[getter]
+    fn residuals(slf: &Bound<'_, Self>) -> PyResult<Residuals> {
+        Residuals::of(slf)
+    }
+
+    /// Covariance of the unknowns; an error if there are no more residuals than unknowns.
+    #[getter]
+    fn covariance(&self) -> PyResult<Covariance> {
+        Covariance::of(self.file())
+    }
+
+    /// Draws the errors of position before and after, and those of each row. Needs matplotlib.
+    ///
+    /// Parameters
+    /// ----------
+    /// axes
+    ///     Two axes of matplotlib to draw into, default those of a new figure.
+    ///
+    /// Returns
+    /// -------
+    /// matplotlib.figure.Figure
+    ///     The figure, which is not shown: notebooks show it, `savefig` writes it.
+    #[pyo3(signature = (axes=None))]
+    fn plot<'py>(slf: &Bound<'py, Self>, axes: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("poecal._plot")?.call_method1("plot", (slf, axes))
+    }
+
     /// The whole calibration.json as dicts and lists.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     The contents.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, self.file())
     }
 
-    /// The text of calibration.json.
+    /// The calibration.json as a text.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text.
     fn to_json(&self) -> PyResult<String> {
         self.file().to_text().map_err(raise)
     }
 
-    /// The text of residuals.csv: residuals of each row.
+    /// The residuals.csv as a text.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text.
     fn residuals_csv(&self) -> PyResult<String> {
-        Ok(self.residuals()?.text())
+        Ok(self.rows()?.text())
     }
 
     /// Writes the results to a folder, as the program does: calibration.json, the calibrated model, residuals.csv and report.html.
     ///
-    /// All is written or nothing, and the models are read back and compared with the fit. `report` may be False, or another file.
-    /// Gives the names of the files.
+    /// All is written or nothing, and the models are read back and compared with the fit.
+    ///
+    /// Parameters
+    /// ----------
+    /// folder
+    ///     The folder.
+    /// force
+    ///     Whether to write over files that exist.
+    /// report
+    ///     Whether to write the report too, or the path of another file for it.
+    ///
+    /// Returns
+    /// -------
+    /// list of str
+    ///     Names of the files.
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    ///     The folder exists, and `force` is not set.
+    /// ExportError
+    ///     Written files did not reproduce what was fitted.
     #[pyo3(signature = (folder, *, force=false, report=None), text_signature = "($self, folder, *, force=False, report=True)")]
     fn write(
         &self,
         py: Python<'_>,
-        folder: PathBuf,
-        force: bool,
-        report: Option<ReportPlace>,
+        #[pyo3(from_py_with = arg::folder)] folder: PathBuf,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+        #[pyo3(from_py_with = arg::report)] report: Option<ReportPlace>,
     ) -> PyResult<Vec<String>> {
         let report = report.unwrap_or(ReportPlace::Among(true));
-        let (file, residuals) = (self.file(), self.residuals()?);
+        let (file, residuals) = (self.file(), self.rows()?);
         let (robot, model) = (self.as_fitted(), &self.nominal.model);
         let existing = Existing::forced(force);
         let measured = file.inputs.measurements.iter().map(Path::new);
@@ -178,10 +267,22 @@ impl Calibration {
         Ok(written.files)
     }
 
-    /// Writes the report, one HTML file; over a file that is no report of poecal only with `force`.
+    /// Writes the report, one HTML file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The file.
+    /// force
+    ///     Whether to write over a file that is no report of poecal.
     #[pyo3(signature = (path, *, force=false))]
-    fn report(&self, py: Python<'_>, path: PathBuf, force: bool) -> PyResult<()> {
-        let (file, residuals) = (self.file(), self.residuals()?);
+    fn report(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+    ) -> PyResult<()> {
+        let (file, residuals) = (self.file(), self.rows()?);
         let existing = if force { Existing::Replaced } else { Existing::Own };
         let place = reserved_file(py, &path, existing, &[])?;
         py.detach(|| place.write(report::calibration_page(file, residuals)?)).map_err(raise)
@@ -189,16 +290,29 @@ impl Calibration {
 
     /// Poses of the calibrated tip, or of a target.
     ///
-    /// `joints` is of shape (m, n), radians and metres, or (n,) for one configuration. Gives poses of shape (m, 4, 4), or (4, 4), in
-    /// the `frame` "base" or "device"; with `with_uncertainty` a `Prediction`, with the expected error of each.
+    /// Parameters
+    /// ----------
+    /// joints
+    ///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`; or one, shape (n,).
+    /// with_uncertainty
+    ///     Whether to give the expected error of each pose too.
+    /// frame
+    ///     Frame of the poses: "base" or "device".
+    /// target
+    ///     Name of a target, default the tip.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray or Prediction
+    ///     Poses of shape (m, 4, 4), or (4, 4) for one configuration; with `with_uncertainty` a `Prediction`, always of m poses.
     #[pyo3(signature = (joints, *, with_uncertainty=false, frame="base", target=None))]
     fn predict<'py>(
         &self,
         py: Python<'py>,
         joints: &Bound<'py, PyAny>,
-        with_uncertainty: bool,
-        frame: &str,
-        target: Option<&str>,
+        #[pyo3(from_py_with = arg::with_uncertainty)] with_uncertainty: bool,
+        #[pyo3(from_py_with = arg::frame)] frame: &str,
+        #[pyo3(from_py_with = arg::target)] target: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let frame =
             chosen("frame", frame, &[("base", PredictionFrame::Base), ("device", PredictionFrame::Device)])?;
@@ -215,14 +329,26 @@ impl Calibration {
 
     /// Judges the calibration by measurements that it did not see; every row counts.
     ///
-    /// `refit_frame` refits the device's frame to them, `refit_tool` the targets.
+    /// Parameters
+    /// ----------
+    /// measurements
+    ///     The measurements.
+    /// refit_frame
+    ///     Whether to refit the device's frame to them.
+    /// refit_tool
+    ///     Whether to refit the targets to them.
+    ///
+    /// Returns
+    /// -------
+    /// Findings
+    ///     Errors of the nominal and the calibrated robot, and their share inside the predicted bounds.
     #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false))]
     fn validate(
         &self,
         py: Python<'_>,
-        measurements: &Measurements,
-        refit_frame: bool,
-        refit_tool: bool,
+        #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
+        #[pyo3(from_py_with = arg::refit_frame)] refit_frame: bool,
+        #[pyo3(from_py_with = arg::refit_tool)] refit_tool: bool,
     ) -> PyResult<Findings> {
         measurements.check_robot(self.calibrated()?)?;
         let file = self.file();
@@ -236,16 +362,32 @@ impl Calibration {
         Findings::new(text, &judgement, doubts)
     }
 
-    /// Which unknowns measurements of the calibrated robot in these configurations would determine; see `identify`.
+    /// Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.
+    ///
+    /// Parameters
+    /// ----------
+    /// joints
+    ///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
+    /// kind
+    ///     Kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn).
+    /// sigma_position_mm, sigma_rotation_deg
+    ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
+    /// frame
+    ///     The measuring device's frame: "unknown" or "base".
+    ///
+    /// Returns
+    /// -------
+    /// Findings
+    ///     What would be determined, and the expected error.
     #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown"))]
     fn identify(
         &self,
         py: Python<'_>,
         joints: &Bound<'_, PyAny>,
-        kind: &str,
-        sigma_position_mm: Option<f64>,
-        sigma_rotation_deg: Option<f64>,
-        frame: &str,
+        #[pyo3(from_py_with = arg::kind)] kind: &str,
+        #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
+        #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
+        #[pyo3(from_py_with = arg::frame)] frame: &str,
     ) -> PyResult<Findings> {
         findings::identify(py, self.calibrated()?, joints, kind, sigma_position_mm, sigma_rotation_deg, frame)
     }
@@ -266,47 +408,22 @@ impl Calibration {
             Some(set) => (set, "held-out"),
             None => (&file.accuracy.training, "fitted"),
         };
-        let verdict = file.verdict.as_ref().map_or("", |verdict| verdict.level.words());
+        let verdict = file.verdict.as_ref().map_or("no verdict", |verdict| verdict.level.words());
+        let [registered, calibrated] = [set.registered, set.calibrated].map(|it| number(it.position_mm.rms));
         format!(
-            "<poecal.Calibration of {}: {:.4} mm (RMS) on {} {name} rows, nominal {:.4} mm; verdict {verdict}>",
-            file.robot.name, set.calibrated.position_mm.rms, set.count, set.nominal.position_mm.rms
+            "<poecal.Calibration of {}: {verdict}, {calibrated} mm RMS on {} {name} rows (nominal, tool and device fitted: {registered})>",
+            file.robot.name, set.count
         )
     }
 
     fn _repr_html_(&self) -> String {
-        let file = self.file();
-        let fitted = ("fitted", &file.accuracy.training);
-        let sets = std::iter::once(fitted).chain(file.accuracy.held_out.iter().map(|set| ("held out", set)));
-        visible_markup(html! {
-            div {
-                @if let Some(verdict) = &file.verdict {
-                    p { (file.robot.name) ": " (verdict.level.words()) " (" (verdict.reasons.join("; ")) ")" }
-                }
-                table {
-                    tr { @for name in ["error (RMS)", "rows", "nominal", "registered", "calibrated"] { th { (name) } } }
-                    @for (name, set) in sets {
-                        @let models = [&set.nominal, &set.registered, &set.calibrated];
-                        tr {
-                            td { "position, " (name) } td { (set.count) }
-                            @for model in models { td { (format_args!("{:.4} mm", model.position_mm.rms)) } }
-                        }
-                        @if let [Some(a), Some(b), Some(c)] = models.map(|model| model.rotation_deg) {
-                            tr {
-                                td { "rotation, " (name) } td { (set.count) }
-                                @for it in [a, b, c] { td { (format_args!("{:.4}°", it.rms)) } }
-                            }
-                        }
-                    }
-                }
-                @for warning in self.warnings() { p { "warning: " (warning) } }
-            }
-        })
+        notebook::calibration(self.file(), &self.warnings())
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
         let Ok(other) = other.cast::<Calibration>() else { return false };
         let other = other.get();
-        let residuals = |it: &Calibration| it.residuals().ok().map(Residuals::text);
+        let residuals = |it: &Calibration| it.rows().ok().map(Rows::text);
         self.file() == other.file()
             && self.nominal.model == other.nominal.model
             && residuals(self) == residuals(other)

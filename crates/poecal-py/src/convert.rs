@@ -12,27 +12,41 @@ use poecal::nearest;
 use poecal::offsets::into_screws;
 use pyo3::prelude::*;
 
+use crate::arguments as arg;
 use crate::arrays::table;
 use crate::errors::{argument, raise};
 use crate::places::reserved_file;
 use crate::robot::{Robot, form};
 
-/// A robot in another form, as a text; written to the file `out` too, over one that exists only with `force`, if one is named.
+/// A robot in another form, as a text, and as a file too if one is named.
 ///
 /// Parameters
 /// ----------
-/// to : "urdf" (a new one of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says
-/// offset : dict of joint names and offsets of their values, radians or metres
-///     The text has the screws and home pose of the robot with these offsets. Mimic joints that follow a joint stay.
+/// robot
+///     The robot.
+/// to
+///     "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says.
+/// offset
+///     Offsets of joint values by the joints' names, radians or metres: the text has the screws and home pose of the robot with these
+///     offsets. Mimic joints that follow a joint stay.
+/// out
+///     The file.
+/// force
+///     Whether to write over a file that exists.
+///
+/// Returns
+/// -------
+/// str
+///     The text.
 #[pyfunction]
 #[pyo3(signature = (robot, *, to=None, offset=None, out=None, force=false))]
 pub(crate) fn convert(
     py: Python<'_>,
-    robot: &Robot,
-    to: Option<&str>,
-    offset: Option<BTreeMap<String, f64>>,
-    out: Option<PathBuf>,
-    force: bool,
+    #[pyo3(from_py_with = arg::robot)] robot: &Robot,
+    #[pyo3(from_py_with = arg::to)] to: Option<&str>,
+    #[pyo3(from_py_with = arg::offset)] offset: Option<BTreeMap<String, f64>>,
+    #[pyo3(from_py_with = arg::out)] out: Option<PathBuf>,
+    #[pyo3(from_py_with = arg::force)] force: bool,
 ) -> PyResult<String> {
     let form = form(to, out.as_deref())?;
     let reserved = |out| reserved_file(py, out, Existing::forced(force), &[&robot.model.path]);
@@ -79,22 +93,39 @@ fn offsets(
     Ok(names.iter().map(|name| stated.get(*name).copied().unwrap_or(0.0)).collect())
 }
 
-/// The JSON Schema of calibration.json, as a text.
+/// The JSON Schema of calibration.json.
+///
+/// Returns
+/// -------
+/// str
+///     The schema, as a text.
 #[pyfunction]
 pub(crate) fn schema() -> String {
     CalibrationFile::json_schema()
 }
 
-/// Joint readings of a file, shape (m, n), radians and metres, in the order of `robot.reading_names`. Other columns are ignored.
+/// Reads the joint readings of a file, whatever other columns it has.
 ///
-/// `columns` is a mapping file for files with other column names.
+/// Parameters
+/// ----------
+/// path
+///     The file.
+/// robot
+///     The robot whose joints the columns name.
+/// columns
+///     A mapping file for a file with other column names.
+///
+/// Returns
+/// -------
+/// numpy.ndarray
+///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
 #[pyfunction]
 #[pyo3(signature = (path, robot, *, columns=None))]
 pub(crate) fn read_joints<'py>(
     py: Python<'py>,
-    path: PathBuf,
-    robot: &Robot,
-    columns: Option<PathBuf>,
+    #[pyo3(from_py_with = arg::path)] path: PathBuf,
+    #[pyo3(from_py_with = arg::robot)] robot: &Robot,
+    #[pyo3(from_py_with = arg::columns)] columns: Option<PathBuf>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let robot = &robot.model.robot;
     let read = || {

@@ -52,6 +52,31 @@ pub(crate) fn argument(name: &str, message: impl std::fmt::Display) -> PyErr {
     raise(Error::new(ErrorKind::Option, format!("{name}: {message}")))
 }
 
+/// An exception of the class `name` of `poecal._errors`.
+fn of_class(name: &str, message: &str) -> PyErr {
+    let made = |py: Python<'_>| {
+        Ok(PyErr::from_value(py.import("poecal._errors")?.getattr(name)?.call1((message,))?))
+    };
+    Python::attach(|py| made(py).unwrap_or_else(|failure: PyErr| failure))
+}
+
+/// The exception for a row that is not there.
+pub(crate) fn no_row(row: isize, count: usize) -> PyErr {
+    let expected = match count {
+        0 => "none, since there are no rows".to_owned(),
+        count => format!("a row from 0 to {}, or from -{count} to -1", count - 1),
+    };
+    of_class("RowError", &format!("rows: found {row}, expected {expected}"))
+}
+
+/// The exception for a Python package that is not installed.
+pub(crate) fn no_package(name: &str) -> PyErr {
+    of_class(
+        "PackageError",
+        &format!("found no package `{name}`, expected it to be installed: pip install {name}"),
+    )
+}
+
 /// Names of the program's options in Python: `--held-out` is `held_out`.
 pub(crate) fn python_words(message: &str) -> String {
     let mut words = String::with_capacity(message.len());

@@ -2,22 +2,22 @@
 
 use std::path::PathBuf;
 
-use maud::html;
 use poecal::analysis::{self, Session};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::output::{self, Contents, Existing};
 use poecal::measurement::Noise;
-use poecal::text::visible_markup;
 use poecal::{forensics, offsets as explanations, report};
 use poecal_lou2009::{self as experiments, report as reproduced};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 use serde::{Deserialize, Serialize};
 
+use crate::arguments::{self as arg, Argument, unexpected};
 use crate::arrays::Joints;
 use crate::calibration::Calibration;
 use crate::errors::raise;
 use crate::measurements::Measurements;
+use crate::notebook;
 use crate::pickle;
 use crate::places::reserved_folder;
 use crate::robot::Robot;
@@ -41,12 +41,22 @@ impl Findings {
 
 #[pymethods]
 impl Findings {
-    /// The result as dicts and lists.
+    /// The result as dicts and lists: what the program prints with `--json`.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     The result.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("json")?.call_method1("loads", (&self.json,))
     }
 
     /// The result as JSON.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text.
     fn to_json(&self) -> String {
         self.json.clone()
     }
@@ -57,7 +67,7 @@ impl Findings {
         self.warnings.clone()
     }
 
-    fn __getitem__<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
+    fn __getitem__<'py>(&self, py: Python<'py>, key: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         self.to_dict(py)?.get_item(key)
     }
 
@@ -65,14 +75,13 @@ impl Findings {
         self.text.clone()
     }
 
-    fn __repr__(&self) -> String {
-        self.text.clone()
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let keys: Vec<String> = self.to_dict(py)?.cast::<PyDict>()?.keys().extract()?;
+        Ok(format!("<poecal.Findings: {}>", keys.join(", ")))
     }
 
     fn _repr_html_(&self) -> String {
-        visible_markup(html! {
-            div { pre { (self.text) } @for warning in &self.warnings { p { "warning: " (warning) } } }
-        })
+        notebook::findings(&self.text, &self.warnings)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
@@ -82,14 +91,26 @@ impl Findings {
 
 /// How a model and measurements are understood, and mistakes that they show.
 ///
-/// With `frame` "base", mistakes in the device's frame are looked for too.
+/// Parameters
+/// ----------
+/// robot
+///     The nominal robot.
+/// measurements
+///     Its measurements, if there are any yet.
+/// frame
+///     The measuring device's frame; with "base", mistakes in it are looked for too.
+///
+/// Returns
+/// -------
+/// Findings
+///     What is understood, with mistakes under "diagnosis".
 #[pyfunction]
 #[pyo3(signature = (robot, measurements=None, *, frame="unknown"))]
 pub(crate) fn check(
     py: Python<'_>,
-    robot: &Robot,
-    measurements: Option<&Measurements>,
-    frame: &str,
+    #[pyo3(from_py_with = arg::robot)] robot: &Robot,
+    #[pyo3(from_py_with = arg::measurements)] measurements: Option<&Measurements>,
+    #[pyo3(from_py_with = arg::frame)] frame: &str,
 ) -> PyResult<Findings> {
     let device_free = frame_word(frame)? == DeviceFrameKnowledge::Unknown;
     if let Some(measurements) = measurements {
@@ -109,20 +130,31 @@ pub(crate) fn check(
 ///
 /// Parameters
 /// ----------
-/// joints : array of shape (m, n), radians and metres, in the order of `robot.reading_names`
-/// kind : kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn)
-/// sigma_position_mm, sigma_rotation_deg : standard deviation of each measured component (default 0.05 mm, 0.01 deg)
-/// frame : the measuring device's frame: "unknown" or "base"
+/// robot
+///     The robot.
+/// joints
+///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
+/// kind
+///     Kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn).
+/// sigma_position_mm, sigma_rotation_deg
+///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
+/// frame
+///     The measuring device's frame: "unknown" or "base".
+///
+/// Returns
+/// -------
+/// Findings
+///     What would be determined, and the expected error.
 #[pyfunction]
 #[pyo3(signature = (robot, joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown"))]
 pub(crate) fn identify(
     py: Python<'_>,
-    robot: &Robot,
+    #[pyo3(from_py_with = arg::robot)] robot: &Robot,
     joints: &Bound<'_, PyAny>,
-    kind: &str,
-    sigma_position_mm: Option<f64>,
-    sigma_rotation_deg: Option<f64>,
-    frame: &str,
+    #[pyo3(from_py_with = arg::kind)] kind: &str,
+    #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
+    #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
+    #[pyo3(from_py_with = arg::frame)] frame: &str,
 ) -> PyResult<Findings> {
     let model = &robot.model;
     let joints = Joints::of(joints, &model.robot)?;
@@ -143,28 +175,49 @@ pub(crate) fn identify(
 }
 
 /// A robot, or the calibrated one of a calibration.
-#[derive(FromPyObject)]
-pub(crate) enum RobotOrCalibration<'py> {
-    Robot(Bound<'py, Robot>),
-    Calibration(Bound<'py, Calibration>),
+pub(crate) enum RobotOrCalibration<'a> {
+    Robot(&'a Robot),
+    Calibration(&'a Calibration),
+}
+
+impl<'a, 'py> Argument<'a, 'py> for RobotOrCalibration<'a> {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        match (value.cast::<Robot>(), value.cast::<Calibration>()) {
+            (Ok(robot), _) => Ok(RobotOrCalibration::Robot(robot.get())),
+            (_, Ok(calibration)) => Ok(RobotOrCalibration::Calibration(calibration.get())),
+            _ => Err(unexpected(name, value, "a poecal.Robot or a poecal.Calibration")),
+        }
+    }
 }
 
 /// The joint offsets that explain best how a robot differs from its model, and the remaining errors.
 ///
-/// `actual` is a robot or a calibration. `base` and `tip` say whether these frames are the same in both ("kept") or found with the
-/// offsets ("free"); by default what a calibration fitted is free.
+/// Parameters
+/// ----------
+/// nominal
+///     The model.
+/// actual
+///     The robot, or a calibration of it.
+/// base, tip
+///     Whether these frames are the same in both ("kept") or found with the offsets ("free"); by default what a calibration fitted is
+///     free.
+///
+/// Returns
+/// -------
+/// Findings
+///     The offsets, and the errors with and without them.
 #[pyfunction]
 #[pyo3(signature = (nominal, actual, *, base=None, tip=None))]
 pub(crate) fn offsets(
     py: Python<'_>,
-    nominal: &Robot,
-    actual: RobotOrCalibration<'_>,
-    base: Option<&str>,
-    tip: Option<&str>,
+    #[pyo3(from_py_with = arg::nominal)] nominal: &Robot,
+    #[pyo3(from_py_with = arg::actual)] actual: RobotOrCalibration<'_>,
+    #[pyo3(from_py_with = arg::base)] base: Option<&str>,
+    #[pyo3(from_py_with = arg::tip)] tip: Option<&str>,
 ) -> PyResult<Findings> {
     let actual = match &actual {
-        RobotOrCalibration::Robot(robot) => robot.get().clone(),
-        RobotOrCalibration::Calibration(calibration) => calibration.get().calibrated()?.clone(),
+        RobotOrCalibration::Robot(robot) => (*robot).clone(),
+        RobotOrCalibration::Calibration(calibration) => calibration.calibrated()?.clone(),
     };
     let (nominal, actual) = (&nominal.model, &actual.model);
     let base = base.map(|word| end("base", word)).transpose()?;
@@ -189,20 +242,37 @@ pub(crate) fn offsets(
     Findings::new(found.text(), &found, warnings)
 }
 
-/// Repeats the experiment of a paper and checks its claims ("lou2009"), or shows the effect of gross errors ("breakdown").
+/// Repeats the experiment of a paper and checks its claims, or shows the effect of gross errors.
 ///
-/// `trials` sessions compare the formulations, or the losses; `starts` random starts each size of error (lou2009). With `out` the
-/// report is written to that folder.
+/// Parameters
+/// ----------
+/// experiment
+///     "lou2009" (the paper) or "breakdown" (gross errors).
+/// out
+///     Folder for the report.
+/// force
+///     Whether to write over files that exist.
+/// trials
+///     Number of sessions that compare the formulations, or the losses.
+/// starts
+///     Number of random starts for each size of error (lou2009).
+/// seed
+///     Seed of everything random.
+///
+/// Returns
+/// -------
+/// Findings
+///     The runs, and the claims with what was found.
 #[pyfunction]
 #[pyo3(signature = (experiment, *, out=None, force=false, trials=1000, starts=100, seed=1))]
 pub(crate) fn reproduce(
     py: Python<'_>,
-    experiment: &str,
-    out: Option<PathBuf>,
-    force: bool,
-    trials: u32,
-    starts: u32,
-    seed: u64,
+    #[pyo3(from_py_with = arg::experiment)] experiment: &str,
+    #[pyo3(from_py_with = arg::out)] out: Option<PathBuf>,
+    #[pyo3(from_py_with = arg::force)] force: bool,
+    #[pyo3(from_py_with = arg::trials)] trials: u32,
+    #[pyo3(from_py_with = arg::starts)] starts: u32,
+    #[pyo3(from_py_with = arg::seed)] seed: u64,
 ) -> PyResult<Findings> {
     #[derive(Clone, Copy)]
     enum Experiment {

@@ -205,7 +205,7 @@ fn sigma(
     let expected = format!("a number, or shape ({m},): one for each row of joints");
     let mut numbers = Numbers::of(value, name, &expected)?;
     if let (true, [number]) = (numbers.shape.is_empty(), numbers.values.as_slice()) {
-        numbers = Numbers { values: vec![*number; m], shape: vec![m] };
+        numbers = Numbers::repeated(*number, m);
     }
     let numbers = numbers.shaped(&[Some(m)], name, &expected)?;
     let of_row = |(row, &value): (usize, &f64)| match value {

@@ -1,31 +1,34 @@
-//! Data frames as text of a table, read by the same rules as files.
+//! Tables in memory as text of a table, read by the same rules as files.
 
 use poecal::Error;
 use pyo3::prelude::*;
-use pyo3::types::{PyFloat, PyString};
+use pyo3::types::{PyBytes, PyDict, PyFloat, PyList, PyString, PyTuple};
 
+use crate::arguments::{found, unexpected};
 use crate::errors::{argument, raise_at_row};
 
 /// Name of the data frame in messages.
 pub(crate) const NAME: &str = "dataframe";
 
-/// The frame as CSV with exact numbers.
+/// The table as CSV with exact numbers.
 pub(crate) fn text(frame: &Bound<'_, PyAny>) -> PyResult<String> {
-    let expected = "a data frame: something with `columns` and with columns by name, as of pandas or polars";
-    let no_frame = |_| {
-        let found = frame.get_type().name().map_or_else(|_| "something".to_owned(), |name| name.to_string());
-        argument("frame", format!("found {found}, expected {expected}"))
-    };
-    let names = frame.getattr("columns").map_err(no_frame)?.try_iter().map_err(no_frame)?;
-    let names = names.collect::<PyResult<Vec<_>>>()?;
-    let mut columns = Vec::with_capacity(names.len());
+    let mut columns = Vec::new();
+    let names = names(frame)?;
     for name in &names {
-        let column = frame.get_item(name).map_err(no_frame)?;
-        let cells = column
-            .try_iter()
-            .map_err(no_frame)?
-            .map(|value| cell(&value?))
-            .collect::<PyResult<Vec<String>>>()?;
+        let column = frame.get_item(name).map_err(|_| no_table(frame))?;
+        let title = name.str()?.to_string();
+        let no_column = || {
+            argument(
+                "frame",
+                format!("found {} as column `{title}`, expected a value for each row", found(&column)),
+            )
+        };
+        if column.is_instance_of::<PyString>() {
+            return Err(no_column());
+        }
+        let cells = column.try_iter().map_err(|_| no_column())?.enumerate();
+        let cells =
+            cells.map(|(row, value)| cell(&value?, row, &title)).collect::<PyResult<Vec<String>>>()?;
         columns.push(cells);
     }
     let rows = columns.first().map_or(0, Vec::len);
@@ -46,18 +49,50 @@ pub(crate) fn text(frame: &Bound<'_, PyAny>) -> PyResult<String> {
     Ok(text)
 }
 
+/// The names of the columns: keys of a dict, fields of a structured array, or `columns` of a data frame.
+fn names<'py>(frame: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let names = if frame.cast::<PyDict>().is_ok() {
+        Some(frame.clone())
+    } else if frame.hasattr("columns")? {
+        Some(frame.getattr("columns")?)
+    } else {
+        let fields = frame.getattr("dtype").and_then(|it| it.getattr("names")).ok();
+        fields.filter(|names| !names.is_none())
+    };
+    let names = names.ok_or_else(|| no_table(frame))?;
+    names.try_iter().map_err(|_| no_table(frame))?.collect()
+}
+
+fn no_table(frame: &Bound<'_, PyAny>) -> PyErr {
+    let expected = "a data frame (with `columns` and columns by name, as of pandas or polars), a dict of columns, or a structured array";
+    unexpected("frame", frame, expected)
+}
+
 /// A value as a cell: numbers with all digits, missing values empty.
-fn cell(value: &Bound<'_, PyAny>) -> PyResult<String> {
-    if value.is_none() {
-        return Ok(String::new());
+fn cell(value: &Bound<'_, PyAny>, row: usize, column: &str) -> PyResult<String> {
+    let number = |number: f64| if number.is_nan() { String::new() } else { format!("{number:?}") };
+    if let Ok(value) = value.cast::<PyFloat>() {
+        return Ok(number(value.value()));
     }
     if let Ok(text) = value.cast::<PyString>() {
         return Ok(quoted(&text.to_cow()?));
     }
-    if (value.is_instance_of::<PyFloat>() || value.hasattr("dtype")?)
-        && let Ok(number) = value.extract::<f64>()
-    {
-        return Ok(if number.is_nan() { String::new() } else { format!("{number:?}") });
+    // `numpy.ma.masked` would be a number.
+    if value.is_none() || value.get_type().name()? == "MaskedConstant" {
+        return Ok(String::new());
+    }
+    if let Ok(bytes) = value.cast::<PyBytes>() {
+        return Ok(quoted(&String::from_utf8_lossy(bytes.as_bytes())));
+    }
+    let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+    let is_array = value.getattr("ndim").and_then(|it| it.extract::<usize>()).is_ok_and(|ndim| ndim > 0);
+    if is_list || is_array || value.is_instance_of::<PyDict>() {
+        let found = found(value);
+        let message = format!("row {row}: found {found} in column `{column}`, expected a number or a text");
+        return Err(argument("frame", message));
+    }
+    if let (true, Ok(found)) = (value.hasattr("dtype")?, value.extract()) {
+        return Ok(number(found));
     }
     let text = value.str()?;
     let text = text.to_cow()?;

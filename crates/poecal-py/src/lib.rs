@@ -1,21 +1,26 @@
 //! The compiled half of the Python package `poecal`: conversions between Python and the library, and nothing else.
 
 mod accuracy;
+mod arguments;
 mod arrays;
 mod build;
 mod calibrate;
 mod calibration;
 mod convert;
+mod covariance;
 mod errors;
 mod findings;
 mod from_arrays;
 mod from_dataframe;
 mod measurements;
+mod notebook;
 mod pickle;
 mod places;
 mod prediction;
 mod project;
+mod residuals;
 mod robot;
+mod rows;
 mod simulation;
 mod words;
 
@@ -50,6 +55,8 @@ mod _poecal {
     #[pymodule_export]
     use crate::convert::{convert, read_joints, schema};
     #[pymodule_export]
+    use crate::covariance::Covariance;
+    #[pymodule_export]
     use crate::findings::{Findings, check, identify, offsets, reproduce};
     #[pymodule_export]
     use crate::measurements::Measurements;
@@ -58,19 +65,31 @@ mod _poecal {
     #[pymodule_export]
     use crate::project::init;
     #[pymodule_export]
+    use crate::residuals::Residuals;
+    #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]
     use crate::simulation::{Simulation, simulate};
 
-    /// The version of poecal that this module was built from.
+    /// The version of poecal.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The version that this module was built from.
     #[pyfunction]
     fn version() -> &'static str {
         env!("CARGO_PKG_VERSION")
     }
 
-    /// Number of threads that all work shares, 1 to 256; results do not depend on it. It can be set once, before anything is computed.
+    /// Sets the number of threads that all work shares; results do not depend on it.
+    ///
+    /// Parameters
+    /// ----------
+    /// count
+    ///     From 1 to 256. It can be set once, before anything is computed.
     #[pyfunction]
-    fn set_threads(count: usize) -> PyResult<()> {
+    fn set_threads(#[pyo3(from_py_with = crate::arguments::count)] count: usize) -> PyResult<()> {
         if !(1..=poecal::MOST_THREADS).contains(&count) {
             let message = format!("found {count}, expected a number from 1 to {}", poecal::MOST_THREADS);
             return Err(crate::errors::argument("count", message));
@@ -83,7 +102,17 @@ mod _poecal {
         })
     }
 
-    /// Runs the program `poecal` with these arguments, the program's name first; gives its exit code.
+    /// Runs the program `poecal`.
+    ///
+    /// Parameters
+    /// ----------
+    /// arguments
+    ///     The program's name, and its arguments.
+    ///
+    /// Returns
+    /// -------
+    /// int
+    ///     The exit code.
     #[pyfunction]
     fn run_program(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
         py.detach(|| poecal_cli::run_process(arguments))

@@ -1,64 +1,30 @@
 //! Measurements from files, arrays and data frames.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::sync::Arc;
+mod content;
 
-use maud::html;
+pub(crate) use content::Measurements;
+use content::{MeasurementSource, MeasurementState};
+
+use std::path::PathBuf;
+
 use numpy::{PyArray1, PyArray2, PyArray3};
 use poecal::io::calibration_file::Inputs;
 use poecal::io::measurements::{self, ColumnMap, Frames, MeasurementFile, ReadOptions};
 use poecal::io::named_files::refuse_repeats;
-use poecal::measurement::{Dataset, Set};
-use poecal::text::visible_markup;
+use poecal::measurement::Set;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use serde::{Deserialize, Serialize};
 
+use crate::arguments::{self as arg, Paths};
 use crate::arrays::{pose_arrays, table};
-use crate::errors::{argument, python_words, raise};
+use crate::errors::{python_words, raise};
 use crate::from_arrays::{ArrayColumns, dataset};
 use crate::from_dataframe;
+use crate::notebook;
 use crate::pickle;
 use crate::robot::Robot;
+use crate::rows;
 use crate::words::chosen;
-
-/// Measurements of a robot: in each row a configuration and the measurement of a target. Immutable.
-///
-/// Make them by `Measurements.from_csv`, `from_arrays` or `from_dataframe`. Lengths are in metres, angles in radians. Measurements
-/// compare by value, and can be copied and pickled.
-#[pyclass(frozen, module = "poecal", name = "Measurements")]
-#[derive(Clone)]
-pub(crate) struct Measurements {
-    pub(crate) file: Arc<MeasurementFile>,
-    pub(crate) source: Arc<MeasurementSource>,
-}
-
-/// Source of measurements.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct MeasurementSource {
-    /// File names, or their substitutes.
-    pub(crate) names: Vec<String>,
-    /// SHA-256 of each file that was read.
-    pub(crate) sha256: BTreeMap<String, String>,
-    /// Whether `fit_where` chose the rows to fit.
-    pub(crate) fit_where: bool,
-}
-
-/// Pickled measurements.
-#[derive(Serialize, Deserialize)]
-struct MeasurementState {
-    data: Dataset,
-    warnings: Vec<String>,
-    source: MeasurementSource,
-}
-
-/// A path, or several.
-#[derive(FromPyObject)]
-enum Paths {
-    One(PathBuf),
-    Several(Vec<PathBuf>),
-}
 
 /// Options of a reader, from the arguments of the same names.
 fn options(
@@ -77,89 +43,55 @@ fn options(
     })
 }
 
-impl Measurements {
-    fn new(file: MeasurementFile, source: MeasurementSource) -> Self {
-        Measurements { file: Arc::new(file), source: Arc::new(source) }
-    }
-
-    /// Source of rows without a file.
-    pub(crate) fn in_memory(data: Dataset, name: &str) -> Self {
-        let source = MeasurementSource { names: vec![name.to_owned()], ..MeasurementSource::default() };
-        Measurements::new(MeasurementFile { data, ..MeasurementFile::default() }, source)
-    }
-
-    pub(crate) fn data(&self) -> &Dataset {
-        &self.file.data
-    }
-
-    /// Refuses a robot whose readings are not those of the rows.
-    pub(crate) fn check_robot(&self, robot: &Robot) -> PyResult<()> {
-        let expected = robot.model.robot.reading_names();
-        if self.data().reading_names() == expected {
-            return Ok(());
-        }
-        Err(argument(
-            "measurements",
-            format!(
-                "found readings of {}, expected those of robot `{}`: {}",
-                self.data().reading_names().join(", "),
-                robot.model.robot.name,
-                expected.join(", ")
-            ),
-        ))
-    }
-
-    pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
-        let MeasurementState { data, warnings, source } = pickle::value(state)?;
-        data.check().map_err(raise)?;
-        let file = MeasurementFile { data, warnings, ..MeasurementFile::default() };
-        Ok(Measurements::new(file, source))
-    }
-
-    fn words(&self) -> String {
-        let data = self.data();
-        let poses = data.observations.iter().filter(|row| row.measurement.sees_orientation()).count();
-        let points = data.len() - poses;
-        let targets: Vec<&str> = data.targets.iter().flatten().map(String::as_str).collect();
-        let of = if targets.is_empty() { "the tip".to_owned() } else { targets.join(", ") };
-        format!("{} rows: {poses} poses and {points} points of {of}", data.len())
-    }
-}
-
 #[pymethods]
 impl Measurements {
     /// Reads measurement files, joined in their order.
     ///
     /// Parameters
     /// ----------
-    /// paths : a path or several
-    /// robot : the robot whose joints the columns name
-    /// columns : a mapping file for files with other column names
-    /// fit_where : "COLUMN=VALUE[,VALUE]"
-    ///     Fit only rows whose column has one of these values, and hold out all others.
-    /// ignore_sets : whether the files' column `set` means nothing, as for rows that judge a calibration
-    /// strict : whether lost beams, empty or zero positions, are an error instead of being skipped with a warning
-    /// frames : "common" or "per-file"
-    ///     Which rows share a frame of the measuring device: all (or those of one name in the column `instrument`), or those of a file.
+    /// paths
+    ///     A file, or several.
+    /// robot
+    ///     The robot whose joints the columns name.
+    /// columns
+    ///     A mapping file for files with other column names.
+    /// fit_where
+    ///     "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
+    /// ignore_sets
+    ///     Whether the files' column `set` means nothing, as for rows that judge a calibration.
+    /// strict
+    ///     Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+    /// frames
+    ///     Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
+    ///     "per-file", those of a file.
+    ///
+    /// Returns
+    /// -------
+    /// Measurements
+    ///     The rows of all files.
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    ///     A file cannot be read.
+    /// MeasurementError
+    ///     It holds no measurements of this robot; the error tells the line and the column.
     #[staticmethod]
     #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
-        paths: Paths,
-        robot: &Robot,
-        columns: Option<PathBuf>,
-        fit_where: Option<&str>,
-        ignore_sets: bool,
-        strict: bool,
-        frames: &str,
+        #[pyo3(from_py_with = arg::paths)] paths: Paths,
+        #[pyo3(from_py_with = arg::robot)] robot: &Robot,
+        #[pyo3(from_py_with = arg::columns)] columns: Option<PathBuf>,
+        #[pyo3(from_py_with = arg::fit_where)] fit_where: Option<&str>,
+        #[pyo3(from_py_with = arg::ignore_sets)] ignore_sets: bool,
+        #[pyo3(from_py_with = arg::strict)] strict: bool,
+        #[pyo3(from_py_with = arg::frames)] frames: &str,
     ) -> PyResult<Self> {
         let words = [("common", Frames::Common), ("per-file", Frames::PerFile)];
         let frames = chosen("frames", frames, &words)?;
-        let paths = match paths {
-            Paths::One(path) => vec![path],
-            Paths::Several(paths) => paths,
-        };
+        let Paths(paths) = paths;
         let read = || {
             refuse_repeats(&paths)?;
             let options = options(columns.as_ref(), fit_where, ignore_sets, strict, frames)?;
@@ -176,41 +108,56 @@ impl Measurements {
 
     /// Measurements of arrays: positions, with orientations or without, or poses.
     ///
+    /// Arrays may be read-only and of any layout. Masked numbers count as NaN: they are a missing orientation, or standard deviation, where
+    /// the whole row is masked, and refused elsewhere.
+    ///
     /// Parameters
     /// ----------
-    /// joints : array of shape (m, n)
-    ///     Readings in the order of `robot.reading_names`: in `angle_unit`, of sliding joints in `length_unit`.
-    /// positions : array of shape (m, 3)
-    ///     Positions of the target in the device's frame, in `length_unit`.
-    /// quaternions_xyzw : array of shape (m, 4), with `positions`
-    ///     Orientations as unit quaternions x, y, z, w; rows of NaN are points without orientation.
-    /// poses : array of shape (m, 4, 4), instead of `positions`
-    ///     Poses device_from_target, translations in `length_unit`.
-    /// targets : list of m names, default the tip itself
-    /// instruments : list of m names of the measuring devices, each with a frame of its own
-    /// sets : list of m "fit" or "held_out" (or None for rows that do not say)
-    /// ids : list of m names of the rows
-    /// sigma_position_mm, sigma_rotation_deg : a number, or an array of shape (m,)
-    ///     Standard deviations of each measured component, where rows state them; NaN where a row does not.
-    /// angle_unit, length_unit : "rad", "deg", …; "m", "mm", …
+    /// robot
+    ///     The robot that was measured.
+    /// joints
+    ///     Readings, shape (m, n), in the order of `robot.reading_names`: in `angle_unit`, of sliding joints in `length_unit`.
+    /// positions
+    ///     Positions of the target in the device's frame, shape (m, 3), in `length_unit`.
+    /// quaternions_xyzw
+    ///     Orientations beside `positions` as unit quaternions x, y, z, w, shape (m, 4); rows of NaN are points without orientation.
+    /// poses
+    ///     Poses device_from_target instead of `positions`, shape (m, 4, 4), translations in `length_unit`.
+    /// targets
+    ///     m names of targets, default the tip itself.
+    /// instruments
+    ///     m names of measuring devices, each with a frame of its own.
+    /// sets
+    ///     "fit", "held_out" or None (which says nothing) for each row.
+    /// ids
+    ///     m names of the rows.
+    /// sigma_position_mm, sigma_rotation_deg
+    ///     Standard deviations of each measured component, where rows state them: a number, or shape (m,), NaN where a row does not.
+    /// angle_unit, length_unit
+    ///     "rad", "deg", …; "m", "mm", …
+    ///
+    /// Returns
+    /// -------
+    /// Measurements
+    ///     m rows.
     #[staticmethod]
     #[pyo3(signature = (robot, *, joints, positions=None, quaternions_xyzw=None, poses=None, targets=None, instruments=None, sets=None, ids=None,
                         sigma_position_mm=None, sigma_rotation_deg=None, angle_unit="rad", length_unit="m"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_arrays(
-        robot: &Robot,
+        #[pyo3(from_py_with = arg::robot)] robot: &Robot,
         joints: &Bound<'_, PyAny>,
         positions: Option<&Bound<'_, PyAny>>,
         quaternions_xyzw: Option<&Bound<'_, PyAny>>,
         poses: Option<&Bound<'_, PyAny>>,
-        targets: Option<Vec<String>>,
-        instruments: Option<Vec<String>>,
-        sets: Option<Vec<Option<String>>>,
-        ids: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::targets)] targets: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::instruments)] instruments: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::sets)] sets: Option<Vec<Option<String>>>,
+        #[pyo3(from_py_with = arg::ids)] ids: Option<Vec<String>>,
         sigma_position_mm: Option<&Bound<'_, PyAny>>,
         sigma_rotation_deg: Option<&Bound<'_, PyAny>>,
-        angle_unit: &str,
-        length_unit: &str,
+        #[pyo3(from_py_with = arg::angle_unit)] angle_unit: &str,
+        #[pyo3(from_py_with = arg::length_unit)] length_unit: &str,
     ) -> PyResult<Self> {
         let columns = ArrayColumns {
             joints,
@@ -229,20 +176,45 @@ impl Measurements {
         Ok(Measurements::in_memory(dataset(&robot.model.robot, &columns)?, "arrays"))
     }
 
-    /// Measurements of a data frame (pandas, polars, or anything with `columns` and columns by name).
+    /// Measurements of a table in memory: a data frame of pandas or polars, a dict of columns, or a structured array of NumPy.
     ///
-    /// Columns have the same names, units in brackets and meanings as those of a file, `x[mm]` or `target`, and `columns`, `fit_where`,
-    /// `ignore_sets` and `strict` are as for files. Missing values are empty cells.
+    /// Columns have the same names, units in brackets and meanings as those of a file, `x[mm]` or `target`. Missing and masked values are
+    /// empty cells.
+    ///
+    /// Parameters
+    /// ----------
+    /// frame
+    ///     The table: anything with `columns` and columns by name, a dict of columns of one length, or an array with named fields.
+    /// robot
+    ///     The robot whose joints the columns name.
+    /// columns
+    ///     A mapping file for a table with other column names.
+    /// fit_where
+    ///     "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
+    /// ignore_sets
+    ///     Whether the column `set` means nothing, as for rows that judge a calibration.
+    /// strict
+    ///     Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+    ///
+    /// Returns
+    /// -------
+    /// Measurements
+    ///     The rows of the table.
+    ///
+    /// Raises
+    /// ------
+    /// MeasurementError
+    ///     The table holds no measurements of this robot; the error tells the row.
     #[staticmethod]
     #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false))]
     fn from_dataframe(
         py: Python<'_>,
         frame: &Bound<'_, PyAny>,
-        robot: &Robot,
-        columns: Option<PathBuf>,
-        fit_where: Option<&str>,
-        ignore_sets: bool,
-        strict: bool,
+        #[pyo3(from_py_with = arg::robot)] robot: &Robot,
+        #[pyo3(from_py_with = arg::columns)] columns: Option<PathBuf>,
+        #[pyo3(from_py_with = arg::fit_where)] fit_where: Option<&str>,
+        #[pyo3(from_py_with = arg::ignore_sets)] ignore_sets: bool,
+        #[pyo3(from_py_with = arg::strict)] strict: bool,
     ) -> PyResult<Self> {
         let text = from_dataframe::text(frame)?;
         let read = || {
@@ -258,6 +230,40 @@ impl Measurements {
         let source =
             MeasurementSource { names, fit_where: fit_where.is_some(), ..MeasurementSource::default() };
         Ok(Measurements::new(file, source))
+    }
+
+    /// Rows of several measurements of one robot, one after the other; `a + b` is that of two.
+    ///
+    /// Rows keep what is known of them: target, instrument, set, id, standard deviations, file and line. Targets of one name are one
+    /// target. Rows of instruments of one name, and all rows that name none, share a frame of the measuring device: name the instruments
+    /// if it was moved in between.
+    ///
+    /// Parameters
+    /// ----------
+    /// parts
+    ///     Measurements of the same joints.
+    ///
+    /// Returns
+    /// -------
+    /// Measurements
+    ///     The rows of all parts.
+    #[staticmethod]
+    fn join(#[pyo3(from_py_with = arg::parts)] parts: Vec<Measurements>) -> PyResult<Self> {
+        Measurements::joined(&parts.iter().collect::<Vec<_>>())
+    }
+
+    fn __add__(&self, other: &Measurements) -> PyResult<Self> {
+        Measurements::joined(&[self, other])
+    }
+
+    fn __getitem__(&self, rows: &Bound<'_, PyAny>) -> PyResult<Self> {
+        self.part(&rows::chosen(rows, self.data().len())?)
+    }
+
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let builtins = slf.py().import("builtins")?;
+        let rows = builtins.getattr("range")?.call1((slf.get().data().len(),))?;
+        builtins.getattr("map")?.call1((slf.getattr("__getitem__")?, rows))
     }
 
     fn __len__(&self) -> usize {
@@ -345,12 +351,7 @@ impl Measurements {
     }
 
     fn _repr_html_(&self) -> String {
-        visible_markup(html! {
-            div {
-                p { (self.words()) ", from " (self.source.names.join(", ")) }
-                @for warning in &self.file.warnings { p { "warning: " (warning) } }
-            }
-        })
+        notebook::measurements(&self.words(), &self.source.names, &self.file.warnings)
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

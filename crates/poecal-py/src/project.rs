@@ -8,6 +8,7 @@ use poecal::io::urdf::ChainSelection;
 use poecal::simulate::Kind;
 use pyo3::prelude::*;
 
+use crate::arguments as arg;
 use crate::errors::{argument, raise};
 use crate::places::reserved_folder;
 use crate::words::chosen;
@@ -15,29 +16,41 @@ use crate::words::chosen;
 /// Most suggested configurations, as by the program.
 const MOST: usize = 100_000;
 
-/// Writes a project folder to start from: the model, a measurement file to fill in, configurations to measure, settings for
-/// `poecal calibrate`, and what to do with them. Gives the names of the files.
+/// Writes a project folder to start from.
+///
+/// It has the model, a measurement file to fill in, configurations to measure, settings for `poecal calibrate`, and instructions.
 ///
 /// Parameters
 /// ----------
-/// model : path of a URDF, TOML model or calibration.json
-/// out : folder; files in it are never overwritten
-/// measure : "points" or "poses"
-/// count : number of configurations to suggest, from 1 to 100,000
-/// seed : of their choice
-/// base_link, tip_link : the chain of a URDF that has several
+/// model
+///     Path of a URDF, TOML model or calibration.json.
+/// out
+///     The folder; files in it are never overwritten.
+/// measure
+///     "points" or "poses".
+/// count
+///     Number of configurations to suggest, from 1 to 100,000.
+/// seed
+///     Seed of their choice.
+/// base_link, tip_link
+///     The chain of a URDF that has several.
+///
+/// Returns
+/// -------
+/// list of str
+///     Names of the files.
 #[pyfunction]
 #[pyo3(signature = (model, out, *, measure="points", count=60, seed=1, base_link=None, tip_link=None))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn init(
     py: Python<'_>,
-    model: PathBuf,
-    out: PathBuf,
-    measure: &str,
-    count: usize,
-    seed: u64,
-    base_link: Option<String>,
-    tip_link: Option<String>,
+    #[pyo3(from_py_with = arg::model)] model: PathBuf,
+    #[pyo3(from_py_with = arg::out)] out: PathBuf,
+    #[pyo3(from_py_with = arg::measure)] measure: &str,
+    #[pyo3(from_py_with = arg::count)] count: usize,
+    #[pyo3(from_py_with = arg::seed)] seed: u64,
+    #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
+    #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
 ) -> PyResult<Vec<String>> {
     let kind = chosen("measure", measure, &[("points", Kind::Point), ("poses", Kind::Pose)])?;
     if !(1..=MOST).contains(&count) {

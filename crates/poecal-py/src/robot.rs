@@ -1,75 +1,88 @@
 //! Robots.
 
-mod state;
+mod content;
 
-pub(crate) use state::{Robot, RobotState};
+pub(crate) use content::{Robot, RobotState, form, poses};
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use maud::html;
 use numpy::{PyArray2, PyArray3, PyArrayMethods as _};
-use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
+use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::Existing;
 use poecal::io::predictions::{PredictionFrame, predicted};
 use poecal::io::robot_toml;
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
-use poecal::robot::{Joint, JointKind};
-use poecal::text::visible_markup;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
+use crate::arguments::{self as arg, is_content, shortened};
 use crate::arrays::{Joints, pose_array, pose_arrays, table};
 use crate::build::{DhTable, Naming, from_dh, from_screws};
 use crate::errors::{argument, raise};
+use crate::notebook;
 use crate::pickle;
 use crate::places::reserved_file;
-use crate::words::chosen;
 
-/// The named form, or that of a file's extension.
-pub(crate) fn form(to: Option<&str>, path: Option<&Path>) -> PyResult<ModelFormat> {
-    if let Some(word) = to {
-        return chosen("to", word, &[("urdf", ModelFormat::Urdf), ("toml", ModelFormat::Toml)]);
-    }
-    path.and_then(ModelFormat::of_path).ok_or_else(|| {
-        argument(
-            "to",
-            match path {
-                Some(path) => format!(
-                    "found no form in the name `{}`, expected .urdf or .toml, or to=\"urdf\" or \"toml\"",
-                    path.display()
-                ),
-                None => "found none, expected the form to write: \"urdf\" or \"toml\"".to_owned(),
-            },
-        )
-    })
-}
+/// Path of a robot that was read from a text.
+const TEXT: &str = "text";
 
 #[pymethods]
 impl Robot {
-    /// Reads a robot model of any form: URDF, TOML or calibration.json (of which it is the calibrated robot).
+    /// Reads a robot model of any form: URDF, TOML or calibration.json, of which it is the calibrated robot.
     ///
-    /// `base_link` and `tip_link` choose the chain of a URDF that has several.
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The file; its extension gives the form, or else the beginning of its text.
+    /// base_link, tip_link
+    ///     The chain of a URDF that has several.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///     The robot.
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    ///     The file cannot be read.
+    /// FormatError
+    ///     It is no valid XML, TOML or JSON.
+    /// ModelError
+    ///     It holds no robot that can be used.
     #[staticmethod]
     #[pyo3(signature = (path, *, base_link=None, tip_link=None))]
     fn read(
         py: Python<'_>,
-        path: PathBuf,
-        base_link: Option<String>,
-        tip_link: Option<String>,
+        #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
+        #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
     ) -> PyResult<Self> {
         let selection = ChainSelection { base_link, tip_link };
         Robot::of_file(py.detach(|| Model::read(&path, &selection)).map_err(raise)?)
     }
 
-    /// Reads a chain of a URDF: from `base_link` to `tip_link` where there are several.
+    /// Reads a chain of a URDF file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The file.
+    /// base_link, tip_link
+    ///     First and last link of the chain, where there are several.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///     The robot.
     #[staticmethod]
     #[pyo3(signature = (path, *, base_link=None, tip_link=None))]
     fn from_urdf(
         py: Python<'_>,
-        path: PathBuf,
-        base_link: Option<String>,
-        tip_link: Option<String>,
+        #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
+        #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
     ) -> PyResult<Self> {
         let selection = ChainSelection { base_link, tip_link };
         let document = py.detach(|| UrdfDocument::read(&path, &selection)).map_err(raise)?;
@@ -78,35 +91,85 @@ impl Robot {
     }
 
     /// Reads a TOML model of screws or of Denavit-Hartenberg parameters.
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The file.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///     The robot.
     #[staticmethod]
-    fn from_toml(path: PathBuf) -> PyResult<Self> {
+    fn from_toml(#[pyo3(from_py_with = arg::path)] path: PathBuf) -> PyResult<Self> {
         let robot = robot_toml::read(&path).map_err(raise)?;
         Robot::of_file(Model { robot, source: ModelSource::Toml, path })
+    }
+
+    /// A robot model of any form from its text, as of the parameter `robot_description` of ROS.
+    ///
+    /// Parameters
+    /// ----------
+    /// text
+    ///     Text of a URDF, TOML model or calibration.json.
+    /// base_link, tip_link
+    ///     The chain of a URDF that has several.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///     The robot; its `path` is "text", by which errors name places too.
+    #[staticmethod]
+    #[pyo3(signature = (text, *, base_link=None, tip_link=None))]
+    fn from_text(
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::text)] text: &str,
+        #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
+        #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
+    ) -> PyResult<Self> {
+        if !is_content(text) {
+            let expected = "the text of a model; poecal.Robot.read reads a file";
+            return Err(argument("text", format!("found `{}`, expected {expected}", shortened(text))));
+        }
+        let selection = ChainSelection { base_link, tip_link };
+        py.detach(|| Model::parse(text, TEXT, &selection)).map(Robot::new).map_err(raise)
     }
 
     /// A robot of screws in the base frame at zero joint values.
     ///
     /// Parameters
     /// ----------
-    /// screws : array of shape (n, 6)
-    ///     A unit twist a joint: linear part v (metres), then angular part w, with |w| = 1 and v·w = 0; a sliding joint has w = 0 and
-    ///     |v| = 1. With `angular_first` the angular part comes first.
-    /// home : array of shape (4, 4)
-    ///     Pose of the tip in the base at zero joint values.
-    /// names : list of n names, default joint1, joint2, …
-    /// limits : array of shape (n, 2), radians or metres; rows of NaN or infinities are joints without limits
+    /// screws
+    ///     Array of shape (n, 6), a unit twist a joint: linear part v (metres), then angular part w, with |w| = 1 and v·w = 0; a sliding
+    ///     joint has w = 0 and |v| = 1.
+    /// home
+    ///     Pose of the tip in the base at zero joint values, shape (4, 4).
+    /// names
+    ///     n names of the joints, default joint1, joint2, …
+    /// limits
+    ///     Array of shape (n, 2), radians or metres; rows of NaN, masked or infinite numbers are joints without limits.
+    /// angular_first
+    ///     Whether the angular part comes first.
+    /// name, base_link, tip_link
+    ///     Names of the robot and of its first and last frame.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///     The robot.
     #[staticmethod]
     #[pyo3(signature = (screws, home, *, names=None, limits=None, angular_first=false, name="robot", base_link="base", tip_link="tip"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_screws(
         screws: &Bound<'_, PyAny>,
         home: &Bound<'_, PyAny>,
-        names: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::names)] names: Option<Vec<String>>,
         limits: Option<&Bound<'_, PyAny>>,
-        angular_first: bool,
-        name: &str,
-        base_link: &str,
-        tip_link: &str,
+        #[pyo3(from_py_with = arg::angular_first)] angular_first: bool,
+        #[pyo3(from_py_with = arg::name)] name: &str,
+        #[pyo3(from_py_with = arg::base_link)] base_link: &str,
+        #[pyo3(from_py_with = arg::tip_link)] tip_link: &str,
     ) -> PyResult<Self> {
         let naming = Naming { name, names, limits, base_link, tip_link };
         from_screws(screws, home, angular_first, &naming).map(Robot::new)
@@ -116,15 +179,26 @@ impl Robot {
     ///
     /// Parameters
     /// ----------
-    /// a_m, alpha_rad, d_m, theta_rad : arrays of shape (n,)
-    ///     Link length, link twist, link offset and joint angle at zero reading, a joint each. A revolute joint's reading adds to theta,
-    ///     a prismatic one's to d.
-    /// convention : "standard" (Rz Tz Tx Rx) or "modified" (Craig: Rx Tx Rz Tz, with a and alpha of the same row)
-    /// kinds : list of "revolute" or "prismatic", default all revolute
-    /// names : list of n names, default joint1, joint2, …
-    /// limits : array of shape (n, 2), radians or metres; rows of NaN or infinities are joints without limits
-    /// base, tool : arrays of shape (4, 4)
-    ///     Pose of the first frame in the base, and of the tip in the last frame; default the identity.
+    /// a_m, alpha_rad, d_m, theta_rad
+    ///     Arrays of shape (n,): link length, link twist, link offset and joint angle at zero reading. A revolute joint's reading adds to
+    ///     theta, a prismatic one's to d.
+    /// convention
+    ///     "standard" (Rz Tz Tx Rx) or "modified" (Craig: Rx Tx Rz Tz, with a and alpha of the same row).
+    /// kinds
+    ///     "revolute" or "prismatic" for each joint, default all revolute.
+    /// names
+    ///     n names of the joints, default joint1, joint2, …
+    /// limits
+    ///     Array of shape (n, 2), radians or metres; rows of NaN, masked or infinite numbers are joints without limits.
+    /// base, tool
+    ///     Pose of the first frame in the base, and of the tip in the last frame, shape (4, 4) each; default the identity.
+    /// name, base_link, tip_link
+    ///     Names of the robot and of its first and last frame.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///     The robot.
     #[staticmethod]
     #[pyo3(signature = (*, a_m, alpha_rad, d_m, theta_rad, convention="standard", kinds=None, names=None, limits=None, base=None,
                         tool=None, name="robot", base_link="base", tip_link="tip"))]
@@ -134,15 +208,15 @@ impl Robot {
         alpha_rad: &Bound<'_, PyAny>,
         d_m: &Bound<'_, PyAny>,
         theta_rad: &Bound<'_, PyAny>,
-        convention: &str,
-        kinds: Option<Vec<String>>,
-        names: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::convention)] convention: &str,
+        #[pyo3(from_py_with = arg::kinds)] kinds: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::names)] names: Option<Vec<String>>,
         limits: Option<&Bound<'_, PyAny>>,
         base: Option<&Bound<'_, PyAny>>,
         tool: Option<&Bound<'_, PyAny>>,
-        name: &str,
-        base_link: &str,
-        tip_link: &str,
+        #[pyo3(from_py_with = arg::name)] name: &str,
+        #[pyo3(from_py_with = arg::base_link)] base_link: &str,
+        #[pyo3(from_py_with = arg::tip_link)] tip_link: &str,
     ) -> PyResult<Self> {
         let naming = Naming { name, names, limits, base_link, tip_link };
         from_dh(&DhTable { a_m, alpha_rad, d_m, theta_rad, convention, kinds, base, tool }, &naming)
@@ -151,14 +225,23 @@ impl Robot {
 
     /// Poses of the tip, or of a target of the model, in the base frame.
     ///
-    /// `joints` is of shape (m, n), radians and metres, in the order of `reading_names`; the result of shape (m, 4, 4). One
-    /// configuration of shape (n,) gives one pose of shape (4, 4).
+    /// Parameters
+    /// ----------
+    /// joints
+    ///     Configurations, shape (m, n), radians and metres, in the order of `reading_names`; or one, shape (n,).
+    /// target
+    ///     Name of a target of the model, default the tip.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Poses of shape (m, 4, 4), or (4, 4) for one configuration.
     #[pyo3(signature = (joints, *, target=None))]
     fn forward_kinematics<'py>(
         &self,
         py: Python<'py>,
         joints: &Bound<'py, PyAny>,
-        target: Option<&str>,
+        #[pyo3(from_py_with = arg::target)] target: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let joints = Joints::of(joints, self.robot())?;
         let model = &self.model;
@@ -170,7 +253,15 @@ impl Robot {
 
     /// Frames of the joints in the base frame, as a drawing of the robot needs them.
     ///
-    /// `joints` as for `forward_kinematics`; the result is of shape (m, n, 4, 4), or (n, 4, 4) for one configuration of shape (n,).
+    /// Parameters
+    /// ----------
+    /// joints
+    ///     Configurations, as for `forward_kinematics`.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Poses of shape (m, n, 4, 4), or (n, 4, 4) for one configuration.
     fn joint_poses<'py>(&self, py: Python<'py>, joints: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.robot();
         let joints = Joints::of(joints, robot)?;
@@ -270,15 +361,40 @@ impl Robot {
         Ok(targets)
     }
 
-    /// The model as a text, `to` "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws).
+    /// The model as a text.
+    ///
+    /// Parameters
+    /// ----------
+    /// to
+    ///     "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws).
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text.
     #[pyo3(signature = (to))]
-    fn to_text(&self, py: Python<'_>, to: &str) -> PyResult<String> {
+    fn to_text(&self, py: Python<'_>, #[pyo3(from_py_with = arg::to)] to: &str) -> PyResult<String> {
         self.converted(py, form(Some(to), None)?)
     }
 
-    /// Writes the model to a file, as `to` says, or else the extension; over one that exists only with `force`.
+    /// Writes the model to a file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path
+    ///     The file.
+    /// to
+    ///     "urdf" or "toml", default as the extension says.
+    /// force
+    ///     Whether to write over a file that exists.
     #[pyo3(signature = (path, *, to=None, force=false))]
-    fn write(&self, py: Python<'_>, path: PathBuf, to: Option<&str>, force: bool) -> PyResult<()> {
+    fn write(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::to)] to: Option<&str>,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+    ) -> PyResult<()> {
         let form = form(to, Some(&path))?;
         let place = reserved_file(py, &path, Existing::forced(force), &[&self.model.path])?;
         place.write(vec![self.converted(py, form)?.into()]).map_err(raise)
@@ -289,31 +405,7 @@ impl Robot {
     }
 
     fn _repr_html_(&self) -> String {
-        let ends = |joint: &Joint| {
-            let (factor, unit) = match joint.kind {
-                JointKind::Revolute => (1f64.to_degrees(), "°"),
-                JointKind::Prismatic => (1e3, " mm"),
-            };
-            let ends = [joint.limits.map(|limits| limits.lower), joint.limits.map(|limits| limits.upper)];
-            ends.map(|end| end.map_or("none".to_owned(), |end| format!("{:.1}{unit}", end * factor)))
-        };
-        visible_markup(html! {
-            div {
-                p { (self.words()) }
-                table {
-                    tr { @for name in ["joint", "kind", "lower", "upper", "direction"] { th { (name) } } }
-                    @for joint in &self.robot().joints {
-                        @let [x, y, z]: [f64; 3] = joint.screw.direction().into();
-                        tr {
-                            td { (joint.name) }
-                            td { (joint.kind.word()) }
-                            @for end in ends(joint) { td { (end) } }
-                            td { (format_args!("({x:.4}, {y:.4}, {z:.4})")) }
-                        }
-                    }
-                }
-            }
-        })
+        notebook::robot(self.robot(), &self.words())
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
@@ -333,37 +425,5 @@ impl Robot {
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
         self.clone()
-    }
-}
-
-impl Robot {
-    fn converted(&self, py: Python<'_>, form: ModelFormat) -> PyResult<String> {
-        let converted = py.detach(|| convert(&self.model, form)).map_err(raise)?;
-        crate::warn(py, &converted.notes)?;
-        Ok(converted.text)
-    }
-
-    fn words(&self) -> String {
-        let robot = self.robot();
-        let names = self.joint_names().join(", ");
-        format!(
-            "{}: {} joints ({names}) from {} to {}",
-            robot.name,
-            robot.joints.len(),
-            robot.base_name,
-            robot.tip_name
-        )
-    }
-}
-
-/// Poses as an array, of shape (4, 4) for one configuration alone.
-pub(crate) fn poses<'py>(
-    py: Python<'py>,
-    poses: &[poecal::lie::Pose],
-    single: bool,
-) -> PyResult<Bound<'py, PyAny>> {
-    match poses {
-        [pose] if single => pose_array(py, pose)?.into_bound_py_any(py),
-        poses => pose_arrays(py, poses)?.into_bound_py_any(py),
     }
 }

@@ -10,6 +10,7 @@ use poecal::simulate::{self as simulated, Kind, Simulated};
 use poecal::text::visible;
 use pyo3::prelude::*;
 
+use crate::arguments as arg;
 use crate::arrays::pose_array;
 use crate::errors::raise;
 use crate::measurements::Measurements;
@@ -65,9 +66,26 @@ impl Simulation {
         pose_array(py, &self.made.device_from_base)
     }
 
-    /// Writes both robots, the measurements and the truth to a folder, as the program does. Gives the names of the files.
+    /// Writes both robots, the measurements and the truth to a folder, as the program does.
+    ///
+    /// Parameters
+    /// ----------
+    /// folder
+    ///     The folder.
+    /// force
+    ///     Whether to write over files that exist.
+    ///
+    /// Returns
+    /// -------
+    /// list of str
+    ///     Names of the files.
     #[pyo3(signature = (folder, *, force=false))]
-    fn write(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<Vec<String>> {
+    fn write(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::folder)] folder: PathBuf,
+        #[pyo3(from_py_with = arg::force)] force: bool,
+    ) -> PyResult<Vec<String>> {
         let session = SimulatedSession {
             simulation: &self.simulation,
             kind: self.kind,
@@ -92,30 +110,43 @@ impl Simulation {
 ///
 /// Parameters
 /// ----------
-/// robot : the robot to deviate from
-/// kind : kind of the measurements: "pose", "point", or "mixed" (both in turn)
-/// count : number of measurements
-/// seed : seed of everything random
-/// error_position_mm, error_rotation_deg : distance and angle by which every axis, and the tip, is off
-/// noise_position_mm, noise_rotation_deg : standard deviation of each measured component
-/// frame : the measuring device's frame: "unknown" or "base"
-/// held_out_count : number of further measurements, free of noise, to judge a calibration by
+/// robot
+///     The robot to deviate from.
+/// kind
+///     Kind of the measurements: "pose", "point", or "mixed" (both in turn).
+/// count
+///     Number of measurements.
+/// seed
+///     Seed of everything random.
+/// error_position_mm, error_rotation_deg
+///     Distance and angle by which every axis, and the tip, is off.
+/// noise_position_mm, noise_rotation_deg
+///     Standard deviation of each measured component.
+/// frame
+///     The measuring device's frame: "unknown" or "base".
+/// held_out_count
+///     Number of further measurements, free of noise, to judge a calibration by.
+///
+/// Returns
+/// -------
+/// Simulation
+///     Both robots, and the measurements of the actual one.
 #[pyfunction]
 #[pyo3(signature = (robot, *, kind="pose", count=50, seed=1, error_position_mm=2.0, error_rotation_deg=1.0, noise_position_mm=0.05,
                     noise_rotation_deg=0.01, frame="unknown", held_out_count=0))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn simulate(
     py: Python<'_>,
-    robot: &Robot,
-    kind: &str,
-    count: usize,
-    seed: u64,
-    error_position_mm: f64,
-    error_rotation_deg: f64,
-    noise_position_mm: f64,
-    noise_rotation_deg: f64,
-    frame: &str,
-    held_out_count: usize,
+    #[pyo3(from_py_with = arg::robot)] robot: &Robot,
+    #[pyo3(from_py_with = arg::kind)] kind: &str,
+    #[pyo3(from_py_with = arg::count)] count: usize,
+    #[pyo3(from_py_with = arg::seed)] seed: u64,
+    #[pyo3(from_py_with = arg::error_position_mm)] error_position_mm: f64,
+    #[pyo3(from_py_with = arg::error_rotation_deg)] error_rotation_deg: f64,
+    #[pyo3(from_py_with = arg::noise_position_mm)] noise_position_mm: f64,
+    #[pyo3(from_py_with = arg::noise_rotation_deg)] noise_rotation_deg: f64,
+    #[pyo3(from_py_with = arg::frame)] frame: &str,
+    #[pyo3(from_py_with = arg::held_out_count)] held_out_count: usize,
 ) -> PyResult<Simulation> {
     for (name, number, least) in [("count", count, 1), ("held_out_count", held_out_count, 0)] {
         if !(least..=MOST).contains(&number) {

@@ -134,7 +134,7 @@ def test_parts_are_those_of_the_file(calibration):
 
 def test_a_calibration_shows_itself(calibration):
     assert str(calibration).startswith("verdict       good: expected error ")
-    assert "mm (RMS) on 15 held-out rows" in repr(calibration)
+    assert "mm RMS on 15 held-out rows" in repr(calibration)
     html = calibration._repr_html_()
     assert html.startswith("<div>") and "held out" in html and "mm" in html
 

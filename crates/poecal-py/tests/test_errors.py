@@ -2,6 +2,7 @@
 
 import itertools
 import random
+from pathlib import Path
 
 import numpy as np
 import poecal
@@ -70,6 +71,46 @@ SENTENCES = [
     (lambda: screws(lambda it: it.__setitem__((2, 3), 5.0)), None),
     (lambda: poecal.reproduce("lou2010"), "experiment: found `lou2010`, expected one of lou2009, breakdown; did you mean `lou2009`?"),
     (lambda: calibrate().predict(JOINTS, target="ball"), "calibration.json: found no target `ball`, expected none: the model has no targets, leave out target to predict the tip"),
+    (lambda: calibrate(seed=-1), "seed: found -1, expected a whole number from 0 to 18446744073709551615"),
+    (lambda: calibrate(seed=2**70), "seed: found 1180591620717411303424, expected a whole number from 0 to 18446744073709551615"),
+    (lambda: calibrate(seed=1.5), "seed: found 1.5, expected a whole number from 0 to 18446744073709551615"),
+    (lambda: calibrate(seed=np.int64(-3)), "seed: found -3, expected a whole number from 0 to 18446744073709551615"),
+    (lambda: calibrate(held_out="0.3"), "held_out: found the text `0.3`, expected a number"),
+    (lambda: calibrate(frame=3), "frame: found 3, expected a text"),
+    (lambda: calibrate(tolerance_deg_mm=5), "tolerance_deg_mm: found 5, expected two numbers"),
+    (lambda: calibrate(progress=5), "progress: found 5, expected a function of one text"),
+    (lambda: poecal.calibrate("robot.urdf", SEEN), "robot: found the text `robot.urdf`, expected a poecal.Robot; poecal.Robot.read reads one from a file"),
+    (lambda: poecal.calibrate(elbow(), [SEEN]), "measurements: found list, expected poecal.Measurements, as of Measurements.from_csv, from_arrays or from_dataframe"),
+    (lambda: poecal.simulate(elbow(), count=2.0), "count: found 2.0, expected a whole number from 0 to 18446744073709551615"),
+    (lambda: poecal.Robot.read(5), "path: found 5, expected a path: a text, or an os.PathLike"),
+    (lambda: poecal.Robot.read(None), "path: found None, expected a path: a text, or an os.PathLike"),
+    (lambda: poecal.Robot.read(""), "path: found an empty text, expected a path"),
+    (lambda: poecal.Robot.read(elbow().to_text("urdf")), "path: found the text `<?xml version=\"1.0\"?>…`, expected the path of a file that holds it; a robot model's text is read by poecal.Robot.from_text"),
+    (lambda: poecal.Robot.read("<robot name='a'/>"), "path: found the text `<robot name='a'/>`, expected the path of a file that holds it; a robot model's text is read by poecal.Robot.from_text"),
+    (lambda: poecal.Robot.read(Path(__file__).parent), f"{Path(__file__).parent}: found a directory, expected a robot model (URDF, TOML or calibration.json)"),
+    (lambda: poecal.Robot.from_text("robot.urdf"), "text: found `robot.urdf`, expected the text of a model; poecal.Robot.read reads a file"),
+    (lambda: poecal.Measurements.from_csv(5, elbow()), "paths: found 5, expected a path, or a list of paths"),
+    (lambda: poecal.Measurements.from_csv(["a.csv", 5], elbow()), "paths[1]: found 5, expected a path: a text, or an os.PathLike"),
+    (lambda: poecal.Measurements.join([SEEN, 3]), "parts[1]: found 3, expected poecal.Measurements, as of Measurements.from_csv, from_arrays or from_dataframe"),
+    (lambda: poecal.Measurements.join([]), "parts: found none, expected at least one"),
+    (lambda: SEEN[20], "rows: found 20, expected a row from 0 to 19, or from -20 to -1"),
+    (lambda: SEEN[[0, -21]], "rows: found -21, expected a row from 0 to 19, or from -20 to -1"),
+    (lambda: SEEN[:0][0], "rows: found 0, expected none, since there are no rows"),
+    (lambda: SEEN[[True] * 3], "rows: found a mask of 3 entries, expected 20, one for each row"),
+    (lambda: SEEN["id"], "rows: found the text `id`, expected a slice, a row, a list of rows, or a True or False for each row"),
+    (lambda: SEEN[1.5], "rows: found 1.5, expected a slice, a row, a list of rows, or a True or False for each row"),
+    (lambda: arrays(targets="ball"), "targets: found the text `ball`, expected a list"),
+    (lambda: arrays(ids=range(20)), "ids[0]: found 0, expected a text"),
+    (lambda: arrays(joints=np.ma.masked_equal(JOINTS, JOINTS[3, 2])), "joints: found a masked number, or NaN, in row 3, expected finite numbers: leave such rows out"),
+    (lambda: arrays(positions=np.ma.masked_all((20, 3))), "positions: found a masked number, or NaN, in row 0, expected finite numbers: leave such rows out"),
+    (lambda: poecal.convert(elbow(), offset={"joint1": "0.1"}, to="toml"), "offset[\"joint1\"]: found the text `0.1`, expected a number"),
+    (lambda: poecal.convert(elbow(), offset=[0.1], to="toml"), "offset: found list, expected a dict of names and numbers"),
+    (lambda: poecal.offsets(elbow(), 5), "actual: found 5, expected a poecal.Robot or a poecal.Calibration"),
+    (lambda: calibrate().predict(JOINTS, with_uncertainty="yes"), "with_uncertainty: found the text `yes`, expected True or False"),
+    (lambda: calibrate().write(5), "folder: found 5, expected a path: a text, or an os.PathLike"),
+    (lambda: calibrate().write("out", report=5), "report: found 5, expected True, False, or the path of a file"),
+    (lambda: calibrate().plot([1, 2]), "axes: found list, expected two axes of matplotlib, as of plt.subplots(1, 2)"),
+    (lambda: poecal.set_threads("4"), "count: found the text `4`, expected a whole number from 0 to 18446744073709551615"),
     (lambda: calibrate().verdict.is_at_least("perfect"), "level: found `perfect`, expected one of good, inside_sampled_range, do_not_use"),
 ]  # fmt: skip
 
@@ -93,16 +134,15 @@ def test_errors_are_a_tree():
         poecal.calibrate(elbow(), arrays(joints=JOINTS[:2], positions=POSITIONS[:2]))
 
 
-def test_wrong_types_are_type_errors():
-    for wrong in [None, 3, "robot", [], object()]:
-        with pytest.raises(TypeError):
-            poecal.calibrate(wrong, SEEN)
-        with pytest.raises(TypeError):
-            poecal.calibrate(elbow(), wrong)
+def test_arguments_that_do_not_exist_are_type_errors():
     with pytest.raises(TypeError):
         poecal.calibrate(elbow(), SEEN, "base")
-    with pytest.raises(OverflowError):
-        poecal.calibrate(elbow(), SEEN, seed=-1)
+    with pytest.raises(TypeError):
+        poecal.calibrate(elbow(), SEEN, sead=1)
+    with pytest.raises(TypeError):
+        poecal.calibrate(elbow())
+    with pytest.raises(TypeError):
+        SEEN + 1
 
 
 ODD = [
@@ -113,6 +153,7 @@ ODD = [
     np.ones((20, 6), np.float16), np.ones((20, 6), complex), JOINTS, JOINTS[::2], POSITIONS, np.float64(3), np.ma.masked_all((20, 6)), elbow(), SEEN,
     range(20), iter([1]), "unknown", "base", ["a"] * 20, [None] * 20, np.full((20, 6), 5e-324), slice(3), type, Exception("x"),
 ]  # fmt: skip
+TABLE = {f"joint{i + 1}": JOINTS[:, i] for i in range(6)} | {axis: POSITIONS[:, i] for i, axis in enumerate("xyz")}
 CALLS = {
     "arrays": (lambda **it: poecal.Measurements.from_arrays(elbow(), **it), ["joints", "positions", "quaternions_xyzw", "poses", "targets", "sets", "ids", "sigma_position_mm", "sigma_rotation_deg", "angle_unit", "length_unit"], {"joints": JOINTS, "positions": POSITIONS}),
     "dh": (poecal.Robot.from_dh, ["a_m", "alpha_rad", "d_m", "theta_rad", "convention", "kinds", "names", "limits", "base", "tool", "name", "base_link"], ELBOW),
@@ -123,14 +164,24 @@ CALLS = {
     "predict": (poecal.calibrate(elbow(), SEEN).predict, ["joints", "with_uncertainty", "frame", "target"], {"joints": JOINTS}),
     "convert": (elbow().to_text, ["to"], {"to": "toml"}),
     "offsets": (poecal.offsets, ["actual", "base", "tip"], {"nominal": elbow(), "actual": elbow()}),
-    "frame": (lambda **it: poecal.Measurements.from_dataframe(robot=elbow(), **it), ["frame", "columns", "fit_where"], {}),
+    "frame": (lambda **it: poecal.Measurements.from_dataframe(robot=elbow(), **it), ["frame", "columns", "fit_where"], {"frame": TABLE}),
+    "rows": (lambda rows: SEEN[rows], ["rows"], {}),
+    "join": (poecal.Measurements.join, ["parts"], {}),
+    "files": (lambda **it: poecal.Measurements.from_csv(robot=elbow(), **it), ["paths", "columns", "fit_where", "ignore_sets", "strict", "frames"], {"paths": "nowhere.csv"}),
+    "model": (poecal.Robot.read, ["path", "base_link", "tip_link"], {"path": "nowhere.urdf"}),
+    "text": (poecal.Robot.from_text, ["text", "base_link", "tip_link"], {"text": elbow().to_text("toml")}),
+    "results": (poecal.Calibration.read, ["path", "residuals"], {"path": "nowhere.json"}),
+    "plot": (poecal.calibrate(elbow(), SEEN).plot, ["axes"], {}),
+    "check": (poecal.check, ["robot", "measurements", "frame"], {"robot": elbow()}),
+    "validate": (poecal.calibrate(elbow(), SEEN).validate, ["measurements", "refit_frame", "refit_tool"], {"measurements": SEEN}),
+    "readings": (poecal.read_joints, ["path", "robot", "columns"], {"path": "nowhere.csv", "robot": elbow()}),
     "simulate": (poecal.simulate, ["kind", "seed", "error_position_mm", "error_rotation_deg", "noise_position_mm", "noise_rotation_deg", "frame"], {"robot": elbow(), "count": 3}),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", CALLS)
 def test_odd_arguments_are_refused_without_a_panic(name):
-    """Each argument with each odd value, and pairs at random: an exception of ours, of Python's conversions, or a result."""
+    """Each argument with each odd value, and pairs at random: an exception of ours, or a result."""
     call, arguments, usual = CALLS[name]
     pairs = list(itertools.product(arguments, ODD))
     changes = [{argument: value} for argument, value in pairs]
@@ -140,9 +191,9 @@ def test_odd_arguments_are_refused_without_a_panic(name):
     for change in changes:
         try:
             call(**(usual | change))
-        except (poecal.Error, TypeError, ValueError, OverflowError) as error:
+        except poecal.Error as error:
             refused += 1
-            assert str(error)
+            assert str(error) and not hasattr(error, "__notes__")
     print(f"{refused} of {len(changes)} refused")
     assert refused
 

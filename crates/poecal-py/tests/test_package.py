@@ -1,7 +1,9 @@
 """What the package itself promises: its names, its documentation, its types, how it starts."""
 
+import ast
 import doctest
 import inspect
+import re
 import subprocess
 import sys
 from importlib.resources import files
@@ -23,12 +25,68 @@ def test_public_names_exist_and_are_documented():
             assert inspect.getdoc(thing), name
 
 
-@pytest.mark.parametrize("name", ["Robot", "Measurements", "Calibration", "Simulation", "Prediction", "Findings", "Verdict"])
-def test_every_method_is_documented(name):
-    of_class = getattr(poecal, name)
-    public = [method for method in vars(of_class) if not method.startswith("_")]
-    assert public
-    assert [method for method in public if not inspect.getdoc(getattr(of_class, method))] == []
+def functions():
+    """Public functions and methods of the stubs, as (name, definition, docstring of the module)."""
+    found = {}
+
+    def walk(parent, owner, prefix):
+        for node in parent.body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                walk(node, getattr(owner, node.name), f"{node.name}.")
+            elif isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+                found.setdefault(prefix + node.name, (node, inspect.getdoc(getattr(owner, node.name)) or ""))
+
+    walk(ast.parse(files("poecal").joinpath("_poecal.pyi").read_text()), poecal._poecal, "")
+    return found
+
+
+FUNCTIONS = functions()
+
+
+def sections(docstring):
+    """The entries of each section of a docstring."""
+    parts = re.split(r"^(\w+)\n-+\n", docstring, flags=re.M)
+    return {title: re.findall(r"^(?! )(.+)\n    \S", text + "\n", flags=re.M) for title, text in zip(parts[1::2], parts[2::2], strict=True)}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_everything_says_what_it_takes_and_what_it_returns(name):
+    node, docstring = FUNCTIONS[name]
+    assert docstring.splitlines()[0].endswith("."), docstring
+    found = sections(docstring)
+    if any(isinstance(it, ast.Name) and it.id == "property" for it in node.decorator_list):
+        assert not found
+        return
+    names = [it.arg for it in [*node.args.args, *node.args.kwonlyargs] if it.arg != "self"]
+    documented = [it for entry in found.get("Parameters", []) for it in entry.split(", ")]
+    assert sorted(documented) == sorted(names)
+    returns_nothing = isinstance(node.returns, ast.Constant) and node.returns.value is None
+    assert ("Returns" in found) is not returns_nothing and len(found.get("Returns", ["one"])) == 1
+    assert set(found) <= {"Parameters", "Returns", "Raises"}
+    for error in found.get("Raises", []):
+        assert issubclass(getattr(poecal, error), poecal.Error)
+
+
+def test_all_functions_are_looked_at():
+    assert len(FUNCTIONS) > 100 and "Calibration.predict" in FUNCTIONS and "calibrate" in FUNCTIONS
+
+
+def test_objects_say_in_one_line_what_they_are():
+    made = poecal.simulate(elbow(), kind="point", count=100, held_out_count=5)
+    calibration = poecal.calibrate(made.nominal, made.measurements)
+    set_of_rows = calibration.accuracy.held_out
+    thing = [
+        made, made.measurements, elbow(), calibration, calibration.accuracy, set_of_rows, set_of_rows.calibrated, calibration.verdict,
+        set_of_rows.calibrated.position_mm, calibration.residuals, calibration.covariance, poecal.check(elbow()),
+        calibration.predict([[0.0] * 6], with_uncertainty=True),
+    ]  # fmt: skip
+    for each in thing:
+        print(repr(each))
+        assert repr(each).startswith(f"<poecal.{type(each).__name__}") and "\n" not in repr(each) and len(repr(each)) < 250
+    error = f"{set_of_rows.calibrated.position_mm.rms:.4f}"
+    assert repr(calibration).startswith(f"<poecal.Calibration of elbow: good, {error} mm RMS on 30 held-out rows (nominal, tool and device fitted: ")
+    every = poecal.calibrate(made.nominal, made.measurements, held_out=0)
+    assert "mm RMS on 100 fitted rows" in repr(every) and "100 fitted rows" in repr(every.accuracy)
 
 
 def test_options_are_keywords_only():

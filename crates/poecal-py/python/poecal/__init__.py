@@ -2,6 +2,8 @@
 
 Lengths are in metres and angles in radians, unless a name ends in a unit. Poses are arrays of shape (4, 4), named ``a_from_b``.
 
+Examples
+--------
 >>> import poecal
 >>> robot = poecal.Robot.from_dh(a_m=[0, 0.4, 0], alpha_rad=[1.57, 0, 1.57], d_m=[0.3, 0, 0.4], theta_rad=[0, 0, 0])
 >>> made = poecal.simulate(robot, kind="point", count=60)
@@ -22,18 +24,22 @@ from ._errors import (
     MeasurementError,
     ModelError,
     OptionError,
+    PackageError,
     PoecalWarning,
     ProblemError,
+    RowError,
     SolverError,
     UnitError,
 )
 from ._poecal import (
     Accuracy,
     Calibration,
+    Covariance,
     Findings,
     Measurements,
     ModelAccuracy,
     Prediction,
+    Residuals,
     Robot,
     SetAccuracy,
     Simulation,
@@ -56,6 +62,7 @@ from ._poecal import (
 __all__ = [
     "Accuracy",
     "Calibration",
+    "Covariance",
     "Error",
     "ExportError",
     "FileError",
@@ -67,10 +74,13 @@ __all__ = [
     "ModelAccuracy",
     "ModelError",
     "OptionError",
+    "PackageError",
     "PoecalWarning",
     "Prediction",
     "ProblemError",
+    "Residuals",
     "Robot",
+    "RowError",
     "SetAccuracy",
     "Simulation",
     "SolverError",

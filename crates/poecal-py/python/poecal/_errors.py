@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 
 class Error(Exception):
     """Any error of poecal: one sentence that says where, what was found, what was expected and what to do.
@@ -26,6 +28,13 @@ class Error(Exception):
     ) -> None:
         super().__init__(message)
         self.path, self.line, self.column, self.row = path, line, column, row
+
+    if sys.version_info >= (3, 11):
+
+        def add_note(self, note: str, /) -> None:
+            # PyO3 adds one that names the argument, which the sentence does.
+            if not note.startswith("while processing '"):
+                super().add_note(note)
 
 
 class InputError(Error, ValueError):
@@ -54,6 +63,14 @@ class UnitError(InputError):
 
 class OptionError(InputError):
     """An argument that is out of range, of the wrong shape, or contradicts another."""
+
+
+class RowError(OptionError, IndexError):
+    """A row that the measurements do not have."""
+
+
+class PackageError(Error, ImportError):
+    """A Python package that is needed here and not installed."""
 
 
 class ProblemError(Error):

@@ -1,17 +1,23 @@
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, Literal, TypeAlias, final, overload
+from typing import Any, Literal, Protocol, TypeAlias, final, overload
 
 import numpy as np
+import pandas  # type: ignore[import-untyped, import-not-found, unused-ignore]
+import polars  # type: ignore[import-not-found, unused-ignore]
+from matplotlib.axes import Axes  # type: ignore[import-not-found, unused-ignore]
+from matplotlib.figure import Figure  # type: ignore[import-not-found, unused-ignore]
 from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "Accuracy",
     "Calibration",
+    "Covariance",
     "Findings",
     "Measurements",
     "ModelAccuracy",
     "Prediction",
+    "Residuals",
     "Robot",
     "SetAccuracy",
     "Simulation",
@@ -43,15 +49,93 @@ _Frame: TypeAlias = Literal["unknown", "base"]
 _End: TypeAlias = Literal["free", "kept"]
 _Form: TypeAlias = Literal["urdf", "toml"]
 _Level: TypeAlias = Literal["good", "inside_sampled_range", "do_not_use"]
+_Rows: TypeAlias = slice | int | np.integer[Any] | Sequence[int] | Sequence[bool] | NDArray[np.integer[Any]] | NDArray[np.bool_]
+
+class _DataFrame(Protocol):
+    @property
+    def columns(self) -> Any: ...
+    def __getitem__(self, key: Any, /) -> Any: ...
+
+_Table: TypeAlias = _DataFrame | Mapping[str, Iterable[object]] | NDArray[np.void]
 
 @final
 class Robot:
+    """A serial robot: joints with screws, and a home pose. It never changes.
+
+    Make one by `Robot.read` (any file), `from_urdf`, `from_toml`, `from_screws` or `from_dh`. Lengths are in metres, angles in
+    radians. Robots compare by value, and can be copied and pickled.
+    """
     @staticmethod
-    def read(path: _Path, *, base_link: str | None = None, tip_link: str | None = None) -> Robot: ...
+    def read(path: _Path, *, base_link: str | None = None, tip_link: str | None = None) -> Robot:
+        """Reads a robot model of any form: URDF, TOML or calibration.json, of which it is the calibrated robot.
+
+        Parameters
+        ----------
+        path
+            The file; its extension gives the form, or else the beginning of its text.
+        base_link, tip_link
+            The chain of a URDF that has several.
+
+        Returns
+        -------
+        Robot
+            The robot.
+
+        Raises
+        ------
+        FileError
+            The file cannot be read.
+        FormatError
+            It is no valid XML, TOML or JSON.
+        ModelError
+            It holds no robot that can be used.
+        """
     @staticmethod
-    def from_urdf(path: _Path, *, base_link: str | None = None, tip_link: str | None = None) -> Robot: ...
+    def from_urdf(path: _Path, *, base_link: str | None = None, tip_link: str | None = None) -> Robot:
+        """Reads a chain of a URDF file.
+
+        Parameters
+        ----------
+        path
+            The file.
+        base_link, tip_link
+            First and last link of the chain, where there are several.
+
+        Returns
+        -------
+        Robot
+            The robot.
+        """
     @staticmethod
-    def from_toml(path: _Path) -> Robot: ...
+    def from_toml(path: _Path) -> Robot:
+        """Reads a TOML model of screws or of Denavit-Hartenberg parameters.
+
+        Parameters
+        ----------
+        path
+            The file.
+
+        Returns
+        -------
+        Robot
+            The robot.
+        """
+    @staticmethod
+    def from_text(text: str, *, base_link: str | None = None, tip_link: str | None = None) -> Robot:
+        """A robot model of any form from its text, as of the parameter `robot_description` of ROS.
+
+        Parameters
+        ----------
+        text
+            Text of a URDF, TOML model or calibration.json.
+        base_link, tip_link
+            The chain of a URDF that has several.
+
+        Returns
+        -------
+        Robot
+            The robot; its `path` is "text", by which errors name places too.
+        """
     @staticmethod
     def from_screws(
         screws: ArrayLike,
@@ -63,7 +147,30 @@ class Robot:
         name: str = "robot",
         base_link: str = "base",
         tip_link: str = "tip",
-    ) -> Robot: ...
+    ) -> Robot:
+        """A robot of screws in the base frame at zero joint values.
+
+        Parameters
+        ----------
+        screws
+            Array of shape (n, 6), a unit twist a joint: linear part v (metres), then angular part w, with |w| = 1 and v·w = 0; a sliding
+            joint has w = 0 and |v| = 1.
+        home
+            Pose of the tip in the base at zero joint values, shape (4, 4).
+        names
+            n names of the joints, default joint1, joint2, …
+        limits
+            Array of shape (n, 2), radians or metres; rows of NaN, masked or infinite numbers are joints without limits.
+        angular_first
+            Whether the angular part comes first.
+        name, base_link, tip_link
+            Names of the robot and of its first and last frame.
+
+        Returns
+        -------
+        Robot
+            The robot.
+        """
     @staticmethod
     def from_dh(
         *,
@@ -80,35 +187,121 @@ class Robot:
         name: str = "robot",
         base_link: str = "base",
         tip_link: str = "tip",
-    ) -> Robot: ...
-    def forward_kinematics(self, joints: ArrayLike, *, target: str | None = None) -> _Array: ...
-    def joint_poses(self, joints: ArrayLike) -> _Array: ...
+    ) -> Robot:
+        """A robot of Denavit-Hartenberg parameters.
+
+        Parameters
+        ----------
+        a_m, alpha_rad, d_m, theta_rad
+            Arrays of shape (n,): link length, link twist, link offset and joint angle at zero reading. A revolute joint's reading adds to
+            theta, a prismatic one's to d.
+        convention
+            "standard" (Rz Tz Tx Rx) or "modified" (Craig: Rx Tx Rz Tz, with a and alpha of the same row).
+        kinds
+            "revolute" or "prismatic" for each joint, default all revolute.
+        names
+            n names of the joints, default joint1, joint2, …
+        limits
+            Array of shape (n, 2), radians or metres; rows of NaN, masked or infinite numbers are joints without limits.
+        base, tool
+            Pose of the first frame in the base, and of the tip in the last frame, shape (4, 4) each; default the identity.
+        name, base_link, tip_link
+            Names of the robot and of its first and last frame.
+
+        Returns
+        -------
+        Robot
+            The robot.
+        """
+    def forward_kinematics(self, joints: ArrayLike, *, target: str | None = None) -> _Array:
+        """Poses of the tip, or of a target of the model, in the base frame.
+
+        Parameters
+        ----------
+        joints
+            Configurations, shape (m, n), radians and metres, in the order of `reading_names`; or one, shape (n,).
+        target
+            Name of a target of the model, default the tip.
+
+        Returns
+        -------
+        numpy.ndarray
+            Poses of shape (m, 4, 4), or (4, 4) for one configuration.
+        """
+    def joint_poses(self, joints: ArrayLike) -> _Array:
+        """Frames of the joints in the base frame, as a drawing of the robot needs them.
+
+        Parameters
+        ----------
+        joints
+            Configurations, as for `forward_kinematics`.
+
+        Returns
+        -------
+        numpy.ndarray
+            Poses of shape (m, n, 4, 4), or (n, 4, 4) for one configuration.
+        """
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """The robot's name."""
     @property
-    def base_link(self) -> str: ...
+    def base_link(self) -> str:
+        """Name of the base frame."""
     @property
-    def tip_link(self) -> str: ...
+    def tip_link(self) -> str:
+        """Name of the tip frame."""
     @property
-    def path(self) -> str: ...
+    def path(self) -> str:
+        """The file that it was read from, as it was named; for robots of arrays their name."""
     @property
-    def joint_names(self) -> list[str]: ...
+    def joint_names(self) -> list[str]:
+        """Names of the n moving joints from base to tip."""
     @property
-    def reading_names(self) -> list[str]: ...
+    def reading_names(self) -> list[str]:
+        """Names of the readings that a configuration consists of: those of the joints but for mimic joints, which follow another."""
     @property
-    def kinds(self) -> list[Literal["revolute", "prismatic"]]: ...
+    def kinds(self) -> list[Literal["revolute", "prismatic"]]:
+        """"revolute" or "prismatic", a joint each."""
     @property
-    def screws(self) -> _Array: ...
+    def screws(self) -> _Array:
+        """Screws in the base frame at zero joint values, shape (n, 6): linear part (metres), then angular part."""
     @property
-    def joint_frames(self) -> _Array: ...
+    def joint_frames(self) -> _Array:
+        """Frames of the joints in the base at zero joint values, shape (n, 4, 4)."""
     @property
-    def limits(self) -> _Array: ...
+    def limits(self) -> _Array:
+        """Lower and upper limits, shape (n, 2), radians or metres; infinite where a joint has none."""
     @property
-    def home(self) -> _Array: ...
+    def home(self) -> _Array:
+        """Pose of the tip in the base at zero joint values, shape (4, 4)."""
     @property
-    def targets(self) -> dict[str, _Array]: ...
-    def to_text(self, to: _Form) -> str: ...
-    def write(self, path: _Path, *, to: _Form | None = None, force: bool = False) -> None: ...
+    def targets(self) -> dict[str, _Array]:
+        """Poses of the model's targets in the tip frame, by name, shape (4, 4) each."""
+    def to_text(self, to: _Form) -> str:
+        """The model as a text.
+
+        Parameters
+        ----------
+        to
+            "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws).
+
+        Returns
+        -------
+        str
+            The text.
+        """
+    def write(self, path: _Path, *, to: _Form | None = None, force: bool = False) -> None:
+        """Writes the model to a file.
+
+        Parameters
+        ----------
+        path
+            The file.
+        to
+            "urdf" or "toml", default as the extension says.
+        force
+            Whether to write over a file that exists.
+        """
     def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -119,6 +312,11 @@ class Robot:
 
 @final
 class Measurements:
+    """Measurements of a robot: in each row a configuration and the measurement of a target. Immutable.
+
+    Make them by `Measurements.from_csv`, `from_arrays` or `from_dataframe`. Lengths are in metres, angles in radians. Measurements
+    compare by value, and can be copied and pickled.
+    """
     @staticmethod
     def from_csv(
         paths: _Path | Sequence[_Path],
@@ -129,7 +327,39 @@ class Measurements:
         ignore_sets: bool = False,
         strict: bool = False,
         frames: Literal["common", "per-file"] = "common",
-    ) -> Measurements: ...
+    ) -> Measurements:
+        """Reads measurement files, joined in their order.
+
+        Parameters
+        ----------
+        paths
+            A file, or several.
+        robot
+            The robot whose joints the columns name.
+        columns
+            A mapping file for files with other column names.
+        fit_where
+            "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
+        ignore_sets
+            Whether the files' column `set` means nothing, as for rows that judge a calibration.
+        strict
+            Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+        frames
+            Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
+            "per-file", those of a file.
+
+        Returns
+        -------
+        Measurements
+            The rows of all files.
+
+        Raises
+        ------
+        FileError
+            A file cannot be read.
+        MeasurementError
+            It holds no measurements of this robot; the error tells the line and the column.
+        """
     @staticmethod
     def from_arrays(
         robot: Robot,
@@ -146,41 +376,139 @@ class Measurements:
         sigma_rotation_deg: ArrayLike | None = None,
         angle_unit: str = "rad",
         length_unit: str = "m",
-    ) -> Measurements: ...
+    ) -> Measurements:
+        """Measurements of arrays: positions, with orientations or without, or poses.
+
+        Arrays may be read-only and of any layout. Masked numbers count as NaN: they are a missing orientation, or standard deviation, where
+        the whole row is masked, and refused elsewhere.
+
+        Parameters
+        ----------
+        robot
+            The robot that was measured.
+        joints
+            Readings, shape (m, n), in the order of `robot.reading_names`: in `angle_unit`, of sliding joints in `length_unit`.
+        positions
+            Positions of the target in the device's frame, shape (m, 3), in `length_unit`.
+        quaternions_xyzw
+            Orientations beside `positions` as unit quaternions x, y, z, w, shape (m, 4); rows of NaN are points without orientation.
+        poses
+            Poses device_from_target instead of `positions`, shape (m, 4, 4), translations in `length_unit`.
+        targets
+            m names of targets, default the tip itself.
+        instruments
+            m names of measuring devices, each with a frame of its own.
+        sets
+            "fit", "held_out" or None (which says nothing) for each row.
+        ids
+            m names of the rows.
+        sigma_position_mm, sigma_rotation_deg
+            Standard deviations of each measured component, where rows state them: a number, or shape (m,), NaN where a row does not.
+        angle_unit, length_unit
+            "rad", "deg", …; "m", "mm", …
+
+        Returns
+        -------
+        Measurements
+            m rows.
+        """
     @staticmethod
     def from_dataframe(
-        frame: object,
+        frame: _Table,
         robot: Robot,
         *,
         columns: _Path | None = None,
         fit_where: str | None = None,
         ignore_sets: bool = False,
         strict: bool = False,
-    ) -> Measurements: ...
+    ) -> Measurements:
+        """Measurements of a table in memory: a data frame of pandas or polars, a dict of columns, or a structured array of NumPy.
+
+        Columns have the same names, units in brackets and meanings as those of a file, `x[mm]` or `target`. Missing and masked values are
+        empty cells.
+
+        Parameters
+        ----------
+        frame
+            The table: anything with `columns` and columns by name, a dict of columns of one length, or an array with named fields.
+        robot
+            The robot whose joints the columns name.
+        columns
+            A mapping file for a table with other column names.
+        fit_where
+            "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
+        ignore_sets
+            Whether the column `set` means nothing, as for rows that judge a calibration.
+        strict
+            Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+
+        Returns
+        -------
+        Measurements
+            The rows of the table.
+
+        Raises
+        ------
+        MeasurementError
+            The table holds no measurements of this robot; the error tells the row.
+        """
+    @staticmethod
+    def join(parts: Sequence[Measurements]) -> Measurements:
+        """Rows of several measurements of one robot, one after the other; `a + b` is that of two.
+
+        Rows keep what is known of them: target, instrument, set, id, standard deviations, file and line. Targets of one name are one
+        target. Rows of instruments of one name, and all rows that name none, share a frame of the measuring device: name the instruments
+        if it was moved in between.
+
+        Parameters
+        ----------
+        parts
+            Measurements of the same joints.
+
+        Returns
+        -------
+        Measurements
+            The rows of all parts.
+        """
     @property
-    def reading_names(self) -> list[str]: ...
+    def reading_names(self) -> list[str]:
+        """Names of the readings that a configuration consists of."""
     @property
-    def joints(self) -> _Array: ...
+    def joints(self) -> _Array:
+        """Readings, shape (m, n), radians and metres."""
     @property
-    def positions(self) -> _Array: ...
+    def positions(self) -> _Array:
+        """Measured positions in the device's frame, shape (m, 3), metres."""
     @property
-    def poses(self) -> _Array: ...
+    def poses(self) -> _Array:
+        """Measured poses device_from_target, shape (m, 4, 4); with the identity where a row has no orientation (`has_orientation`)."""
     @property
-    def has_orientation(self) -> NDArray[np.bool_]: ...
+    def has_orientation(self) -> NDArray[np.bool_]:
+        """Whether a row's orientation was measured, shape (m,)."""
     @property
-    def targets(self) -> list[str | None]: ...
+    def targets(self) -> list[str | None]:
+        """The target of each row; None for the tip itself."""
     @property
-    def instruments(self) -> list[str | None]: ...
+    def instruments(self) -> list[str | None]:
+        """The instrument, or the place of it, that measured each row; None where there is one without a name."""
     @property
-    def sets(self) -> list[Literal["fit", "held_out"] | None]: ...
+    def sets(self) -> list[Literal["fit", "held_out"] | None]:
+        """"fit", "held_out", or None, for each row."""
     @property
-    def ids(self) -> list[str]: ...
+    def ids(self) -> list[str]:
+        """The rows' ids; empty if they have none."""
     @property
-    def files(self) -> list[str]: ...
+    def files(self) -> list[str]:
+        """The files that the rows came from, as they were named."""
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[str]:
+        """Warnings about the files, a sentence each."""
     def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
+    def __getitem__(self, key: _Rows, /) -> Measurements: ...
+    def __iter__(self) -> Iterator[Measurements]: ...
+    def __add__(self, other: Measurements, /) -> Measurements: ...
+    def __radd__(self, other: Measurements, /) -> Measurements: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __copy__(self) -> Measurements: ...
@@ -190,83 +518,250 @@ class Measurements:
 
 @final
 class Statistic:
+    """Mean, root mean square, 95th percentile and maximum of errors."""
     @property
-    def mean(self) -> float: ...
+    def mean(self) -> float:
+        """Mean."""
     @property
-    def rms(self) -> float: ...
+    def rms(self) -> float:
+        """Root mean square."""
     @property
-    def p95(self) -> float: ...
+    def p95(self) -> float:
+        """95th percentile."""
     @property
-    def max(self) -> float: ...
+    def max(self) -> float:
+        """Largest."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
 @final
 class ModelAccuracy:
+    """Errors of one model on one set of rows."""
     @property
-    def position_mm(self) -> Statistic: ...
+    def position_mm(self) -> Statistic:
+        """Distance from measured to predicted position, millimetres."""
     @property
-    def rotation_deg(self) -> Statistic | None: ...
+    def rotation_deg(self) -> Statistic | None:
+        """Angle from measured to predicted orientation, degrees; None where no orientation was measured."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
 @final
 class SetAccuracy:
+    """Errors of the nominal, registered and calibrated model on one set of rows."""
     @property
-    def count(self) -> int: ...
+    def count(self) -> int:
+        """Number of measurements."""
     @property
-    def nominal(self) -> ModelAccuracy: ...
+    def nominal(self) -> ModelAccuracy:
+        """The nominal model; only an unknown device frame is fitted."""
     @property
-    def registered(self) -> ModelAccuracy: ...
+    def registered(self) -> ModelAccuracy:
+        """Device frame and targets fitted, screws nominal."""
     @property
-    def calibrated(self) -> ModelAccuracy: ...
+    def calibrated(self) -> ModelAccuracy:
+        """Screws fitted too."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
 @final
 class Accuracy:
+    """Errors on the rows that were fitted and on those that were held out."""
     @property
-    def training(self) -> SetAccuracy: ...
+    def training(self) -> SetAccuracy:
+        """On the rows that were fitted."""
     @property
-    def held_out(self) -> SetAccuracy | None: ...
+    def held_out(self) -> SetAccuracy | None:
+        """On the rows that were not; None if none was held out."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
 @final
 class Verdict:
+    """Verdict: how far a calibration may be used, and why no farther."""
     @property
-    def level(self) -> _Level: ...
+    def level(self) -> _Level:
+        """"good", "inside_sampled_range" or "do_not_use"."""
     @property
-    def reasons(self) -> list[str]: ...
-    def is_at_least(self, level: _Level) -> bool: ...
+    def reasons(self) -> list[str]:
+        """Sentences with the deciding figures."""
+    def is_at_least(self, level: _Level) -> bool:
+        """Whether a calibration may be used as far as this.
+
+        Parameters
+        ----------
+        level
+            "good", "inside_sampled_range" or "do_not_use".
+
+        Returns
+        -------
+        bool
+            Whether the verdict's level is `level` or a better one.
+        """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
 @final
 class Prediction:
+    """Predicted poses of m configurations, and the expected error of each."""
     @property
-    def poses(self) -> _Array: ...
+    def poses(self) -> _Array:
+        """The poses, shape (m, 4, 4), metres."""
     @property
-    def sigma_position_m(self) -> _Array: ...
+    def sigma_position_m(self) -> _Array:
+        """Expected root mean square distance, shape (m,), metres."""
     @property
-    def sigma_rotation_rad(self) -> _Array: ...
+    def sigma_rotation_rad(self) -> _Array:
+        """Expected root mean square angle, shape (m,), radians."""
     @property
-    def bound95_position_m(self) -> _Array: ...
+    def bound95_position_m(self) -> _Array:
+        """Distance that is not exceeded in 95 % of all cases, shape (m,), metres."""
     @property
-    def inside_sampled_range(self) -> NDArray[np.bool_]: ...
+    def inside_sampled_range(self) -> NDArray[np.bool_]:
+        """Whether every joint lies within the range that was sampled, shape (m,)."""
+    def __len__(self) -> int: ...
+
+@final
+class Residuals:
+    """Residuals and diagnostics of each row, fitted or held out, in the order of the measurements.
+
+    Residuals are measured minus predicted, in the measuring device's axes; errors of a model are their lengths. `len` is the number of rows.
+    """
+    @property
+    def files(self) -> list[str | None]:
+        """File of each row; None where it came from memory."""
+    @property
+    def lines(self) -> NDArray[np.uint32]:
+        """Line of each row in its file, from 1, shape (m,); 0 where it came from memory."""
+    @property
+    def ids(self) -> list[str | None]:
+        """Id of each row; None where it has none."""
+    @property
+    def held_out(self) -> NDArray[np.bool_]:
+        """Whether each row was held out, shape (m,)."""
+    @property
+    def targets(self) -> list[str | None]:
+        """Target of each row; None for the tip itself."""
+    @property
+    def instruments(self) -> list[str | None]:
+        """Instrument of each row; None where there is only one."""
+    @property
+    def position_mm(self) -> _Array:
+        """Residual of position by component, shape (m, 3), millimetres."""
+    @property
+    def rotation_deg(self) -> _Array:
+        """Residual of rotation by component, shape (m, 3), degrees; NaN where no orientation was measured."""
+    @property
+    def position_nominal_mm(self) -> _Array:
+        """Error of position of the nominal model, shape (m,), millimetres."""
+    @property
+    def position_registered_mm(self) -> _Array:
+        """Error of position of the registered model, shape (m,), millimetres."""
+    @property
+    def position_calibrated_mm(self) -> _Array:
+        """Error of position of the calibrated model, shape (m,), millimetres."""
+    @property
+    def rotation_nominal_deg(self) -> _Array:
+        """Error of rotation of the nominal model, shape (m,), degrees; NaN where no orientation was measured."""
+    @property
+    def rotation_registered_deg(self) -> _Array:
+        """Error of rotation of the registered model, shape (m,), degrees; NaN where no orientation was measured."""
+    @property
+    def rotation_calibrated_deg(self) -> _Array:
+        """Error of rotation of the calibrated model, shape (m,), degrees; NaN where no orientation was measured."""
+    @property
+    def weight(self) -> _Array:
+        """Weight of each row in the fit, shape (m,); of a held-out row the weight that it would have had."""
+    @property
+    def leverage(self) -> _Array:
+        """Leverage of each row, shape (m,): how much it decides its own prediction."""
+    @property
+    def studentized(self) -> _Array:
+        """Studentised residual of each row, shape (m,): its length over its own standard deviation."""
+    @property
+    def suspected(self) -> NDArray[np.bool_]:
+        """Whether each row is suspected of a gross error, shape (m,)."""
+    def to_dict(self) -> dict[str, Any]:
+        """The columns of residuals.csv by their names there, with the readings of each row.
+
+        Returns
+        -------
+        dict
+            Arrays of shape (m,), and lists of names.
+        """
+    def to_dataframe(self) -> pandas.DataFrame:
+        """The columns of residuals.csv as a data frame of pandas, which has to be installed.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A line for each row.
+        """
+    def to_polars(self) -> polars.DataFrame:
+        """The columns of residuals.csv as a data frame of polars, which has to be installed.
+
+        Returns
+        -------
+        polars.DataFrame
+            A line for each row.
+        """
+    def __len__(self) -> int: ...
+
+@final
+class Covariance:
+    """Covariance of the unknowns of a calibration: shifts and turns of each joint's axis, and of each target.
+
+    It is the one that `Calibration.predict` uses inside the sampled range (docs/theory.md §9 (39)), with the prior in it, which bounds what
+    the measurements do not determine. With an unknown frame of the measuring device, axes and targets are relative to the device.
+    """
+    @property
+    def names(self) -> list[str]:
+        """Name of each of the k unknowns: a joint or target and its motion, as "joint1.shift_x" or "tip.turn_z".
+
+        A revolute joint has shifts along x and y and turns about x and y of its frame in `axes`, a prismatic one turns about x and y; a
+        target has shifts along its own axes, and turns about them if its orientation was measured.
+        """
+    @property
+    def units(self) -> list[Literal["m", "rad"]]:
+        """Unit of each unknown, "m" or "rad"."""
+    @property
+    def matrix(self) -> _Array:
+        """The covariance, shape (k, k), in products of `units`."""
+    @property
+    def sigma(self) -> _Array:
+        """Standard deviation of each unknown, shape (k,), in `units`."""
+    @property
+    def axes(self) -> _Array:
+        """Frames base_from_axis at zero joint values, z along the joint, shape (n, 4, 4)."""
     def __len__(self) -> int: ...
 
 @final
 class Findings:
-    def to_dict(self) -> dict[str, Any]: ...
-    def to_json(self) -> str: ...
+    """A result: `str` is the program's table, `to_dict` what the program prints with `--json`, and `found["key"]` a part of it."""
+    def to_dict(self) -> dict[str, Any]:
+        """The result as dicts and lists: what the program prints with `--json`.
+
+        Returns
+        -------
+        dict
+            The result.
+        """
+    def to_json(self) -> str:
+        """The result as JSON.
+
+        Returns
+        -------
+        str
+            The text.
+        """
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[str]:
+        """Warnings, a sentence each."""
     def _repr_html_(self) -> str: ...
     def __getitem__(self, key: str, /) -> Any: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -276,37 +771,142 @@ class Findings:
 
 @final
 class Calibration:
+    """A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
+
+    `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`,
+    converted on demand.
+    """
     @staticmethod
-    def read(path: _Path, *, residuals: _Path | None = None) -> Calibration: ...
+    def read(path: _Path, *, residuals: _Path | None = None) -> Calibration:
+        """Reads a calibration.json, and the residuals.csv beside it if there is one.
+
+        Parameters
+        ----------
+        path
+            The calibration.json.
+        residuals
+            Another residuals.csv.
+
+        Returns
+        -------
+        Calibration
+            The calibration, which does what it did before it was written.
+        """
     @property
-    def robot(self) -> Robot: ...
+    def robot(self) -> Robot:
+        """The calibrated robot, with the targets in its tip frame."""
     @property
-    def nominal(self) -> Robot: ...
+    def nominal(self) -> Robot:
+        """The nominal robot."""
     @property
-    def accuracy(self) -> Accuracy: ...
+    def accuracy(self) -> Accuracy:
+        """Errors of the nominal, registered and calibrated model on fitted and held-out rows."""
     @property
-    def verdict(self) -> Verdict | None: ...
+    def verdict(self) -> Verdict:
+        """How far the calibration may be used, and why no farther; an error for a file that does not say so."""
     @property
-    def converged(self) -> bool: ...
+    def converged(self) -> bool:
+        """Whether the fit reached an optimum."""
     @property
-    def warnings(self) -> list[str]: ...
+    def warnings(self) -> list[str]:
+        """Warnings, and mistakes in the input, a sentence each."""
     @property
-    def library_seconds(self) -> float | None: ...
+    def library_seconds(self) -> float | None:
+        """Seconds that the library took for the fit; None if it was read. What a call took beyond them is Python's."""
     @property
-    def base_from_device(self) -> _Array: ...
+    def base_from_device(self) -> _Array:
+        """Pose of the measuring device in the base, shape (4, 4)."""
     @property
-    def stations(self) -> list[dict[str, Any]]: ...
+    def stations(self) -> list[dict[str, Any]]:
+        """Frames of the instruments: `stations` of calibration.json; empty if no row names one."""
     @property
-    def corrections(self) -> list[dict[str, Any]]: ...
+    def corrections(self) -> list[dict[str, Any]]:
+        """Each joint's correction, its uncertainty and its effect: `corrections` of calibration.json."""
     @property
-    def uncertainty(self) -> dict[str, Any] | None: ...
+    def uncertainty(self) -> dict[str, Any] | None:
+        """Expected errors of predictions: `uncertainty` of calibration.json; None if there are no more residuals than unknowns."""
     @property
-    def identifiability(self) -> dict[str, Any]: ...
-    def to_dict(self) -> dict[str, Any]: ...
-    def to_json(self) -> str: ...
-    def residuals_csv(self) -> str: ...
-    def write(self, folder: _Path, *, force: bool = False, report: bool | _Path = True) -> list[str]: ...
-    def report(self, path: _Path, *, force: bool = False) -> None: ...
+    def identifiability(self) -> dict[str, Any]:
+        """Which unknowns the measurements determine: `identifiability` of calibration.json."""
+    @property
+    def residuals(self) -> Residuals:
+        """Residuals of each row, fitted or held out; an error if the calibration was read without its residuals.csv."""
+    @property
+    def covariance(self) -> Covariance:
+        """Covariance of the unknowns; an error if there are no more residuals than unknowns."""
+    def plot(self, axes: Sequence[Axes] | NDArray[Any] | None = None) -> Figure:
+        """Draws the errors of position before and after, and those of each row. Needs matplotlib.
+
+        Parameters
+        ----------
+        axes
+            Two axes of matplotlib to draw into, default those of a new figure.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure, which is not shown: notebooks show it, `savefig` writes it.
+        """
+    def to_dict(self) -> dict[str, Any]:
+        """The whole calibration.json as dicts and lists.
+
+        Returns
+        -------
+        dict
+            The contents.
+        """
+    def to_json(self) -> str:
+        """The calibration.json as a text.
+
+        Returns
+        -------
+        str
+            The text.
+        """
+    def residuals_csv(self) -> str:
+        """The residuals.csv as a text.
+
+        Returns
+        -------
+        str
+            The text.
+        """
+    def write(self, folder: _Path, *, force: bool = False, report: bool | _Path = True) -> list[str]:
+        """Writes the results to a folder, as the program does: calibration.json, the calibrated model, residuals.csv and report.html.
+
+        All is written or nothing, and the models are read back and compared with the fit.
+
+        Parameters
+        ----------
+        folder
+            The folder.
+        force
+            Whether to write over files that exist.
+        report
+            Whether to write the report too, or the path of another file for it.
+
+        Returns
+        -------
+        list of str
+            Names of the files.
+
+        Raises
+        ------
+        FileError
+            The folder exists, and `force` is not set.
+        ExportError
+            Written files did not reproduce what was fitted.
+        """
+    def report(self, path: _Path, *, force: bool = False) -> None:
+        """Writes the report, one HTML file.
+
+        Parameters
+        ----------
+        path
+            The file.
+        force
+            Whether to write over a file that is no report of poecal.
+        """
     @overload
     def predict(
         self,
@@ -315,7 +915,25 @@ class Calibration:
         with_uncertainty: Literal[False] = False,
         frame: Literal["base", "device"] = "base",
         target: str | None = None,
-    ) -> _Array: ...
+    ) -> _Array:
+        """Poses of the calibrated tip, or of a target.
+
+        Parameters
+        ----------
+        joints
+            Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`; or one, shape (n,).
+        with_uncertainty
+            Whether to give the expected error of each pose too.
+        frame
+            Frame of the poses: "base" or "device".
+        target
+            Name of a target, default the tip.
+
+        Returns
+        -------
+        numpy.ndarray or Prediction
+            Poses of shape (m, 4, 4), or (4, 4) for one configuration; with `with_uncertainty` a `Prediction`, always of m poses.
+        """
     @overload
     def predict(
         self,
@@ -325,9 +943,34 @@ class Calibration:
         frame: Literal["base", "device"] = "base",
         target: str | None = None,
     ) -> Prediction: ...
+    @overload
+    def predict(
+        self,
+        joints: ArrayLike,
+        *,
+        with_uncertainty: bool,
+        frame: Literal["base", "device"] = "base",
+        target: str | None = None,
+    ) -> _Array | Prediction: ...
     def validate(
         self, measurements: Measurements, *, refit_frame: bool = False, refit_tool: bool = False
-    ) -> Findings: ...
+    ) -> Findings:
+        """Judges the calibration by measurements that it did not see; every row counts.
+
+        Parameters
+        ----------
+        measurements
+            The measurements.
+        refit_frame
+            Whether to refit the device's frame to them.
+        refit_tool
+            Whether to refit the targets to them.
+
+        Returns
+        -------
+        Findings
+            Errors of the nominal and the calibrated robot, and their share inside the predicted bounds.
+        """
     def identify(
         self,
         joints: ArrayLike,
@@ -336,7 +979,25 @@ class Calibration:
         sigma_position_mm: float | None = None,
         sigma_rotation_deg: float | None = None,
         frame: _Frame = "unknown",
-    ) -> Findings: ...
+    ) -> Findings:
+        """Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.
+
+        Parameters
+        ----------
+        joints
+            Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
+        kind
+            Kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn).
+        sigma_position_mm, sigma_rotation_deg
+            Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
+        frame
+            The measuring device's frame: "unknown" or "base".
+
+        Returns
+        -------
+        Findings
+            What would be determined, and the expected error.
+        """
     def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -347,17 +1008,37 @@ class Calibration:
 
 @final
 class Simulation:
+    """A simulated session: nominal and actual robot, and measurements of the actual one."""
     @property
-    def nominal(self) -> Robot: ...
+    def nominal(self) -> Robot:
+        """The nominal robot."""
     @property
-    def actual(self) -> Robot: ...
+    def actual(self) -> Robot:
+        """The actual robot."""
     @property
-    def measurements(self) -> Measurements: ...
+    def measurements(self) -> Measurements:
+        """The measurements."""
     @property
-    def held_out(self) -> Measurements | None: ...
+    def held_out(self) -> Measurements | None:
+        """Further rows, free of noise, to judge a calibration by; None if none were asked for."""
     @property
-    def device_from_base(self) -> _Array: ...
-    def write(self, folder: _Path, *, force: bool = False) -> list[str]: ...
+    def device_from_base(self) -> _Array:
+        """Pose of the base in the measuring device, shape (4, 4)."""
+    def write(self, folder: _Path, *, force: bool = False) -> list[str]:
+        """Writes both robots, the measurements and the truth to a folder, as the program does.
+
+        Parameters
+        ----------
+        folder
+            The folder.
+        force
+            Whether to write over files that exist.
+
+        Returns
+        -------
+        list of str
+            Names of the files.
+        """
 
 def calibrate(
     robot: Robot,
@@ -375,8 +1056,70 @@ def calibrate(
     method: Literal["levenberg-marquardt", "gauss-newton"] | None = None,
     validate: Measurements | None = None,
     progress: Callable[[str], object] | None = None,
-) -> Calibration: ...
-def check(robot: Robot, measurements: Measurements | None = None, *, frame: _Frame = "unknown") -> Findings: ...
+) -> Calibration:
+    """Calibrates a robot from measurements.
+
+    Parameters
+    ----------
+    robot
+        The nominal robot.
+    measurements
+        Its measurements.
+    frame
+        The measuring device's frame: "unknown" or "base".
+    sigma_position_mm, sigma_rotation_deg
+        Standard deviation of each measured component, default estimated from the data.
+    tolerance_deg_mm
+        Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
+        decides where the measurements determine nothing.
+    held_out
+        Share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row.
+    seed
+        Seed of that choice (default 1).
+    robust
+        How to treat outliers: "auto", "off", "huber", "cauchy" or "tukey".
+    formulation
+        Parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets".
+    residual
+        Residual of measured frames: "tool" or "spatial".
+    method
+        "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws).
+    validate
+        Measurements to judge by: all other rows are fitted.
+    progress
+        Called with the next stage, in words.
+
+    Returns
+    -------
+    Calibration
+        The calibrated robot, its errors, and how far to trust it.
+
+    Raises
+    ------
+    ProblemError
+        There are too few measurements.
+    OptionError
+        An argument is out of range.
+    SolverError
+        No finite result is reached.
+    """
+def check(robot: Robot, measurements: Measurements | None = None, *, frame: _Frame = "unknown") -> Findings:
+    """How a model and measurements are understood, and mistakes that they show.
+
+    Parameters
+    ----------
+    robot
+        The nominal robot.
+    measurements
+        Its measurements, if there are any yet.
+    frame
+        The measuring device's frame; with "base", mistakes in it are looked for too.
+
+    Returns
+    -------
+    Findings
+        What is understood, with mistakes under "diagnosis".
+    """
 def convert(
     robot: Robot,
     *,
@@ -384,7 +1127,28 @@ def convert(
     offset: dict[str, float] | None = None,
     out: _Path | None = None,
     force: bool = False,
-) -> str: ...
+) -> str:
+    """A robot in another form, as a text, and as a file too if one is named.
+
+    Parameters
+    ----------
+    robot
+        The robot.
+    to
+        "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says.
+    offset
+        Offsets of joint values by the joints' names, radians or metres: the text has the screws and home pose of the robot with these
+        offsets. Mimic joints that follow a joint stay.
+    out
+        The file.
+    force
+        Whether to write over a file that exists.
+
+    Returns
+    -------
+    str
+        The text.
+    """
 def identify(
     robot: Robot,
     joints: ArrayLike,
@@ -393,7 +1157,27 @@ def identify(
     sigma_position_mm: float | None = None,
     sigma_rotation_deg: float | None = None,
     frame: _Frame = "unknown",
-) -> Findings: ...
+) -> Findings:
+    """Which unknowns measurements in given configurations would determine, before anything is measured.
+
+    Parameters
+    ----------
+    robot
+        The robot.
+    joints
+        Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
+    kind
+        Kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn).
+    sigma_position_mm, sigma_rotation_deg
+        Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
+    frame
+        The measuring device's frame: "unknown" or "base".
+
+    Returns
+    -------
+    Findings
+        What would be determined, and the expected error.
+    """
 def init(
     model: _Path,
     out: _Path,
@@ -403,11 +1187,68 @@ def init(
     seed: int = 1,
     base_link: str | None = None,
     tip_link: str | None = None,
-) -> list[str]: ...
+) -> list[str]:
+    """Writes a project folder to start from.
+
+    It has the model, a measurement file to fill in, configurations to measure, settings for `poecal calibrate`, and instructions.
+
+    Parameters
+    ----------
+    model
+        Path of a URDF, TOML model or calibration.json.
+    out
+        The folder; files in it are never overwritten.
+    measure
+        "points" or "poses".
+    count
+        Number of configurations to suggest, from 1 to 100,000.
+    seed
+        Seed of their choice.
+    base_link, tip_link
+        The chain of a URDF that has several.
+
+    Returns
+    -------
+    list of str
+        Names of the files.
+    """
 def offsets(
     nominal: Robot, actual: Robot | Calibration, *, base: _End | None = None, tip: _End | None = None
-) -> Findings: ...
-def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None) -> _Array: ...
+) -> Findings:
+    """The joint offsets that explain best how a robot differs from its model, and the remaining errors.
+
+    Parameters
+    ----------
+    nominal
+        The model.
+    actual
+        The robot, or a calibration of it.
+    base, tip
+        Whether these frames are the same in both ("kept") or found with the offsets ("free"); by default what a calibration fitted is
+        free.
+
+    Returns
+    -------
+    Findings
+        The offsets, and the errors with and without them.
+    """
+def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None) -> _Array:
+    """Reads the joint readings of a file, whatever other columns it has.
+
+    Parameters
+    ----------
+    path
+        The file.
+    robot
+        The robot whose joints the columns name.
+    columns
+        A mapping file for a file with other column names.
+
+    Returns
+    -------
+    numpy.ndarray
+        Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`.
+    """
 def reproduce(
     experiment: Literal["lou2009", "breakdown"],
     *,
@@ -416,10 +1257,58 @@ def reproduce(
     trials: int = 1000,
     starts: int = 100,
     seed: int = 1,
-) -> Findings: ...
-def run_program(arguments: Sequence[str]) -> int: ...
-def schema() -> str: ...
-def set_threads(count: int) -> None: ...
+) -> Findings:
+    """Repeats the experiment of a paper and checks its claims, or shows the effect of gross errors.
+
+    Parameters
+    ----------
+    experiment
+        "lou2009" (the paper) or "breakdown" (gross errors).
+    out
+        Folder for the report.
+    force
+        Whether to write over files that exist.
+    trials
+        Number of sessions that compare the formulations, or the losses.
+    starts
+        Number of random starts for each size of error (lou2009).
+    seed
+        Seed of everything random.
+
+    Returns
+    -------
+    Findings
+        The runs, and the claims with what was found.
+    """
+def run_program(arguments: Sequence[str]) -> int:
+    """Runs the program `poecal`.
+
+    Parameters
+    ----------
+    arguments
+        The program's name, and its arguments.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+def schema() -> str:
+    """The JSON Schema of calibration.json.
+
+    Returns
+    -------
+    str
+        The schema, as a text.
+    """
+def set_threads(count: int) -> None:
+    """Sets the number of threads that all work shares; results do not depend on it.
+
+    Parameters
+    ----------
+    count
+        From 1 to 256. It can be set once, before anything is computed.
+    """
 def simulate(
     robot: Robot,
     *,
@@ -432,8 +1321,41 @@ def simulate(
     noise_rotation_deg: float = 0.01,
     frame: _Frame = "unknown",
     held_out_count: int = 0,
-) -> Simulation: ...
-def version() -> str: ...
+) -> Simulation:
+    """Simulates a robot with errors and its measurements, for tests and for learning.
+
+    Parameters
+    ----------
+    robot
+        The robot to deviate from.
+    kind
+        Kind of the measurements: "pose", "point", or "mixed" (both in turn).
+    count
+        Number of measurements.
+    seed
+        Seed of everything random.
+    error_position_mm, error_rotation_deg
+        Distance and angle by which every axis, and the tip, is off.
+    noise_position_mm, noise_rotation_deg
+        Standard deviation of each measured component.
+    frame
+        The measuring device's frame: "unknown" or "base".
+    held_out_count
+        Number of further measurements, free of noise, to judge a calibration by.
+
+    Returns
+    -------
+    Simulation
+        Both robots, and the measurements of the actual one.
+    """
+def version() -> str:
+    """The version of poecal.
+
+    Returns
+    -------
+    str
+        The version that this module was built from.
+    """
 def _robot(state: bytes) -> Robot: ...
 def _measurements(state: bytes) -> Measurements: ...
 def _calibration(state: bytes) -> Calibration: ...

@@ -8,6 +8,7 @@ use poecal::io::measurements::MeasurementFile;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::residuals::Residuals;
 use poecal::report;
+use poecal::{Error, ErrorKind};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -106,7 +107,7 @@ impl Calibration {
             nominal: self.nominal.state()?,
             robot: self.as_fitted(),
             file: self.file().to_text().map_err(raise)?,
-            residuals: self.residuals().ok().map(Residuals::text),
+            residuals: self.rows().ok().map(Residuals::text),
             summary: self.summary().to_owned(),
         })
     }
@@ -131,7 +132,7 @@ impl Calibration {
     }
 
     /// Residuals of each row.
-    pub(super) fn residuals(&self) -> PyResult<&Residuals> {
+    pub(crate) fn rows(&self) -> PyResult<&Residuals> {
         match &self.found {
             Found::Fit(fit) => {
                 Ok(fit.residuals.get_or_init(|| Residuals::of(&fit.data.data, &fit.calibration)))
@@ -169,11 +170,15 @@ impl Calibration {
         }
     }
 
-    /// The verdict, if the file states one.
-    pub(super) fn judged(&self) -> Option<&poecal::calibration::Verdict> {
+    /// The verdict.
+    pub(super) fn judged(&self) -> PyResult<&poecal::calibration::Verdict> {
         match &self.found {
-            Found::Fit(fit) => Some(&fit.calibration.verdict),
-            Found::Written(written) => written.file.verdict.as_ref(),
+            Found::Fit(fit) => Ok(&fit.calibration.verdict),
+            Found::Written(written) => written.file.verdict.as_ref().ok_or_else(|| {
+                let message =
+                    "found a calibration without a verdict, expected one: calibrate again with this version";
+                raise(Error::new(ErrorKind::Model, message))
+            }),
         }
     }
 

@@ -1,16 +1,20 @@
-//! A robot and its file, and their pickled state.
+//! A robot and its file, their pickled state, and what reads and writes them.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
-use poecal::io::model::{Model, ModelSource};
+use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
 use poecal::io::urdf::{ChainSelection, UrdfDocument};
+use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::errors::raise;
+use crate::arguments::{Argument, unexpected};
+use crate::arrays::{pose_array, pose_arrays};
+use crate::errors::{argument, raise};
+use crate::words::chosen;
 
 /// A serial robot: joints with screws, and a home pose. It never changes.
 ///
@@ -91,4 +95,62 @@ enum SourceState {
     Urdf { text: String, base: String, tip: String },
     Toml,
     Calibration { text: String },
+}
+
+impl Robot {
+    pub(super) fn converted(&self, py: Python<'_>, form: ModelFormat) -> PyResult<String> {
+        let converted = py.detach(|| convert(&self.model, form)).map_err(raise)?;
+        crate::warn(py, &converted.notes)?;
+        Ok(converted.text)
+    }
+
+    pub(super) fn words(&self) -> String {
+        let robot = self.robot();
+        let names = self.joint_names().join(", ");
+        format!(
+            "{}: {} joints ({names}) from {} to {}",
+            robot.name,
+            robot.joints.len(),
+            robot.base_name,
+            robot.tip_name
+        )
+    }
+}
+
+/// Poses as an array, of shape (4, 4) for one configuration alone.
+pub(crate) fn poses<'py>(
+    py: Python<'py>,
+    poses: &[poecal::lie::Pose],
+    single: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    match poses {
+        [pose] if single => pose_array(py, pose)?.into_bound_py_any(py),
+        poses => pose_arrays(py, poses)?.into_bound_py_any(py),
+    }
+}
+
+/// The named form, or that of a file's extension.
+pub(crate) fn form(to: Option<&str>, path: Option<&Path>) -> PyResult<ModelFormat> {
+    if let Some(word) = to {
+        return chosen("to", word, &[("urdf", ModelFormat::Urdf), ("toml", ModelFormat::Toml)]);
+    }
+    path.and_then(ModelFormat::of_path).ok_or_else(|| {
+        argument(
+            "to",
+            match path {
+                Some(path) => format!(
+                    "found no form in the name `{}`, expected .urdf or .toml, or to=\"urdf\" or \"toml\"",
+                    path.display()
+                ),
+                None => "found none, expected the form to write: \"urdf\" or \"toml\"".to_owned(),
+            },
+        )
+    })
+}
+
+impl<'a, 'py> Argument<'a, 'py> for &'a Robot {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let expected = "a poecal.Robot; poecal.Robot.read reads one from a file";
+        value.cast::<Robot>().map(Bound::get).map_err(|_| unexpected(name, value, expected))
+    }
 }

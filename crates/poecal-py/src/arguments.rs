@@ -1,0 +1,195 @@
+//! Arguments of Python functions: each is refused by one sentence that names it, says what was found and what was expected.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::path::PathBuf;
+
+use poecal::text::visible;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
+
+use crate::errors::argument;
+
+/// Longest text that a message shows of what was found.
+const SHOWN: usize = 60;
+
+/// What an argument can be read as.
+pub(crate) trait Argument<'a, 'py>: Sized {
+    /// The argument `name`.
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self>;
+}
+
+/// A function for each name of an argument, for `#[pyo3(from_py_with = …)]`, which tells no names.
+macro_rules! named {
+    ($($name:ident)*) => { $(
+        pub(crate) fn $name<'a, 'py, T: Argument<'a, 'py>>(value: &'a Bound<'py, PyAny>) -> PyResult<T> {
+            T::of(value, stringify!($name))
+        }
+    )* };
+}
+
+named! {
+    actual angle_unit angular_first base base_link columns convention count error_position_mm error_rotation_deg experiment fit_where folder
+    force formulation frame frames held_out held_out_count ids ignore_sets instruments kind kinds length_unit level measure measurements method
+    model name names noise_position_mm noise_rotation_deg nominal offset out parts path paths progress refit_frame refit_tool report residual
+    residuals robot robust seed sets sigma_position_mm sigma_rotation_deg starts strict target targets text tip tip_link to tolerance_deg_mm
+    trials validate with_uncertainty
+}
+
+/// The error for an argument that is something else than expected.
+pub(crate) fn unexpected(name: &str, value: &Bound<'_, PyAny>, expected: impl Display) -> PyErr {
+    argument(name, format!("found {}, expected {expected}", found(value)))
+}
+
+/// What a value is, in words.
+pub(crate) fn found(value: &Bound<'_, PyAny>) -> String {
+    let type_name =
+        || value.get_type().name().map_or_else(|_| "something".to_owned(), |name| name.to_string());
+    if value.is_none() {
+        return "None".to_owned();
+    }
+    if let Ok(text) = value.cast::<PyString>() {
+        return format!("the text `{}`", shortened(&text.to_string_lossy()));
+    }
+    let is_scalar = || value.getattr("ndim").and_then(|it| it.extract::<usize>()).is_ok_and(|ndim| ndim == 0);
+    if value.is_instance_of::<PyInt>() || value.is_instance_of::<PyFloat>() || is_scalar() {
+        return value.str().map_or_else(|_| type_name(), |text| shortened(&text.to_string_lossy()));
+    }
+    type_name()
+}
+
+/// A text on one line, without its end if it is long.
+pub(crate) fn shortened(text: &str) -> String {
+    let line = text.trim().lines().next().unwrap_or_default();
+    let begin: String = line.chars().take(SHOWN).collect();
+    let mark = if begin.len() < text.trim().len() { "…" } else { "" };
+    format!("{}{mark}", visible(&begin))
+}
+
+/// Whether a text is that of a file, and not the path of one.
+pub(crate) fn is_content(text: &str) -> bool {
+    let text = text.trim_start_matches('\u{feff}').trim();
+    text.contains('\n') || (text.starts_with('<') && text.contains('>')) || text.starts_with("{\"")
+}
+
+macro_rules! whole_numbers {
+    ($($kind:ty)*) => { $(
+        impl<'a, 'py> Argument<'a, 'py> for $kind {
+            fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+                let expected = format!("a whole number from 0 to {}", <$kind>::MAX);
+                value.extract().map_err(|_| unexpected(name, value, expected))
+            }
+        }
+    )* };
+}
+
+whole_numbers! { u32 u64 usize }
+
+impl<'a, 'py> Argument<'a, 'py> for f64 {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        value.extract().map_err(|_| unexpected(name, value, "a number"))
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for bool {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        value.extract().map_err(|_| unexpected(name, value, "True or False"))
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for &'a str {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let text = value.cast::<PyString>().map_err(|_| unexpected(name, value, "a text"))?;
+        text.to_str().map_err(|_| unexpected(name, value, "a text of Unicode characters"))
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for String {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        <&str>::of(value, name).map(str::to_owned)
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for PathBuf {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let path: PathBuf =
+            value.extract().map_err(|_| unexpected(name, value, "a path: a text, or an os.PathLike"))?;
+        if path.as_os_str().is_empty() {
+            return Err(argument(name, "found an empty text, expected a path"));
+        }
+        if path.to_str().is_some_and(is_content) {
+            let expected =
+                "the path of a file that holds it; a robot model's text is read by poecal.Robot.from_text";
+            return Err(unexpected(name, value, expected));
+        }
+        Ok(path)
+    }
+}
+
+impl<'a, 'py, T: Argument<'a, 'py>> Argument<'a, 'py> for Option<T> {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if value.is_none() { Ok(None) } else { T::of(value, name).map(Some) }
+    }
+}
+
+impl<'a, 'py, T: for<'b> Argument<'b, 'py>> Argument<'a, 'py> for Vec<T> {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let entries: Vec<Bound<'py, PyAny>> =
+            value.extract().map_err(|_| unexpected(name, value, "a list"))?;
+        let entry = |(at, entry): (usize, &Bound<'py, PyAny>)| T::of(entry, &format!("{name}[{at}]"));
+        entries.iter().enumerate().map(entry).collect()
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for (f64, f64) {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if value.len().is_ok_and(|length| length != 2) || value.try_iter().is_err() {
+            return Err(unexpected(name, value, "two numbers"));
+        }
+        match Vec::<f64>::of(value, name)?.as_slice() {
+            [first, second] => Ok((*first, *second)),
+            _ => Err(unexpected(name, value, "two numbers")),
+        }
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for BTreeMap<String, f64> {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let expected = "a dict of names and numbers";
+        let entries = value.cast::<PyDict>().map_err(|_| unexpected(name, value, expected))?;
+        let entry = |(key, number): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
+            let key = String::of(&key, &format!("{name}, a key"))?;
+            let number = f64::of(&number, &format!("{name}[\"{key}\"]"))?;
+            Ok((key, number))
+        };
+        entries.iter().map(entry).collect()
+    }
+}
+
+/// A path, or several.
+pub(crate) struct Paths(pub(crate) Vec<PathBuf>);
+
+impl<'a, 'py> Argument<'a, 'py> for Paths {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let is_list = || value.extract::<Vec<Bound<'py, PyAny>>>().is_ok();
+        if !value.is_instance_of::<PyString>() && is_list() {
+            return Vec::of(value, name).map(Paths);
+        }
+        if value.extract::<PathBuf>().is_err() {
+            return Err(unexpected(name, value, "a path, or a list of paths"));
+        }
+        PathBuf::of(value, name).map(|path| Paths(vec![path]))
+    }
+}
+
+/// A function to call.
+pub(crate) struct Function(pub(crate) Py<PyAny>);
+
+impl<'a, 'py> Argument<'a, 'py> for Function {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if value.is_callable() {
+            return Ok(Function(value.clone().unbind()));
+        }
+        Err(unexpected(name, value, "a function of one text"))
+    }
+}

@@ -1,0 +1,144 @@
+//! Contents of measurements: rows, their source, and their pickled state.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use poecal::io::measurements::MeasurementFile;
+use poecal::measurement::Dataset;
+use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::arguments::{Argument, unexpected};
+use crate::errors::{argument, raise};
+use crate::pickle;
+use crate::robot::Robot;
+use crate::rows;
+
+/// Measurements of a robot: in each row a configuration and the measurement of a target. Immutable.
+///
+/// Make them by `Measurements.from_csv`, `from_arrays` or `from_dataframe`. Lengths are in metres, angles in radians. Measurements
+/// compare by value, and can be copied and pickled.
+#[pyclass(frozen, module = "poecal", name = "Measurements")]
+#[derive(Clone)]
+pub(crate) struct Measurements {
+    pub(crate) file: Arc<MeasurementFile>,
+    pub(crate) source: Arc<MeasurementSource>,
+}
+
+/// Source of measurements.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct MeasurementSource {
+    /// File names, or their substitutes.
+    pub(crate) names: Vec<String>,
+    /// SHA-256 of each file that was read.
+    pub(crate) sha256: BTreeMap<String, String>,
+    /// Whether `fit_where` chose the rows to fit.
+    pub(crate) fit_where: bool,
+}
+
+/// Pickled measurements.
+#[derive(Serialize, Deserialize)]
+pub(super) struct MeasurementState {
+    pub(super) data: Dataset,
+    pub(super) warnings: Vec<String>,
+    pub(super) source: MeasurementSource,
+}
+
+impl Measurements {
+    pub(super) fn new(file: MeasurementFile, source: MeasurementSource) -> Self {
+        Measurements { file: Arc::new(file), source: Arc::new(source) }
+    }
+
+    /// Source of rows without a file.
+    pub(crate) fn in_memory(data: Dataset, name: &str) -> Self {
+        let source = MeasurementSource { names: vec![name.to_owned()], ..MeasurementSource::default() };
+        Measurements::new(MeasurementFile { data, ..MeasurementFile::default() }, source)
+    }
+
+    pub(crate) fn data(&self) -> &Dataset {
+        &self.file.data
+    }
+
+    /// Refuses a robot whose readings are not those of the rows.
+    pub(crate) fn check_robot(&self, robot: &Robot) -> PyResult<()> {
+        let expected = robot.model.robot.reading_names();
+        if self.data().reading_names() == expected {
+            return Ok(());
+        }
+        Err(argument(
+            "measurements",
+            format!(
+                "found readings of {}, expected those of robot `{}`: {}",
+                self.data().reading_names().join(", "),
+                robot.model.robot.name,
+                expected.join(", ")
+            ),
+        ))
+    }
+
+    pub(crate) fn of_state(state: &[u8]) -> PyResult<Self> {
+        let MeasurementState { data, warnings, source } = pickle::value(state)?;
+        data.check().map_err(raise)?;
+        let file = MeasurementFile { data, warnings, ..MeasurementFile::default() };
+        Ok(Measurements::new(file, source))
+    }
+
+    /// Some of the rows.
+    pub(super) fn part(&self, rows: &[usize]) -> PyResult<Self> {
+        let file = MeasurementFile {
+            data: rows::part(self.data(), rows)?,
+            warnings: self.file.warnings.clone(),
+            ..MeasurementFile::default()
+        };
+        Ok(Measurements { file: Arc::new(file), source: Arc::clone(&self.source) })
+    }
+
+    /// The rows of all parts.
+    pub(super) fn joined(parts: &[&Self]) -> PyResult<Self> {
+        let data: Vec<&Dataset> = parts.iter().map(|part| part.data()).collect();
+        let (mut source, mut warnings) = (MeasurementSource::default(), Vec::new());
+        let add = |known: &mut Vec<String>, more: &[String]| {
+            more.iter().for_each(|it| {
+                if !known.contains(it) {
+                    known.push(it.clone())
+                }
+            });
+        };
+        for part in parts {
+            add(&mut source.names, &part.source.names);
+            add(&mut warnings, &part.file.warnings);
+            source.sha256.extend(part.source.sha256.clone());
+            source.fit_where |= part.source.fit_where;
+        }
+        let file = MeasurementFile { data: rows::joined(&data)?, warnings, ..MeasurementFile::default() };
+        Ok(Measurements::new(file, source))
+    }
+
+    pub(super) fn words(&self) -> String {
+        let data = self.data();
+        let poses = data.observations.iter().filter(|row| row.measurement.sees_orientation()).count();
+        let points = data.len() - poses;
+        let targets: Vec<&str> = data.targets.iter().flatten().map(String::as_str).collect();
+        let of = if targets.is_empty() { "the tip".to_owned() } else { targets.join(", ") };
+        let counted = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
+        let kinds = [(poses, "pose"), (points, "point")].into_iter().filter(|(count, _)| *count > 0);
+        let kinds: Vec<String> = kinds.map(|(count, one)| counted(count, one)).collect();
+        match kinds.as_slice() {
+            [] => counted(0, "row"),
+            kinds => format!("{}: {} of {of}", counted(data.len(), "row"), kinds.join(" and ")),
+        }
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for &'a Measurements {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let expected = "poecal.Measurements, as of Measurements.from_csv, from_arrays or from_dataframe";
+        value.cast::<Measurements>().map(Bound::get).map_err(|_| unexpected(name, value, expected))
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for Measurements {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        <&Measurements>::of(value, name).cloned()
+    }
+}

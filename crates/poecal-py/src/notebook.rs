@@ -1,0 +1,79 @@
+//! How objects show themselves in notebooks, as HTML.
+
+use maud::{Markup, html};
+use poecal::io::calibration_file::CalibrationFile;
+use poecal::robot::{Joint, JointKind, Robot};
+use poecal::text::visible_markup;
+
+/// A robot's joints.
+pub(crate) fn robot(robot: &Robot, words: &str) -> String {
+    let ends = |joint: &Joint| {
+        let (factor, unit) = match joint.kind {
+            JointKind::Revolute => (1f64.to_degrees(), "°"),
+            JointKind::Prismatic => (1e3, " mm"),
+        };
+        let ends = [joint.limits.map(|limits| limits.lower), joint.limits.map(|limits| limits.upper)];
+        ends.map(|end| end.map_or("none".to_owned(), |end| format!("{:.1}{unit}", end * factor)))
+    };
+    visible_markup(html! {
+        div {
+            p { (words) }
+            table {
+                tr { @for name in ["joint", "kind", "lower", "upper", "direction"] { th { (name) } } }
+                @for joint in &robot.joints {
+                    @let [x, y, z]: [f64; 3] = joint.screw.direction().into();
+                    tr {
+                        td { (joint.name) }
+                        td { (joint.kind.word()) }
+                        @for end in ends(joint) { td { (end) } }
+                        td { (format_args!("({x:.4}, {y:.4}, {z:.4})")) }
+                    }
+                }
+            }
+        }
+    })
+}
+
+/// Measurements and the names of their sources.
+pub(crate) fn measurements(words: &str, names: &[String], warnings: &[String]) -> String {
+    visible_markup(html! { div { p { (words) ", from " (names.join(", ")) } (warned(warnings)) } })
+}
+
+/// Findings as the program prints them.
+pub(crate) fn findings(text: &str, warnings: &[String]) -> String {
+    visible_markup(html! { div { pre { (text) } (warned(warnings)) } })
+}
+
+/// A calibration's verdict and errors.
+pub(crate) fn calibration(file: &CalibrationFile, warnings: &[String]) -> String {
+    let fitted = ("fitted", &file.accuracy.training);
+    let sets = std::iter::once(fitted).chain(file.accuracy.held_out.iter().map(|set| ("held out", set)));
+    visible_markup(html! {
+        div {
+            @if let Some(verdict) = &file.verdict {
+                p { (file.robot.name) ": " (verdict.level.words()) " (" (verdict.reasons.join("; ")) ")" }
+            }
+            table {
+                tr { @for name in ["error (RMS)", "rows", "nominal", "registered", "calibrated"] { th { (name) } } }
+                @for (name, set) in sets {
+                    @let models = [&set.nominal, &set.registered, &set.calibrated];
+                    tr {
+                        td { "position, " (name) } td { (set.count) }
+                        @for model in models { td { (format_args!("{:.4} mm", model.position_mm.rms)) } }
+                    }
+                    @if let [Some(a), Some(b), Some(c)] = models.map(|model| model.rotation_deg) {
+                        tr {
+                            td { "rotation, " (name) } td { (set.count) }
+                            @for it in [a, b, c] { td { (format_args!("{:.4}°", it.rms)) } }
+                        }
+                    }
+                }
+            }
+            (warned(warnings))
+        }
+    })
+}
+
+fn warned(warnings: &[String]) -> Markup {
+    html! { @for warning in warnings { p { "warning: " (warning) } } }
+}
