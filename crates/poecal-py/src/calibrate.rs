@@ -9,6 +9,7 @@ use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
 use poecal::measurement::Dataset;
 use poecal::robot::Tolerance;
+use poecal::{Error, ErrorKind};
 use poecal_lou2009::{Formulation, Method, Residual, formulated};
 use pyo3::prelude::*;
 
@@ -159,6 +160,10 @@ fn rows<'a>(
     let mut data = Cow::Borrowed(measurements.data());
     if let Some(other) = validate {
         other.check_robot(robot)?;
+        if other.data().observations.is_empty() {
+            let message = "validate: found no rows, expected at least one that judges the fit";
+            return Err(raise(Error::new(ErrorKind::Option, message)));
+        }
         refuse_fitted(&other.data().files, &measurements.data().files).map_err(raise)?;
         data.to_mut().judged_by(other.data()).map_err(raise)?;
     }
