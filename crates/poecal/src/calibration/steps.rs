@@ -132,7 +132,7 @@ impl<'a> Prepared<'a> {
             .as_ref()
             .map(FramesApart::moved)
             .or_else(|| self.moved(&models.calibrated, &fitted, robustness.loss.is_some()));
-        let input = self.input_doubts(&accuracy, moved.as_ref());
+        let input = self.input_doubts(&accuracy, &robustness, moved.as_ref());
         let lag_one = trust.uncertainty.as_ref().and_then(|it| it.discrepancy.lag_one);
         let noise_doubts = noise_doubts(&remainder, lag_one);
         let grave = diagnosis.iter().filter(|it| it.is_of_input() && it.kind != DiagnosisKind::JointZero);
@@ -306,13 +306,23 @@ impl<'a> Prepared<'a> {
         Some(predicted.check(self.robot, self.data, &self.packed, &self.held_out_rows, &errors))
     }
 
-    /// Doubts about the input.
-    fn input_doubts(&self, accuracy: &Accuracy, moved: Option<&Moved>) -> Vec<String> {
+    /// Doubts about the input, by the rows that are not suspected.
+    fn input_doubts(
+        &self,
+        accuracy: &Accuracy,
+        robustness: &Robustness,
+        moved: Option<&Moved>,
+    ) -> Vec<String> {
         // Different device frames make any model misfit.
         if moved.is_some_and(Moved::is_of_frames) {
             return Vec::new();
         }
-        doubts(self.data, &self.fit_rows, &accuracy.training.registered, self.options.frame)
+        match &robustness.training_rest {
+            Some(rest) if !robustness.suspects_many() => {
+                doubts(self.data, &robustness.rest(&self.fit_rows), &rest.registered, self.options.frame)
+            }
+            _ => doubts(self.data, &self.fit_rows, &accuracy.training.registered, self.options.frame),
+        }
     }
 
     /// Different device frames, if a fit with one has larger errors than a robot's own.

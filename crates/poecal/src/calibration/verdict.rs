@@ -67,8 +67,6 @@ const TOO_LARGE: f64 = 1e-2;
 const REDUNDANCY: f64 = 1.5;
 /// Residuals per unknown below which a fit cannot be tested.
 const TESTED: f64 = 3.0;
-/// Share of suspected rows above which the whole session is doubtful.
-const SUSPECTED: f64 = 0.2;
 /// Distance of an axis from nominal, as a share of the reach and as an angle, that no robot of that model has.
 const ANOTHER_SHARE: f64 = 0.1;
 const ANOTHER_RAD: f64 = 0.35;
@@ -189,8 +187,8 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     let trust = grounds.trust;
     let absurd = grounds.noise.iter().filter(|doubt| doubt.is_absurd);
     let mut reasons: Vec<String> = absurd.map(|doubt| doubt.statement.clone()).collect();
-    let suspects = grounds.robustness.suspects().count();
-    if suspects as f64 > SUSPECTED * grounds.robustness.rows.len() as f64 {
+    if grounds.robustness.suspects_many() {
+        let suspects = grounds.robustness.suspects().count();
         reasons.push(format!(
             "{suspects} of {} rows {}",
             grounds.robustness.rows.len(),

@@ -72,6 +72,25 @@ fn rows_that_are_known_to_be_wrong_do_not_decide() {
 }
 
 #[test]
+fn a_few_rows_of_another_form_do_not_doubt_the_input() {
+    for seed in some([71, 72, 73]) {
+        let made = session(80, seed);
+        // As a board whose pose is mistaken for its mirror image: every sixteenth position is on the other side of the device.
+        let flipped = |row: usize| match row % 16 {
+            0 => -2.0 * made.data.observations[row].measurement.pose().translation,
+            _ => Vector3::zeros(),
+        };
+        let found = fit(&made.nominal, &changed(&made, flipped, |_, _| {}));
+        println!("{:?}", found.verdict);
+        assert_eq!(found.robustness.suspects().collect::<Vec<_>>(), [0, 16, 32, 48, 64]);
+        assert_eq!(found.verdict.level, Level::Good);
+        // Without them it would be another robot.
+        let error_mm = found.accuracy.training.registered.position_mm.rms;
+        assert!(error_mm > 0.15 * 1e3 * made.data.spread_m(&made.data.all_rows()), "{error_mm}");
+    }
+}
+
+#[test]
 fn a_device_that_was_moved_is_named_with_its_place() {
     for (seed, from) in some([(1, 40), (2, 25), (3, 60)]) {
         let made = session(80, seed);

@@ -78,6 +78,11 @@ impl Robustness {
         rows.filter_map(|(row, _)| u32::try_from(row).ok())
     }
 
+    /// Whether so many rows are suspected that the whole session is doubtful.
+    pub(in crate::calibration) fn suspects_many(&self) -> bool {
+        self.suspects().count() as f64 > MANY * self.rows.len() as f64
+    }
+
     /// These rows without the suspected ones.
     #[must_use]
     pub fn rest(&self, rows: &[u32]) -> Vec<u32> {
@@ -110,6 +115,9 @@ impl Robustness {
         ))
     }
 }
+
+/// Share of suspected rows above which the whole session is doubtful.
+const MANY: f64 = 0.2;
 
 /// Bounds of a residual's length, by the number of its components.
 pub(super) struct Bounds([f64; 6]);
