@@ -56,6 +56,8 @@ def staged(markdown, source, page, there):
     """A page's Markdown as the site has it."""
     # What follows a language is for other readers, as in rust,no_run.
     markdown = re.sub(r"^( *```\w+),\S*$", r"\1", markdown, flags=re.M)
+    # Things to tick off, which need no extension so.
+    markdown = re.sub(r"^( *)- \[ \] ", r"\1- ☐ ", markdown, flags=re.M)
     markdown = COMMENT.sub(lambda match: (match["text"] if match["site"] else "") if match["comment"] else match[0], markdown)
     markdown = LINK.sub(lambda match: link(match, source, page, there), markdown)
     glyphs = {}
