@@ -15,7 +15,8 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-TEXTS = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY.txt"]
+# The page of the program's crate: its links lead somewhere from anywhere.
+TEXTS = ["crates/poecal-cli/README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY.txt"]
 # Shells, each with the name that it looks for.
 SHELLS = {"bash": "poecal.bash", "elvish": "poecal.elv", "fish": "poecal.fish", "powershell": "poecal.ps1", "zsh": "_poecal"}
 

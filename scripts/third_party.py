@@ -18,6 +18,16 @@ OUT = ROOT / "THIRD-PARTY.txt"
 PROGRAMS = ("poecal-cli", "poecal-py")
 TEXTS = re.compile(r"(?i)^(licen[cs]e|copying|notice|unlicense)")
 MIT = "Permission is hereby granted, free of charge"
+# What every build contains beside crates, and what static ones do.
+TOOLCHAIN = """\
+The standard library of Rust, from https://github.com/rust-lang/rust, under the MIT licence (below) or the Apache License 2.0, at your
+choice; parts of it under other permissive licences, which its distribution names.
+
+Programs for targets *-linux-musl, such as the archives of a release, contain the C library musl, https://musl.libc.org, under the MIT
+licence: Copyright (c) 2005-2020 Rich Felker, et al. Programs that scripts/static-program builds for targets *-linux-gnu, among them the
+one of the container image, contain the GNU C library, https://www.gnu.org/software/libc, under the GNU Lesser General Public License,
+version 2.1 or later; who hands such a program on must let it be linked with another version of that library, as the sources of poecal do.
+"""
 HEAD = """\
 Software of others in poecal's program and Python package, each part under its own licence. The scripts that reports contain carry
 theirs with them. Written by scripts/third_party.py.
@@ -58,7 +68,8 @@ def written():
     for package in shipped():
         for text in texts(package) or [standard(package)]:
             of_text.setdefault(text, []).append(package)
-    parts = [HEAD]
+    mit = (ROOT / "LICENSE-MIT").read_text(encoding="utf-8").split("\n\n", 2)[2].strip()
+    parts = [HEAD, f"{'=' * 80}\n{TOOLCHAIN}{'-' * 80}\n\n{mit}\n"]
     for text, packages in of_text.items():
         names = [f"{it['name']} {it['version']} ({it['license']})" for it in packages]
         parts.append(f"{'=' * 80}\n" + "\n".join(names) + f"\n{'-' * 80}\n\n{text}\n")

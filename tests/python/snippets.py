@@ -87,7 +87,7 @@ class Page:
         (tools / "poecal").symlink_to(Path(program()).resolve())
         # Pages name files from the repository's folder.
         (folder / "examples").symlink_to(ROOT / "examples")
-        self.environment = {**os.environ, "PATH": f"{tools}{os.pathsep}{os.environ['PATH']}", "NO_COLOR": "1"}
+        self.environment = {**os.environ, "PATH": f"{tools}{os.pathsep}{os.environ['PATH']}", "NO_COLOR": "1", "LC_ALL": "C"}
 
     def run(self) -> None:
         for block in blocks(self.path):

@@ -9,7 +9,7 @@ from snippets import Counts, Page, blocks, matches, plain
 
 PAGES = sorted(
     path
-    for pattern in ["*.md", "docs/*.md", "docs/lou2009/*.md", "docs/howto/*.md", "examples/**/*.md", "validation/*.md", "benches/**/*.md"]
+    for pattern in ["*.md", "docs/*.md", "docs/lou2009/*.md", "docs/howto/*.md", "crates/*/README.md", "examples/**/*.md", "validation/*.md", "benches/**/*.md"]
     for path in ROOT.glob(pattern)
 )
 COUNTS = Counts()

@@ -83,6 +83,8 @@ def works_in_python(programs: Path, folder: Path) -> None:
 
 def test_pip_installs_the_wheel(empty, tmp_path):
     found = list((TARGET / "wheels").glob("poecal-*.whl"))
+    if not found and os.environ.get("CI") != "true":
+        pytest.skip(f"found no wheel in {TARGET / 'wheels'}, where ./test builds one")
     assert len(found) == 1, f"found {found}, expected the wheel that ./test builds into {TARGET / 'wheels'}"
     names = zipfile.ZipFile(found[0]).namelist()
     licences = sorted(name.split("/licenses/")[1] for name in names if "/licenses/" in name)
@@ -116,7 +118,7 @@ def test_cargo_installs_from_the_packaged_crates(empty, tmp_path):
         text=True,
     )
     assert said.returncode == 0, said.stderr
-    warnings = [line for line in said.stderr.splitlines() if line.startswith("warning")]
+    warnings = [line for line in said.stderr.splitlines() if line.startswith("warning") and "already exists on" not in line]
     assert warnings == ["warning: aborting upload due to dry run"] * len(CRATES)
     names = [word for crate in CRATES for word in ("--package", crate)]
     run("cargo", "package", *names, "--no-verify", "--locked", "--allow-dirty", "--target-dir", tmp_path / "made", cwd=ROOT)

@@ -110,3 +110,15 @@ def test_links_that_work_are_not_complained_of():
         "docs/c.md": '<a id="at"></a>',
     }
     assert complaints(pages, {*pages, "web/src/x.js"}) == ([], 7)
+
+
+def test_pages_of_packages_link_to_where_they_are_not():
+    """Registries and archives show these pages without the repository beside them."""
+    pages = sorted(ROOT.glob("crates/*/README.md"))
+    assert len(pages) >= 4
+    for page in pages:
+        targets = [target for target, _ in links(page.read_text(encoding="utf-8"))]
+        assert targets and all(target.startswith("https://") for target in targets), page
+        # The files that they name are there.
+        named = [target.split("/blob/main/")[1] for target in targets if "/blob/main/" in target]
+        assert all((ROOT / name).exists() for name in named), page

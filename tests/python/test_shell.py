@@ -1,5 +1,6 @@
 """What a shell takes from the program: completions and manual pages."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -18,7 +19,7 @@ def test_completions_name_every_command_and_are_read_by_their_shell(shell, tmp_p
     text = script.read_text()
     assert all(name in text for name in COMMANDS) and "sigma-position" in text
     if shell in ("bash", "fish", "zsh") and shutil.which(shell):
-        read = subprocess.run([shell, "-n", script], capture_output=True, text=True)
+        read = subprocess.run([shell, "-n", script], capture_output=True, text=True, env={**os.environ, "LC_ALL": "C"})
         assert (read.returncode, read.stderr) == (0, "")
 
 
@@ -51,6 +52,7 @@ def test_the_manual_page_has_every_option(command, tmp_path):
     page.write_text(poecal("man", *filter(None, [command])))
     text = page.read_text()
     assert f'.TH poecal{f"-{command}" if command else ""} 1' in text
+    assert f'"{poecal("--version").strip()}"' in text.splitlines()[2]
     help_text = poecal(*filter(None, [command]), "--help")
     options = set(re.findall(r"^ +(?:-\w, )?--([a-z0-9-]+)", help_text, re.M))
     assert options >= {"help", "quiet"}

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from program import ROOT
 from snippets import blocks
@@ -61,6 +62,8 @@ def pyright() -> str:
     """The program, in PATH, or as npm installs it in web/."""
     in_web = ROOT / "web/node_modules/.bin/pyright"
     found = shutil.which("pyright") or (str(in_web) if in_web.exists() else shutil.which("basedpyright"))
+    if not found and os.environ.get("CI") == "true":
+        pytest.fail("found no pyright, which ./test installs into web/node_modules")
     return found or pytest.skip("found no pyright, neither in PATH nor in web/node_modules")
 
 
@@ -80,7 +83,9 @@ def test_what_pages_show_is_well_typed(page, tmp_path):
     text = "\n".join(block.text for block in blocks(ROOT / page) if block.language == "python")
     assert "import poecal" in text
     (tmp_path / "page.py").write_text(text)
-    mypy(["mypy", "--strict", "page.py"], tmp_path)
+    # numpy.ma has types from NumPy 2.3 on, which Python 3.10 does not get.
+    older = ["--allow-untyped-calls"] if np.lib.NumpyVersion(np.__version__) < "2.3.0" else []
+    mypy(["mypy", "--strict", *older, "page.py"], tmp_path)
 
 
 def test_pyright_agrees(tmp_path):

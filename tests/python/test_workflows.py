@@ -53,3 +53,8 @@ def test_the_version_is_the_same_everywhere():
     assert subprocess.run(check, capture_output=True, text=True).stdout == "version: named alike everywhere\n"
     other = subprocess.run([*check, "v99.0.0"], capture_output=True, text=True)
     assert other.returncode == 1 and "the tag: found v99.0.0, expected v" in other.stdout
+
+
+def test_scripts_have_the_line_ends_that_they_are_run_with():
+    asked = subprocess.run(["git", "check-attr", "eol", "--", "scripts/static-program"], cwd=ROOT, capture_output=True, text=True)
+    assert asked.stdout == "scripts/static-program: eol: lf\n"

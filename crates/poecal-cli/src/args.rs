@@ -35,7 +35,7 @@ const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 the
                           worse than --require asks for, or they could not be printed; 2 refused: wrong input or usage, nothing was \
                           written; 3 no result at all";
 
-/// Kinematic calibration of serial robots by the product of exponentials.
+/// Calibrates robot arms: URDF and tracker, CMM or camera measurements in, a URDF that matches the real arm out.
 #[derive(Debug, Parser)]
 #[command(name = "poecal", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {

@@ -8,6 +8,9 @@ use crate::DONE;
 use crate::args::{Arguments, Man};
 use crate::console::Console;
 
+/// What the pages belong to.
+const SOURCE: &str = concat!("poecal ", env!("CARGO_PKG_VERSION"));
+
 pub(crate) fn man(arguments: &Man, console: &Console) -> Result<u8> {
     let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();
@@ -19,7 +22,7 @@ pub(crate) fn man(arguments: &Man, console: &Console) -> Result<u8> {
         }
     };
     let mut page = Vec::new();
-    let written = clap_mangen::Man::new(command).render(&mut page);
+    let written = clap_mangen::Man::new(command).source(SOURCE).render(&mut page);
     written.map_err(|error| {
         Error::new(ErrorKind::File, format!("the manual page cannot be written ({error})"))
     })?;

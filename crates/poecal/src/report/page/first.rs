@@ -48,8 +48,8 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                     }
                 }
                 p.note {
-                    b { "Nominal" } ": axes of the model; tool and measuring device are fitted. " b { "Calibrated" }
-                    ": the axes fitted too. The gain of the calibration is the difference."
+                    b { "Nominal, tool and device fitted" } " (registered): the axes are the model's. " b { "Calibrated" }
+                    ": the axes are fitted too. The gain of the calibration is the difference."
                 }
                 (facts(&the_facts(file, residuals)))
             }
