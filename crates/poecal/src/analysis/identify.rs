@@ -28,12 +28,12 @@ const UNDETERMINED_EFFECT: f64 = 1.0;
 /// A planned session: measurements and their noise.
 ///
 /// ```
-/// use poecal::{Kind, Session};
-/// let session = Session { kind: Kind::Point, ..Session::default() };
+/// use poecal::{Kind, PlannedSession};
+/// let session = PlannedSession { kind: Kind::Point, ..PlannedSession::default() };
 /// assert!(session.device_free);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Session {
+pub struct PlannedSession {
     /// Kind of the measurements of the tip.
     pub kind: Kind,
     /// Noise of each component.
@@ -42,11 +42,11 @@ pub struct Session {
     pub device_free: bool,
 }
 
-impl Default for Session {
+impl Default for PlannedSession {
     /// Poses with 0.05 mm and 0.01°, device frame unknown.
     fn default() -> Self {
         let noise = Noise { position_m: 5e-5, rotation_rad: 0.01_f64.to_radians() };
-        Session { kind: Kind::Pose, noise, device_free: true }
+        PlannedSession { kind: Kind::Pose, noise, device_free: true }
     }
 }
 
@@ -67,9 +67,9 @@ pub struct ExpectedError {
 /// Expected result of measuring some configurations.
 ///
 /// ```
-/// use poecal::{Kind, Session, Simulation, identify, simulate::elbow};
+/// use poecal::{Kind, PlannedSession, Simulation, identify, simulate::elbow};
 /// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
-/// let foresight = identify(&made.nominal, made.data.all_readings(), &Session::default())?;
+/// let foresight = identify(&made.nominal, made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((foresight.count, foresight.identifiability.rank), (40, 30));
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -95,15 +95,15 @@ pub struct Foresight {
 /// [`ErrorKind::Problem`] if the robot has more unknowns than one fit allows.
 ///
 /// ```
-/// use poecal::analysis::{Session, identify};
+/// use poecal::analysis::{PlannedSession, identify};
 /// use poecal::simulate::{Kind, Simulation, seven_axis};
 /// let made = Simulation { count: 40, ..Simulation::default() }.run(&seven_axis(), Kind::Pose)?;
-/// let found = identify(&seven_axis(), made.data.all_readings(), &Session::default())?;
+/// let found = identify(&seven_axis(), made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((found.identifiability.rank, found.identifiability.parameters), (34, 34));
 /// assert!(found.expected.mean_m.is_some_and(|mean| mean < 2e-4));
 /// # Ok::<(), poecal::Error>(())
 /// ```
-pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Foresight> {
+pub fn identify(robot: &Robot, readings: &[f64], session: &PlannedSession) -> Result<Foresight> {
     let unknowns = 4 * robot.joints.len() + 6;
     if unknowns > MOST_UNKNOWNS {
         let message = format!(
@@ -153,7 +153,7 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Fo
 }
 
 /// The measurements that the nominal model predicts.
-fn predicted_data(robot: &Robot, readings: &[f64], session: &Session) -> Result<Dataset> {
+fn predicted_data(robot: &Robot, readings: &[f64], session: &PlannedSession) -> Result<Dataset> {
     let mut data = Dataset::new(robot.reading_names());
     let width = data.reading_names().len();
     if readings.is_empty() || !readings.len().is_multiple_of(width.max(1)) {
