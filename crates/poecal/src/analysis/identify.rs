@@ -9,7 +9,7 @@ use super::identifiability::{Identifiability, identifiability};
 use super::setup::Setup;
 use super::spectrum::PLAUSIBLE;
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Chain, Linkage, Packed, delivered, radian_m};
+use crate::estimate::{Chain, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
@@ -29,8 +29,8 @@ const UNDETERMINED_EFFECT: f64 = 1.0;
 ///
 /// ```
 /// use poecal::{Kind, PlannedSession};
-/// let session = PlannedSession { kind: Kind::Point, ..PlannedSession::default() };
-/// assert!(session.device_free);
+/// let planned = PlannedSession { kind: Kind::Point, ..PlannedSession::default() };
+/// assert!(planned.device_free);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedSession {
@@ -103,7 +103,7 @@ pub struct Foresight {
 /// assert!(found.expected.mean_m.is_some_and(|mean| mean < 2e-4));
 /// # Ok::<(), poecal::Error>(())
 /// ```
-pub fn identify(robot: &Robot, readings: &[f64], session: &PlannedSession) -> Result<Foresight> {
+pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<Foresight> {
     let unknowns = 4 * robot.joints.len() + 6;
     if unknowns > MOST_UNKNOWNS {
         let message = format!(
@@ -113,29 +113,20 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &PlannedSession) -> Re
         );
         return Err(Error::new(ErrorKind::Problem, message));
     }
-    let data = predicted_data(robot, readings, session)?;
+    let data = predicted_data(robot, readings, planned)?;
     let packed = Packed::of(robot, &data);
     let rows: Vec<u32> = data.all_rows();
-    let length_m = radian_m(robot, &packed);
+    let session = Session::new(robot, &data, &packed, planned.device_free);
     let mut estimate = delivered(robot, &data);
-    estimate.recentre(&data, &packed, &rows);
+    estimate.recentre(&session, &rows);
     let mut free = screw_axes(&estimate.kinds);
-    free.push(match session.kind {
+    free.push(match planned.kind {
         Kind::Point => Parameter::TargetPlace(TargetPlace { target: 0 }),
         Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame { target: 0 }),
     });
-    let problem = Problem::new(&data, &packed, rows.clone(), free, session.noise, length_m);
-    let setup = Setup {
-        robot,
-        data: &data,
-        packed: &packed,
-        rows: &rows,
-        estimate: &estimate,
-        layout: problem.layout(),
-        noise: session.noise,
-        length_m,
-        device_free: session.device_free,
-    };
+    let problem = Problem::new(session, rows.clone(), free, planned.noise);
+    let setup =
+        Setup { session, rows: &rows, estimate: &estimate, layout: problem.layout(), noise: planned.noise };
     let gram = problem.normal(&estimate).gram;
     if !gram.iter().all(|value| value.is_finite()) {
         let message = "found joint readings beyond what can be computed with, expected radians and metres: check their units";
@@ -145,15 +136,15 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &PlannedSession) -> Re
     let expected = expected(&setup, &identifiability);
     Ok(Foresight {
         count: data.len(),
-        coverage: coverage(robot, &packed, &rows),
+        coverage: coverage(&session, &rows),
         identifiability,
         expected,
-        length_m,
+        length_m: session.length_m,
     })
 }
 
 /// The measurements that the nominal model predicts.
-fn predicted_data(robot: &Robot, readings: &[f64], session: &PlannedSession) -> Result<Dataset> {
+fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<Dataset> {
     let mut data = Dataset::new(robot.reading_names());
     let width = data.reading_names().len();
     if readings.is_empty() || !readings.len().is_multiple_of(width.max(1)) {
@@ -166,7 +157,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], session: &PlannedSession) -> 
     }
     for (row, readings) in readings.chunks_exact(width).enumerate() {
         let pose = robot.forward_kinematics(readings);
-        let as_pose = match session.kind {
+        let as_pose = match planned.kind {
             Kind::Pose => true,
             Kind::Point => false,
             Kind::Mixed => row.is_multiple_of(2),
@@ -183,7 +174,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], session: &PlannedSession) -> 
 
 /// Expected error of predicted positions in random configurations: theory.md §7 (36c).
 fn expected(setup: &Setup<'_>, found: &Identifiability) -> ExpectedError {
-    let robot = setup.robot;
+    let robot = setup.session.robot;
     let mut generator = ChaCha8Rng::seed_from_u64(SEED);
     let readings: Vec<f64> =
         (0..CONFIGURATIONS).flat_map(|_| random_configuration(robot, &mut generator)).collect();
@@ -192,7 +183,7 @@ fn expected(setup: &Setup<'_>, found: &Identifiability) -> ExpectedError {
     estimate.device_from_base = Pose::identity();
     let linkage = Linkage::new(&estimate);
     let spectrum = &found.spectrum;
-    let plausible_m = PLAUSIBLE * setup.length_m;
+    let plausible_m = PLAUSIBLE * setup.session.length_m;
     let mut chain = Chain::default();
     let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); setup.layout.dim()];
     let mut sigmas_m = Vec::new();
