@@ -118,9 +118,8 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     }
     let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
     let nominal = (frame_is_common && subject.refit_tool).then(|| {
-        model_accuracy(
-            &judged_rows(subject, subject.nominal, data, &Packed::of(subject.nominal, data)).errors,
-        )
+        let packed = Packed::of(subject.nominal, data);
+        model_accuracy(&judged_rows(subject, subject.nominal, data, &packed).errors)
     });
     let packed = Packed::of(subject.calibrated, data);
     let rows = judged_rows(subject, subject.calibrated, data, &packed);

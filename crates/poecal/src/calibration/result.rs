@@ -138,8 +138,7 @@ impl Calibration {
             DeviceFrameKnowledge::Base => self.models.nominal.clone(),
             DeviceFrameKnowledge::Unknown => self.models.registered.clone(),
         };
-        let tolerance = options.tolerance_in_fit();
-        let prior = tolerance.map(|tolerance| Prior::new(&self.nominal, tolerance, session.device_free));
+        let prior = options.prior(&session);
         let looseness = |prior: &Prior| prior.looseness(&self.models.calibrated);
         let prior = prior.as_ref().map(|prior| (prior, 1.0 / looseness(prior)));
         fit_screws(session, &self.fit_rows, start, self.noise, prior, options).2

@@ -51,9 +51,7 @@ impl<'a> Prepared<'a> {
         let (fit_rows, held_out_rows) = split_rows(data, options)?;
         check_stations(data, [&fit_rows, &held_out_rows], options)?;
         check_count(robot, data, &fit_rows)?;
-        let delivered = delivered(robot, data);
-        let prior =
-            options.tolerance_in_fit().map(|tolerance| Prior::new(robot, tolerance, session.device_free));
+        let (delivered, prior) = (delivered(robot, data), options.prior(&session));
         Ok(Prepared { session, options, delivered, prior, fit_rows, held_out_rows })
     }
 
@@ -89,6 +87,7 @@ impl<'a> Prepared<'a> {
     /// Judges a fit. The calibration keeps the packed joint values of the session.
     pub(super) fn assess(self, packed: Arc<Packed>, registered: Estimate, fit: RobustFit) -> Calibration {
         let RobustFit { fitted, loss, judged } = fit;
+        let Session { robot: nominal, data, length_m, .. } = self.session;
         let kept = if loss.is_some() {
             robust::registrable(&judged.rows, &self.fit_rows)
         } else {
@@ -102,9 +101,7 @@ impl<'a> Prepared<'a> {
         let apart = self.frames_apart(&fitted, &accuracy);
         let diagnosis = match &apart {
             Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
-            None => {
-                self.diagnosis(self.session.data, &models.calibrated, loss.is_some().then_some(&kept[..]))
-            }
+            None => self.diagnosis(data, &models.calibrated, loss.is_some().then_some(&kept[..])),
         };
         let robustness = Robustness::new(loss, judged, [&self.fit_rows, &self.held_out_rows], |rows| {
             set_accuracy(&self.session, rows, &models)
@@ -133,29 +130,29 @@ impl<'a> Prepared<'a> {
             solver: &fitted.report,
             identifiability: &identifiability,
             trust: &trust,
-            robot: self.session.robot,
+            robot: nominal,
             robustness: &robustness,
             rows: self.fit_rows.len(),
             numbers: remainder.numbers,
             has_other_zeros: diagnosis.iter().any(|it| it.kind == DiagnosisKind::JointZero),
             noise: &noise_doubts,
-            reach_m: 3.0 * self.session.length_m,
+            reach_m: 3.0 * length_m,
             mistakes: &mistakes,
         });
         if verdict.level == Level::DoNotUse || diagnosis.iter().any(Diagnosis::is_of_input) {
             // Mistakes in the input are not the fault of a joint.
             trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
         }
-        let frames = self.session.data.frames(&self.fit_rows);
-        let (robot, targets) = place_tip(self.session.robot, self.session.data, &frames, &models.calibrated);
+        let frames = data.frames(&self.fit_rows);
+        let (robot, targets) = place_tip(nominal, data, &frames, &models.calibrated);
         Calibration {
-            nominal: self.session.robot.clone(),
+            nominal: nominal.clone(),
             robot,
             targets,
             frame: self.options.frame,
             formulation: self.options.formulation,
             base_from_device: models.calibrated.device_from_base.inverse(),
-            stations: stations(self.session.data, &models.calibrated),
+            stations: stations(data, &models.calibrated),
             models,
             accuracy,
             solver: fitted.report,
@@ -258,13 +255,11 @@ impl<'a> Prepared<'a> {
         if !self.options.diagnose {
             return Vec::new();
         }
-        let options = forensics::DiagnosisOptions {
-            device_free: self.session.device_free,
-            calibrated: Some(calibrated),
-        };
-        let in_all = || forensics::diagnose(self.session.robot, data, &data.all_rows(), &options);
+        let Session { robot, device_free, .. } = self.session;
+        let options = forensics::DiagnosisOptions { device_free, calibrated: Some(calibrated) };
+        let in_all = || forensics::diagnose(robot, data, &data.all_rows(), &options);
         let Some(believed) = believed else { return in_all() };
-        let mut found = forensics::diagnose(self.session.robot, data, believed, &options);
+        let mut found = forensics::diagnose(robot, data, believed, &options);
         if !found.iter().any(Diagnosis::is_of_input) {
             // Shifted rows or exchanged names may be why the fit rejected rows.
             let known: Vec<DiagnosisKind> = found.iter().map(|it| it.kind).collect();
@@ -293,15 +288,11 @@ impl<'a> Prepared<'a> {
         if moved.is_some_and(Moved::is_of_frames) {
             return Vec::new();
         }
-        match &robustness.training_rest {
-            Some(rest) if !robustness.suspects_many() => doubts(
-                self.session.data,
-                &robustness.rest(&self.fit_rows),
-                &rest.registered,
-                self.options.frame,
-            ),
-            _ => doubts(self.session.data, &self.fit_rows, &accuracy.training.registered, self.options.frame),
-        }
+        let (rows, errors) = match &robustness.training_rest {
+            Some(rest) if !robustness.suspects_many() => (robustness.rest(&self.fit_rows), rest),
+            _ => (self.fit_rows.clone(), &accuracy.training),
+        };
+        doubts(self.session.data, &rows, &errors.registered, self.options.frame)
     }
 
     /// Different device frames, if a fit with one has larger errors than a robot's own.

@@ -5,7 +5,6 @@ use super::super::{CalibrationOptions, delivered, fit_screws};
 use super::{ChangeKind, Moved};
 use crate::estimate::{Estimate, Session, position_rms_m};
 use crate::measurement::{Dataset, Noise};
-use crate::problem::Prior;
 use crate::start::{Registration, register};
 
 /// Most files whose frames are compared, and fewest rows of each.
@@ -166,8 +165,7 @@ impl FrameSearch<'_> {
         let mut start = self.registered(data, self.rows);
         let session = Session { data, ..self.session };
         start.recentre(&session, self.rows);
-        let tolerance = self.options.tolerance_in_fit();
-        let prior = tolerance.map(|tolerance| Prior::new(session.robot, tolerance, session.device_free));
+        let prior = self.options.prior(&session);
         let prior = prior.as_ref().map(|prior| (prior, 1.0));
         let (estimate, ..) = fit_screws(session, self.rows, start, self.noise, prior, self.options);
         let own_m = position_rms_m(&session.errors(self.rows, &estimate));
