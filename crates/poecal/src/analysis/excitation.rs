@@ -135,7 +135,7 @@ impl Excitation {
         };
         let (mut all, mut of_targets) = (BTreeSet::new(), BTreeSet::new());
         for &row in setup.rows {
-            let observation = &setup.session.data.observations[row as usize];
+            let observation = setup.session.observation(row);
             if self.numbers >= unknowns && self.seen[observation.target] > 1 {
                 continue;
             }

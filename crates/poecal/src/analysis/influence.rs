@@ -122,12 +122,8 @@ mod tests {
         free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
         let rows = data.all_rows();
         let noise = Noise { position_m: 1e-3, rotation_rad: 1e-2 };
-        let problem = Problem::new(
-            Session::new(robot, data, &packed, true).with_length(0.5),
-            rows.clone(),
-            free,
-            noise,
-        );
+        let session = Session::new(robot, data, &packed, true).with_length(0.5);
+        let problem = Problem::new(session, rows.clone(), free, noise);
         let normal = problem.normal(&estimate);
         let weights: Vec<f64> = rows.iter().map(|row| [1.0, 0.4, 0.0][*row as usize % 3]).collect();
         let scale = |row: u32, component: usize| 1.0 + f64::from(row % 5) + component as f64;
@@ -184,12 +180,8 @@ mod tests {
             free.push(Parameter::TargetFrame(TargetFrame { target: 1 }));
             let rows = data.all_rows();
             let noise = Noise { position_m: 1e-3, rotation_rad: 1e-2 };
-            let problem = Problem::new(
-                Session::new(robot, &data, &packed, true).with_length(0.5),
-                rows.clone(),
-                free,
-                noise,
-            );
+            let session = Session::new(robot, &data, &packed, true).with_length(0.5);
+            let problem = Problem::new(session, rows.clone(), free, noise);
             let mut expected = Vec::new();
             problem.for_rows(&estimate, &rows, |_, jacobian, residual| {
                 expected.push((jacobian.to_vec(), residual.to_vec()));

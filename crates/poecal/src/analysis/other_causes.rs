@@ -43,30 +43,28 @@ impl Rules<'_> {
     pub(super) fn hidden_by_combination(&self) -> usize {
         let setup = self.setup;
         let rows = sample_rows(setup.rows, SHUFFLED);
-        let width = setup.session.data.reading_names().len();
-        let count = rows.len();
-        let mut data = Dataset::new(setup.session.data.reading_names().to_vec());
-        data.targets.clone_from(&setup.session.data.targets);
+        let Session { robot, data: measured, length_m, .. } = setup.session;
+        let (width, count) = (measured.reading_names().len(), rows.len());
+        let mut data = Dataset::new(measured.reading_names().to_vec());
+        data.targets.clone_from(&measured.targets);
         for (k, &row) in rows.iter().enumerate() {
-            let other =
-                |column| setup.session.data.readings(rows[shuffled(k, column, count)] as usize)[column];
+            let other = |column| measured.readings(rows[shuffled(k, column, count)] as usize)[column];
             let readings: Vec<f64> = (0..width).map(other).collect();
             // Observations of a data set are valid in another one.
-            let _ = data.push_observation(&readings, setup.session.data.observations[row as usize]);
+            let _ = data.push_observation(&readings, *setup.session.observation(row));
         }
-        let packed = Packed::new(setup.session.robot, data.all_readings(), width);
+        let packed = Packed::new(robot, data.all_readings(), width);
         let free: Vec<Parameter> = setup.layout.parameters().map(|(parameter, _)| *parameter).collect();
         let session = Session { data: &data, packed: &packed, ..setup.session };
         let problem = Problem::new(session, (0..count as u32).collect(), free, setup.noise);
         let mut gram = problem.normal(setup.estimate).gram;
         let scale = setup.rows.len() as f64 / count.max(1) as f64;
         gram.iter_mut().for_each(|value| *value *= scale);
-        let shuffled_spectrum =
-            Spectrum::new(&gram, setup.layout.dim(), self.spectrum.variance, session.length_m);
+        let shuffled_spectrum = Spectrum::new(&gram, setup.layout.dim(), self.spectrum.variance, length_m);
         // Weak directions have to improve by a factor of two: less is no cause.
         let (limit_m, now) = match self.degree {
-            Degree::Undetermined => (PLAUSIBLE * session.length_m, self.spectrum.undetermined),
-            Degree::Weak(count) => (0.5 * WEAK * session.length_m, self.spectrum.undetermined + count),
+            Degree::Undetermined => (PLAUSIBLE * length_m, self.spectrum.undetermined),
+            Degree::Weak(count) => (0.5 * WEAK * length_m, self.spectrum.undetermined + count),
         };
         let remaining = (0..shuffled_spectrum.values.len())
             .take_while(|&k| k < shuffled_spectrum.undetermined || shuffled_spectrum.sigma_m(k) > limit_m);

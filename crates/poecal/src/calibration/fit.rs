@@ -218,7 +218,7 @@ impl Task<'_> {
         const FEW: usize = 300;
         // With positions practically unmeasured, the information of rotations remains.
         const UNMEASURED_M: f64 = 1e9;
-        let turns = |row: &u32| self.session.data.observations[*row as usize].measurement.sees_orientation();
+        let turns = |row: &u32| self.session.observation(*row).measurement.sees_orientation();
         if self.rows.len() > FEW || !self.rows.iter().any(turns) {
             return None;
         }

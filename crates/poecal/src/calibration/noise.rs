@@ -89,8 +89,7 @@ pub fn estimate_noise(
     let (mut position, mut rotation) = (Share::default(), Share::default());
     let mut stated = 0;
     for (&row, squares) in rows.iter().zip(squares) {
-        let Observation { sigma_position_m, sigma_rotation_rad, .. } =
-            &session.data.observations[row as usize];
+        let Observation { sigma_position_m, sigma_rotation_rad, .. } = session.observation(row);
         let shares = [(&mut position, sigma_position_m), (&mut rotation, sigma_rotation_rad)];
         for ((squares, count), (share, sigma)) in squares.into_iter().zip(shares) {
             if sigma.is_some() {

@@ -187,7 +187,7 @@ impl Estimate {
         let mut chain = Chain::default();
         let mut along = vec![0.0; self.kinds.len()];
         for &row in &sample {
-            let seen = &session.data.observations[row as usize];
+            let seen = session.observation(row);
             chain.evaluate(&linkage, session.packed, row as usize, seen);
             for (sum, joint) in along.iter_mut().zip(&chain.joints) {
                 *sum += joint.z.dot(&(chain.target.translation - joint.origin)) / count;

@@ -1,7 +1,7 @@
 //! The measurements of one robot, as every step of a calibration reads them.
 
 use super::{Packed, radian_m};
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Observation};
 use crate::robot::Robot;
 
 /// A robot and its measurements: what every fit of them, and every judgement of a fit, begins with.
@@ -20,7 +20,7 @@ use crate::robot::Robot;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Session<'a> {
-    /// The nominal robot.
+    /// The nominal robot; the calibrated one where a finished calibration is judged.
     pub robot: &'a Robot,
     /// The measurements, in the frames of the device.
     pub data: &'a Dataset,
@@ -43,5 +43,10 @@ impl<'a> Session<'a> {
     #[must_use]
     pub fn with_length(self, length_m: f64) -> Self {
         Session { length_m, ..self }
+    }
+
+    /// The observation of a row.
+    pub(crate) fn observation(&self, row: u32) -> &'a Observation {
+        &self.data.observations[row as usize]
     }
 }

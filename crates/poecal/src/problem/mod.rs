@@ -76,8 +76,7 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub fn new(session: Session<'a>, rows: Vec<u32>, free: Vec<Parameter>, noise: Noise) -> Self {
         // A few roundings of about the largest number: the distance from the device.
-        let position =
-            |&row: &u32| session.data.observations[row as usize].measurement.residual_model().position();
+        let position = |&row: &u32| session.observation(row).measurement.residual_model().position();
         let some = rows.iter().step_by(rows.len().div_ceil(SEEN).max(1));
         let farthest = some.map(|row| position(row).amax());
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);

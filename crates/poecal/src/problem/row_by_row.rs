@@ -27,7 +27,7 @@ impl Problem<'_> {
         let mut jacobian = vec![0.0; 6 * n];
         let mut residual = [0.0; 6];
         for &row in rows {
-            let observation = &self.session.data.observations[row as usize];
+            let observation = self.session.observation(row);
             let written = self.written(row as usize);
             let measurement = written.model();
             let (noise, dim) = (self.noise(row as usize), measurement.dim());

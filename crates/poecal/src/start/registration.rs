@@ -141,7 +141,7 @@ impl SampledRows {
             spread_m: problem.session.data.spread_m(sample),
         };
         for &row in sample {
-            let observation = &problem.session.data.observations[row as usize];
+            let observation = problem.session.observation(row);
             chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
             let home = start.base_from_target[observation.target];
             seen.base_motion.push(chain.target * home.inverse());

@@ -116,7 +116,7 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
         folds.push(Fold { name: format!("the highest fifth of {name}"), rows });
     }
     let file = |row: u32| {
-        let index = view.session.data.observations[row as usize].source.file as usize;
+        let index = view.session.observation(row).source.file as usize;
         view.session.data.files.get(index).map(|path| format!("the file {}", path.display()))
     };
     folds.extend(groups(sample, file));
@@ -231,14 +231,14 @@ impl<'a> Downdated<'a> {
         let both = DMatrix::from_iterator(n, n, covariance.iter().zip(&self.covariance).map(|(a, b)| a + b));
         let expected = self.position_variance(problem.layout(), rows, &both);
         let mut sums = ErrorSums { rows: rows.len(), expected, ..ErrorSums::default() };
-        for error in self.view.errors(rows, &without) {
+        for error in self.view.session.errors(rows, &without) {
             sums.position += error.position_m.norm_squared();
             if let Some(turn) = error.rotation_rad {
                 sums.rotation += turn.norm_squared();
                 sums.turned += 1;
             }
         }
-        let before = self.view.errors(rows, &self.estimate);
+        let before = self.view.session.errors(rows, &self.estimate);
         sums.before = before.iter().map(|error| error.position_m.norm_squared()).sum();
         Some(sums)
     }
@@ -278,7 +278,7 @@ pub fn leave_clusters_out(
         let factor = factor(&rest, n, view.prior, view.variance)?;
         let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
         let without = problem.retract(view.estimate, &linalg::cholesky_solve(&factor, &gradient));
-        let errors = view.errors(&cluster, &without);
+        let errors = view.session.errors(&cluster, &without);
         sum += cluster.iter().zip(&errors).map(|(&row, error)| loss(row, error)).sum::<f64>();
     }
     Some(sum / rows.len().max(1) as f64)

@@ -52,13 +52,13 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
     let empty =
         ShapeSums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
     let mut sums = vec![empty; joints];
-    let errors = view.errors(&rows, view.estimate);
+    let errors = view.session.errors(&rows, view.estimate);
     let rms_m = position_rms_m(&errors);
     let mut squares = 0.0;
     let linkage = Linkage::new(view.estimate);
     let mut chain = Chain::default();
     for (&row, error) in rows.iter().zip(errors) {
-        let observation = &view.session.data.observations[row as usize];
+        let observation = view.session.observation(row);
         let sigma = observation.noise_or(view.noise).position_m;
         chain.evaluate(&linkage, view.session.packed, row as usize, observation);
         let error = error.position_m / sigma;

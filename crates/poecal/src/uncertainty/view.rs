@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::analysis::{PLAUSIBLE, ranges};
-use crate::estimate::{Estimate, RowError, Session, Sight};
+use crate::estimate::{Estimate, Session, Sight};
 use crate::measurement::Noise;
 use crate::parameters::Parameter;
 use crate::problem::{Layout, Prior, Problem};
@@ -69,16 +69,9 @@ impl<'a> View<'a> {
         Problem::new(self.session, rows, self.free.to_vec(), self.noise)
     }
 
-    /// Errors of an estimate, metres and radians in the device's axes.
-    pub(super) fn errors(&self, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
-        self.session.errors(rows, estimate)
-    }
-
     /// Rows with their targets and stations.
     pub(super) fn with_sights(&self, rows: &[u32]) -> Vec<(usize, Sight)> {
-        rows.iter()
-            .map(|&row| (row as usize, Sight::from(&self.session.data.observations[row as usize])))
-            .collect()
+        rows.iter().map(|&row| (row as usize, Sight::from(self.session.observation(row)))).collect()
     }
 
     /// Joint values of a row.

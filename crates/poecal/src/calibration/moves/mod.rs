@@ -102,7 +102,7 @@ pub(super) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
 /// Errors of the rows of one station, in the device's axes.
 fn of_device(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError], station: usize) -> Series {
     let own = rows.iter().zip(errors);
-    let own = own.filter(|(row, _)| search.session.data.observations[**row as usize].station == station);
+    let own = own.filter(|(row, _)| search.session.observation(**row).station == station);
     let (rows, values): (Vec<u32>, Vec<Vector3<f64>>) =
         own.map(|(&row, error)| (row, error.position_m)).unzip();
     let configurations = rows.iter().map(|&row| shapes(search.session.packed, row as usize)).collect();
@@ -130,7 +130,7 @@ fn of_targets(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError]) -> V
     let linkage = Linkage::new(search.estimate);
     let mut chain = Chain::default();
     for (&row, error) in rows.iter().zip(errors) {
-        let seen = &search.session.data.observations[row as usize];
+        let seen = search.session.observation(row);
         chain.evaluate(&linkage, search.session.packed, row as usize, seen);
         if let Some(own) = series.get_mut(seen.target) {
             own.rows.push(row);

@@ -103,12 +103,8 @@ impl RobustFit {
     /// Mean bounded loss of the rows of each cluster of configurations by the fit of the others, in units of this noise.
     fn cross_validated_loss(&self, task: &Task<'_>, noise: Noise) -> Option<f64> {
         let Fitted { estimate, layout, noise: own, .. } = &self.fitted;
-        let prior = PriorInformation::new(
-            task.prior.map(|(prior, _)| prior),
-            estimate,
-            layout,
-            task.session.length_m,
-        );
+        let prior = task.prior.map(|(prior, _)| prior);
+        let prior = PriorInformation::new(prior, estimate, layout, task.session.length_m);
         let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();
         let weights: Vec<f64> = self.judged.rows.iter().map(|row| row.weight).collect();
         let view = View {
@@ -125,7 +121,7 @@ impl RobustFit {
         leave_clusters_out(&view, &weights, |row, error| {
             let squares =
                 [error.position_m, error.rotation_rad.unwrap_or_default()].map(|it| it.norm_squared());
-            let [position, rotation] = task.session.data.observations[row as usize].whitened(squares, noise);
+            let [position, rotation] = task.session.observation(row).whitened(squares, noise);
             let components = if error.rotation_rad.is_some() { 6 } else { 3 };
             let ratio = (position + rotation) / bound.of(components).powi(2);
             1.0 - (1.0 - ratio.min(1.0)).powi(3)
