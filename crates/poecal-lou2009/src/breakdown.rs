@@ -4,9 +4,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ReproductionOptions;
-use poecal::calibration::{CalibrationOptions, Loss, Models, Robust, calibrate, row_errors};
+use poecal::calibration::{CalibrationOptions, Loss, Models, Robust, calibrate};
 use poecal::error::Result;
-use poecal::estimate::Packed;
+use poecal::estimate::{Packed, Session};
 use poecal::measurement::Dataset;
 use poecal::robot::Robot;
 use poecal::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis};
@@ -130,7 +130,7 @@ fn session(robot: &Robot, kind: Kind, seed: u64) -> Result<Vec<Outcome>> {
 fn held_out_m(robot: &Robot, judging: &Dataset, models: &Models) -> f64 {
     let packed = Packed::of(robot, judging);
     let rows: Vec<u32> = (0..u32::try_from(judging.len()).unwrap_or(u32::MAX)).collect();
-    let errors = row_errors(judging, &packed, &rows, &models.calibrated);
+    let errors = Session::new(robot, judging, &packed, true).errors(&rows, &models.calibrated);
     (errors.iter().map(|e| e.position_m.norm_squared()).sum::<f64>() / errors.len().max(1) as f64).sqrt()
 }
 

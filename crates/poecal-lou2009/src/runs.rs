@@ -84,7 +84,7 @@ fn run(plan: Plan, seed: u64) -> Result<Ended> {
     let data = session.data(Residual::Spatial, &measured)?;
     let sigma = if plan.noise { NOISE } else { Noise { position_m: 1.0, rotation_rad: 1.0 } };
     let free = session.free(plan.formulation);
-    let problem = Problem::new(&data, &session.packed, session.rows(), free, sigma, LENGTH_M);
+    let problem = Problem::new(session.of(&data, LENGTH_M), session.rows(), free, sigma);
     let once = Options { iterations: 1, ..Options::default() };
 
     let mut state = WatchedState::new(session.start());
@@ -148,7 +148,7 @@ fn measures(
 
 /// Residual and parameter error of an estimate.
 fn iteration(session: &PaperSession, data: &Dataset, estimate: &Estimate) -> Iteration {
-    let errors = poecal::calibration::row_errors(data, &session.packed, &session.rows(), estimate);
+    let errors = session.of(data, LENGTH_M).errors(&session.rows(), estimate);
     let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
     Iteration {
         residual_rms_m: (squares / errors.len() as f64).sqrt(),

@@ -7,7 +7,7 @@ use super::MeasurementKind;
 use crate::{Formulation, Residual};
 use nalgebra::Vector3;
 use poecal::error::Result;
-use poecal::estimate::{Chain, Estimate, Linkage, Packed};
+use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
 use poecal::parameters::{Parameter, TargetFrame, TargetPlace};
@@ -84,6 +84,11 @@ impl PaperSession {
         }
         data.write_poses_by(residual.model());
         Ok(data)
+    }
+
+    /// The session of such data, with a length that a radian counts, metres.
+    pub(super) fn of<'a>(&'a self, data: &'a Dataset, length_m: f64) -> Session<'a> {
+        Session::new(&self.nominal, data, &self.packed, false).with_length(length_m)
     }
 
     /// The estimate that every run starts from: nominal screws and home pose, no offsets, device at the base.

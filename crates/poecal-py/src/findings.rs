@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use poecal::analysis::{self, Session};
+use poecal::analysis::{self, PlannedSession};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::output::{self, Contents, Existing};
 use poecal::measurement::Noise;
@@ -160,8 +160,8 @@ pub(crate) fn identify(
     let joints = Joints::of(joints, &model.robot)?;
     let position_m = sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm));
     let rotation_rad = sigma_rotation_deg.map(|it| sigma("sigma_rotation_deg", it, f64::to_radians));
-    let usual = Session::default();
-    let session = Session {
+    let usual = PlannedSession::default();
+    let session = PlannedSession {
         kind: kind_word(kind)?,
         noise: Noise {
             position_m: position_m.transpose()?.unwrap_or(usual.noise.position_m),

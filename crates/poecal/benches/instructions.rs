@@ -9,7 +9,7 @@
 
 use cpu_time::ProcessTime;
 use poecal::calibration::{CalibrationOptions, delivered, fit_screws};
-use poecal::estimate::Packed;
+use poecal::estimate::{Packed, Session};
 use poecal::measurement::Noise;
 use poecal::simulate::{Kind, Simulation, elbow};
 
@@ -31,8 +31,10 @@ fn main() {
     let options = CalibrationOptions::default();
     let fit = || {
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
-        let (start, length_m) = (delivered(&made.nominal, &made.data), made.nominal.reach_m() / 3.0);
-        std::hint::black_box(fit_screws(&made.data, &packed, &all, start, noise, length_m, None, &options));
+        let session = Session::new(&made.nominal, &made.data, &packed, false);
+        let session = session.with_length(made.nominal.reach_m() / 3.0);
+        let start = delivered(&made.nominal, &made.data);
+        std::hint::black_box(fit_screws(session, &all, start, noise, None, &options));
     };
     if repeats == 0 {
         return fit();

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use cpu_time::ProcessTime;
 use poecal::calibration::delivered;
-use poecal::estimate::{Estimate, Packed, row_errors};
+use poecal::estimate::{Estimate, Packed, Session};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
 use poecal::measurement::{Dataset, Measurement};
@@ -42,10 +42,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let iterations: usize = found.iter().map(|(_, iterations)| iterations).sum();
     let packed = Packed::of(&robot, &held_out);
+    let session = Session::new(&robot, &held_out, &packed, false);
     let rows = held_out.all_rows();
     let squares: f64 = found
         .iter()
-        .flat_map(|(estimate, _)| row_errors(&held_out, &packed, &rows, estimate))
+        .flat_map(|(estimate, _)| session.errors(&rows, estimate))
         .map(|error| error.position_m.norm_squared())
         .sum();
     let mean = |sum: f64, count: usize| sum / count.max(1) as f64;
@@ -70,7 +71,8 @@ fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(E
     let packed = Packed::of(robot, &begun);
     let mut free = screw_axes(&start.kinds);
     free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
-    let problem = Problem::new(&begun, &packed, begun.all_rows(), free, NOISE, robot.reach_m() / 3.0);
+    let session = Session::new(robot, &begun, &packed, false).with_length(robot.reach_m() / 3.0);
+    let problem = Problem::new(session, begun.all_rows(), free, NOISE);
     let (optimum, _, _) = minimize(&problem, start, &Options::default());
     let refit = Refit::new(problem, optimum, Options::default());
     refit.fit_all(trials, |estimate, _, summary| (estimate, summary.iterations))

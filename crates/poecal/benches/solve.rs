@@ -10,7 +10,7 @@ mod trials;
 
 use divan::{Bencher, black_box};
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered, fit_screws};
-use poecal::estimate::Packed;
+use poecal::estimate::{Packed, Session};
 use poecal::forensics::{self, diagnose};
 use poecal::measurement::Measurement;
 use poecal::parameters::{Parameter, TargetFrame, screw_axes};
@@ -52,8 +52,9 @@ fn solve_session(bencher: Bencher<'_, '_>, made: &Simulated) {
     let options = CalibrationOptions::default();
     bencher.bench_local(|| {
         let packed = Packed::of(&made.nominal, &made.data);
-        let length_m = made.nominal.reach_m() / 3.0;
-        black_box(fit_screws(&made.data, &packed, &all, start.clone(), NOISE, length_m, None, &options))
+        let session = Session::new(&made.nominal, &made.data, &packed, false);
+        let session = session.with_length(made.nominal.reach_m() / 3.0);
+        black_box(fit_screws(session, &all, start.clone(), NOISE, None, &options))
     });
 }
 
@@ -96,7 +97,8 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
     let length_m = made.nominal.reach_m() / 3.0;
     bencher.bench_local(|| {
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
-        let problem = Problem::new(&made.data, &packed, rows.clone(), free.clone(), NOISE, length_m);
+        let session = Session::new(&made.nominal, &made.data, &packed, false).with_length(length_m);
+        let problem = Problem::new(session, rows.clone(), free.clone(), NOISE);
         let (optimum, _, _) = minimize(&problem, start.clone(), &Options::default());
         let refit = Refit::new(problem, optimum, Options::default());
         refit.fit_all(&trials, |_, normal, _| normal.cost).iter().sum::<f64>()

@@ -19,7 +19,7 @@
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
 use poecal::{
-    CalibrationFile, CalibrationOptions, Inputs, Kind, Model, Session, Simulation, calibrate, identify,
+    CalibrationFile, CalibrationOptions, Inputs, Kind, Model, PlannedSession, Simulation, calibrate, identify,
 };
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let made = simulation.run(&nominal, Kind::Point)?;
     let others = simulation.held_out(&made, Kind::Point, 200)?;
 
-    let session = Session { kind: Kind::Point, ..Session::default() };
+    let session = PlannedSession { kind: Kind::Point, ..PlannedSession::default() };
     for count in [8, 40] {
         let readings: Vec<f64> = (0..count).flat_map(|row| made.data.readings(row).to_vec()).collect();
         let found = identify(&nominal, &readings, &session)?;

@@ -38,7 +38,7 @@
 //! | know how good it is | [`Accuracy`] ([`SetAccuracy`], [`ModelAccuracy`], [`Statistic`]), [`Verdict`], [`Trust`], [`Identifiability`] ([`Direction`]), [`Diagnosis`] of mistakes in the input |
 //! | judge it by other measurements | [`judge`], which gives a [`Judgement`] |
 //! | predict | [`Robot::forward_kinematics`]; [`predicted`], which gives [`Predicted`] poses in a [`PredictionFrame`] with their uncertainty |
-//! | plan a session | [`identify`] a [`Session`], which gives a [`Foresight`] |
+//! | plan a session | [`identify`] a [`PlannedSession`], which gives a [`Foresight`] |
 //! | hand it on | [`CalibrationFile`] with its [`Inputs`], [`Residuals`], [`ModelFormat`], [`calibration_page`] (the report), [`summary`] (the table) |
 //! | try it without a robot | [`Simulation`], [`Simulated`], [`Kind`] and the robots of [`simulate`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
@@ -94,7 +94,7 @@ mod threads;
 #[cfg_attr(doc, doc(hidden))]
 pub mod uncertainty;
 
-pub use analysis::{Direction, Foresight, Identifiability, Session, identify};
+pub use analysis::{Direction, Foresight, Identifiability, PlannedSession, identify};
 pub use calibration::{
     Accuracy, CalibratedTarget, Calibration, CalibrationOptions, DeviceFrameKnowledge, Formulation,
     Judgement, Loss, ModelAccuracy, Robust, SetAccuracy, Statistic, Trust, Verdict, calibrate, judge,

@@ -1,6 +1,6 @@
 //! `poecal identify`: identifiability by measurements in given configurations.
 
-use poecal::analysis::{Session, identify as foresee};
+use poecal::analysis::{PlannedSession, identify as foresee};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::measurements;
 use poecal::io::model::Model;
@@ -22,8 +22,8 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
         console.warnings(&joints.warnings);
         readings.extend(joints.readings);
     }
-    let usual = Session::default();
-    let session = Session {
+    let usual = PlannedSession::default();
+    let session = PlannedSession {
         kind: arguments.kind,
         noise: Noise {
             position_m: arguments.sigma_position.unwrap_or(usual.noise.position_m),

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
-use poecal::estimate::{Chain, Estimate, Linkage, Packed};
+use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
 use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
 use poecal::parameters::{JointOffset, Parameter, ScrewAxis, TargetFrame};
@@ -101,7 +101,8 @@ fn jacobians_agree_with_differences() {
                 for angle in [0.0, 1e-8, 1.1, PI - 1e-3] {
                     let data = data(&robot, &state, &[value; 3], residual, angle);
                     let packed = Packed::new(&robot, &[value; 3], 3);
-                    let problem = Problem::new(&data, &packed, vec![0], vec![parameter], NOISE, LENGTH_M);
+                    let session = Session::new(&robot, &data, &packed, false).with_length(LENGTH_M);
+                    let problem = Problem::new(session, vec![0], vec![parameter], NOISE);
                     // No step must carry the residual over half a turn, where its logarithm jumps. Free screws are normalised, which
                     // is no polynomial: their steps are shorter.
                     let longest = if matches!(parameter, Parameter::OtherScrew(_)) { 0.03 } else { 0.1 };

@@ -102,7 +102,7 @@ impl Rules<'_> {
     }
 
     pub(super) fn name(&self, joint: usize) -> &str {
-        self.setup.robot.joints.get(joint).map_or("", |joint| &joint.name)
+        self.setup.session.robot.joints.get(joint).map_or("", |joint| &joint.name)
     }
 
     pub(super) fn names(&self, joints: &[usize]) -> String {
@@ -126,7 +126,7 @@ impl Rules<'_> {
             .sqrt();
         let verb = if plural { "are" } else { "is" };
         let length = format!("{:.1} mm", sigma_m * 1e3);
-        let angle = format!("{:.2} deg", (sigma_m / self.setup.length_m).to_degrees());
+        let angle = format!("{:.2} deg", (sigma_m / self.setup.session.length_m).to_degrees());
         let known = match self.units(directions) {
             (true, false) => length,
             (false, _) => angle,
@@ -216,7 +216,7 @@ impl Rules<'_> {
         let several_axes = joints.len() > 1;
         let open = if several_axes { "are not determined" } else { "is not determined" };
         let words = self.degree_words(open, several_axes, &tilts);
-        let several = self.setup.data.targets.len() > 1;
+        let several = self.setup.session.data.targets.len() > 1;
         let subject = if several { "all points measured lie" } else { "the point measured lies" };
         let axes = if joints.len() > 1 { "the axes" } else { "the axis" };
         let (it, points) =
@@ -269,7 +269,8 @@ impl Rules<'_> {
             taken += self.take(&self.places(|_| true));
         }
         let turns = |&joint: &usize| {
-            !self.excitation.still[joint] && self.setup.robot.joints[joint].kind == JointKind::Revolute
+            !self.excitation.still[joint]
+                && self.setup.session.robot.joints[joint].kind == JointKind::Revolute
         };
         let joints: Vec<usize> = (0..self.excitation.still.len()).filter(turns).collect();
         self.add(cause, &joints, taken, description);
@@ -311,7 +312,7 @@ impl Rules<'_> {
             if directions == 0 {
                 continue;
             }
-            let kinds = || group.iter().map(|&joint| self.setup.robot.joints[joint].kind);
+            let kinds = || group.iter().map(|&joint| self.setup.session.robot.joints[joint].kind);
             let (what, subject) = if kinds().all(|kind| kind == JointKind::Prismatic) {
                 ("moved only together", "only their common motion is observed, their own directions")
             } else if self.excitation.are_parallel(group) {
@@ -327,13 +328,13 @@ impl Rules<'_> {
     }
 
     fn small_motion(&mut self) {
-        let joints = &self.setup.robot.joints;
+        let joints = &self.setup.session.robot.joints;
         let ranges = &self.excitation.ranges;
         let mut little: Vec<usize> = (0..joints.len())
             .filter(|&joint| {
                 let least = match joints[joint].kind {
                     JointKind::Revolute => LITTLE_RAD,
-                    JointKind::Prismatic => LITTLE_SLIDE * self.setup.length_m,
+                    JointKind::Prismatic => LITTLE_SLIDE * self.setup.session.length_m,
                 };
                 !self.excitation.still[joint] && ranges[joint] < least
             })

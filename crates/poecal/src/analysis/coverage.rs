@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::estimate::Packed;
+use crate::estimate::{Packed, Session};
 use crate::robot::{JointKind, Limits, Robot};
 use crate::threads;
 
@@ -68,10 +68,10 @@ impl JointCoverage {
 
 /// Coverage of each joint's range by some rows, from base to tip; empty without rows.
 #[must_use]
-pub fn coverage(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<JointCoverage> {
-    let ranges = ranges(robot.joints.len(), packed, rows);
-    robot
-        .joints
+pub fn coverage(session: &Session<'_>, rows: &[u32]) -> Vec<JointCoverage> {
+    let ranges = ranges(session, rows);
+    let joints = &session.robot.joints;
+    joints
         .iter()
         .zip(ranges)
         .filter(|(_, (least, most))| least <= most)
@@ -84,7 +84,7 @@ pub fn coverage(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<JointCovera
                 joint: joint.name.clone(),
                 sampled_min,
                 sampled_max,
-                stragglers: stragglers(packed, rows, index),
+                stragglers: stragglers(session.packed, rows, index),
                 limit_min: limits.map(|limits| limits.lower),
                 limit_max: limits.map(|limits| limits.upper),
             }
@@ -119,12 +119,12 @@ fn stragglers(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
 }
 
 /// Smallest and largest value of each joint in some rows.
-pub(crate) fn ranges(joints: usize, packed: &Packed, rows: &[u32]) -> Vec<(f64, f64)> {
-    let none = vec![(f64::INFINITY, f64::NEG_INFINITY); joints];
+pub(crate) fn ranges(session: &Session<'_>, rows: &[u32]) -> Vec<(f64, f64)> {
+    let none = vec![(f64::INFINITY, f64::NEG_INFINITY); session.robot.joints.len()];
     let parts = threads::map_chunks(rows, CHUNK, |_, rows| {
         let mut ranges = none.clone();
         for &row in rows {
-            for (range, &value) in ranges.iter_mut().zip(packed.joint_values(row as usize)) {
+            for (range, &value) in ranges.iter_mut().zip(session.packed.joint_values(row as usize)) {
                 *range = (range.0.min(value), range.1.max(value));
             }
         }

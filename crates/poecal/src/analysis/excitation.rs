@@ -64,9 +64,9 @@ pub(super) struct Excitation {
 
 impl Excitation {
     pub(super) fn new(setup: &Setup<'_>) -> Self {
-        let joints = &setup.robot.joints;
+        let joints = &setup.session.robot.joints;
         let ranges: Vec<f64> =
-            ranges(joints.len(), setup.packed, setup.rows).iter().map(|(a, b)| (b - a).max(0.0)).collect();
+            ranges(&setup.session, setup.rows).iter().map(|(a, b)| (b - a).max(0.0)).collect();
         let still: Vec<bool> = ranges
             .iter()
             .zip(joints)
@@ -85,7 +85,7 @@ impl Excitation {
             still,
             numbers: 0,
             configurations: 0,
-            seen: vec![0; setup.data.targets.len()],
+            seen: vec![0; setup.session.data.targets.len()],
         };
         found.look_at_geometry(setup);
         found.count(setup);
@@ -106,7 +106,7 @@ impl Excitation {
         let mut away_m = vec![0.0_f64; n];
         for &row in &rows {
             let row = row as usize;
-            chain.evaluate(&linkage, setup.packed, row, &setup.data.observations[row]);
+            chain.evaluate(&linkage, setup.session.packed, row, &setup.session.data.observations[row]);
             self.mean_turn += chain.last.rotation / rows.len() as f64;
             for (a, joint) in chain.joints.iter().enumerate() {
                 let arm = chain.target.translation - joint.origin;
@@ -120,7 +120,7 @@ impl Excitation {
             }
         }
         if !setup.layout.parameters().any(|(it, _)| matches!(it, Parameter::TargetFrame(_))) {
-            let near = ON_AXIS * setup.length_m;
+            let near = ON_AXIS * setup.session.length_m;
             self.on_axis_m = away_m.iter().map(|&away| (away < near).then_some(away)).collect();
         }
         self.turning = turning(&self.mean_turn);
@@ -129,17 +129,17 @@ impl Excitation {
     /// Counts the numbers measured in distinct configurations, until there are enough. Rows within the jitter of encoders are repeats.
     fn count(&mut self, setup: &Setup<'_>) {
         let unknowns = setup.layout.dim();
-        let step = |joint: usize| match setup.robot.joints.get(joint).map(|joint| joint.kind) {
+        let step = |joint: usize| match setup.session.robot.joints.get(joint).map(|joint| joint.kind) {
             Some(JointKind::Prismatic) => STILL_M,
             Some(JointKind::Revolute) | None => STILL_RAD,
         };
         let (mut all, mut of_targets) = (BTreeSet::new(), BTreeSet::new());
         for &row in setup.rows {
-            let observation = &setup.data.observations[row as usize];
+            let observation = setup.session.observation(row);
             if self.numbers >= unknowns && self.seen[observation.target] > 1 {
                 continue;
             }
-            let values = setup.packed.joint_values(row as usize).iter().enumerate();
+            let values = setup.session.packed.joint_values(row as usize).iter().enumerate();
             let place: Vec<i64> = values.map(|(joint, value)| (value / step(joint)).round() as i64).collect();
             all.insert(place.clone());
             if of_targets.insert((observation.target, place)) {
@@ -183,7 +183,7 @@ impl Excitation {
 
 /// A target by name.
 pub(super) fn target_name(setup: &Setup<'_>, target: usize) -> String {
-    match setup.data.targets.get(target).and_then(Option::as_deref) {
+    match setup.session.data.targets.get(target).and_then(Option::as_deref) {
         Some(name) => format!("target {name}"),
         None => "the tip".to_owned(),
     }
@@ -210,7 +210,7 @@ fn together(setup: &Setup<'_>, still: &[bool]) -> Vec<Vec<usize>> {
         return Vec::new();
     }
     let count = rows.len() as f64;
-    let value = |row: u32, joint: usize| setup.packed.joint_values(row as usize)[joint];
+    let value = |row: u32, joint: usize| setup.session.packed.joint_values(row as usize)[joint];
     let means: Vec<f64> =
         moved.iter().map(|&joint| rows.iter().map(|&row| value(row, joint)).sum::<f64>() / count).collect();
     let spreads: Vec<f64> = moved

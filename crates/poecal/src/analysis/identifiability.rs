@@ -69,7 +69,7 @@ pub fn effective_unknowns(normal: &Normal, part: &Normal) -> f64 {
 #[must_use]
 pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identifiability {
     let n = setup.layout.dim();
-    let spectrum = Spectrum::new(gram, n, variance, setup.length_m);
+    let spectrum = Spectrum::new(gram, n, variance, setup.session.length_m);
     let values = &spectrum.values;
     let largest = values.last().copied().unwrap_or(0.0);
     let condition =
@@ -79,8 +79,9 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
         values.iter().rev().map(|&value| if value > least { value.sqrt() } else { 0.0 }).collect()
     };
     let excitation = Excitation::new(setup);
-    let weak =
-        (spectrum.undetermined..n).take_while(|&k| spectrum.sigma_m(k) > WEAK * setup.length_m).count();
+    let weak = (spectrum.undetermined..n)
+        .take_while(|&k| spectrum.sigma_m(k) > WEAK * setup.session.length_m)
+        .count();
     let unidentifiable = explain(setup, &excitation, &spectrum, Degree::Undetermined);
     let mut hardly = explain(setup, &excitation, &spectrum, Degree::Weak(weak));
     hardly.extend(excitation.seen_once(setup));
@@ -99,7 +100,7 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
 
 /// The structural kernel, known before anything is measured: theory.md §7 (35).
 fn structural(setup: &Setup<'_>) -> Vec<Direction> {
-    let joints = &setup.robot.joints;
+    let joints = &setup.session.robot.joints;
     let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
     let sliding = joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
     let turning = joints.len() - sliding;
@@ -120,7 +121,7 @@ fn structural(setup: &Setup<'_>) -> Vec<Direction> {
         }
     };
     add(Cause::OwnAxis, 2 * turning + 4 * sliding, &names, own);
-    if setup.device_free {
+    if setup.session.device_free {
         let base =
             "base frame: moving it under all axes is the same as moving the device: kept as in the model";
         add(Cause::BaseFrame, 6, &[], base);

@@ -9,7 +9,7 @@ use super::identifiability::{Identifiability, identifiability};
 use super::setup::Setup;
 use super::spectrum::PLAUSIBLE;
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Chain, Linkage, Packed, delivered, radian_m};
+use crate::estimate::{Chain, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
@@ -28,12 +28,12 @@ const UNDETERMINED_EFFECT: f64 = 1.0;
 /// A planned session: measurements and their noise.
 ///
 /// ```
-/// use poecal::{Kind, Session};
-/// let session = Session { kind: Kind::Point, ..Session::default() };
-/// assert!(session.device_free);
+/// use poecal::{Kind, PlannedSession};
+/// let planned = PlannedSession { kind: Kind::Point, ..PlannedSession::default() };
+/// assert!(planned.device_free);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Session {
+pub struct PlannedSession {
     /// Kind of the measurements of the tip.
     pub kind: Kind,
     /// Noise of each component.
@@ -42,11 +42,11 @@ pub struct Session {
     pub device_free: bool,
 }
 
-impl Default for Session {
+impl Default for PlannedSession {
     /// Poses with 0.05 mm and 0.01°, device frame unknown.
     fn default() -> Self {
         let noise = Noise { position_m: 5e-5, rotation_rad: 0.01_f64.to_radians() };
-        Session { kind: Kind::Pose, noise, device_free: true }
+        PlannedSession { kind: Kind::Pose, noise, device_free: true }
     }
 }
 
@@ -67,9 +67,9 @@ pub struct ExpectedError {
 /// Expected result of measuring some configurations.
 ///
 /// ```
-/// use poecal::{Kind, Session, Simulation, identify, simulate::elbow};
+/// use poecal::{Kind, PlannedSession, Simulation, identify, simulate::elbow};
 /// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
-/// let foresight = identify(&made.nominal, made.data.all_readings(), &Session::default())?;
+/// let foresight = identify(&made.nominal, made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((foresight.count, foresight.identifiability.rank), (40, 30));
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -95,15 +95,15 @@ pub struct Foresight {
 /// [`ErrorKind::Problem`] if the robot has more unknowns than one fit allows.
 ///
 /// ```
-/// use poecal::analysis::{Session, identify};
+/// use poecal::analysis::{PlannedSession, identify};
 /// use poecal::simulate::{Kind, Simulation, seven_axis};
 /// let made = Simulation { count: 40, ..Simulation::default() }.run(&seven_axis(), Kind::Pose)?;
-/// let found = identify(&seven_axis(), made.data.all_readings(), &Session::default())?;
+/// let found = identify(&seven_axis(), made.data.all_readings(), &PlannedSession::default())?;
 /// assert_eq!((found.identifiability.rank, found.identifiability.parameters), (34, 34));
 /// assert!(found.expected.mean_m.is_some_and(|mean| mean < 2e-4));
 /// # Ok::<(), poecal::Error>(())
 /// ```
-pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Foresight> {
+pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<Foresight> {
     let unknowns = 4 * robot.joints.len() + 6;
     if unknowns > MOST_UNKNOWNS {
         let message = format!(
@@ -113,29 +113,20 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Fo
         );
         return Err(Error::new(ErrorKind::Problem, message));
     }
-    let data = predicted_data(robot, readings, session)?;
+    let data = predicted_data(robot, readings, planned)?;
     let packed = Packed::of(robot, &data);
     let rows: Vec<u32> = data.all_rows();
-    let length_m = radian_m(robot, &packed);
+    let session = Session::new(robot, &data, &packed, planned.device_free);
     let mut estimate = delivered(robot, &data);
-    estimate.recentre(&data, &packed, &rows);
+    estimate.recentre(&session, &rows);
     let mut free = screw_axes(&estimate.kinds);
-    free.push(match session.kind {
+    free.push(match planned.kind {
         Kind::Point => Parameter::TargetPlace(TargetPlace { target: 0 }),
         Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame { target: 0 }),
     });
-    let problem = Problem::new(&data, &packed, rows.clone(), free, session.noise, length_m);
-    let setup = Setup {
-        robot,
-        data: &data,
-        packed: &packed,
-        rows: &rows,
-        estimate: &estimate,
-        layout: problem.layout(),
-        noise: session.noise,
-        length_m,
-        device_free: session.device_free,
-    };
+    let problem = Problem::new(session, rows.clone(), free, planned.noise);
+    let setup =
+        Setup { session, rows: &rows, estimate: &estimate, layout: problem.layout(), noise: planned.noise };
     let gram = problem.normal(&estimate).gram;
     if !gram.iter().all(|value| value.is_finite()) {
         let message = "found joint readings beyond what can be computed with, expected radians and metres: check their units";
@@ -145,15 +136,15 @@ pub fn identify(robot: &Robot, readings: &[f64], session: &Session) -> Result<Fo
     let expected = expected(&setup, &identifiability);
     Ok(Foresight {
         count: data.len(),
-        coverage: coverage(robot, &packed, &rows),
+        coverage: coverage(&session, &rows),
         identifiability,
         expected,
-        length_m,
+        length_m: session.length_m,
     })
 }
 
 /// The measurements that the nominal model predicts.
-fn predicted_data(robot: &Robot, readings: &[f64], session: &Session) -> Result<Dataset> {
+fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<Dataset> {
     let mut data = Dataset::new(robot.reading_names());
     let width = data.reading_names().len();
     if readings.is_empty() || !readings.len().is_multiple_of(width.max(1)) {
@@ -166,7 +157,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], session: &Session) -> Result<
     }
     for (row, readings) in readings.chunks_exact(width).enumerate() {
         let pose = robot.forward_kinematics(readings);
-        let as_pose = match session.kind {
+        let as_pose = match planned.kind {
             Kind::Pose => true,
             Kind::Point => false,
             Kind::Mixed => row.is_multiple_of(2),
@@ -183,7 +174,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], session: &Session) -> Result<
 
 /// Expected error of predicted positions in random configurations: theory.md §7 (36c).
 fn expected(setup: &Setup<'_>, found: &Identifiability) -> ExpectedError {
-    let robot = setup.robot;
+    let robot = setup.session.robot;
     let mut generator = ChaCha8Rng::seed_from_u64(SEED);
     let readings: Vec<f64> =
         (0..CONFIGURATIONS).flat_map(|_| random_configuration(robot, &mut generator)).collect();
@@ -192,7 +183,7 @@ fn expected(setup: &Setup<'_>, found: &Identifiability) -> ExpectedError {
     estimate.device_from_base = Pose::identity();
     let linkage = Linkage::new(&estimate);
     let spectrum = &found.spectrum;
-    let plausible_m = PLAUSIBLE * setup.length_m;
+    let plausible_m = PLAUSIBLE * setup.session.length_m;
     let mut chain = Chain::default();
     let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); setup.layout.dim()];
     let mut sigmas_m = Vec::new();

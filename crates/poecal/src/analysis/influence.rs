@@ -76,7 +76,7 @@ pub fn influence(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Packed;
+    use crate::estimate::{Packed, Session};
     use crate::lanes::simd_levels;
     use crate::lie::{Pose, rotation};
     use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement};
@@ -122,7 +122,8 @@ mod tests {
         free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
         let rows = data.all_rows();
         let noise = Noise { position_m: 1e-3, rotation_rad: 1e-2 };
-        let problem = Problem::new(data, &packed, rows.clone(), free, noise, 0.5);
+        let session = Session::new(robot, data, &packed, true).with_length(0.5);
+        let problem = Problem::new(session, rows.clone(), free, noise);
         let normal = problem.normal(&estimate);
         let weights: Vec<f64> = rows.iter().map(|row| [1.0, 0.4, 0.0][*row as usize % 3]).collect();
         let scale = |row: u32, component: usize| 1.0 + f64::from(row % 5) + component as f64;
@@ -179,7 +180,8 @@ mod tests {
             free.push(Parameter::TargetFrame(TargetFrame { target: 1 }));
             let rows = data.all_rows();
             let noise = Noise { position_m: 1e-3, rotation_rad: 1e-2 };
-            let problem = Problem::new(&data, &packed, rows.clone(), free, noise, 0.5);
+            let session = Session::new(robot, &data, &packed, true).with_length(0.5);
+            let problem = Problem::new(session, rows.clone(), free, noise);
             let mut expected = Vec::new();
             problem.for_rows(&estimate, &rows, |_, jacobian, residual| {
                 expected.push((jacobian.to_vec(), residual.to_vec()));

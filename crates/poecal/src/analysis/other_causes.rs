@@ -5,7 +5,7 @@ use super::direction::Cause;
 use super::excitation::target_name;
 use super::spectrum::{PLAUSIBLE, Spectrum, WEAK};
 use super::subspace;
-use crate::estimate::{Packed, sample_rows};
+use crate::estimate::{Packed, Session, sample_rows};
 use crate::measurement::Dataset;
 use crate::parameters::Parameter;
 use crate::problem::Problem;
@@ -43,20 +43,20 @@ impl Rules<'_> {
     pub(super) fn hidden_by_combination(&self) -> usize {
         let setup = self.setup;
         let rows = sample_rows(setup.rows, SHUFFLED);
-        let width = setup.data.reading_names().len();
-        let count = rows.len();
-        let mut data = Dataset::new(setup.data.reading_names().to_vec());
-        data.targets.clone_from(&setup.data.targets);
+        let Session { robot, data: measured, length_m, .. } = setup.session;
+        let (width, count) = (measured.reading_names().len(), rows.len());
+        let mut data = Dataset::new(measured.reading_names().to_vec());
+        data.targets.clone_from(&measured.targets);
         for (k, &row) in rows.iter().enumerate() {
-            let other = |column| setup.data.readings(rows[shuffled(k, column, count)] as usize)[column];
+            let other = |column| measured.readings(rows[shuffled(k, column, count)] as usize)[column];
             let readings: Vec<f64> = (0..width).map(other).collect();
             // Observations of a data set are valid in another one.
-            let _ = data.push_observation(&readings, setup.data.observations[row as usize]);
+            let _ = data.push_observation(&readings, *setup.session.observation(row));
         }
-        let packed = Packed::new(setup.robot, data.all_readings(), width);
+        let packed = Packed::new(robot, data.all_readings(), width);
         let free: Vec<Parameter> = setup.layout.parameters().map(|(parameter, _)| *parameter).collect();
-        let (noise, length_m) = (setup.noise, setup.length_m);
-        let problem = Problem::new(&data, &packed, (0..count as u32).collect(), free, noise, length_m);
+        let session = Session { data: &data, packed: &packed, ..setup.session };
+        let problem = Problem::new(session, (0..count as u32).collect(), free, setup.noise);
         let mut gram = problem.normal(setup.estimate).gram;
         let scale = setup.rows.len() as f64 / count.max(1) as f64;
         gram.iter_mut().for_each(|value| *value *= scale);
@@ -142,8 +142,8 @@ impl Rules<'_> {
                 Parameter::JointOffset(offset) => format!("the offset of {}", name(offset.joint)),
                 Parameter::TargetPlace(it) => format!("the place of {}", target_name(self.setup, it.target)),
                 Parameter::TargetFrame(it) => format!("the frame of {}", target_name(self.setup, it.target)),
-                Parameter::DeviceFrame(it) if self.setup.data.station_count() > 1 => {
-                    format!("the frame of {}", self.setup.data.station_words(it.station))
+                Parameter::DeviceFrame(it) if self.setup.session.data.station_count() > 1 => {
+                    format!("the frame of {}", self.setup.session.data.station_words(it.station))
                 }
                 Parameter::DeviceFrame(_) => "the device's frame".to_owned(),
             });

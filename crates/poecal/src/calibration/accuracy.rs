@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::estimate::{Estimate, Packed, RowError, row_errors};
-use crate::measurement::Dataset;
+use crate::estimate::{Estimate, RowError, Session};
 
 /// The three models of every result, as estimates.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,8 +116,8 @@ pub struct Accuracy {
 
 /// Errors of the three models on some rows (at least one): theory.md §9.
 #[must_use]
-pub fn set_accuracy(data: &Dataset, packed: &Packed, rows: &[u32], models: &Models) -> SetAccuracy {
-    let of = |estimate: &Estimate| model_accuracy(&row_errors(data, packed, rows, estimate));
+pub fn set_accuracy(session: &Session<'_>, rows: &[u32], models: &Models) -> SetAccuracy {
+    let of = |estimate: &Estimate| model_accuracy(&session.errors(rows, estimate));
     SetAccuracy {
         count: rows.len(),
         nominal: of(&models.nominal),

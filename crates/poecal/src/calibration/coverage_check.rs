@@ -5,10 +5,9 @@ use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy};
 use crate::analysis::{JointCoverage, inside};
-use crate::estimate::{Estimate, Packed, RowError};
-use crate::measurement::{Dataset, Noise};
+use crate::estimate::{Estimate, RowError, Session};
+use crate::measurement::Noise;
 use crate::parameters::Parameter;
-use crate::robot::Robot;
 use crate::uncertainty::{Discrepancy, Quantile, Refit, Uncertainty};
 
 /// Floor of the scatter of exact data: rounding.
@@ -97,14 +96,8 @@ impl CoverageSums {
 impl PredictedUncertainty<'_> {
     /// Compares the errors of some rows with their bounds: theory.md §9 (40), *Coverage*.
     #[must_use]
-    pub fn check(
-        &self,
-        robot: &Robot,
-        data: &Dataset,
-        packed: &Packed,
-        rows: &[u32],
-        errors: &[RowError],
-    ) -> CoverageCheck {
+    pub fn check(&self, session: &Session<'_>, rows: &[u32], errors: &[RowError]) -> CoverageCheck {
+        let Session { robot, data, packed, .. } = *session;
         let target = |row: &u32| data.observations[*row as usize].target;
         let places = rows
             .iter()
@@ -162,8 +155,8 @@ pub struct InSampledRange {
 }
 
 /// Predictions of the judging rows.
-pub(super) struct JudgedRows {
-    pub(super) packed: Packed,
+pub(super) struct JudgedRows<'a> {
+    pub(super) session: Session<'a>,
     pub(super) estimate: Estimate,
     pub(super) errors: Vec<RowError>,
     /// Refitted parameters.
@@ -174,26 +167,24 @@ pub(super) struct JudgedRows {
 /// unknowns.
 pub(super) fn coverage_checks(
     predicted: &PredictedUncertainty<'_>,
-    robot: &Robot,
     refit_tool: bool,
-    data: &Dataset,
-    seen: &JudgedRows,
+    seen: &JudgedRows<'_>,
 ) -> Option<(CoverageCheck, Option<InSampledRange>)> {
-    let refitted =
-        if seen.free.is_empty() { None } else { Some(refitted(predicted, refit_tool, data, seen)?) };
+    let Session { robot, data, .. } = seen.session;
+    let refitted = if seen.free.is_empty() { None } else { Some(refitted(predicted, refit_tool, seen)?) };
     let own: Vec<usize> = (0..data.targets.len()).collect();
     let predicted = match &refitted {
         Some(uncertainty) => PredictedUncertainty { uncertainty, targets: &own, ..*predicted },
         None => *predicted,
     };
     let mut rows = data.all_rows();
-    let all = predicted.check(robot, data, &seen.packed, &rows, &seen.errors);
+    let all = predicted.check(&seen.session, &rows, &seen.errors);
     rows.retain(|&row| inside(robot, predicted.coverage, data.readings(row as usize)));
     if rows.is_empty() {
         return Some((all, None));
     }
     let errors: Vec<_> = rows.iter().map(|&row| seen.errors[row as usize]).collect();
-    let promised = predicted.check(robot, data, &seen.packed, &rows, &errors);
+    let promised = predicted.check(&seen.session, &rows, &errors);
     let calibrated = model_accuracy(&errors);
     Some((all, Some(InSampledRange { count: rows.len(), calibrated, promised })))
 }
@@ -202,14 +193,12 @@ pub(super) fn coverage_checks(
 fn refitted(
     predicted: &PredictedUncertainty<'_>,
     refit_tool: bool,
-    data: &Dataset,
-    seen: &JudgedRows,
+    seen: &JudgedRows<'_>,
 ) -> Option<Uncertainty> {
     let number = |target: usize| predicted.targets.get(target).copied().filter(|_| !refit_tool);
-    let targets: Vec<Option<usize>> = (0..data.targets.len()).map(number).collect();
+    let targets: Vec<Option<usize>> = (0..seen.session.data.targets.len()).map(number).collect();
     predicted.uncertainty.refitted(&Refit {
-        data,
-        packed: &seen.packed,
+        session: seen.session,
         found: &seen.estimate,
         free: &seen.free,
         scatter: scatter(predicted),

@@ -5,19 +5,15 @@ use rand_core::SeedableRng;
 
 use super::found::{Fitted, OngoingFit, SolverReport};
 use super::noise::stated;
-use super::{
-    CalibrationOptions, DeviceFrameKnowledge, Formulation, Minimum, NoiseSource, delivered, estimate_noise,
-    row_errors,
-};
+use super::{CalibrationOptions, Formulation, Minimum, NoiseSource, delivered, estimate_noise};
 use crate::analysis::effective_unknowns;
 use crate::distributions::is_within_band;
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Estimate, Packed, position_rms_m, sample_rows};
+use crate::estimate::{Estimate, Session, position_rms_m, sample_rows};
 use crate::gauge;
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::{DeviceFrame, Parameter, screw_axes};
 use crate::problem::{Layout, Prior, Problem};
-use crate::robot::Robot;
 use crate::simulate::random;
 use crate::solve::{LeastSquares, Normal, Options, Summary};
 use crate::start::target_parameters;
@@ -58,21 +54,17 @@ pub(super) fn free_parameters(
 /// One fit of all screws and targets from a start, the first device frame fixed, with the formulation and solver of the options; of many
 /// rows first on a subsample. The prior has a weight ([`Problem::with_prior`]). The returned `JᵀJ` may be frozen
 /// ([`crate::solve::minimize`]). Cost: theory.md §6 (27), (27a).
-#[allow(clippy::too_many_arguments)]
 pub fn fit_screws(
-    data: &Dataset,
-    packed: &Packed,
+    session: Session<'_>,
     rows: &[u32],
     start: Estimate,
     noise: Noise,
-    length_m: f64,
     prior: Option<(&Prior, f64)>,
     options: &CalibrationOptions,
 ) -> (Estimate, Normal, Summary) {
     let Formulation { joint_parameters, minimize, .. } = options.formulation;
-    let free = free_parameters(&start, data, rows, joint_parameters(&start.kinds));
-    let problem =
-        |rows: Vec<u32>| Problem::new(data, packed, rows, free.clone(), noise, length_m).with_prior(prior);
+    let free = free_parameters(&start, session.data, rows, joint_parameters(&start.kinds));
+    let problem = |rows: Vec<u32>| Problem::new(session, rows, free.clone(), noise).with_prior(prior);
     let mut start = start;
     let (mut solver, mut before) = (options.solver, None);
     let unknowns: usize = free.iter().map(|parameter| parameter.model().columns().len()).sum();
@@ -97,15 +89,13 @@ pub fn fit_screws(
 
 /// Layout and normal information of an estimate in the minimal basis.
 pub(super) fn minimal(
-    data: &Dataset,
-    packed: &Packed,
+    session: Session<'_>,
     rows: &[u32],
     estimate: &Estimate,
     noise: Noise,
-    length_m: f64,
 ) -> (Layout, Normal) {
-    let free = free_parameters(estimate, data, rows, screw_axes(&estimate.kinds));
-    let problem = Problem::new(data, packed, rows.to_vec(), free, noise, length_m);
+    let free = free_parameters(estimate, session.data, rows, screw_axes(&estimate.kinds));
+    let problem = Problem::new(session, rows.to_vec(), free, noise);
     (problem.layout().clone(), problem.normal(estimate))
 }
 
@@ -119,16 +109,13 @@ pub(super) fn is_suspicious(rms_m: f64, length_m: f64) -> bool {
     rms_m >= SUSPICIOUS * 3.0 * length_m
 }
 
-/// A fit: robot, rows, weights, prior, options.
+/// A fit: session, rows, weights, prior, options.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
-    pub(super) robot: &'a Robot,
-    pub(super) data: &'a Dataset,
-    pub(super) packed: &'a Packed,
+    pub(super) session: Session<'a>,
     pub(super) rows: &'a [u32],
     /// Weights of all rows of the data; `None` if all are 1.
     pub(super) weights: Option<&'a [f64]>,
-    pub(super) length_m: f64,
     /// Prior, and its weight: the variance of the whitened residuals.
     pub(super) prior: Option<(&'a Prior, f64)>,
     pub(super) options: &'a CalibrationOptions,
@@ -143,7 +130,7 @@ impl Task<'_> {
     /// The prior's weight in the first fit. An estimated noise is then mostly error of the screws, so the prior counts as beside the usual
     /// error of gears and links.
     pub(super) fn with_first_prior_weight(&self, noise: Noise, source: NoiseSource) -> Self {
-        let usual = 0.1 * SUSPICIOUS * 3.0 * self.length_m / noise.position_m;
+        let usual = 0.1 * SUSPICIOUS * 3.0 * self.session.length_m / noise.position_m;
         let is_open = source == NoiseSource::Estimated;
         self.with_prior_weight(if is_open { (usual * usual).min(1.0) } else { 1.0 })
     }
@@ -151,7 +138,7 @@ impl Task<'_> {
     /// The first fit from a registration.
     pub(super) fn first_fit(&self, registered: &Estimate, noise: Noise) -> OngoingFit {
         let mut start = registered.clone();
-        start.recentre(self.data, self.packed, self.rows);
+        start.recentre(&self.session, self.rows);
         OngoingFit::new(self.fit(start, noise))
     }
 
@@ -193,8 +180,8 @@ impl Task<'_> {
             let mut weight = 1.0;
             if source == NoiseSource::Estimated {
                 let by_rotations = task.determined_by_rotations(&found, noise);
-                let (data, packed, rows) = (self.data, self.packed, self.rows);
-                match estimate_noise(data, packed, rows, &found.estimate, unknowns, by_rotations, noise) {
+                let (session, rows) = (&self.session, self.rows);
+                match estimate_noise(session, rows, &found.estimate, unknowns, by_rotations, noise) {
                     Some(estimated) => noise = stated(self.options, estimated),
                     None => source = NoiseSource::Exact,
                 }
@@ -231,7 +218,7 @@ impl Task<'_> {
         const FEW: usize = 300;
         // With positions practically unmeasured, the information of rotations remains.
         const UNMEASURED_M: f64 = 1e9;
-        let turns = |row: &u32| self.data.observations[*row as usize].measurement.sees_orientation();
+        let turns = |row: &u32| self.session.observation(*row).measurement.sees_orientation();
         if self.rows.len() > FEW || !self.rows.iter().any(turns) {
             return None;
         }
@@ -274,7 +261,7 @@ impl Task<'_> {
         if self.weights.is_some() {
             return self.minimize(&self.problem(&start, noise), start, &self.options.solver);
         }
-        fit_screws(self.data, self.packed, self.rows, start, noise, self.length_m, self.prior, self.options)
+        fit_screws(self.session, self.rows, start, noise, self.prior, self.options)
     }
 
     /// Minimises with the formulation of the options.
@@ -285,14 +272,13 @@ impl Task<'_> {
     /// The free parameters.
     fn free(&self, estimate: &Estimate) -> Vec<Parameter> {
         let joints = (self.options.formulation.joint_parameters)(&estimate.kinds);
-        free_parameters(estimate, self.data, self.rows, joints)
+        free_parameters(estimate, self.session.data, self.rows, joints)
     }
 
     /// The problem of these rows and weights.
     pub(super) fn problem(&self, estimate: &Estimate, noise: Noise) -> Problem<'_> {
         let free = self.free(estimate);
-        let problem = Problem::new(self.data, self.packed, self.rows.to_vec(), free, noise, self.length_m);
-        let problem = problem.with_prior(self.prior);
+        let problem = Problem::new(self.session, self.rows.to_vec(), free, noise).with_prior(self.prior);
         match self.weights {
             Some(weights) => problem.with_weights(weights),
             None => problem,
@@ -301,7 +287,7 @@ impl Task<'_> {
 
     /// [`is_suspicious`] for this robot.
     pub(super) fn is_suspicious(&self, rms_m: f64) -> bool {
-        is_suspicious(rms_m, self.length_m)
+        is_suspicious(rms_m, self.session.length_m)
     }
 
     /// Further starts if the error suggests a local minimum: random screws around the registered ones, on a subsample. Returns a clearly
@@ -314,8 +300,7 @@ impl Task<'_> {
     ) -> Option<(Option<Estimate>, usize)> {
         let sample = sample_rows(self.rows, RESTART_SAMPLE);
         let problem = |estimate: &Estimate| {
-            Problem::new(self.data, self.packed, sample.clone(), self.free(estimate), noise, self.length_m)
-                .with_prior(self.prior)
+            Problem::new(self.session, sample.clone(), self.free(estimate), noise).with_prior(self.prior)
         };
         if self.options.restarts == 0 || !self.is_suspicious(self.position_rms(fitted)) {
             return None;
@@ -344,14 +329,14 @@ impl Task<'_> {
 
     /// Root mean square distance from prediction to measurement, metres.
     fn position_rms(&self, estimate: &Estimate) -> f64 {
-        position_rms_m(&row_errors(self.data, self.packed, self.rows, estimate))
+        position_rms_m(&self.session.errors(self.rows, estimate))
     }
 
     /// The estimate with every axis tilted by about `scale` radians and shifted by as much of the arm's length.
     fn scattered(&self, estimate: &Estimate, scale: f64, generator: &mut ChaCha8Rng) -> Estimate {
         let layout = self.problem(estimate, Noise { position_m: 1.0, rotation_rad: 1.0 }).layout().clone();
         let step: Vec<f64> =
-            (0..layout.dim()).map(|_| scale * self.length_m * random::normal(generator)).collect();
+            (0..layout.dim()).map(|_| scale * self.session.length_m * random::normal(generator)).collect();
         layout.retract(estimate, &step)
     }
 
@@ -365,17 +350,16 @@ impl Task<'_> {
         report: &mut SolverReport,
     ) -> (Estimate, Normal) {
         let (mut estimate, mut normal) = (estimate, normal);
-        let base_free = self.options.frame == DeviceFrameKnowledge::Unknown;
-        let targets = delivered(self.robot, self.data).base_from_target;
+        let Session { robot, data, length_m, device_free: base_free, .. } = self.session;
+        let targets = delivered(robot, data).base_from_target;
         for _ in 0..8 {
             if base_free {
-                let motion = gauge::base_motion(&estimate, self.robot, &targets, self.length_m);
+                let motion = gauge::base_motion(&estimate, robot, &targets, length_m);
                 estimate = estimate.rebased(&motion);
             }
             let problem = self.problem(&estimate, noise);
             let layout = problem.layout();
-            let Some(step) =
-                gauge::null_step(&estimate, self.robot, layout, &normal.gram, self.length_m, base_free)
+            let Some(step) = gauge::null_step(&estimate, robot, layout, &normal.gram, length_m, base_free)
             else {
                 break;
             };

@@ -7,9 +7,9 @@ use super::coverage_check::{
     CoverageCheck, InSampledRange, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING, coverage_checks,
 };
 use super::verdict::Level;
-use super::{DeviceFrameKnowledge, delivered, measurements_words, radian_m};
+use super::{DeviceFrameKnowledge, delivered, measurements_words};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Packed, row_errors};
+use crate::estimate::{Packed, Session};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
 use crate::problem::MOST_UNKNOWNS;
@@ -117,20 +117,27 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
         refitted.push(Refitted::Tool);
     }
     let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
-    let nominal = (frame_is_common && subject.refit_tool)
-        .then(|| model_accuracy(&judged_rows(subject, subject.nominal, data).errors));
-    let rows = judged_rows(subject, subject.calibrated, data);
-    let promised = subject.uncertainty.and_then(|predicted| {
-        coverage_checks(&predicted, subject.calibrated, subject.refit_tool, data, &rows)
+    let nominal = (frame_is_common && subject.refit_tool).then(|| {
+        let packed = Packed::of(subject.nominal, data);
+        model_accuracy(&judged_rows(subject, subject.nominal, data, &packed).errors)
     });
+    let packed = Packed::of(subject.calibrated, data);
+    let rows = judged_rows(subject, subject.calibrated, data, &packed);
+    let promised =
+        subject.uncertainty.and_then(|predicted| coverage_checks(&predicted, subject.refit_tool, &rows));
     let (promised, in_sampled_range) = promised.map_or((None, None), |(all, some)| (Some(all), some));
     let calibrated = model_accuracy(&rows.errors);
     Ok(Judgement { count: data.len(), refitted, calibrated, nominal, promised, in_sampled_range })
 }
 
 /// Errors of a robot's predictions, with device frame and targets refitted as asked.
-fn judged_rows(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> JudgedRows {
-    let packed = Packed::of(robot, data);
+fn judged_rows<'a>(
+    subject: &Subject<'_>,
+    robot: &'a Robot,
+    data: &'a Dataset,
+    packed: &'a Packed,
+) -> JudgedRows<'a> {
+    let session = Session::new(robot, data, packed, subject.refit_frame);
     let rows: Vec<u32> = data.all_rows();
     let mut estimate = delivered(robot, data);
     estimate.device_from_base = subject.base_from_device.inverse();
@@ -141,20 +148,13 @@ fn judged_rows(subject: &Subject<'_>, robot: &Robot, data: &Dataset) -> JudgedRo
         *device = base_from_device.inverse();
     }
     if subject.refit_frame || subject.refit_tool {
-        let registration = Registration {
-            data,
-            packed: &packed,
-            rows: &rows,
-            noise: subject.noise,
-            length_m: radian_m(robot, &packed),
-            device_free: subject.refit_frame,
-            targets_free: subject.refit_tool,
-        };
+        let registration =
+            Registration { session, rows: &rows, noise: subject.noise, targets_free: subject.refit_tool };
         estimate = register(&registration, &estimate).0;
         free = free_parameters(&registration, &rows);
     }
-    let errors = row_errors(data, &packed, &rows, &estimate);
-    JudgedRows { packed, estimate, errors, free }
+    let errors = session.errors(&rows, &estimate);
+    JudgedRows { session, estimate, errors, free }
 }
 
 /// Refuses measurements that cannot determine the refitted unknowns, and empty ones.

@@ -39,11 +39,13 @@ pub use suspicion::JointCorrection;
 pub use trust::{Expected, RangePart, Trust};
 pub use verdict::{Level, Verdict};
 
-pub use crate::estimate::{RowError, delivered, radian_m, row_errors};
+pub use crate::estimate::{RowError, delivered, radian_m};
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use crate::error::Result;
+use crate::estimate::{Packed, Session};
 use crate::measurement::{Dataset, PoseResidual};
 use crate::robot::Robot;
 use crate::threads;
@@ -96,13 +98,15 @@ pub fn calibrate_with_progress(
     progress: &mut dyn FnMut(Stage),
 ) -> Result<Calibration> {
     let (data, rows) = (&written(data, options.formulation.pose_residual), data.len());
-    let prepared = threads::in_pool(rows, || Prepared::new(robot, data, options))?;
+    let packed = Arc::new(threads::in_pool(rows, || Packed::of(robot, data)));
+    let session = Session::new(robot, data, &packed, options.frame == DeviceFrameKnowledge::Unknown);
+    let prepared = threads::in_pool(rows, || Prepared::new(session, options))?;
     progress(Stage::Registration);
     let (registered, noise, source) = threads::in_pool(rows, || prepared.register());
     progress(Stage::Fit);
     let fit = threads::in_pool(rows, || prepared.fit(&registered, noise, source))?;
     progress(Stage::Analysis);
-    Ok(threads::in_pool(rows, || prepared.assess(registered, fit)))
+    Ok(threads::in_pool(rows, || prepared.assess(Arc::clone(&packed), registered, fit)))
 }
 
 /// The data with the residual of measured frames replaced.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::CalibrationOptions;
-use crate::estimate::{Estimate, Packed, map_squares};
+use crate::estimate::{Estimate, Session};
 use crate::measurement::{Dataset, Noise, Observation};
 
 /// Source of the noise.
@@ -78,19 +78,18 @@ pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
 /// that state their noise do not count; a part with few measurements keeps `before`. `None` if the residuals are only rounding.
 #[must_use]
 pub fn estimate_noise(
-    data: &Dataset,
-    packed: &Packed,
+    session: &Session<'_>,
     rows: &[u32],
     estimate: &Estimate,
     unknowns: f64,
     determined_by_rotations: Option<f64>,
     before: Noise,
 ) -> Option<Noise> {
-    let squares = map_squares(data, packed, rows, estimate, |_, squares| squares);
+    let squares = session.map_squares(rows, estimate, |_, squares| squares);
     let (mut position, mut rotation) = (Share::default(), Share::default());
     let mut stated = 0;
     for (&row, squares) in rows.iter().zip(squares) {
-        let Observation { sigma_position_m, sigma_rotation_rad, .. } = &data.observations[row as usize];
+        let Observation { sigma_position_m, sigma_rotation_rad, .. } = session.observation(row);
         let shares = [(&mut position, sigma_position_m), (&mut rotation, sigma_rotation_rad)];
         for ((squares, count), (share, sigma)) in squares.into_iter().zip(shares) {
             if sigma.is_some() {
@@ -102,7 +101,7 @@ pub fn estimate_noise(
         }
     }
     // Each target's orientation (3 unknowns) is determined by rotations alone; all other unknowns are shared in proportion.
-    let turned = 3 * data.frames(rows).iter().filter(|&&is_frame| is_frame).count();
+    let turned = 3 * session.data.frames(rows).iter().filter(|&&is_frame| is_frame).count();
     let total = (position.count + rotation.count + stated) as f64;
     let others = ((unknowns - turned as f64).max(0.0) / (total - turned as f64).max(1.0)).min(1.0);
     let (position_m, rotation_rad) = match determined_by_rotations {

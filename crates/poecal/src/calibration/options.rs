@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::estimate::Session;
+use crate::problem::Prior;
 use crate::robot::Tolerance;
 use crate::solve;
 
@@ -81,9 +83,10 @@ impl Default for CalibrationOptions {
 }
 
 impl CalibrationOptions {
-    /// The tolerance of the fit: `None` with formulations for comparison.
+    /// Prior of the fit: `None` with formulations for comparison.
     #[must_use]
-    pub(in crate::calibration) fn tolerance_in_fit(&self) -> Option<Tolerance> {
-        self.tolerance.filter(|_| self.formulation == Formulation::default())
+    pub(in crate::calibration) fn prior(&self, session: &Session<'_>) -> Option<Prior> {
+        let tolerance = self.tolerance.filter(|_| self.formulation == Formulation::default());
+        tolerance.map(|tolerance| Prior::new(session.robot, tolerance, session.device_free))
     }
 }

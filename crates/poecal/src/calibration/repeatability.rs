@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Calibration, RowError, row_errors};
+use super::{Calibration, RowError};
 use crate::estimate::{Estimate, turn_to_first};
 use crate::measurement::Dataset;
 
@@ -49,10 +49,11 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
         return Vec::new();
     }
     let packed = calibration.packed(data);
+    let session = calibration.session(data, &packed);
     let models = &calibration.models;
     let poses = groups.into_iter().map(|rows| {
         let errors = |estimate: &Estimate| {
-            let mut errors = row_errors(data, &packed, &rows, estimate);
+            let mut errors = session.errors(&rows, estimate);
             turn_to_first(data, &rows, estimate, &mut errors);
             errors
         };

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use super::{
     Accuracy, CalibrationOptions, DeviceFrameKnowledge, Formulation, Models, NoiseSource, Robustness,
-    SolverReport, Trust, Verdict, fit_screws, radian_m,
+    SolverReport, Trust, Verdict, fit_screws,
 };
 use crate::analysis::Identifiability;
-use crate::estimate::{Estimate, Packed};
+use crate::estimate::{Estimate, Packed, Session};
 use crate::forensics::Diagnosis;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
@@ -112,6 +112,11 @@ impl Calibration {
         Arc::new(Packed::of(&self.nominal, data))
     }
 
+    /// The session of these measurements and their joint values.
+    pub(crate) fn session<'a>(&'a self, data: &'a Dataset, packed: &'a Packed) -> Session<'a> {
+        Session::new(&self.nominal, data, packed, self.frame == DeviceFrameKnowledge::Unknown)
+    }
+
     /// The calibrated robot with the named targets in its tip frame, as written to model files.
     #[must_use]
     pub fn robot_with_targets(&self) -> Robot {
@@ -128,17 +133,15 @@ impl Calibration {
 
     fn solved_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
         let packed = Packed::of(&self.nominal, data);
-        let length_m = radian_m(&self.nominal, &packed);
+        let session = self.session(data, &packed);
         let start = match self.frame {
             DeviceFrameKnowledge::Base => self.models.nominal.clone(),
             DeviceFrameKnowledge::Unknown => self.models.registered.clone(),
         };
-        let base_free = self.frame == DeviceFrameKnowledge::Unknown;
-        let prior =
-            options.tolerance_in_fit().map(|tolerance| Prior::new(&self.nominal, tolerance, base_free));
+        let prior = options.prior(&session);
         let looseness = |prior: &Prior| prior.looseness(&self.models.calibrated);
         let prior = prior.as_ref().map(|prior| (prior, 1.0 / looseness(prior)));
-        fit_screws(data, &packed, &self.fit_rows, start, self.noise, length_m, prior, options).2
+        fit_screws(session, &self.fit_rows, start, self.noise, prior, options).2
     }
 }
 

@@ -37,7 +37,7 @@ pub(super) fn suspicions(
     normal: &Normal,
     joints: &[JointCorrection],
 ) -> Vec<Option<String>> {
-    let kind = |joint: usize| view.robot.joints[joint].kind;
+    let kind = |joint: usize| view.session.robot.joints[joint].kind;
     let of_joint = |(joint, correction): (usize, &JointCorrection)| {
         let others = joints.iter().enumerate().filter(|&(other, it)| {
             other != joint && kind(other) == kind(joint) && it.sigma_tilt_rad.is_some()

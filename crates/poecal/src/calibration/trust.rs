@@ -5,9 +5,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::suspicion::{JointCorrection, suspicions};
-use super::{CoverageCheck, Models, row_errors};
+use super::{CoverageCheck, Models};
 use crate::analysis::{JointCoverage, PLAUSIBLE, coverage};
-use crate::estimate::{Estimate, Packed, position_rms_m, sample_rows};
+use crate::estimate::{Estimate, Packed, Session, position_rms_m, sample_rows};
 use crate::gauge::{Deviation, screw_deviations};
 use crate::problem::Layout;
 use crate::robot::{Joint, JointKind, Robot};
@@ -102,28 +102,28 @@ pub(super) struct Finished<'a> {
     pub(super) normal: &'a Normal,
     pub(super) remainder: &'a Remainder,
     pub(super) models: &'a Models,
-    pub(super) base_free: bool,
     pub(super) seed: u64,
 }
 
 /// Judges a finished fit.
 pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let view = &finished.view;
+    let Session { robot, data, packed, .. } = view.session;
     let cross_validation = cross_validate(view, finished.seed);
     let found = discrepancy(view, finished.normal, finished.remainder, cross_validation.as_ref());
     let uncertainty = uncertainty(finished, &found);
     let sample = sample_rows(view.rows, CONFIGURATIONS);
     let sampled: Vec<f64> =
-        sample.iter().flat_map(|&row| view.packed.joint_values(row as usize).iter().copied()).collect();
-    let coverage = coverage(view.robot, view.packed, view.rows);
-    let ranges = ranges(view.robot, &coverage);
-    let anywhere = anywhere(view.robot, &ranges, finished.seed);
+        sample.iter().flat_map(|&row| packed.joint_values(row as usize).iter().copied()).collect();
+    let coverage = coverage(&view.session, view.rows);
+    let ranges = ranges(robot, &coverage);
+    let anywhere = anywhere(robot, &ranges, finished.seed);
     let (mut measured, mut range, mut parts) = (None, None, Vec::new());
     if let Some(uncertainty) = &uncertainty {
         let quantile = uncertainty.quantiles()[0];
-        let targets = view.data.targets.len().clamp(1, MOST_TARGETS);
+        let targets = data.targets.len().clamp(1, MOST_TARGETS);
         let of = |values: &[f64]| -> Vec<Vec<Matrix3<f64>>> {
-            let packed = Packed::of_values(view.robot, values);
+            let packed = Packed::of_values(robot, values);
             (0..targets).map(|target| uncertainty.positions(&packed, target)).collect()
         };
         measured = Some(Expected::of(&of(&sampled).concat(), quantile));
@@ -224,16 +224,16 @@ fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[Vec<Matrix3<f64>>]
 /// Correction of each joint with its uncertainty and effect.
 fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<JointCorrection> {
     let view = &finished.view;
+    let Session { robot, length_m, device_free, .. } = view.session;
     let calibrated = &finished.models.calibrated;
-    let deviations =
-        screw_deviations(calibrated, view.robot, finished.layout, view.length_m, finished.base_free);
-    let nominal: Vec<_> = view.robot.joints.iter().map(|joint| joint.screw).collect();
+    let deviations = screw_deviations(calibrated, robot, finished.layout, length_m, device_free);
+    let nominal: Vec<_> = robot.joints.iter().map(|joint| joint.screw).collect();
     let rows = sample_rows(view.rows, EFFECT_SAMPLE);
     let mut joints: Vec<JointCorrection> = deviations
         .into_iter()
         .enumerate()
         .map(|(joint, deviation)| {
-            let (sigma_tilt_rad, sigma_shift_m) = sigmas(&deviation, uncertainty, view.length_m);
+            let (sigma_tilt_rad, sigma_shift_m) = sigmas(&deviation, uncertainty, length_m);
             let mut screws = calibrated.screws();
             screws[joint] = nominal[joint];
             let left = registered_again(finished, &rows, &calibrated.with_screws(&screws));
@@ -242,7 +242,7 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
                 shift_m: deviation.shift_m,
                 sigma_tilt_rad,
                 sigma_shift_m,
-                left_nominal_rms_m: position_rms_m(&row_errors(view.data, view.packed, &rows, &left)),
+                left_nominal_rms_m: position_rms_m(&view.session.errors(&rows, &left)),
                 suspicious: None,
             }
         })
@@ -272,14 +272,6 @@ fn sigmas(
 /// An estimate with tool and device frame refitted.
 fn registered_again(finished: &Finished<'_>, rows: &[u32], start: &Estimate) -> Estimate {
     let view = &finished.view;
-    let registration = Registration {
-        data: view.data,
-        packed: view.packed,
-        rows,
-        noise: view.noise,
-        length_m: view.length_m,
-        device_free: finished.base_free,
-        targets_free: true,
-    };
+    let registration = Registration { session: view.session, rows, noise: view.noise, targets_free: true };
     register_again(&registration, start)
 }

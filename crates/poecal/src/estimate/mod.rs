@@ -7,14 +7,15 @@ mod chain;
 mod packing;
 mod predictions;
 mod row_error;
+mod session;
 mod sight;
 
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
-pub use predictions::row_errors;
-pub(crate) use predictions::{map_squares, turn_to_first};
+pub(crate) use predictions::turn_to_first;
 pub use row_error::RowError;
 pub(crate) use row_error::position_rms_m;
+pub use session::Session;
 pub use sight::Sight;
 
 use std::collections::BTreeMap;
@@ -179,14 +180,15 @@ impl Estimate {
 
     /// Moves each axis frame's origin along its axis to the point nearest to the targets' mean place as seen from that joint, where a tilt
     /// has the least leverage (theory.md §5, below (18)). Screws do not change.
-    pub(crate) fn recentre(&mut self, data: &Dataset, packed: &Packed, rows: &[u32]) {
+    pub(crate) fn recentre(&mut self, session: &Session<'_>, rows: &[u32]) {
         let sample = sample_rows(rows, 200);
         let count = sample.len() as f64;
         let linkage = Linkage::new(self);
         let mut chain = Chain::default();
         let mut along = vec![0.0; self.kinds.len()];
         for &row in &sample {
-            chain.evaluate(&linkage, packed, row as usize, &data.observations[row as usize]);
+            let seen = session.observation(row);
+            chain.evaluate(&linkage, session.packed, row as usize, seen);
             for (sum, joint) in along.iter_mut().zip(&chain.joints) {
                 *sum += joint.z.dot(&(chain.target.translation - joint.origin)) / count;
             }

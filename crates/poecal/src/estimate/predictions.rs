@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Estimate, Linkage, Packed, RowError};
+use super::{Estimate, Linkage, Packed, RowError, Session};
 use crate::lanes::{self, FixedMotion, Frames, SimdLevel, WIDTH, Wide};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise, Observation, Residual as _, Written};
@@ -11,40 +11,68 @@ use crate::threads;
 /// Rows that one thread takes at a time.
 const CHUNK: usize = 1024;
 
-/// Maps each row by `each`, from its observation, its error in the device's axes (theory.md §4 (16), not whitened) and, on demand, the
-/// predicted `device_from_target` (theory.md §4 (13)).
-fn map_errors<T: Send>(
-    data: &Dataset,
-    packed: &Packed,
-    rows: &[u32],
-    estimate: &Estimate,
-    each: impl Fn(&Observation, RowError, &dyn Fn() -> Pose) -> T + Sync,
-) -> Vec<T> {
-    let linkage = Linkage::new(estimate);
-    threads::concat_chunks(rows, CHUNK, |_, rows| {
-        let mut found = Vec::with_capacity(rows.len());
-        let mut side_by_side = SideBySide::new(&linkage);
-        for rows in rows.chunks(WIDTH) {
-            side_by_side.predict(packed, rows);
-            side_by_side.compare(data, rows);
-            for (lane, &row) in rows.iter().enumerate() {
-                let observation = &data.observations[row as usize];
-                let predicted = || {
-                    let from_first = side_by_side.last_link(lane) * *linkage.end(observation.target);
-                    linkage.station_from_first(observation.station).map_or(from_first, |&it| it * from_first)
-                };
-                found.push(each(observation, side_by_side.error(lane, observation), &predicted));
-            }
-        }
-        found
-    })
-}
+impl Session<'_> {
+    /// Errors of an estimate, one for each row: measured minus predicted, metres and radians, in the axes of the row's own device frame
+    /// (theory.md §4 (15), (16), not whitened).
+    #[must_use]
+    pub fn errors(&self, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
+        self.map_errors(rows, estimate, |_, error, _| error)
+    }
 
-/// Errors of an estimate, one for each row: measured minus predicted, metres and radians, in the axes of the row's own device frame
-/// (theory.md §4 (15), (16), not whitened).
-#[must_use]
-pub fn row_errors(data: &Dataset, packed: &Packed, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
-    map_errors(data, packed, rows, estimate, |_, error, _| error)
+    /// Maps each row by `each`, from its observation and the two parts of its residual, position and rotation: the sum of squares (m²,
+    /// rad²) and the count of numbers. Residuals are those of theory.md §4 (15), (16), or of the data set's own formulation (16a).
+    pub(crate) fn map_squares<T: Send>(
+        &self,
+        rows: &[u32],
+        estimate: &Estimate,
+        each: impl Fn(&Observation, [(f64, usize); 2]) -> T + Sync,
+    ) -> Vec<T> {
+        const UNIT: Noise = Noise { position_m: 1.0, rotation_rad: 1.0 };
+        self.map_errors(rows, estimate, |observation, error, predicted| {
+            let squares = match Written::new(&observation.measurement, self.data.pose_residual) {
+                Written::Usual(_) => {
+                    let rotation = error.rotation_rad.map_or((0.0, 0), |turn| (turn.norm_squared(), 3));
+                    [(error.position_m.norm_squared(), 3), rotation]
+                }
+                Written::Other(pose) => {
+                    let mut e = [0.0; 6];
+                    pose.residual(&predicted(), &UNIT, &mut e);
+                    let (position, rotation) = e.split_at(pose.rotation_row());
+                    [position, rotation].map(|part| (part.iter().map(|e| e * e).sum(), part.len()))
+                }
+            };
+            each(observation, squares)
+        })
+    }
+
+    /// Maps each row by `each`, from its observation, its error in the device's axes (theory.md §4 (16), not whitened) and, on demand, the
+    /// predicted `device_from_target` (theory.md §4 (13)).
+    fn map_errors<T: Send>(
+        &self,
+        rows: &[u32],
+        estimate: &Estimate,
+        each: impl Fn(&Observation, RowError, &dyn Fn() -> Pose) -> T + Sync,
+    ) -> Vec<T> {
+        let linkage = Linkage::new(estimate);
+        threads::concat_chunks(rows, CHUNK, |_, rows| {
+            let mut found = Vec::with_capacity(rows.len());
+            let mut side_by_side = SideBySide::new(&linkage);
+            for rows in rows.chunks(WIDTH) {
+                side_by_side.predict(self.packed, rows);
+                side_by_side.compare(self.data, rows);
+                for (lane, &row) in rows.iter().enumerate() {
+                    let observation = &self.data.observations[row as usize];
+                    let predicted = || {
+                        let from_first = side_by_side.last_link(lane) * *linkage.end(observation.target);
+                        let station = linkage.station_from_first(observation.station);
+                        station.map_or(from_first, |&it| it * from_first)
+                    };
+                    found.push(each(observation, side_by_side.error(lane, observation), &predicted));
+                }
+            }
+            found
+        })
+    }
 }
 
 /// Rotates the errors of rows from the axes of their own station to those of the first, `e ← R_1 R_sᵀ e` with the rotations of the device
@@ -59,33 +87,6 @@ pub(crate) fn turn_to_first(data: &Dataset, rows: &[u32], estimate: &Estimate, e
         error.position_m = turn * error.position_m;
         error.rotation_rad = error.rotation_rad.map(|rotation| turn * rotation);
     }
-}
-
-/// Maps each row by `each`, from its observation and the two parts of its residual, position and rotation: the sum of squares (m², rad²)
-/// and the count of numbers. Residuals are those of theory.md §4 (15), (16), or of the data set's own formulation (16a).
-pub(crate) fn map_squares<T: Send>(
-    data: &Dataset,
-    packed: &Packed,
-    rows: &[u32],
-    estimate: &Estimate,
-    each: impl Fn(&Observation, [(f64, usize); 2]) -> T + Sync,
-) -> Vec<T> {
-    const UNIT: Noise = Noise { position_m: 1.0, rotation_rad: 1.0 };
-    map_errors(data, packed, rows, estimate, |observation, error, predicted| {
-        let squares = match Written::new(&observation.measurement, data.pose_residual) {
-            Written::Usual(_) => {
-                let rotation = error.rotation_rad.map_or((0.0, 0), |turn| (turn.norm_squared(), 3));
-                [(error.position_m.norm_squared(), 3), rotation]
-            }
-            Written::Other(pose) => {
-                let mut e = [0.0; 6];
-                pose.residual(&predicted(), &UNIT, &mut e);
-                let (position, rotation) = e.split_at(pose.rotation_row());
-                [position, rotation].map(|part| (part.iter().map(|e| e * e).sum(), part.len()))
-            }
-        };
-        each(observation, squares)
-    })
 }
 
 /// [`WIDTH`] rows side by side: joint values, frames of the last link, targets in it, measurements and errors.

@@ -1,7 +1,7 @@
 //! Registrations and short calibrations by which hypotheses are compared, on a subsample of the rows.
 
 use super::change::{like, push};
-use crate::estimate::{Estimate, Packed, RowError, delivered, row_errors, sample_rows};
+use crate::estimate::{Estimate, Packed, RowError, Session, delivered, sample_rows};
 use crate::gauge;
 use crate::lie::{Pose, Screw};
 use crate::measurement::{Dataset, Noise, Observation};
@@ -82,6 +82,10 @@ impl<'a> Fitter<'a> {
         Packed::of(self.robot, data)
     }
 
+    pub(super) fn session<'b>(&'b self, data: &'b Dataset, packed: &'b Packed) -> Session<'b> {
+        Session { robot: self.robot, data, packed, length_m: self.length_m, device_free: self.device_free }
+    }
+
     /// Registers the nominal robot.
     pub(super) fn registered(&self, data: &Dataset) -> (Estimate, Misfit) {
         self.register(data, |registration| register(registration, &self.start).0)
@@ -96,16 +100,13 @@ impl<'a> Fitter<'a> {
         let packed = self.packed(data);
         let rows = data.all_rows();
         let registration = Registration {
-            data,
-            packed: &packed,
+            session: self.session(data, &packed),
             rows: &rows,
             noise: self.noise,
-            length_m: self.length_m,
-            device_free: self.device_free,
             targets_free: true,
         };
         let estimate = by(&registration);
-        let misfit = self.misfit(data, &packed, &estimate);
+        let misfit = self.misfit(&registration.session, &estimate);
         (estimate, misfit)
     }
 
@@ -147,12 +148,13 @@ impl<'a> Fitter<'a> {
         let rows = data.all_rows();
         free.extend(target_parameters(data, &rows));
         let mut start = registered.clone();
-        start.recentre(data, &packed, &rows);
-        let problem = Problem::new(data, &packed, rows, free, self.noise, self.length_m);
+        let session = self.session(data, &packed);
+        start.recentre(&session, &rows);
+        let problem = Problem::new(session, rows, free, self.noise);
         // Without geodesic steps: hypotheses that explain nothing would take most of the time.
         let options = Options { iterations, acceleration: false, ..Options::default() };
         let (estimate, _, _) = minimize(&problem, start, &options);
-        let misfit = self.misfit(data, &packed, &estimate);
+        let misfit = self.misfit(&session, &estimate);
         (estimate, misfit)
     }
 
@@ -165,7 +167,7 @@ impl<'a> Fitter<'a> {
 
     /// Whether nothing needs a diagnosis: a calibration explains the data with each axis near nominal.
     pub(super) fn is_sound(&self, data: &Dataset, calibrated: &Estimate) -> bool {
-        let errors = row_errors(data, &self.packed(data), &data.all_rows(), calibrated);
+        let errors = self.session(data, &self.packed(data)).errors(&data.all_rows(), calibrated);
         let totals = errors.iter().map(|error| self.squared_m2(error));
         let mean = totals.clone().sum::<f64>() / errors.len().max(1) as f64;
         let most = totals.fold(0.0, f64::max);
@@ -198,9 +200,9 @@ impl<'a> Fitter<'a> {
         error.position_m.norm_squared() + turned
     }
 
-    pub(super) fn misfit(&self, data: &Dataset, packed: &Packed, estimate: &Estimate) -> Misfit {
+    pub(super) fn misfit(&self, session: &Session<'_>, estimate: &Estimate) -> Misfit {
         let (mut position, mut rotation, mut turned) = (0.0, 0.0, 0usize);
-        let errors = row_errors(data, packed, &data.all_rows(), estimate);
+        let errors = session.errors(&session.data.all_rows(), estimate);
         for error in &errors {
             position += error.position_m.norm_squared();
             if let Some(turn) = &error.rotation_rad {

@@ -9,7 +9,7 @@ use super::few::{FewTargets, TARGETS, for_links};
 use super::fitter::{Fitter, SHORT, Score, sampled, taken};
 use super::judge::{CALIBRATED_SHARE, short};
 use super::{Diagnosis, DiagnosisKind};
-use crate::estimate::{Estimate, row_errors};
+use crate::estimate::Estimate;
 use crate::measurement::Dataset;
 
 /// Least ratio of two targets' distances from their nominal places before and after the exchange.
@@ -209,7 +209,7 @@ fn reassigned(
     let mut swapped = vec![false; all.len()];
     let packed = fitter.packed(all);
     let errors = |data: &Dataset, estimate: &Estimate| -> Vec<f64> {
-        let errors = row_errors(data, &packed, &data.all_rows(), estimate);
+        let errors = fitter.session(data, &packed).errors(&data.all_rows(), estimate);
         errors.iter().map(|error| fitter.squared_m2(error)).collect()
     };
     let mut least = base_m;

@@ -128,7 +128,7 @@ fn contradiction(what: &str) -> Option<()> {
 
 fn plan_without_unknowns(problem: &Problem<'_>, framed: bool) -> Plan {
     Plan {
-        joints: problem.packed.turns().map(|turns| JointPlan { turns, columns: None }).collect(),
+        joints: problem.session.packed.turns().map(|turns| JointPlan { turns, columns: None }).collect(),
         device: None,
         place: None,
         frame: None,

@@ -167,7 +167,7 @@ pub(super) fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mu
 
 #[inline(always)]
 fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, framed: bool) -> RowData<'a> {
-    let observation = &problem.data.observations[row];
+    let observation = &problem.session.data.observations[row];
     let Whitening { weight, ratio } = usual.of(observation, problem.noise);
     let weight = match problem.weights.and_then(|weights| weights.get(row)) {
         Some(own) => own.sqrt() * weight,
@@ -179,5 +179,5 @@ fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, framed: 
             (&pose.translation, framed.then_some((&pose.rotation.data.0, ratio)))
         }
     };
-    RowData { joints: problem.packed.row(row), position: &position.data.0[0], orientation, weight }
+    RowData { joints: problem.session.packed.row(row), position: &position.data.0[0], orientation, weight }
 }

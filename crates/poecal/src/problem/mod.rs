@@ -16,8 +16,8 @@ pub use prior::Prior;
 pub use refit::Refit;
 pub(crate) use row_block::RowBlock;
 
-use crate::estimate::{Estimate, Packed};
-use crate::measurement::{Dataset, Measurement, Noise, Written};
+use crate::estimate::{Estimate, Session};
+use crate::measurement::{Measurement, Noise, Written};
 use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
 use fast::{Accumulate, Fast};
@@ -35,7 +35,7 @@ const SEEN: usize = 500;
 /// ```
 /// # use nalgebra::Vector3;
 /// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot, JointKind}, measurement::*};
-/// use poecal::{estimate::{Estimate, Packed}, parameters::*, problem::Problem, solve::{minimize, Options}};
+/// use poecal::{estimate::{Estimate, Packed, Session}, parameters::*, problem::Problem, solve::{minimize, Options}};
 /// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
 /// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
 /// # let mut data = Dataset::new(robot.reading_names());
@@ -46,7 +46,8 @@ const SEEN: usize = 500;
 /// let packed = Packed::new(&robot, data.all_readings(), 1);
 /// let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
 /// let noise = Noise { position_m: 1e-4, rotation_rad: 1e-4 };
-/// let problem = Problem::new(&data, &packed, vec![0, 1, 2], free, noise, 1.0);
+/// let session = Session::new(&robot, &data, &packed, false);
+/// let problem = Problem::new(session, vec![0, 1, 2], free, noise);
 /// let start = Estimate::new(&robot, vec![robot.home], Pose::identity());
 /// let (found, _, _) = minimize(&problem, start, &Options::default());
 /// assert!((found.base_from_target[0].translation.x - 0.31).abs() < 1e-12);
@@ -54,8 +55,7 @@ const SEEN: usize = 500;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Problem<'a> {
-    data: &'a Dataset,
-    packed: &'a Packed,
+    session: Session<'a>,
     rows: Vec<u32>,
     layout: Layout,
     noise: Noise,
@@ -72,26 +72,18 @@ pub struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// A problem over some rows of the data. `noise` holds where a row states none; `length_m` makes radians comparable with metres.
+    /// A problem over some rows of a session. `noise` holds where a row states none.
     #[must_use]
-    pub fn new(
-        data: &'a Dataset,
-        packed: &'a Packed,
-        rows: Vec<u32>,
-        free: Vec<Parameter>,
-        noise: Noise,
-        length_m: f64,
-    ) -> Self {
+    pub fn new(session: Session<'a>, rows: Vec<u32>, free: Vec<Parameter>, noise: Noise) -> Self {
         // A few roundings of about the largest number: the distance from the device.
-        let position = |&row: &u32| data.observations[row as usize].measurement.residual_model().position();
+        let position = |&row: &u32| session.observation(row).measurement.residual_model().position();
         let some = rows.iter().step_by(rows.len().div_ceil(SEEN).max(1));
         let farthest = some.map(|row| position(row).amax());
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
         Problem {
-            data,
-            packed,
+            session,
             rows,
-            layout: Layout::new(free, length_m),
+            layout: Layout::new(free, session.length_m),
             noise,
             weights: None,
             prior: None,
@@ -156,7 +148,7 @@ impl<'a> Problem<'a> {
     /// Noise that whitens a row: the W of theory.md §4 (17), divided by the root of the row's weight (theory.md §6 (34b)).
     #[must_use]
     pub fn noise(&self, row: usize) -> Noise {
-        let noise = self.data.observations[row].noise_or(self.noise);
+        let noise = self.session.data.observations[row].noise_or(self.noise);
         let Some(weight) = self.weights.and_then(|weights| weights.get(row)) else { return noise };
         let root = weight.sqrt();
         Noise { position_m: noise.position_m / root, rotation_rad: noise.rotation_rad / root }
@@ -165,12 +157,12 @@ impl<'a> Problem<'a> {
     /// Measurement of a row.
     fn measurement(&self, row: usize) -> &Measurement {
         let instead = self.measured.as_ref().and_then(|measured| measured.get(row));
-        instead.unwrap_or(&self.data.observations[row].measurement)
+        instead.unwrap_or(&self.session.data.observations[row].measurement)
     }
 
     /// Measurement of a row, with the formulation of its residual.
     fn written(&self, row: usize) -> Written<'_> {
-        Written::new(self.measurement(row), self.data.pose_residual)
+        Written::new(self.measurement(row), self.session.data.pose_residual)
     }
 
     /// Replaces the measurements, one for each row of the data; the configurations stay.
@@ -197,7 +189,7 @@ impl Problem<'_> {
     #[doc(hidden)]
     #[must_use]
     pub fn is_served(&self, state: &Estimate) -> bool {
-        self.data.pose_residual.is_none() && self.layout.is_minimal() && state.is_for_kernels()
+        self.session.data.pose_residual.is_none() && self.layout.is_minimal() && state.is_for_kernels()
     }
 
     /// The hot path, if it applies to this problem in this state.

@@ -16,7 +16,7 @@ const TOGETHER: usize = 25;
 /// ```
 /// # use nalgebra::Vector3;
 /// # use poecal::{lie::{Pose, Screw}, robot::{Joint, Robot}, measurement::*};
-/// use poecal::{estimate::{Estimate, Packed}, parameters::*, problem::{Problem, Refit}, solve::Options};
+/// use poecal::{estimate::{Estimate, Packed, Session}, parameters::*, problem::{Problem, Refit}, solve::Options};
 /// # let joint = Joint::revolute("a", Screw::revolute(&Vector3::y(), &Vector3::x()));
 /// # let robot = Robot::new("r", vec![joint], Pose::from_translation(Vector3::new(0.3, 0.2, 0.1)))?;
 /// let place = Vector3::new(0.01, 0.0, 0.0);
@@ -31,7 +31,8 @@ const TOGETHER: usize = 25;
 /// let packed = Packed::new(&robot, data.all_readings(), 1);
 /// let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
 /// let noise = Noise { position_m: 1e-4, rotation_rad: 1e-4 };
-/// let problem = Problem::new(&data, &packed, vec![0, 1, 2], free, noise, 1.0);
+/// let session = Session::new(&robot, &data, &packed, false);
+/// let problem = Problem::new(session, vec![0, 1, 2], free, noise);
 /// let start = Estimate::new(&robot, vec![robot.home], Pose::identity());
 ///
 /// let mut refit = Refit::new(problem, start, Options::default());

@@ -27,11 +27,11 @@ impl Problem<'_> {
         let mut jacobian = vec![0.0; 6 * n];
         let mut residual = [0.0; 6];
         for &row in rows {
-            let observation = &self.data.observations[row as usize];
+            let observation = self.session.observation(row);
             let written = self.written(row as usize);
             let measurement = written.model();
             let (noise, dim) = (self.noise(row as usize), measurement.dim());
-            chain.evaluate(&linkage, self.packed, row as usize, observation);
+            chain.evaluate(&linkage, self.session.packed, row as usize, observation);
             self.layout.target_twists(&chain, observation.target, &mut columns);
             measurement.project(&chain.target, &columns, &noise, n, &mut jacobian);
             measurement.residual(&chain.target, &noise, &mut residual);
@@ -77,13 +77,13 @@ impl Problem<'_> {
                 &linkage,
                 rows,
                 |here, row, out| {
-                    let observation = &self.data.observations[row];
+                    let observation = &self.session.data.observations[row];
                     let written = self.written(row);
                     let measurement = written.model();
                     let noise = self.noise(row);
-                    chain.evaluate(&ahead, self.packed, row, observation);
+                    chain.evaluate(&ahead, self.session.packed, row, observation);
                     measurement.residual(&chain.target, &noise, &mut e_ahead);
-                    chain.evaluate(&behind, self.packed, row, observation);
+                    chain.evaluate(&behind, self.session.packed, row, observation);
                     measurement.residual(&chain.target, &noise, &mut e_behind);
                     measurement.residual(&here.target, &noise, out);
                     for (e, (a, b)) in out.iter_mut().zip(e_ahead.iter().zip(&e_behind)) {
@@ -108,8 +108,8 @@ impl Problem<'_> {
             let mut chain = Chain::default();
             for &row in rows {
                 let row = row as usize;
-                let observation = &self.data.observations[row];
-                chain.evaluate(&linkage, self.packed, row, observation);
+                let observation = &self.session.data.observations[row];
+                chain.evaluate(&linkage, self.session.packed, row, observation);
                 let written = self.written(row);
                 let Some((force, torque)) = written.model().wrench(&chain.target, &self.noise(row)) else {
                     return normal;
@@ -153,10 +153,10 @@ impl Problem<'_> {
         let mut turning = Block::default();
         for (count, &row) in rows.iter().enumerate() {
             let row = row as usize;
-            let observation = &self.data.observations[row];
+            let observation = &self.session.data.observations[row];
             let written = self.written(row);
             let measurement = written.model();
-            chain.evaluate(linkage, self.packed, row, observation);
+            chain.evaluate(linkage, self.session.packed, row, observation);
             self.layout.target_twists(&chain, observation.target, &mut columns);
             let (dim, split) = (measurement.dim(), measurement.rotation_row());
             measurement.project(&chain.target, &columns, &self.noise(row), n, &mut jacobian);

@@ -48,7 +48,7 @@ impl RowGroup {
         let usual = Whitening::new(problem.noise);
         let mut at = 0;
         for (position, &row) in (0..).zip(rows) {
-            let observation = &problem.data.observations[row as usize];
+            let observation = problem.session.observation(row);
             let framed = problem.measurement(row as usize).sees_orientation();
             let sight = Sight::from(observation);
             // Most rows are like the one before.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::{kinds_words, line, number, robot_words};
-use crate::analysis::{Cause, Foresight, JointCoverage, Session};
+use crate::analysis::{Cause, Foresight, JointCoverage, PlannedSession};
 use crate::io::calibration_file::IdentifiabilityEntry;
 use crate::io::model::Model;
 use crate::robot::JointKind;
@@ -17,15 +17,15 @@ const MOST_DIRECTIONS: usize = 6;
 /// What configurations would determine, for a person to look over or a machine to read.
 ///
 /// ```
-/// use poecal::analysis::{Session, identify};
+/// use poecal::analysis::{PlannedSession, identify};
 /// use poecal::io::model::{Model, ModelSource};
 /// use poecal::report::Identify;
 /// let robot = poecal::simulate::scara();
 /// // The sliding joint never moves.
 /// let readings: Vec<f64> = (0..40).flat_map(|k| [0.05 * k as f64, (k % 7) as f64 * 0.3, 0.1, (k % 5) as f64 * 0.4]).collect();
-/// let found = identify(&robot, &readings, &Session::default())?;
+/// let found = identify(&robot, &readings, &PlannedSession::default())?;
 /// let model = Model { robot, source: ModelSource::Toml, path: "scara.toml".into() };
-/// let report = Identify::new(&model, &["joints.csv".to_owned()], &Session::default(), &found);
+/// let report = Identify::new(&model, &["joints.csv".to_owned()], &PlannedSession::default(), &found);
 /// assert!(report.text().contains("undetermined: joint3 never moved: its screw is undetermined"), "{}", report.text());
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -65,7 +65,7 @@ struct ExpectedEntry {
 impl Identify {
     /// What `identify` found of a model in the configurations of some files, named as the user named them.
     #[must_use]
-    pub fn new(model: &Model, files: &[String], session: &Session, found: &Foresight) -> Self {
+    pub fn new(model: &Model, files: &[String], session: &PlannedSession, found: &Foresight) -> Self {
         let sigma_rotation_deg =
             session.kind.sees_orientation().then(|| session.noise.rotation_rad.to_degrees());
         Identify {

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::averaging::{mean_rotation, rigid_motion};
 use super::hand_eye;
-use crate::estimate::{Chain, Estimate, Linkage, Packed, sample_rows};
+use crate::estimate::{Chain, Estimate, Linkage, Session, sample_rows};
 use crate::lie::{Pose, rotation};
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
@@ -23,18 +23,12 @@ const GOOD_MISFIT: f64 = 0.05;
 /// A registration problem: rows, noise and unknowns.
 #[derive(Clone, Copy, Debug)]
 pub struct Registration<'a> {
-    /// The measurements.
-    pub data: &'a Dataset,
-    /// Their joint values.
-    pub packed: &'a Packed,
+    /// Robot and measurements.
+    pub session: Session<'a>,
     /// Rows to use.
     pub rows: &'a [u32],
     /// Noise of rows that state none.
     pub noise: Noise,
-    /// Metres that one radian counts.
-    pub length_m: f64,
-    /// Whether the device's frame is unknown (otherwise it stays as in the start).
-    pub device_free: bool,
     /// Whether the targets are unknown (otherwise they stay as in the start).
     pub targets_free: bool,
 }
@@ -44,7 +38,7 @@ pub(super) fn at_one_station(problem: &Registration<'_>, start: &Estimate) -> (E
     let sample = sample_rows(problem.rows, SAMPLE);
     let seen = SampledRows::new(problem, start, &sample);
     let mut best = seen.best_of(problem, start, &sample, seen.closed_forms(problem, start), ROUNDS);
-    if problem.device_free && problem.targets_free && seen.misfit(&best.0) > GOOD_MISFIT {
+    if problem.session.device_free && problem.targets_free && seen.misfit(&best.0) > GOOD_MISFIT {
         let turned = cube_rotations().map(|turn| seen.at_rotation(turn, start)).collect();
         // Not alternated: all would converge to the same few device frames.
         let other = seen.best_of(problem, start, &sample, turned, 1);
@@ -78,7 +72,7 @@ pub fn register_again(problem: &Registration<'_>, start: &Estimate) -> Estimate 
 
 impl<'a> Registration<'a> {
     pub(super) fn least_squares(&self, rows: Vec<u32>, free: Vec<Parameter>) -> Problem<'a> {
-        Problem::new(self.data, self.packed, rows, free, self.noise, self.length_m)
+        Problem::new(self.session, rows, free, self.noise)
     }
 }
 
@@ -98,8 +92,8 @@ pub(super) fn polish(
 
 pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<Parameter> {
     let mut free = Vec::new();
-    if problem.device_free {
-        let data = problem.data;
+    if problem.session.device_free {
+        let data = problem.session.data;
         let stations = (0..data.station_count()).map(|station| {
             let about = data.mean_position(&data.seen_from(station, rows));
             Parameter::DeviceFrame(DeviceFrame { station, about })
@@ -107,7 +101,7 @@ pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<P
         free.extend(stations);
     }
     if problem.targets_free {
-        free.extend(target_parameters(problem.data, problem.rows));
+        free.extend(target_parameters(problem.session.data, problem.rows));
     }
     free
 }
@@ -144,11 +138,11 @@ impl SampledRows {
             measured: Vec::new(),
             turned: Vec::new(),
             target: Vec::new(),
-            spread_m: problem.data.spread_m(sample),
+            spread_m: problem.session.data.spread_m(sample),
         };
         for &row in sample {
-            let observation = &problem.data.observations[row as usize];
-            chain.evaluate(&linkage, problem.packed, row as usize, observation);
+            let observation = problem.session.observation(row);
+            chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
             let home = start.base_from_target[observation.target];
             seen.base_motion.push(chain.target * home.inverse());
             let model = observation.measurement.residual_model();
@@ -217,7 +211,7 @@ impl SampledRows {
     /// Candidates of the device frame: rigid motions of nominal targets and of targets on the last axis, theory.md §6 (32); the hand-eye
     /// rotation, theory.md §6 (33); and the mean rotation by nominal target orientations. The given one if the device frame is known.
     fn closed_forms(&self, problem: &Registration<'_>, start: &Estimate) -> Vec<Pose> {
-        if !problem.device_free {
+        if !problem.session.device_free {
             return vec![start.device_from_base];
         }
         let mut candidates = vec![self.rigid(&start.base_from_target)];
@@ -286,7 +280,7 @@ impl SampledRows {
         if problem.targets_free {
             for round in 0..rounds {
                 self.place_targets(&mut estimate);
-                if problem.device_free && round + 1 < rounds {
+                if problem.session.device_free && round + 1 < rounds {
                     estimate.device_from_base = self.rigid(&estimate.base_from_target);
                 }
             }

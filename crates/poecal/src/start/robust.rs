@@ -32,7 +32,7 @@ fn least_distances(problem: &Registration<'_>, start: Estimate) -> (Estimate, f6
     let options = Options { iterations: 5, trust: 10.0, ..Options::default() };
     let unweighted = |rows: &[u32]| problem.least_squares(rows.to_vec(), free.clone());
     let mut estimate = start;
-    let mut weights = vec![0.0; problem.data.len()];
+    let mut weights = vec![0.0; problem.session.data.len()];
     let mut median = f64::INFINITY;
     for _ in 0..REWEIGHTINGS {
         let (distances, found) = distances(&unweighted(&[]), &estimate, problem.rows);

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use super::registration::{Registration, at_one_station, polish};
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Session};
 
 /// Rows that determine a device frame if the targets are known: three points.
 const FEWEST: usize = 3;
@@ -12,7 +12,7 @@ const FEWEST: usize = 3;
 /// of whitened residuals) is returned with it.
 #[must_use]
 pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64) {
-    if problem.device_free && !start.further_devices.is_empty() {
+    if problem.session.device_free && !start.further_devices.is_empty() {
         return polish(problem, one_by_one(problem, start), problem.rows.to_vec(), 50);
     }
     at_one_station(problem, start)
@@ -21,9 +21,9 @@ pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64)
 /// Each frame from its own rows, that of most rows first; the targets found with it are known to the others (theory.md §6, *Start*).
 fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     // A data set of one station: each registration uses the rows of one station only.
-    let alone = problem.data.without_stations();
-    let mut stations: Vec<(usize, Vec<u32>)> = (0..problem.data.station_count())
-        .map(|station| (station, problem.data.seen_from(station, problem.rows)))
+    let alone = problem.session.data.without_stations();
+    let mut stations: Vec<(usize, Vec<u32>)> = (0..problem.session.data.station_count())
+        .map(|station| (station, problem.session.data.seen_from(station, problem.rows)))
         .filter(|(_, rows)| !rows.is_empty())
         .collect();
     stations.sort_by_key(|(_, rows)| Reverse(rows.len()));
@@ -34,7 +34,8 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         let of_known: Vec<u32> = rows.iter().copied().filter(|row| known[target(row)]).collect();
         let by_known = of_known.len() >= FEWEST.min(rows.len());
         let rows = if by_known { of_known } else { rows };
-        let one = Registration { data: &alone, rows: &rows, targets_free: !by_known, ..*problem };
+        let session = Session { data: &alone, ..problem.session };
+        let one = Registration { session, rows: &rows, targets_free: !by_known, ..*problem };
         let (seen, _) = at_one_station(&one, &found.seen_from(station));
         *found.device_mut(station) = seen.device_from_base;
         if !by_known {

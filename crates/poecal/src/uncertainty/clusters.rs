@@ -54,7 +54,7 @@ fn share_of(inverse: &DMatrix<f64>, part: &[f64]) -> (f64, f64) {
 pub(super) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
     let spans = view.spans(view.rows);
     let is_many = view.rows.len() > MANY_ROWS;
-    let configurations = if is_many { Vec::new() } else { view.data.configurations(view.rows) };
+    let configurations = if is_many { Vec::new() } else { view.session.data.configurations(view.rows) };
     let whole = if is_many {
         view.rows.chunks(1).collect()
     } else {

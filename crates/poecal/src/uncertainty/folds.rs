@@ -98,7 +98,7 @@ pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
 
 fn random_folds(view: &View<'_>, sample: &[u32], seed: u64) -> Vec<Fold> {
     // Rows of one configuration are left out together: a copy in the training rows would make its prediction trivial.
-    let mut configurations = view.data.configurations(sample);
+    let mut configurations = view.session.data.configurations(sample);
     random::shuffle(&mut ChaCha8Rng::seed_from_u64(seed ^ 0xf01d), &mut configurations);
     let part = configurations.len().div_ceil(FOLDS);
     configurations.chunks(part).map(|part| Fold { name: String::new(), rows: part.concat() }).collect()
@@ -110,19 +110,19 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
     let size = sample.len() / FOLDS;
     for (joint, _) in view.spans(sample).iter().enumerate().filter(|(_, span)| **span > 0.0) {
         let sorted = view.sorted_by(sample, joint);
-        let name = &view.robot.joints[joint].name;
+        let name = &view.session.robot.joints[joint].name;
         folds.push(Fold { name: format!("the lowest fifth of {name}"), rows: sorted[..size].to_vec() });
         let rows = sorted[sorted.len() - size..].to_vec();
         folds.push(Fold { name: format!("the highest fifth of {name}"), rows });
     }
     let file = |row: u32| {
-        let index = view.data.observations[row as usize].source.file as usize;
-        view.data.files.get(index).map(|path| format!("the file {}", path.display()))
+        let index = view.session.observation(row).source.file as usize;
+        view.session.data.files.get(index).map(|path| format!("the file {}", path.display()))
     };
     folds.extend(groups(sample, file));
-    if !view.data.ids.is_empty() {
+    if !view.session.data.ids.is_empty() {
         folds.extend(groups(sample, |row| {
-            view.data.ids.get(row as usize).map(|id| format!("the rows of id {id}"))
+            view.session.data.ids.get(row as usize).map(|id| format!("the rows of id {id}"))
         }));
     }
     folds.retain(|fold| leaves_all_stations(view, sample, fold));
@@ -131,8 +131,8 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
 
 /// Whether the rows outside a fold still determine the device frame of each of several stations.
 fn leaves_all_stations(view: &View<'_>, sample: &[u32], fold: &Fold) -> bool {
-    let stations = view.data.station_count();
-    let count = |rows: &[u32], station| view.data.seen_from(station, rows).len();
+    let stations = view.session.data.station_count();
+    let count = |rows: &[u32], station| view.session.data.seen_from(station, rows).len();
     stations == 1 || (0..stations).all(|it| count(sample, it) >= count(&fold.rows, it) + FEWEST_OF_STATION)
 }
 
@@ -231,14 +231,14 @@ impl<'a> Downdated<'a> {
         let both = DMatrix::from_iterator(n, n, covariance.iter().zip(&self.covariance).map(|(a, b)| a + b));
         let expected = self.position_variance(problem.layout(), rows, &both);
         let mut sums = ErrorSums { rows: rows.len(), expected, ..ErrorSums::default() };
-        for error in self.view.errors(rows, &without) {
+        for error in self.view.session.errors(rows, &without) {
             sums.position += error.position_m.norm_squared();
             if let Some(turn) = error.rotation_rad {
                 sums.rotation += turn.norm_squared();
                 sums.turned += 1;
             }
         }
-        let before = self.view.errors(rows, &self.estimate);
+        let before = self.view.session.errors(rows, &self.estimate);
         sums.before = before.iter().map(|error| error.position_m.norm_squared()).sum();
         Some(sums)
     }
@@ -247,7 +247,8 @@ impl<'a> Downdated<'a> {
     fn position_variance(&self, layout: &Layout, rows: &[u32], covariance: &DMatrix<f64>) -> f64 {
         let linkage = Linkage::new(&self.estimate);
         let of = |some: &[u32]| {
-            let motions = motions(layout, &linkage, self.view.packed, &self.view.with_sights(some), 1);
+            let motions =
+                motions(layout, &linkage, self.view.session.packed, &self.view.with_sights(some), 1);
             (&motions * covariance).dot(&motions)
         };
         rows.chunks(TOGETHER).map(of).sum()
@@ -277,7 +278,7 @@ pub fn leave_clusters_out(
         let factor = factor(&rest, n, view.prior, view.variance)?;
         let gradient: Vec<f64> = part.gradient.iter().map(|g| -g).collect();
         let without = problem.retract(view.estimate, &linalg::cholesky_solve(&factor, &gradient));
-        let errors = view.errors(&cluster, &without);
+        let errors = view.session.errors(&cluster, &without);
         sum += cluster.iter().zip(&errors).map(|(&row, error)| loss(row, error)).sum::<f64>();
     }
     Some(sum / rows.len().max(1) as f64)

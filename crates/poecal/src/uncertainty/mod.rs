@@ -65,7 +65,7 @@ impl Uncertainty {
     pub fn new(view: &View<'_>, layout: Layout, gram: &[f64], found: &Discrepancy) -> Option<Self> {
         let outside = (found.extrapolation > found.scatter)
             .then(|| extrapolated(gram, layout.dim(), view, found.extrapolation));
-        let sampled = ranges(view.robot.joints.len(), view.packed, view.rows);
+        let sampled = ranges(&view.session, view.rows);
         Some(Uncertainty {
             estimate: view.estimate.clone(),
             covariance: inflated(gram, layout.dim(), view, found.scatter)?,
@@ -73,7 +73,7 @@ impl Uncertainty {
             sampled: sampled.into_iter().map(|(least, most)| [least, most]).collect(),
             layout,
             discrepancy: *found,
-            length_m: view.length_m,
+            length_m: view.session.length_m,
         })
     }
 
@@ -210,7 +210,7 @@ fn extrapolated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Opti
     const FARTHEST: f64 = 0.1;
     let variance = view.variance * inflation;
     let mut both = view.prior.with(gram, variance);
-    let bound = variance / (FARTHEST * view.length_m).powi(2);
+    let bound = variance / (FARTHEST * view.session.length_m).powi(2);
     both.iter_mut().step_by(n + 1).for_each(|value| *value += bound);
     covariance(&linalg::cholesky(&both, n, 0.0)?, variance)
 }
@@ -230,7 +230,7 @@ fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
     let linkage = Linkage::new(view.estimate);
     let mut sum = DMatrix::zeros(layout.dim(), layout.dim());
     for some in rows.chunks(TOGETHER) {
-        let motions = motions(layout, &linkage, view.packed, &view.with_sights(some), 1);
+        let motions = motions(layout, &linkage, view.session.packed, &view.with_sights(some), 1);
         sum += motions.transpose() * motions;
     }
     (sum / rows.len().max(1) as f64).as_slice().to_vec()

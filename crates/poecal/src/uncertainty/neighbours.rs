@@ -14,10 +14,10 @@ const NEIGHBOURS: usize = 4000;
 /// (theory.md §9, *Neighbours*).
 pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     let pool = sample_rows(view.rows, NEIGHBOURS);
-    let mut errors = view.errors(&pool, view.estimate);
-    turn_to_first(view.data, &pool, view.estimate, &mut errors);
+    let mut errors = view.session.errors(&pool, view.estimate);
+    turn_to_first(view.session.data, &pool, view.estimate, &mut errors);
     let spans = view.spans(view.rows);
-    let targets: Vec<usize> = pool.iter().map(|&row| view.data.observations[row as usize].target).collect();
+    let targets: Vec<usize> = pool.iter().map(|&row| view.session.observation(row).target).collect();
     let step = pool.len().div_ceil(PROBES).max(1);
     let joints = scaled(view, &spans, &pool);
     let (mut position, mut rotation) = (PairSums::default(), PairSums::default());

@@ -17,11 +17,11 @@ pub(super) fn correlation(view: &View<'_>) -> Option<f64> {
     if is_ordered(view, &rows) {
         return None;
     }
-    let errors = view.errors(&rows, view.estimate);
-    let mut last: Vec<Option<(usize, u32)>> = vec![None; view.data.targets.len()];
+    let errors = view.session.errors(&rows, view.estimate);
+    let mut last: Vec<Option<(usize, u32)>> = vec![None; view.session.data.targets.len()];
     let (mut products, mut squares, mut components) = (0.0, 0.0, 0usize);
     for (at, &row) in rows.iter().enumerate() {
-        let observation = &view.data.observations[row as usize];
+        let observation = view.session.observation(row);
         let Some(last) = last.get_mut(observation.target) else { continue };
         let before = last.replace((at, observation.source.file));
         let Some((before, file)) = before else { continue };
@@ -44,7 +44,7 @@ pub(super) fn correlation(view: &View<'_>) -> Option<f64> {
 /// Whether some joint moves little from row to row.
 fn is_ordered(view: &View<'_>, rows: &[u32]) -> bool {
     let count = rows.len().max(1) as f64;
-    let joints = view.robot.joints.len();
+    let joints = view.session.robot.joints.len();
     (0..joints).any(|joint| {
         let value = |row: &u32| view.values(*row)[joint];
         let mean = rows.iter().map(value).sum::<f64>() / count;

@@ -47,20 +47,20 @@ struct ShapeSums {
 #[must_use]
 pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pattern)> {
     let rows = sample_rows(view.rows, SAMPLE);
-    let joints = view.robot.joints.len();
-    let ranges = ranges(joints, view.packed, view.rows);
+    let joints = view.session.robot.joints.len();
+    let ranges = ranges(&view.session, view.rows);
     let empty =
         ShapeSums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
     let mut sums = vec![empty; joints];
-    let errors = view.errors(&rows, view.estimate);
+    let errors = view.session.errors(&rows, view.estimate);
     let rms_m = position_rms_m(&errors);
     let mut squares = 0.0;
     let linkage = Linkage::new(view.estimate);
     let mut chain = Chain::default();
     for (&row, error) in rows.iter().zip(errors) {
-        let observation = &view.data.observations[row as usize];
+        let observation = view.session.observation(row);
         let sigma = observation.noise_or(view.noise).position_m;
-        chain.evaluate(&linkage, view.packed, row as usize, observation);
+        chain.evaluate(&linkage, view.session.packed, row as usize, observation);
         let error = error.position_m / sigma;
         squares += error.norm_squared();
         for ((sums, joint), &range) in sums.iter_mut().zip(&chain.joints).zip(&ranges) {

@@ -4,9 +4,9 @@
 use nalgebra::DMatrix;
 
 use super::Uncertainty;
-use crate::estimate::{Estimate, Packed};
+use crate::estimate::{Estimate, Session};
 use crate::linalg;
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::Noise;
 use crate::parameters::Parameter;
 use crate::problem::{Layout, Problem};
 use crate::solve::LeastSquares as _;
@@ -17,10 +17,8 @@ const SMALL: f64 = 1e-12;
 /// A refit of device frame and targets: its rows, unknowns and optimum.
 #[derive(Clone, Copy, Debug)]
 pub struct Refit<'a> {
-    /// The rows.
-    pub data: &'a Dataset,
-    /// Their joint values.
-    pub packed: &'a Packed,
+    /// Robot and rows.
+    pub session: Session<'a>,
     /// The refitted device frame and targets.
     pub found: &'a Estimate,
     /// The refitted unknowns.
@@ -42,8 +40,8 @@ impl Uncertainty {
         let layout = Layout::new(parameters.clone(), self.length_m);
         let estimate =
             Estimate { base_from_axis: self.estimate.base_from_axis.clone(), ..refit.found.clone() };
-        let rows = refit.data.all_rows();
-        let problem = Problem::new(refit.data, refit.packed, rows, parameters, refit.scatter, self.length_m);
+        let session = refit.session.with_length(self.length_m);
+        let problem = Problem::new(session, session.data.all_rows(), parameters, refit.scatter);
         let gram = problem.normal(&estimate).gram;
         let n = layout.dim();
         let joint: Vec<usize> = layout.parameters().flat_map(|(_, own)| own.iter().map(|it| it.0)).collect();

@@ -208,15 +208,15 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
     // A sample of so many rows gives the same variances.
     let sample = sample_rows(view.rows, MANY_ROWS);
     let share = sample.len() as f64 / view.rows.len().max(1) as f64;
-    let errors = view.errors(&sample, view.estimate);
-    let configurations = view.data.configurations(&sample);
+    let errors = view.session.errors(&sample, view.estimate);
+    let configurations = view.session.data.configurations(&sample);
     let place = |row: u32| sample.binary_search(&row).ok().and_then(|at| errors.get(at));
     for rows in &configurations {
         let mut rows: Vec<u32> = rows.clone();
-        rows.sort_by_key(|&row| (view.data.observations[row as usize].target, row));
-        let target = |row: &u32| view.data.observations[*row as usize].target;
+        rows.sort_by_key(|&row| (view.session.observation(row).target, row));
+        let target = |row: &u32| view.session.observation(*row).target;
         for same in rows.chunk_by(|a, b| target(a) == target(b)) {
-            let noise = |row: u32| view.data.observations[row as usize].noise_or(view.noise);
+            let noise = |row: u32| view.session.observation(row).noise_or(view.noise);
             let of = |row: u32| place(row).map(|error| (error, noise(row)));
             let seen: Vec<_> = same.iter().filter_map(|&row| of(row)).collect();
             position.add(
@@ -274,7 +274,8 @@ fn determined_by_rotations(
     rotation: &ResidualSums,
     total: f64,
 ) -> f64 {
-    let turned = 3.0 * view.data.frames(view.rows).iter().filter(|&&is_frame| is_frame).count() as f64;
+    let turned =
+        3.0 * view.session.data.frames(view.rows).iter().filter(|&&is_frame| is_frame).count() as f64;
     if rotation.components == 0 {
         return 0.0;
     }
@@ -286,7 +287,7 @@ fn determined_by_rotations(
     let n = layout.dim();
     let mut unmeasured = *view;
     unmeasured.noise.position_m = UNMEASURED_M;
-    let stated = view.rows.iter().any(|&row| view.data.observations[row as usize].sigma_position_m.is_some());
+    let stated = view.rows.iter().any(|&row| view.session.observation(row).sigma_position_m.is_some());
     let part = unmeasured.problem(view.rows.to_vec()).normal(view.estimate);
     match factor(&normal.gram, n, view.prior, if view.prior.is_fitted { 1.0 } else { 0.0 }) {
         Some(factor) if !stated => linalg::trace_of_quotient(&factor, &part.gram, n).min(determined),

@@ -3,11 +3,10 @@
 use std::cmp::Ordering;
 
 use crate::analysis::{PLAUSIBLE, ranges};
-use crate::estimate::{Estimate, Packed, RowError, Sight, row_errors};
-use crate::measurement::{Dataset, Noise};
+use crate::estimate::{Estimate, Session, Sight};
+use crate::measurement::Noise;
 use crate::parameters::Parameter;
 use crate::problem::{Layout, Prior, Problem};
-use crate::robot::Robot;
 use crate::solve::Normal;
 
 /// Prior of the unknowns: its information and gradient at the optimum, in the units of the scaled unknowns (metres), not whitened. The Λ
@@ -43,15 +42,11 @@ impl PriorInformation {
     }
 }
 
-/// Data, rows, unknowns and optimum of a fit.
+/// Session, rows, unknowns and optimum of a fit.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
-    /// The nominal robot: names of joints.
-    pub robot: &'a Robot,
-    /// The measurements.
-    pub data: &'a Dataset,
-    /// Their joint values.
-    pub packed: &'a Packed,
+    /// Robot and measurements.
+    pub session: Session<'a>,
     /// The rows that were fitted.
     pub rows: &'a [u32],
     /// The unknowns.
@@ -64,8 +59,6 @@ pub struct View<'a> {
     pub prior: &'a PriorInformation,
     /// Variance of the whitened residuals.
     pub variance: f64,
-    /// Metres that a radian counts.
-    pub length_m: f64,
     /// The optimum.
     pub estimate: &'a Estimate,
 }
@@ -73,27 +66,22 @@ pub struct View<'a> {
 impl<'a> View<'a> {
     /// The problem of some of the rows.
     pub(super) fn problem(&self, rows: Vec<u32>) -> Problem<'a> {
-        Problem::new(self.data, self.packed, rows, self.free.to_vec(), self.noise, self.length_m)
-    }
-
-    /// Errors of an estimate, metres and radians in the device's axes.
-    pub(super) fn errors(&self, rows: &[u32], estimate: &Estimate) -> Vec<RowError> {
-        row_errors(self.data, self.packed, rows, estimate)
+        Problem::new(self.session, rows, self.free.to_vec(), self.noise)
     }
 
     /// Rows with their targets and stations.
     pub(super) fn with_sights(&self, rows: &[u32]) -> Vec<(usize, Sight)> {
-        rows.iter().map(|&row| (row as usize, Sight::from(&self.data.observations[row as usize]))).collect()
+        rows.iter().map(|&row| (row as usize, Sight::from(self.session.observation(row)))).collect()
     }
 
     /// Joint values of a row.
     pub(super) fn values(&self, row: u32) -> &'a [f64] {
-        self.packed.joint_values(row as usize)
+        self.session.packed.joint_values(row as usize)
     }
 
     /// Sampled range of each joint in some rows, radians or metres.
     pub(super) fn spans(&self, rows: &[u32]) -> Vec<f64> {
-        let ranges = ranges(self.robot.joints.len(), self.packed, rows);
+        let ranges = ranges(&self.session, rows);
         ranges.into_iter().map(|(least, most)| most - least).collect()
     }
 

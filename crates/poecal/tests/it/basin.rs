@@ -2,7 +2,7 @@
 
 use crate::trials::trials;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
-use poecal::estimate::Packed;
+use poecal::estimate::{Packed, Session};
 use poecal::measurement::{Dataset, Noise};
 use poecal::problem::Problem;
 use poecal::robot::Robot;
@@ -33,7 +33,8 @@ const BASINS: [(f64, f64, usize, f64); 4] =
 fn mean_square(result: &Calibration, data: &Dataset, robot: &Robot) -> f64 {
     let packed = Packed::new(robot, data.all_readings(), robot.joints.len());
     let rows = (0..CONFIGURATIONS as u32).collect();
-    Problem::new(data, &packed, rows, vec![], NOISE, 1.0).normal(&result.models.calibrated).mean_square()
+    let session = Session::new(robot, data, &packed, false).with_length(1.0);
+    Problem::new(session, rows, vec![], NOISE).normal(&result.models.calibrated).mean_square()
 }
 
 /// Whether the fit from a start that is off by the stated amounts ends where the fit from the truth ends.

@@ -5,7 +5,7 @@ use crate::largest::larger;
 use crate::trials::some;
 use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, fit_screws};
-use poecal::estimate::{Estimate, Packed, delivered, row_errors};
+use poecal::estimate::{self, Estimate, Packed, delivered};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise};
 use poecal::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis, TargetFrame, TargetPlace};
@@ -85,6 +85,7 @@ fn cases() -> Vec<Case> {
 }
 
 struct Session {
+    robot: Robot,
     data: Dataset,
     packed: Packed,
     estimate: Estimate,
@@ -124,15 +125,19 @@ impl Session {
         let packed = Packed::of(robot, &data);
         let weights = (0..case.rows).map(|row| [1.0, 0.3, 0.0, 2.5][row % 4]).collect();
         let free = parameters(robot, &data, case);
-        Session { data, packed, estimate, free, weights }
+        Session { robot: robot.clone(), data, packed, estimate, free, weights }
     }
 
     fn problem(&self, case: &Case, level: SimdLevel) -> Problem<'_> {
         let rows = self.data.all_rows();
-        let problem = Problem::new(&self.data, &self.packed, rows, self.free.clone(), NOISE, LENGTH_M)
-            .with_level(level);
+        let session = in_session(&self.robot, &self.data, &self.packed);
+        let problem = Problem::new(session, rows, self.free.clone(), NOISE).with_level(level);
         if case.weights { problem.with_weights(&self.weights) } else { problem }
     }
+}
+
+fn in_session<'a>(robot: &'a Robot, data: &'a Dataset, packed: &'a Packed) -> estimate::Session<'a> {
+    estimate::Session::new(robot, data, packed, false).with_length(LENGTH_M)
 }
 
 fn parameters(robot: &Robot, data: &Dataset, case: &Case) -> Vec<Parameter> {
@@ -239,15 +244,15 @@ fn few_passes_have_the_same_optimum() {
         let mut start = delivered(&made.nominal, &made.data);
         start.device_from_base = made.device_from_base;
         let options = CalibrationOptions::default();
-        let (quick, _, summary) =
-            fit_screws(&made.data, &packed, &rows, start.clone(), NOISE, LENGTH_M, None, &options);
+        let session = in_session(&made.nominal, &made.data, &packed);
+        let (quick, _, summary) = fit_screws(session, &rows, start.clone(), NOISE, None, &options);
         let free = parameters(&made.nominal, &made.data, &Case::default());
-        let problem = Problem::new(&made.data, &packed, rows.clone(), free, NOISE, LENGTH_M);
+        let problem = Problem::new(session, rows.clone(), free, NOISE);
         let strict = Options { decrement: 1e-12, ..Options::default() };
         let (plain, normal, _) = minimize(&Plain(&problem), start, &strict);
         // What a prediction gains by going on from the quick optimum, against what noise leaves open.
         let rest = problem.normal(&quick);
-        let apart = farthest(&made.data, &packed, &rows, &quick, &plain);
+        let apart = farthest(&session, &rows, &quick, &plain);
         let excess = (rest.cost - normal.cost) / normal.mean_square();
         println!(
             "{kind:?} {count}: {} iterations, predictions apart by {apart:.1e} m, cost above by {excess:.1e}",
@@ -300,7 +305,8 @@ fn refits_have_the_same_optimum() {
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
         let rows: Vec<u32> = made.data.all_rows();
         let free = parameters(&made.nominal, &made.data, &Case::default());
-        let first = Problem::new(&made.data, &packed, rows.clone(), free.clone(), NOISE, LENGTH_M);
+        let first =
+            Problem::new(in_session(&made.nominal, &made.data, &packed), rows.clone(), free.clone(), NOISE);
         let start = delivered(&made.nominal, &made.data);
         let strict = Options { decrement: 1e-12, ..Options::default() };
         let (optimum, _, _) = minimize(&first, start.clone(), &strict);
@@ -320,9 +326,10 @@ fn refits_have_the_same_optimum() {
             }
             let measured: Vec<Measurement> = data.observations.iter().map(|seen| seen.measurement).collect();
             let (quick, _, summary) = refit.fit(&measured);
-            let own = Problem::new(&data, &packed, rows.clone(), free.clone(), NOISE, LENGTH_M);
+            let session = in_session(&made.nominal, &data, &packed);
+            let own = Problem::new(session, rows.clone(), free.clone(), NOISE);
             let (plain, _, _) = minimize(&Plain(&own), optimum.clone(), &strict);
-            worst = larger(worst, farthest(&data, &packed, &rows, &quick, &plain) / scale);
+            worst = larger(worst, farthest(&session, &rows, &quick, &plain) / scale);
             iterations += summary.iterations;
         }
         println!("{kind:?}: {:.1} iterations, predictions apart by {worst:.1e} m", iterations as f64 / 40.0);
@@ -362,7 +369,7 @@ impl LeastSquares for Plain<'_> {
 }
 
 /// Largest distance between the places that two estimates predict, metres.
-fn farthest(data: &Dataset, packed: &Packed, rows: &[u32], a: &Estimate, b: &Estimate) -> f64 {
-    let errors = |estimate| row_errors(data, packed, rows, estimate);
+fn farthest(session: &estimate::Session<'_>, rows: &[u32], a: &Estimate, b: &Estimate) -> f64 {
+    let errors = |estimate| session.errors(rows, estimate);
     errors(a).iter().zip(errors(b)).map(|(a, b)| (a.position_m - b.position_m).norm()).fold(0.0, larger)
 }

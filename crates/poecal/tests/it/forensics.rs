@@ -6,7 +6,7 @@ use crate::mistakes::Session;
 use crate::trials::{some, trials};
 use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
-use poecal::estimate::Packed;
+use poecal::estimate::{self, Packed};
 use poecal::forensics::{Diagnosis, DiagnosisKind, DiagnosisOptions, diagnose};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement};
 use poecal::simulate::{Kind, Simulation, elbow};
@@ -43,12 +43,9 @@ fn registered_m(session: &Session, data: &Dataset) -> f64 {
     let packed = Packed::of(&session.robot, data);
     let rows: Vec<u32> = data.all_rows();
     let registration = Registration {
-        data,
-        packed: &packed,
+        session: estimate::Session::new(&session.robot, data, &packed, session.device_free).with_length(0.33),
         rows: &rows,
         noise: Noise { position_m: 1e-3, rotation_rad: 3e-3 },
-        length_m: 0.33,
-        device_free: session.device_free,
         targets_free: true,
     };
     let (_, cost) = register(&registration, &delivered(&session.robot, data));

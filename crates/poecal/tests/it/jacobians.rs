@@ -3,7 +3,7 @@
 
 use crate::largest::larger;
 use nalgebra::{Matrix6, Vector3};
-use poecal::estimate::{Chain, Estimate, Linkage, Packed, Sight};
+use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, Sight};
 use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
 use poecal::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis, TargetFrame, TargetPlace};
@@ -74,6 +74,7 @@ fn estimate(robot: &Robot) -> Estimate {
 
 /// What one measurement needs to be predicted.
 struct Row {
+    robot: Robot,
     data: Dataset,
     packed: Packed,
 }
@@ -99,11 +100,12 @@ impl Row {
         data.push(readings, None, make(seen)).unwrap();
         data.stations = vec![Some("first".into()), Some("second".into())];
         data.observations[0].station = station;
-        Row { data, packed }
+        Row { robot: robot.clone(), data, packed }
     }
 
     fn problem(&self, parameters: Vec<Parameter>) -> Problem<'_> {
-        Problem::new(&self.data, &self.packed, vec![0], parameters, NOISE, LENGTH_M)
+        let session = Session::new(&self.robot, &self.data, &self.packed, false).with_length(LENGTH_M);
+        Problem::new(session, vec![0], parameters, NOISE)
     }
 
     /// The whitened residual.

@@ -4,7 +4,7 @@ use crate::trials::some;
 use nalgebra::Vector3;
 use poecal::analysis::{Setup, identifiability};
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
-use poecal::estimate::Packed;
+use poecal::estimate::{Packed, Session};
 use poecal::lie::{Pose, Screw, Twist};
 use poecal::measurement::Noise;
 use poecal::parameters::{Parameter, ScrewAxis, TargetPlace};
@@ -109,19 +109,10 @@ fn elbow_has_rank_25_where_a_fit_of_points_starts() {
         screws.map(|(joint, it)| Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })).collect();
     free.push(Parameter::TargetPlace(TargetPlace { target: 0 }));
     let noise = Noise { position_m: 1e-3, rotation_rad: 1e-3 };
-    let problem = Problem::new(&made.data, &packed, (0..100).collect(), free, noise, robot.reach_m() / 3.0);
+    let session = Session::new(robot, &made.data, &packed, false).with_length(robot.reach_m() / 3.0);
+    let problem = Problem::new(session, (0..100).collect(), free, noise);
     let estimate = delivered(robot, &made.data);
-    let setup = Setup {
-        robot,
-        data: &made.data,
-        packed: &packed,
-        rows: problem.rows(),
-        estimate: &estimate,
-        layout: problem.layout(),
-        noise,
-        length_m: robot.reach_m() / 3.0,
-        device_free: false,
-    };
+    let setup = Setup { session, rows: problem.rows(), estimate: &estimate, layout: problem.layout(), noise };
     // The residual at the start is not noise: the rank wanted is that of the Jacobian itself.
     let found = identifiability(&setup, &problem.normal(&estimate).gram, 0.0);
     println!("rank {} of {}", found.rank, found.parameters);

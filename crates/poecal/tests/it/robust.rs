@@ -5,9 +5,9 @@ use crate::largest::larger;
 use crate::trials::{Trials, some, trials};
 use nalgebra::Vector3;
 use poecal::calibration::{
-    Calibration, CalibrationOptions, Loss, Robust, calibrate, delivered, radian_m, row_errors, row_influence,
+    Calibration, CalibrationOptions, Loss, Robust, calibrate, delivered, row_influence,
 };
-use poecal::estimate::{Estimate, Packed};
+use poecal::estimate::{Estimate, Packed, Session};
 use poecal::io::calibration_file::{CalibrationFile, Inputs, OutlierSet};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, Set};
 use poecal::parameters::screw_axes;
@@ -54,7 +54,7 @@ fn fit(robot: &Robot, data: &Dataset, robust: Robust) -> Calibration {
 /// Root mean square position error of an estimate, metres.
 fn rms_m(robot: &Robot, data: &Dataset, rows: &[u32], estimate: &Estimate) -> f64 {
     let packed = Packed::of(robot, data);
-    let errors = row_errors(data, &packed, rows, estimate);
+    let errors = Session::new(robot, data, &packed, true).errors(rows, estimate);
     (errors.iter().map(|e| e.position_m.norm_squared()).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
@@ -179,12 +179,9 @@ fn registration_survives_three_tenths_of_the_rows_wrong() {
                 let clean: Vec<u32> =
                     rows.iter().copied().filter(|row| gross.binary_search(row).is_err()).collect();
                 let registration = Registration {
-                    data: &data,
-                    packed: &packed,
+                    session: Session::new(&robot, &data, &packed, true),
                     rows: &rows,
                     noise: Noise { position_m: 1e-3, rotation_rad: 1e-3 },
-                    length_m: radian_m(&robot, &packed),
-                    device_free: true,
                     targets_free: true,
                 };
                 let start = delivered(&robot, &data);
@@ -208,20 +205,21 @@ fn registration_survives_three_tenths_of_the_rows_wrong() {
 fn weights_scale_the_noise_and_zero_leaves_a_row_out() {
     let (_, made) = session(&elbow(), Kind::Mixed, 3);
     let mut data = made.data;
-    let packed = Packed::new(&elbow(), data.all_readings(), 6);
+    let robot = elbow();
+    let packed = Packed::new(&robot, data.all_readings(), 6);
     let noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
-    let start = delivered(&elbow(), &data);
+    let start = delivered(&robot, &data);
     let free = || screw_axes(&start.kinds);
     let weights: Vec<f64> = (0..data.len()).map(|row| f64::from(row as u32 % 4) / 4.0).collect();
-    let weighted = Problem::new(&data, &packed, data.all_rows(), free(), noise, 0.5)
-        .with_weights(&weights)
-        .normal(&start);
+    let seen = Session::new(&robot, &data, &packed, true).with_length(0.5);
+    let weighted = Problem::new(seen, data.all_rows(), free(), noise).with_weights(&weights).normal(&start);
     let kept: Vec<u32> = data.all_rows().into_iter().filter(|row| row % 4 != 0).collect();
     for (row, weight) in data.observations.iter_mut().zip(&weights) {
         row.sigma_position_m = Some(noise.position_m / weight.sqrt());
         row.sigma_rotation_rad = Some(noise.rotation_rad / weight.sqrt());
     }
-    let stated = Problem::new(&data, &packed, kept, free(), noise, 0.5).normal(&start);
+    let seen = Session::new(&robot, &data, &packed, true).with_length(0.5);
+    let stated = Problem::new(seen, kept, free(), noise).normal(&start);
     let largest = weighted.gram.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, larger);
     let worst = [

@@ -4,7 +4,7 @@
 use crate::trials::trials;
 use nalgebra::{Matrix3, Vector3};
 use poecal::calibration::delivered;
-use poecal::estimate::{Estimate, Packed};
+use poecal::estimate::{self, Estimate, Packed};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
 use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
@@ -168,7 +168,8 @@ fn measure(session: &Session, robot: &Robot, generator: &mut ChaCha8Rng) -> (Dat
 }
 
 /// `½ Σ e²` of the registration that starts at the truth.
-fn cost_from_truth(data: &Dataset, packed: &Packed, rows: &[u32], truth: Estimate) -> f64 {
+fn cost_from_truth(session: estimate::Session<'_>, rows: &[u32], truth: Estimate) -> f64 {
+    let data = session.data;
     let mut free = vec![Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::zeros() })];
     free.extend((0..data.targets.len()).map(|target| {
         if data.target_is_frame(target) {
@@ -177,7 +178,7 @@ fn cost_from_truth(data: &Dataset, packed: &Packed, rows: &[u32], truth: Estimat
             Parameter::TargetPlace(TargetPlace { target })
         }
     }));
-    let problem = Problem::new(data, packed, rows.to_vec(), free, NOISE, LENGTH_M);
+    let problem = Problem::new(session, rows.to_vec(), free, NOISE);
     minimize(&problem, truth, &Options::default()).1.cost
 }
 
@@ -188,17 +189,10 @@ fn excess(session: &Session, seed: u64) -> f64 {
     let (data, truth) = measure(session, &robot, &mut generator);
     let packed = Packed::of(&robot, &data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
-    let problem = Registration {
-        data: &data,
-        packed: &packed,
-        rows: &rows,
-        noise: NOISE,
-        length_m: LENGTH_M,
-        device_free: true,
-        targets_free: true,
-    };
+    let session = estimate::Session::new(&robot, &data, &packed, true).with_length(LENGTH_M);
+    let problem = Registration { session, rows: &rows, noise: NOISE, targets_free: true };
     let (_, cost) = register(&problem, &delivered(&robot, &data));
-    cost / cost_from_truth(&data, &packed, &rows, truth)
+    cost / cost_from_truth(session, &rows, truth)
 }
 
 #[test]
@@ -235,7 +229,8 @@ fn registration_from_the_truth_is_near_it() {
         let (data, truth) = measure(session, &robot, &mut generator);
         let packed = Packed::of(&robot, &data);
         let rows: Vec<u32> = (0..ROWS as u32).collect();
-        let cost = cost_from_truth(&data, &packed, &rows, truth);
+        let seen = estimate::Session::new(&robot, &data, &packed, true).with_length(LENGTH_M);
+        let cost = cost_from_truth(seen, &rows, truth);
         let rms_m = (2.0 * cost / (3.0 * ROWS as f64)).sqrt() * NOISE.position_m;
         println!("{:36} {:.1} mm a component", session.name, rms_m * 1e3);
         // Axes that are 1° and 2 mm off leave millimetres to a centimetre of position and, weighted with it, of rotation: more than noise,

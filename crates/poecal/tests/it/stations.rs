@@ -1,10 +1,8 @@
 //! A device that stood at several places: each has a frame of its own, the robot and its targets are one.
 
 use nalgebra::Vector3;
-use poecal::calibration::{
-    Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, row_errors, row_influence,
-};
-use poecal::estimate::Packed;
+use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, row_influence};
+use poecal::estimate::{Packed, Session};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Set};
 use poecal::robot::Robot;
@@ -52,7 +50,8 @@ fn fit(robot: &Robot, data: &Dataset) -> Calibration {
 fn unseen_m(simulation: &Simulation, made: &Simulated, kind: Kind, calibration: &Calibration) -> f64 {
     let unseen = simulation.held_out(made, kind, 300).unwrap();
     let packed = Packed::of(&made.nominal, &unseen);
-    let errors = row_errors(&unseen, &packed, &unseen.all_rows(), &calibration.models.calibrated);
+    let session = Session::new(&made.nominal, &unseen, &packed, true);
+    let errors = session.errors(&unseen.all_rows(), &calibration.models.calibrated);
     (errors.iter().map(|error| error.position_m.norm_squared()).sum::<f64>() / 300.0).sqrt()
 }
 

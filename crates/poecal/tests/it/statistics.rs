@@ -3,7 +3,7 @@
 use crate::trials::{Trials, trials};
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal::calibration::{CalibrationOptions, calibrate};
-use poecal::estimate::{Chain, Estimate, Linkage, Packed};
+use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
 use poecal::lie::rotation;
 use poecal::measurement::{Dataset, Noise};
 use poecal::parameters::{Parameter, ScrewAxis, TargetFrame, TargetPlace};
@@ -45,8 +45,9 @@ fn parameters(robot: &Robot, kind: Kind) -> Vec<Parameter> {
 /// The least mean squares of prediction errors that any unbiased estimator can have: `tr(J_h N⁻¹ J_hᵀ)` at the truth.
 fn bound(truth: &Estimate, data: &Dataset, unseen: &Packed, robot: &Robot, kind: Kind) -> Squares {
     let packed = Packed::new(robot, data.all_readings(), robot.joints.len());
+    let session = Session::new(robot, data, &packed, false).with_length(LENGTH_M);
     let rows = (0..FITTED as u32).collect();
-    let problem = Problem::new(data, &packed, rows, parameters(robot, kind), NOISE, LENGTH_M);
+    let problem = Problem::new(session, rows, parameters(robot, kind), NOISE);
     let (n, gram) = (problem.dim(), problem.normal(truth).gram);
     let information = DMatrix::from_fn(n, n, |i, j| gram[i.min(j) * n + i.max(j)]);
     let covariance = information.cholesky().unwrap().inverse();

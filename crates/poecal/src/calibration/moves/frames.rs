@@ -1,12 +1,10 @@
 //! Device frames that differ so much that no single model describes the rows: of files measured from different stations and fitted as from
 //! one, and of two parts of a session.
 
-use super::super::{CalibrationOptions, delivered, fit_screws, row_errors};
+use super::super::{CalibrationOptions, delivered, fit_screws};
 use super::{ChangeKind, Moved};
-use crate::estimate::{Estimate, Packed, position_rms_m};
+use crate::estimate::{Estimate, Session, position_rms_m};
 use crate::measurement::{Dataset, Noise};
-use crate::problem::Prior;
-use crate::robot::Robot;
 use crate::start::{Registration, register};
 
 /// Most files whose frames are compared, and fewest rows of each.
@@ -35,16 +33,13 @@ impl FramesApart {
     }
 }
 
-/// A fit with one device frame, to be compared with one of several frames.
+/// A fit with one unknown device frame, to be compared with one of several frames.
 #[derive(Clone, Copy)]
 pub(in crate::calibration) struct FrameSearch<'a> {
-    pub(in crate::calibration) robot: &'a Robot,
-    pub(in crate::calibration) data: &'a Dataset,
-    pub(in crate::calibration) packed: &'a Packed,
+    pub(in crate::calibration) session: Session<'a>,
     /// The fitted rows, in order.
     pub(in crate::calibration) rows: &'a [u32],
     pub(in crate::calibration) noise: Noise,
-    pub(in crate::calibration) length_m: f64,
     pub(in crate::calibration) options: &'a CalibrationOptions,
     /// Its root mean square position error, metres.
     pub(in crate::calibration) left_m: f64,
@@ -52,7 +47,7 @@ pub(in crate::calibration) struct FrameSearch<'a> {
 
 /// Fits with a device frame for each file, or for each part of the session, and compares the errors (theory.md §9, *Change points*).
 pub(in crate::calibration) fn frames_apart(search: &FrameSearch<'_>) -> Option<FramesApart> {
-    if search.data.station_count() > 1 {
+    if search.session.data.station_count() > 1 {
         return None;
     }
     search.files_apart().or_else(|| search.parts_apart())
@@ -78,11 +73,11 @@ impl FrameSearch<'_> {
 
     /// The data with a station for each file; `None` unless several files have enough rows.
     fn by_file(&self) -> Option<Dataset> {
-        let files = self.data.files.len();
+        let files = self.session.data.files.len();
         if !(2..=MOST_FILES).contains(&files) {
             return None;
         }
-        let mut apart = self.data.clone();
+        let mut apart = self.session.data.clone();
         apart.stations = apart.files.iter().map(|path| Some(path.display().to_string())).collect();
         apart.observations.iter_mut().for_each(|row| row.station = row.source.file as usize);
         let enough = (0..files).all(|file| apart.seen_from(file, self.rows).len() >= FEWEST_ROWS);
@@ -94,8 +89,8 @@ impl FrameSearch<'_> {
         if count < FEWEST_TO_PART {
             return None;
         }
-        let first = self.registered(self.data, &self.rows[..count / PARTS]);
-        let last = self.registered(self.data, &self.rows[count - count / PARTS..]);
+        let first = self.registered(self.session.data, &self.rows[..count / PARTS]);
+        let last = self.registered(self.session.data, &self.rows[count - count / PARTS..]);
         let mut at = self.parted(&first, &last);
         let mut data = self.in_parts(at);
         let (mut estimate, mut own_m) = self.fitted(&data);
@@ -111,7 +106,7 @@ impl FrameSearch<'_> {
             "from {} on the measurements are in another device frame: with one frame before and another from there on, {left}; the \
              measuring device seems to have been moved, by {:.0} mm as seen at the robot; give the rows from there on another name in a \
              column `instrument`, or calibrate each part by itself",
-            self.data.place(self.rows[at]),
+            self.session.data.place(self.rows[at]),
             1e3 * self.far_m(at, &estimate)
         );
         Some(FramesApart { statement, data, estimate })
@@ -120,7 +115,7 @@ impl FrameSearch<'_> {
     /// Distance by which the device was moved before a row, from a fit with separate frames before and after it, metres.
     pub(in crate::calibration) fn moved_m(&self, first: u32) -> Option<f64> {
         let at = self.rows.partition_point(|&row| row < first);
-        if self.data.station_count() > 1 || at < FEWEST_ROWS || self.rows.len() - at < FEWEST_ROWS {
+        if self.session.data.station_count() > 1 || at < FEWEST_ROWS || self.rows.len() - at < FEWEST_ROWS {
             return None;
         }
         let (estimate, own_m) = self.fitted(&self.in_parts(at));
@@ -130,13 +125,13 @@ impl FrameSearch<'_> {
     /// Distance between the frames before and after the fitted row of this index, at the robot, metres.
     fn far_m(&self, at: usize, estimate: &Estimate) -> f64 {
         let [before, after] = [0, 1].map(|station| *estimate.device(station));
-        let middle = before.inverse().act(&self.data.mean_position(&self.rows[..at]));
+        let middle = before.inverse().act(&self.session.data.mean_position(&self.rows[..at]));
         (after.act(&middle) - before.act(&middle)).norm()
     }
 
     /// The data with one station before the fitted row of this index, and another from there on.
     fn in_parts(&self, at: usize) -> Dataset {
-        let mut apart = self.data.clone();
+        let mut apart = self.session.data.clone();
         apart.stations = vec![Some("before".to_owned()), Some("after".to_owned())];
         for (row, observation) in apart.observations.iter_mut().enumerate() {
             observation.station = usize::from(row >= self.rows[at] as usize);
@@ -146,7 +141,7 @@ impl FrameSearch<'_> {
 
     /// First row from which on the second of two estimates is better: by logarithms of errors, so that no single row decides.
     fn parted(&self, first: &Estimate, second: &Estimate) -> usize {
-        let errors = [first, second].map(|it| row_errors(self.data, self.packed, self.rows, it));
+        let errors = [first, second].map(|it| self.session.errors(self.rows, it));
         let log = |error: &super::RowError| error.position_m.norm().max(f64::MIN_POSITIVE).ln();
         let gains = errors[0].iter().zip(&errors[1]).map(|(a, b)| log(a) - log(b));
         let (mut sum, mut least, mut best) = (0.0, f64::INFINITY, FEWEST_ROWS);
@@ -160,28 +155,20 @@ impl FrameSearch<'_> {
     }
 
     fn registered(&self, data: &Dataset, rows: &[u32]) -> Estimate {
-        let registration = Registration {
-            data,
-            packed: self.packed,
-            rows,
-            noise: self.noise,
-            length_m: self.length_m,
-            device_free: true,
-            targets_free: true,
-        };
-        register(&registration, &delivered(self.robot, data)).0
+        let session = Session { data, ..self.session };
+        let registration = Registration { session, rows, noise: self.noise, targets_free: true };
+        register(&registration, &delivered(session.robot, data)).0
     }
 
     /// A fit, and its root mean square position error, metres.
     fn fitted(&self, data: &Dataset) -> (Estimate, f64) {
         let mut start = self.registered(data, self.rows);
-        start.recentre(data, self.packed, self.rows);
-        let (packed, options) = (self.packed, self.options);
-        let prior = options.tolerance_in_fit().map(|tolerance| Prior::new(self.robot, tolerance, true));
+        let session = Session { data, ..self.session };
+        start.recentre(&session, self.rows);
+        let prior = self.options.prior(&session);
         let prior = prior.as_ref().map(|prior| (prior, 1.0));
-        let (noise, length_m) = (self.noise, self.length_m);
-        let (estimate, ..) = fit_screws(data, packed, self.rows, start, noise, length_m, prior, options);
-        let own_m = position_rms_m(&row_errors(data, packed, self.rows, &estimate));
+        let (estimate, ..) = fit_screws(session, self.rows, start, self.noise, prior, self.options);
+        let own_m = position_rms_m(&session.errors(self.rows, &estimate));
         (estimate, own_m)
     }
 

@@ -8,8 +8,7 @@ pub(super) use frames::{FrameSearch, FramesApart, frames_apart};
 use nalgebra::Vector3;
 
 use super::{Robustness, RowError};
-use crate::estimate::{Chain, Estimate, Linkage, Packed, sample_rows};
-use crate::measurement::Dataset;
+use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, sample_rows};
 use series::{Series, SeriesChange};
 
 /// Most rows of the search: with fewer a change still shows, and its place is known to a few rows.
@@ -61,12 +60,9 @@ impl Moved {
 /// A finished fit, and the rows to be searched in the order measured.
 #[derive(Clone, Copy)]
 pub(super) struct ChangeSearch<'a> {
-    pub(super) data: &'a Dataset,
-    pub(super) packed: &'a Packed,
+    pub(super) session: Session<'a>,
     pub(super) estimate: &'a Estimate,
     pub(super) rows: &'a [u32],
-    /// Whether the device frame is unknown.
-    pub(super) device_free: bool,
     /// A fit with a device frame for each side of a step, for a better estimate of the distance.
     pub(super) again: Option<&'a FrameSearch<'a>>,
 }
@@ -83,7 +79,7 @@ enum MovedObject {
 /// The change that explains most of the squared errors, if it is significant.
 pub(super) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
     let rows = sample_rows(search.rows, MOST_ROWS);
-    let errors = super::row_errors(search.data, search.packed, &rows, search.estimate);
+    let errors = search.session.errors(&rows, search.estimate);
     let mut found: Option<(MovedObject, Vec<u32>, SeriesChange)> = None;
     let mut consider = |subject: MovedObject, series: Series| {
         let change = series.change(matches!(subject, MovedObject::Device(_)));
@@ -93,7 +89,7 @@ pub(super) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
             found = Some((subject, series.rows, change));
         }
     };
-    for station in 0..search.data.station_count() {
+    for station in 0..search.session.data.station_count() {
         consider(MovedObject::Device(station), of_device(search, &rows, &errors, station));
     }
     for (target, series) in of_targets(search, &rows, &errors).into_iter().enumerate() {
@@ -106,10 +102,10 @@ pub(super) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
 /// Errors of the rows of one station, in the device's axes.
 fn of_device(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError], station: usize) -> Series {
     let own = rows.iter().zip(errors);
-    let own = own.filter(|(row, _)| search.data.observations[**row as usize].station == station);
+    let own = own.filter(|(row, _)| search.session.observation(**row).station == station);
     let (rows, values): (Vec<u32>, Vec<Vector3<f64>>) =
         own.map(|(&row, error)| (row, error.position_m)).unzip();
-    let configurations = rows.iter().map(|&row| shapes(search.packed, row as usize)).collect();
+    let configurations = rows.iter().map(|&row| shapes(search.session.packed, row as usize)).collect();
     Series { rows, values, configurations }
 }
 
@@ -130,12 +126,12 @@ fn shapes(packed: &Packed, row: usize) -> Vec<f64> {
 
 /// Errors of the rows of each target, in the axes of the last link.
 fn of_targets(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError]) -> Vec<Series> {
-    let mut series: Vec<Series> = vec![Series::default(); search.data.targets.len()];
+    let mut series: Vec<Series> = vec![Series::default(); search.session.data.targets.len()];
     let linkage = Linkage::new(search.estimate);
     let mut chain = Chain::default();
     for (&row, error) in rows.iter().zip(errors) {
-        let seen = &search.data.observations[row as usize];
-        chain.evaluate(&linkage, search.packed, row as usize, seen);
+        let seen = search.session.observation(row);
+        chain.evaluate(&linkage, search.session.packed, row as usize, seen);
         if let Some(own) = series.get_mut(seen.target) {
             own.rows.push(row);
             own.values.push(chain.target.rotation.transpose() * error.position_m);
@@ -146,7 +142,7 @@ fn of_targets(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError]) -> V
 
 impl ChangeSearch<'_> {
     fn moved(&self, subject: MovedObject, rows: &[u32], change: &SeriesChange) -> Moved {
-        let (data, far_mm) = (self.data, 1e3 * change.distance_m);
+        let (data, far_mm) = (self.session.data, 1e3 * change.distance_m);
         let Some(at) = change.at else {
             let (first, last) = (rows.first().copied().unwrap_or(0), rows.last().copied().unwrap_or(0));
             let statement = format!(
@@ -180,14 +176,14 @@ impl ChangeSearch<'_> {
 
     /// Description of a moved device; at the first row of a file, of files without a common device frame.
     fn device_words(&self, rows: &[u32], at: usize, far_mm: f64, place: &str) -> String {
-        let data = self.data;
+        let data = self.session.data;
         let file = |index: usize| {
             let file = data.observations[rows[index] as usize].source.file as usize;
             (file, data.files.get(file).map(|path| path.display().to_string()))
         };
         if let ((a, Some(before)), (b, Some(after))) = (file(at - 1), file(at))
             && a != b
-            && self.device_free
+            && self.session.device_free
             && data.station_count() == 1
         {
             return format!(
@@ -195,7 +191,7 @@ impl ChangeSearch<'_> {
                  device frame, the measuring device seems to have been moved between them; give each file its own with --frames per-file"
             );
         }
-        let remedy = if self.device_free {
+        let remedy = if self.session.device_free {
             "give the rows from there on another name in a column `instrument`, or calibrate each part by itself"
         } else {
             "calibrate each part by itself, or only one of them"

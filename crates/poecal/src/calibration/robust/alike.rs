@@ -2,8 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::super::row_errors;
-use crate::estimate::{Estimate, Packed};
+use crate::estimate::{Estimate, Session};
 use crate::measurement::Dataset;
 
 /// Factor on the bound of normal noise above which a row is suspected: errors of real robots have heavier tails than noise.
@@ -42,18 +41,13 @@ impl Configurations {
     }
 
     /// For each row of the data the share of its length that counts: less where the other rows of its configuration have the same error.
-    pub(in crate::calibration) fn shares(
-        &self,
-        data: &Dataset,
-        packed: &Packed,
-        estimate: &Estimate,
-    ) -> Vec<f64> {
-        let mut shares = vec![1.0; data.len()];
+    pub(in crate::calibration) fn shares(&self, session: &Session<'_>, estimate: &Estimate) -> Vec<f64> {
+        let mut shares = vec![1.0; session.data.len()];
         let rows: Vec<u32> = self.groups.concat();
         if rows.is_empty() {
             return shares;
         }
-        let errors = row_errors(data, packed, &rows, estimate);
+        let errors = session.errors(&rows, estimate);
         let mut rest = &errors[..];
         for group in &self.groups {
             let (own, others) = rest.split_at(group.len());

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::rows::component_scale;
 use crate::analysis::{Influence, influence};
 use crate::calibration::fit;
-use crate::calibration::{Calibration, radian_m, written};
-use crate::estimate::Packed;
+use crate::calibration::{Calibration, DeviceFrameKnowledge, written};
+use crate::estimate::{Packed, Session};
 use crate::measurement::Dataset;
 use crate::parameters::{Parameter, screw_axes};
 use crate::problem::Problem;
@@ -51,10 +51,10 @@ impl<'a> RowInfluence<'a> {
         let packed = calibration.packed(data);
         let data = written(data, calibration.formulation.pose_residual);
         let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
-        let Calibration { nominal, fit_rows, models, .. } = calibration;
+        let Calibration { fit_rows, models, .. } = calibration;
         let free =
             fit::free_parameters(&models.calibrated, &data, fit_rows, screw_axes(&models.calibrated.kinds));
-        let length_m = radian_m(nominal, &packed);
+        let length_m = calibration.session(&data, &packed).length_m;
         let mut made = RowInfluence { calibration, data, packed, weights, free, length_m, normal: None };
         if !made.data.is_empty() {
             let problem = made.problem(&calibration.fit_rows).with_weights(&made.weights);
@@ -63,14 +63,19 @@ impl<'a> RowInfluence<'a> {
         made
     }
 
-    /// Joint values of the data.
-    pub(crate) fn packed(&self) -> &Packed {
-        &self.packed
+    /// Session of the data.
+    pub(crate) fn session(&self) -> Session<'_> {
+        Session {
+            robot: &self.calibration.nominal,
+            data: &self.data,
+            packed: &self.packed,
+            length_m: self.length_m,
+            device_free: self.calibration.frame == DeviceFrameKnowledge::Unknown,
+        }
     }
 
     fn problem(&self, rows: &[u32]) -> Problem<'_> {
-        let noise = self.calibration.noise;
-        Problem::new(&self.data, &self.packed, rows.to_vec(), self.free.clone(), noise, self.length_m)
+        Problem::new(self.session(), rows.to_vec(), self.free.clone(), self.calibration.noise)
     }
 
     /// Influence of these rows.

@@ -49,7 +49,7 @@ pub(super) fn fit(
     source: NoiseSource,
 ) -> Result<RobustFit> {
     let noise = registration.noise;
-    let configurations = &Configurations::new(task.data, task.rows);
+    let configurations = &Configurations::new(task.session.data, task.rows);
     let attempt = |loss, other| attempt(task, configurations, registration, registered, source, loss, other);
     let ordinary = |found| ordinary(task, configurations, found, registered, noise, source);
     match task.options.robust {
@@ -103,28 +103,25 @@ impl RobustFit {
     /// Mean bounded loss of the rows of each cluster of configurations by the fit of the others, in units of this noise.
     fn cross_validated_loss(&self, task: &Task<'_>, noise: Noise) -> Option<f64> {
         let Fitted { estimate, layout, noise: own, .. } = &self.fitted;
-        let prior =
-            PriorInformation::new(task.prior.map(|(prior, _)| prior), estimate, layout, task.length_m);
+        let prior = task.prior.map(|(prior, _)| prior);
+        let prior = PriorInformation::new(prior, estimate, layout, task.session.length_m);
         let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();
         let weights: Vec<f64> = self.judged.rows.iter().map(|row| row.weight).collect();
         let view = View {
-            robot: task.robot,
-            data: task.data,
-            packed: task.packed,
+            session: task.session,
             rows: task.rows,
             free: &free,
             noise: *own,
             noise_is_stated: [false; 2],
             prior: &prior,
             variance: 1.0,
-            length_m: task.length_m,
             estimate,
         };
         let bound = Bounds::new(task.rows.len(), 1.0);
         leave_clusters_out(&view, &weights, |row, error| {
             let squares =
                 [error.position_m, error.rotation_rad.unwrap_or_default()].map(|it| it.norm_squared());
-            let [position, rotation] = task.data.observations[row as usize].whitened(squares, noise);
+            let [position, rotation] = task.session.observation(row).whitened(squares, noise);
             let components = if error.rotation_rad.is_some() { 6 } else { 3 };
             let ratio = (position + rotation) / bound.of(components).powi(2);
             1.0 - (1.0 - ratio.min(1.0)).powi(3)
@@ -133,7 +130,7 @@ impl RobustFit {
 
     /// Whether the robust scale of position errors is larger than elastic gears and links explain.
     fn is_suspicious(&self, task: &Task<'_>) -> bool {
-        let parts = parts(task.data, task.packed, task.rows, &self.fitted.estimate, self.fitted.noise);
+        let parts = parts(&task.session, task.rows, &self.fitted.estimate, self.fitted.noise);
         let scale = Scale::of(parts.iter(), self.fitted.normal.dim() as f64);
         task.is_suspicious(3f64.sqrt() * scale.0[0] * self.fitted.noise.position_m)
     }
@@ -149,7 +146,7 @@ fn ordinary(
     source: NoiseSource,
 ) -> Result<RobustFit> {
     let fitted = task.with_first_prior_weight(noise, source).complete(found, registered, noise, source)?;
-    let weights = vec![1.0; task.data.len()];
+    let weights = vec![1.0; task.session.data.len()];
     let judged = judge_rows(task, configurations, &fitted, &weights, None);
     Ok(RobustFit { fitted, loss: None, judged })
 }
@@ -163,13 +160,13 @@ fn shows_outliers(
     source: NoiseSource,
 ) -> bool {
     let unknowns = configurations.repeats * found.normal.dim() as f64;
-    let mut parts = parts(task.data, task.packed, task.rows, &found.estimate, noise);
+    let mut parts = parts(&task.session, task.rows, &found.estimate, noise);
     if !is_judgeable(parts.iter(), unknowns) {
         return false;
     }
     let (_, scale) = settle(&mut parts, unknowns, noise, estimated(task, source));
     let bounds = Bounds::new(task.rows.len(), 1.0);
-    let shares = configurations.shares(task.data, task.packed, &found.estimate);
+    let shares = configurations.shares(&task.session, &found.estimate);
     task.rows.iter().zip(&parts).any(|(&row, part)| {
         let (length, components) = scale.length(part);
         shares[row as usize] * length > bounds.of(components)
@@ -221,8 +218,8 @@ struct Reweighted<'c> {
 
 impl<'c> Reweighted<'c> {
     fn new(task: &Task<'_>, configurations: &'c Configurations, mut start: Estimate, noise: Noise) -> Self {
-        start.recentre(task.data, task.packed, task.rows);
-        let weights = vec![1.0; task.data.len()];
+        start.recentre(&task.session, task.rows);
+        let weights = vec![1.0; task.session.data.len()];
         Reweighted {
             configurations,
             estimate: start,
@@ -259,7 +256,7 @@ impl<'c> Reweighted<'c> {
             ..*task.options
         };
         for _ in 0..REWEIGHTINGS {
-            let mut parts = parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
+            let mut parts = parts(&task.session, task.rows, &self.estimate, self.noise);
             let unknowns = self.unknowns(task);
             (self.noise, self.scale) = settle(&mut parts, unknowns, self.noise, estimated(task, source));
             if self.reweight(task, &parts, loss) < SETTLED {
@@ -280,7 +277,7 @@ impl<'c> Reweighted<'c> {
     /// Updates the weights of the fitted rows; returns the largest change.
     fn reweight(&mut self, task: &Task<'_>, parts: &[RowParts], loss: Loss) -> f64 {
         let mut change: f64 = 0.0;
-        let shares = self.configurations.shares(task.data, task.packed, &self.estimate);
+        let shares = self.configurations.shares(&task.session, &self.estimate);
         for (&row, part) in task.rows.iter().zip(parts) {
             let (length, components) = self.scale.length(part);
             let weight = loss.weight(shares[row as usize] * length, components);
@@ -296,9 +293,9 @@ impl<'c> Reweighted<'c> {
         let mut source = source;
         let mut found: Option<OngoingFit> = None;
         for _ in 0..ITERATIONS {
-            let mut parts = parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
+            let mut parts = parts(&task.session, task.rows, &self.estimate, self.noise);
             let unknowns = self.unknowns(task);
-            let shares = self.configurations.shares(task.data, task.packed, &self.estimate);
+            let shares = self.configurations.shares(&task.session, &self.estimate);
             let kept: Vec<u32> = task
                 .rows
                 .iter()
@@ -315,12 +312,12 @@ impl<'c> Reweighted<'c> {
                 let unknowns = found.as_ref().map_or(unknowns, |found| of_kept.effective_unknowns(found));
                 let by_rotations =
                     found.as_ref().and_then(|found| of_kept.determined_by_rotations(found, before));
-                let (data, packed) = (task.data, task.packed);
-                match estimate_noise(data, packed, &kept, &self.estimate, unknowns, by_rotations, before) {
+                let session = &task.session;
+                match estimate_noise(session, &kept, &self.estimate, unknowns, by_rotations, before) {
                     Some(noise) => self.noise = stated(task.options, noise),
                     None => source = NoiseSource::Exact,
                 }
-                parts = scale::parts(task.data, task.packed, task.rows, &self.estimate, self.noise);
+                parts = scale::parts(&task.session, task.rows, &self.estimate, self.noise);
             }
             let kept_parts = parts.iter().zip(task.rows).filter(|(_, row)| kept.binary_search(row).is_ok());
             self.scale = Scale::of(kept_parts.map(|(part, _)| part), unknowns).at_least_rounding(self.noise);

@@ -165,13 +165,13 @@ pub(super) fn judge_rows(
     weights: &[f64],
     loss: Option<Loss>,
 ) -> RowJudgements {
-    let all: Vec<u32> = (0..u32::try_from(task.data.len()).unwrap_or(u32::MAX)).collect();
+    let all: Vec<u32> = (0..u32::try_from(task.session.data.len()).unwrap_or(u32::MAX)).collect();
     let mut is_fitted = vec![false; all.len()];
     task.rows.iter().for_each(|&row| is_fitted[row as usize] = true);
     let bounds = Bounds::suspected(all.len());
-    let parts = parts(task.data, task.packed, &all, &fitted.estimate, fitted.noise);
+    let parts = parts(&task.session, &all, &fitted.estimate, fitted.noise);
     let unknowns = configurations.repeats * fitted.normal.dim() as f64;
-    let shares = configurations.shares(task.data, task.packed, &fitted.estimate);
+    let shares = configurations.shares(&task.session, &fitted.estimate);
     let judge = |scale: Scale| -> RowJudgements {
         // Influence is computed only where it may matter: rows with a leverage near 1 have no residual to judge them by.
         let lengths = parts.iter().map(|row| scale.length(row));
@@ -201,7 +201,7 @@ pub(super) fn judge_rows(
         let problem = problem.problem(&fitted.estimate, fitted.noise);
         let found =
             influence(&problem, &fitted.estimate, &fitted.normal, &near, &counted, |row, component| {
-                component_scale(task.data, scale.0, row, component)
+                component_scale(task.session.data, scale.0, row, component)
             });
         for (&row, influence) in near.iter().zip(&found) {
             let (_, components) = scale.length(&parts[row as usize]);

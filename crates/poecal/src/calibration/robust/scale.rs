@@ -3,8 +3,8 @@
 use crate::calibration::CalibrationOptions;
 use crate::calibration::noise::{ROUNDING, stated};
 use crate::distributions::{chi_square_median, median};
-use crate::estimate::{Estimate, Packed, map_squares};
-use crate::measurement::{Dataset, Noise};
+use crate::estimate::{Estimate, Session};
+use crate::measurement::Noise;
 
 /// Squared whitened residual of one part of a row, position or rotation.
 #[derive(Clone, Copy, Default)]
@@ -19,14 +19,8 @@ pub(super) struct RowPart {
 pub(super) type RowParts = [RowPart; 2];
 
 /// Whitened parts of some rows.
-pub(super) fn parts(
-    data: &Dataset,
-    packed: &Packed,
-    rows: &[u32],
-    estimate: &Estimate,
-    noise: Noise,
-) -> Vec<RowParts> {
-    map_squares(data, packed, rows, estimate, |observation, squares| {
+pub(super) fn parts(session: &Session<'_>, rows: &[u32], estimate: &Estimate, noise: Noise) -> Vec<RowParts> {
+    session.map_squares(rows, estimate, |observation, squares| {
         let whitened = observation.whitened(squares.map(|(squares, _)| squares), noise);
         let stated = [observation.sigma_position_m, observation.sigma_rotation_rad];
         [0, 1].map(|side| RowPart {

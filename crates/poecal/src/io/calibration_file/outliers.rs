@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::calibration::{Calibration, Loss, RowError, SetAccuracy, row_errors, row_influence};
+use crate::calibration::{Calibration, Loss, RowError, SetAccuracy, row_influence};
 use crate::measurement::Dataset;
 
 /// Most suspected rows in a file; `robust` has their number.
@@ -84,7 +84,7 @@ impl OutlierEntry {
         rows.truncate(LISTED);
         let numbers: Vec<u32> = rows.iter().map(|(row, _)| *row).collect();
         let packed = calibration.packed(data);
-        let errors = row_errors(data, &packed, &numbers, &calibration.models.calibrated);
+        let errors = calibration.session(data, &packed).errors(&numbers, &calibration.models.calibrated);
         let entry = |((row, studentized), error): (&(u32, f64), &RowError)| {
             let source = data.observations[*row as usize].source;
             let file = data.files.get(source.file as usize);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{ModelErrors, ResidualRow, Residuals, RowDiagnostics};
-use crate::calibration::{Calibration, RowError, RowInfluence, row_errors};
+use crate::calibration::{Calibration, RowError, RowInfluence};
 use crate::estimate::Estimate;
 use crate::measurement::Dataset;
 use crate::robot::JointKind;
@@ -39,7 +39,8 @@ impl<'a> RowSource<'a> {
     pub(super) fn rows(&self, range: Range<usize>) -> Residuals {
         let Calibration { models, robustness, .. } = self.calibration;
         let indices: Vec<u32> = range.filter_map(|row| u32::try_from(row).ok()).collect();
-        let errors = |estimate: &Estimate| row_errors(self.data, self.influence.packed(), &indices, estimate);
+        let session = self.influence.session();
+        let errors = |estimate: &Estimate| session.errors(&indices, estimate);
         let [nominal, registered, calibrated] =
             [&models.nominal, &models.registered, &models.calibrated].map(errors);
         let influences = self.influence.of(&indices);

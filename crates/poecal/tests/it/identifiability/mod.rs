@@ -4,7 +4,7 @@ mod cases;
 
 use crate::trials::trials;
 use cases::{CASES, Case};
-use poecal::analysis::{Cause, Identifiability, Session, identify};
+use poecal::analysis::{Cause, Identifiability, PlannedSession, identify};
 use poecal::calibration::{CalibrationOptions, Formulation, FormulationWords, calibrate};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
@@ -31,7 +31,7 @@ impl Case {
     }
 
     fn foreseen(&self) -> Identifiability {
-        let session = Session { kind: self.kind, ..Session::default() };
+        let session = PlannedSession { kind: self.kind, ..PlannedSession::default() };
         identify(&(self.robot)(), &self.readings(7).concat(), &session).unwrap().identifiability
     }
 }
@@ -64,7 +64,7 @@ fn measured(case: &Case, noise: f64) -> (Robot, Dataset) {
     let mut generator = ChaCha8Rng::seed_from_u64(11);
     let actual = Simulation::default().perturbed(&nominal, &mut generator);
     let device_from_base = Pose::from_xyz_rpy([1.5, -2.0, 0.5], [0.3, -1.0, 2.0]);
-    let usual = Session::default().noise;
+    let usual = PlannedSession::default().noise;
     let mut data = Dataset::new(nominal.reading_names());
     for readings in case.readings(7) {
         let mut pose = device_from_base * actual.forward_kinematics(&readings);
@@ -220,7 +220,7 @@ fn joints_that_stand_still_are_named_and_no_others() {
             readings.extend(row);
         }
         let kind = if seed % 3 == 0 { Kind::Point } else { Kind::Pose };
-        let session = Session { kind, ..Session::default() };
+        let session = PlannedSession { kind, ..PlannedSession::default() };
         let found = identify(&robot, &readings, &session).unwrap().identifiability;
         let named = found.unidentifiable.iter().filter(|it| it.cause == Cause::StoodStill);
         let named: Vec<&String> = named.flat_map(|it| &it.joints).collect();

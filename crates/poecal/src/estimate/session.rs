@@ -1,0 +1,52 @@
+//! The measurements of one robot, as every step of a calibration reads them.
+
+use super::{Packed, radian_m};
+use crate::measurement::{Dataset, Observation};
+use crate::robot::Robot;
+
+/// A robot and its measurements: what every fit of them, and every judgement of a fit, begins with.
+///
+/// ```
+/// use poecal::estimate::{Packed, Session, delivered};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, device_anywhere: false, ..Simulation::default() };
+/// let made = exact.run(&elbow(), Kind::Point)?;
+/// let packed = Packed::of(&made.nominal, &made.data);
+/// let session = Session::new(&made.nominal, &made.data, &packed, false);
+/// let errors = session.errors(&made.data.all_rows(), &delivered(&made.nominal, &made.data));
+/// assert_eq!(errors.len(), made.data.len());
+/// assert!(session.length_m < made.nominal.reach_m() && session.with_length(0.5).length_m == 0.5);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Session<'a> {
+    /// The nominal robot; the calibrated one where a finished calibration is judged.
+    pub robot: &'a Robot,
+    /// The measurements, in the frames of the device.
+    pub data: &'a Dataset,
+    /// Their joint values with sines and cosines, one row for each measurement.
+    pub packed: &'a Packed,
+    /// Metres that a radian counts, the L of theory.md §6.
+    pub length_m: f64,
+    /// Whether the device frame is unknown; otherwise it stays as given.
+    pub device_free: bool,
+}
+
+impl<'a> Session<'a> {
+    /// A radian counts a third of the reach ([`radian_m`]).
+    #[must_use]
+    pub fn new(robot: &'a Robot, data: &'a Dataset, packed: &'a Packed, device_free: bool) -> Self {
+        Session { robot, data, packed, length_m: radian_m(robot, packed), device_free }
+    }
+
+    /// The same with another length that a radian counts, metres.
+    #[must_use]
+    pub fn with_length(self, length_m: f64) -> Self {
+        Session { length_m, ..self }
+    }
+
+    /// The observation of a row.
+    pub(crate) fn observation(&self, row: u32) -> &'a Observation {
+        &self.data.observations[row as usize]
+    }
+}
