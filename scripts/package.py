@@ -7,12 +7,13 @@ for Windows, and the same name with .sha256, into FOLDER.
 """
 
 import hashlib
-import re
 import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from docs.commands import names
 
 ROOT = Path(__file__).resolve().parents[1]
 # The page of the program's crate: its links lead somewhere from anywhere.
@@ -40,9 +41,8 @@ def package(program, target, folder):
         for shell, file in SHELLS.items():
             (content / "completions" / file).write_bytes(said(program, "completions", shell))
         (content / "man/poecal.1").write_bytes(said(program, "man"))
-        for command in re.findall(r"^  ([a-z]+) ", said(program, "--help").decode(), re.M):
-            if command != "help":
-                (content / f"man/poecal-{command}.1").write_bytes(said(program, "man", command))
+        for command in names(said(program, "--help").decode()):
+            (content / f"man/poecal-{command}.1").write_bytes(said(program, "man", command))
         form = "zip" if "windows" in target else "gztar"
         archive = Path(shutil.make_archive(str(folder / name), form, root_dir=parent, base_dir=name))
     digest = hashlib.sha256(archive.read_bytes()).hexdigest()

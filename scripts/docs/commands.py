@@ -13,13 +13,17 @@ WIDTH = "80"
 
 def page(program):
     overview = told(program)
-    commands = [name for name in re.findall(r"^  ([a-z]+) ", overview, re.M) if name != "help"]
     parts = [
         "# Commands\n\nWhat `poecal --help` and `poecal COMMAND --help` say, written by `scripts/docs/commands.py`. `poecal COMMAND -h` is shorter.\n",
         block(overview),
     ]
-    parts += [f"## poecal {name}\n\n{block(told(program, name))}" for name in commands]
+    parts += [f"## poecal {name}\n\n{block(told(program, name))}" for name in names(overview)]
     return "\n".join(parts)
+
+
+def names(overview):
+    """The commands that the program's help lists."""
+    return [name for name in re.findall(r"^  ([a-z]+) ", overview, re.M) if name != "help"]
 
 
 def block(text):

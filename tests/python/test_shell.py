@@ -4,12 +4,16 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 
 import pytest
-from program import poecal, program
+from program import ROOT, poecal, program
+
+sys.path.insert(0, str(ROOT / "scripts/docs"))
+from commands import names  # noqa: E402
 
 SHELLS = ["bash", "elvish", "fish", "powershell", "zsh"]
-COMMANDS = [name for name in re.findall(r"^  ([a-z]+) ", poecal("--help"), re.M) if name != "help"]
+COMMANDS = names(poecal("--help"))
 
 
 @pytest.mark.parametrize("shell", SHELLS)
