@@ -1,7 +1,7 @@
 # The program alone, in an image of its own size:
 #
 #   docker build -t poecal .
-#   docker run --rm --user "$(id -u):$(id -g)" -v "$PWD:/work" poecal calibrate robot.urdf measurements.csv
+#   docker run --rm --user "$(id -u):$(id -g)" -v "$PWD:/data" poecal calibrate robot.urdf measurements.csv
 FROM rust:1-slim-bookworm AS build
 WORKDIR /source
 COPY . .
@@ -11,5 +11,5 @@ RUN scripts/static-program
 FROM scratch
 COPY --from=build /source/target/static/poecal /poecal
 COPY LICENSE-MIT LICENSE-APACHE THIRD-PARTY.txt /
-WORKDIR /work
+WORKDIR /data
 ENTRYPOINT ["/poecal"]

@@ -189,15 +189,15 @@ def image() -> tuple[Path, list[str]]:
 
 def test_the_image_holds_the_program_and_its_licences(image, empty):
     root, entry = image
-    assert sorted(path.name for path in root.iterdir()) == ["LICENSE-APACHE", "LICENSE-MIT", "THIRD-PARTY.txt", "poecal", "work"]
+    assert sorted(path.name for path in root.iterdir()) == ["LICENSE-APACHE", "LICENSE-MIT", "THIRD-PARTY.txt", "data", "poecal"]
     assert entry == ["/poecal"]
     if os.geteuid() == 0:
         # As in a container: nothing of this machine is there.
         for name in ["robot.urdf", "points.csv"]:
-            shutil.copy(empty / name, root / "work")
-        inside = "import os, sys; os.chroot(sys.argv[1]); os.chdir('/work'); os.execv(sys.argv[2], sys.argv[2:])"
+            shutil.copy(empty / name, root / "data")
+        inside = "import os, sys; os.chroot(sys.argv[1]); os.chdir('/data'); os.execv(sys.argv[2], sys.argv[2:])"
         printed = run(sys.executable, "-c", inside, root, entry[0], "calibrate", "robot.urdf", "points.csv", cwd="/", env={})
-        assert printed.startswith("verdict       good") and (root / "work/poecal-out/report.html").exists()
+        assert printed.startswith("verdict       good") and (root / "data/poecal-out/report.html").exists()
     else:
         calibrates(root / entry[0].lstrip("/"), empty)
 
