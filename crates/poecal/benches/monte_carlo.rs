@@ -69,7 +69,7 @@ fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(E
     begun.observations.iter_mut().zip(first).for_each(|(row, seen)| row.measurement = *seen);
     let start = delivered(robot, &begun);
     let packed = Packed::of(robot, &begun);
-    let mut free = screw_axes(&start.kinds);
+    let mut free = screw_axes(start.kinds());
     free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
     let session = Session::new(robot, &begun, &packed, false).with_length(robot.reach_m() / 3.0);
     let problem = Problem::new(session, begun.all_rows(), free, NOISE);

@@ -90,7 +90,7 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
     let made = session(50, Kind::Pose);
     let start = delivered(&made.nominal, &made.data);
     let rows: Vec<u32> = (0..50).collect();
-    let mut free = screw_axes(&start.kinds);
+    let mut free = screw_axes(start.kinds());
     free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let trials: Vec<Vec<Measurement>> = (0..1_000).map(|_| disturbed(&made.data, &mut generator)).collect();

@@ -104,24 +104,32 @@ impl Excitation {
         let mut chain = Chain::default();
         let rows = sample_rows(setup.rows, SAMPLE);
         let mut away_m = vec![0.0_f64; n];
+        let mut is_seen = vec![false; n];
         for &row in &rows {
             let row = row as usize;
             chain.evaluate(&linkage, setup.session.packed, row, &setup.session.data.observations[row]);
             self.mean_turn += chain.last.rotation / rows.len() as f64;
-            for (a, joint) in chain.joints.iter().enumerate() {
+            for joint in &chain.joints {
+                let a = joint.joint;
+                is_seen[a] = true;
                 let arm = chain.target.translation - joint.origin;
                 let away =
                     if joint.kind == JointKind::Revolute { arm.cross(&joint.z).norm() } else { f64::MAX };
                 away_m[a] = away_m[a].max(away);
-                for (b, other) in chain.joints.iter().enumerate() {
+                for other in &chain.joints {
+                    let b = other.joint;
                     let revolute = joint.kind == JointKind::Revolute && other.kind == JointKind::Revolute;
                     self.parallel[a * n + b] &= revolute && joint.z.cross(&other.z).norm() < PARALLEL;
                 }
             }
         }
+        for (a, b) in (0..n).flat_map(|a| (0..n).map(move |b| (a, b))) {
+            self.parallel[a * n + b] &= is_seen[a] && is_seen[b];
+        }
         if !setup.layout.parameters().any(|(it, _)| matches!(it, Parameter::TargetFrame(_))) {
             let near = ON_AXIS * setup.session.length_m;
-            self.on_axis_m = away_m.iter().map(|&away| (away < near).then_some(away)).collect();
+            let away = away_m.iter().zip(&is_seen);
+            self.on_axis_m = away.map(|(&away, &seen)| (seen && away < near).then_some(away)).collect();
         }
         self.turning = turning(&self.mean_turn);
     }

@@ -119,7 +119,7 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     let session = Session::new(robot, &data, &packed, planned.device_free);
     let mut estimate = delivered(robot, &data);
     estimate.recentre(&session, &rows);
-    let mut free = screw_axes(&estimate.kinds);
+    let mut free = screw_axes(estimate.kinds());
     free.push(match planned.kind {
         Kind::Point => Parameter::TargetPlace(TargetPlace { target: 0 }),
         Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame { target: 0 }),

@@ -118,7 +118,7 @@ mod tests {
         let data = &mixed(robot, 45);
         let packed = Packed::of(robot, data);
         let estimate = Estimate::new(robot, vec![robot.home], Pose::identity());
-        let mut free = screw_axes(&estimate.kinds);
+        let mut free = screw_axes(estimate.kinds());
         free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
         let rows = data.all_rows();
         let noise = Noise { position_m: 1e-3, rotation_rad: 1e-2 };
@@ -171,7 +171,7 @@ mod tests {
             let other = robot.home * Pose::from_translation(Vector3::new(0.1, 0.0, 0.2));
             let device_from_base = Pose::from_xyz_rpy([0.5, -1.0, 0.2], [0.3, -0.2, 1.2]);
             let estimate = Estimate::new(robot, vec![robot.home, other], device_from_base);
-            let mut free = screw_axes(&estimate.kinds);
+            let mut free = screw_axes(estimate.kinds());
             free.push(Parameter::DeviceFrame(DeviceFrame {
                 station: 0,
                 about: Vector3::new(0.3, -0.2, 0.5),

@@ -44,7 +44,8 @@ pub(super) fn free_parameters(
     rows: &[u32],
     joints: Vec<Parameter>,
 ) -> Vec<Parameter> {
-    let further = (1..=estimate.further_devices.len()).map(|station| {
+    let further = 1..=estimate.further_devices.len();
+    let further = further.filter(|&station| estimate.tree.shared(station).is_none()).map(|station| {
         let about = data.mean_position(&data.seen_from(station, rows));
         Parameter::DeviceFrame(DeviceFrame { station, about })
     });
@@ -63,7 +64,7 @@ pub fn fit_screws(
     options: &CalibrationOptions,
 ) -> (Estimate, Normal, Summary) {
     let Formulation { joint_parameters, minimize, .. } = options.formulation;
-    let free = free_parameters(&start, session.data, rows, joint_parameters(&start.kinds));
+    let free = free_parameters(&start, session.data, rows, joint_parameters(start.kinds()));
     let problem = |rows: Vec<u32>| Problem::new(session, rows, free.clone(), noise).with_prior(prior);
     let mut start = start;
     let (mut solver, mut before) = (options.solver, None);
@@ -94,7 +95,7 @@ pub(super) fn minimal(
     estimate: &Estimate,
     noise: Noise,
 ) -> (Layout, Normal) {
-    let free = free_parameters(estimate, session.data, rows, screw_axes(&estimate.kinds));
+    let free = free_parameters(estimate, session.data, rows, screw_axes(estimate.kinds()));
     let problem = Problem::new(session, rows.to_vec(), free, noise);
     (problem.layout().clone(), problem.normal(estimate))
 }
@@ -271,7 +272,7 @@ impl Task<'_> {
 
     /// The free parameters.
     fn free(&self, estimate: &Estimate) -> Vec<Parameter> {
-        let joints = (self.options.formulation.joint_parameters)(&estimate.kinds);
+        let joints = (self.options.formulation.joint_parameters)(estimate.kinds());
         free_parameters(estimate, self.session.data, self.rows, joints)
     }
 

@@ -1,8 +1,10 @@
 //! The kinematic chain of one row in the device's axes.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Estimate, Packed, Sight};
+use super::{Estimate, Packed, Passed, Sight, Tree};
 use crate::lanes::FixedMotion;
 use crate::lie::Pose;
 use crate::robot::JointKind;
@@ -24,15 +26,14 @@ use crate::robot::JointKind;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Linkage {
-    kinds: Vec<JointKind>,
-    /// `device_from_axis_1`, then `axis_(i-1)_from_axis_i`.
-    steps: Vec<Pose>,
-    /// `device_from_axis_1` of each further station.
-    further_first: Vec<Pose>,
+    tree: Arc<Tree>,
+    /// Of each route: `device_from_axis` of its first joint from the first station, then each axis in the one before.
+    steps: Vec<Vec<Pose>>,
     /// Device frame of the first station in that of each further one.
     further_from_first: Vec<Pose>,
-    /// `axis_n_from_target`.
-    ends: Vec<Pose>,
+    /// Of each sight, its first step, or the device frame if no joint moves between the two; and the target after the last step.
+    ends: Vec<(Pose, Pose)>,
+    first_device: Pose,
     /// Joint offsets, if there are any: `(δ, cos δ, sin δ)`.
     offsets: Vec<(f64, f64, f64)>,
 }
@@ -42,40 +43,69 @@ impl Linkage {
     #[must_use]
     pub fn new(estimate: &Estimate) -> Self {
         let Estimate {
-            kinds,
+            tree,
             base_from_axis,
             joint_offset,
             base_from_target,
-            device_from_base,
-            further_devices,
+            device_from_base: _,
+            further_devices: _,
         } = estimate;
-        let mut axis_from_base = *device_from_base;
-        let mut steps = Vec::with_capacity(base_from_axis.len());
-        for &base_from_axis in base_from_axis {
-            steps.push(axis_from_base * base_from_axis);
-            axis_from_base = base_from_axis.inverse();
-        }
-        let first_axis = base_from_axis.first().copied().unwrap_or_else(Pose::identity);
-        let further_first = further_devices.iter().map(|&device| device * first_axis).collect();
-        let base_from_first = device_from_base.inverse();
-        let further_from_first = further_devices.iter().map(|&device| device * base_from_first).collect();
-        let ends = base_from_target.iter().map(|&target| axis_from_base * target).collect();
+        let devices: Vec<Pose> =
+            (0..tree.instruments().len()).map(|station| estimate.device_at_zero(station)).collect();
+        let first = devices.first().copied().unwrap_or_else(Pose::identity);
+        let mut lasts = Vec::with_capacity(tree.routes().len());
+        let steps = tree.routes().iter().map(|route| {
+            let mut axis_from_base = first;
+            let mut steps = Vec::with_capacity(route.len());
+            for base_from_axis in route.iter().map(|passed| &base_from_axis[passed.joint]) {
+                steps.push(axis_from_base * *base_from_axis);
+                axis_from_base = base_from_axis.inverse();
+            }
+            lasts.push(axis_from_base);
+            steps
+        });
+        let steps: Vec<Vec<Pose>> = steps.collect();
+        let targets = base_from_target.len().max(1);
+        let ends = (0..tree.sights()).map(|sight| {
+            let (station, target) = (sight / targets % devices.len().max(1), sight % targets);
+            let route = tree.route_of(sight);
+            match (tree.routes()[route].first(), steps[route].first()) {
+                (Some(_), Some(&step)) if station == 0 => (step, lasts[route] * base_from_target[target]),
+                (Some(passed), _) => {
+                    (devices[station] * base_from_axis[passed.joint], lasts[route] * base_from_target[target])
+                }
+                (None, _) => (devices[station], base_from_target[target]),
+            }
+        });
+        let ends = ends.collect();
+        let base_from_first = first.inverse();
+        let further_from_first = devices.iter().skip(1).map(|&device| device * base_from_first).collect();
         let offsets = if estimate.has_offsets() {
             joint_offset.iter().map(|&offset| (offset, offset.cos(), offset.sin())).collect()
         } else {
             Vec::new()
         };
-        Linkage { kinds: kinds.clone(), steps, further_first, further_from_first, ends, offsets }
+        Linkage { tree: Arc::clone(tree), steps, further_from_first, ends, first_device: first, offsets }
     }
 
-    /// `device_from_axis_1`, then `axis_(i-1)_from_axis_i`, at zero joint values.
-    pub(crate) fn steps(&self) -> &[Pose] {
-        &self.steps
+    /// `device_from_axis` of the first joint on the way from an instrument to a target, then each axis in the one before, at zero joint
+    /// values; and the target in the last axis. Without a joint, the target in the base, which [`Linkage::still`] has in the device frame.
+    pub(crate) fn frames(&self, sight: Sight) -> (impl Iterator<Item = &Pose>, &Pose) {
+        let (first, end) = &self.ends[self.tree.sight_index(sight)];
+        let steps = &self.steps[self.tree.route_index(sight)];
+        (steps.iter().take(1).map(move |_| first).chain(steps.iter().skip(1)), end)
     }
 
-    /// `device_from_axis_1` of a further station; none for the first.
-    pub(crate) fn first_step_from(&self, station: usize) -> Option<&Pose> {
-        self.further_first.get(station.checked_sub(1)?)
+    /// The device frame of a sight without moving joints.
+    pub(crate) fn still(&self, sight: Sight) -> Option<&Pose> {
+        self.steps[self.tree.route_index(sight)]
+            .is_empty()
+            .then(|| &self.ends[self.tree.sight_index(sight)].0)
+    }
+
+    /// `device_from_base` of the first station.
+    pub(super) fn first_device(&self) -> &Pose {
+        &self.first_device
     }
 
     /// Device frame of the first station in that of a further one; none for the first.
@@ -83,35 +113,54 @@ impl Linkage {
         self.further_from_first.get(station.checked_sub(1)?)
     }
 
-    /// `axis_n_from_target`.
-    pub(crate) fn end(&self, target: usize) -> &Pose {
-        &self.ends[target]
+    /// The tree whose frames these are.
+    pub(super) fn tree(&self) -> &Tree {
+        &self.tree
     }
 
-    /// Of each joint, whether it is revolute, and its relative frame.
-    pub(super) fn turning_steps(&self) -> impl Iterator<Item = (bool, FixedMotion)> {
-        let steps = self.kinds.iter().zip(&self.steps);
-        steps.map(|(&kind, pose)| (kind == JointKind::Revolute, FixedMotion::from(pose)))
+    /// Of each joint of a route, whether it is revolute, and its relative frame, from the first station.
+    pub(super) fn turning_steps(&self, route: usize) -> impl Iterator<Item = (bool, FixedMotion)> {
+        let kinds = self.tree.routes()[route].iter().map(|passed| self.tree.kinds()[passed.joint]);
+        kinds
+            .zip(&self.steps[route])
+            .map(|(kind, pose)| (kind == JointKind::Revolute, FixedMotion::from(pose)))
     }
 
-    /// `(θ, cos θ or θ, sin θ or 0)` of a joint, offset included: `θ ← θ + δ` of theory.md §5 (26).
-    pub(super) fn joint_value(&self, joint: usize, value: f64, packed: (f64, f64)) -> (f64, f64, f64) {
-        let Some(&(offset, cosine, sine)) = self.offsets.get(joint) else {
-            return (value, packed.0, packed.1);
-        };
-        match self.kinds[joint] {
-            JointKind::Revolute => {
-                let (c, s) = packed;
+    /// `(θ, cos θ or θ, sin θ or 0)` of a joint passed on a route, offset included: `θ ← θ + δ` of theory.md §5 (26), and `-θ` of one that
+    /// is passed backward.
+    pub(super) fn joint_value(
+        &self,
+        passed: Passed,
+        packed: &Packed,
+        row: usize,
+        from: Option<u32>,
+    ) -> (f64, f64, f64) {
+        let joint = passed.joint;
+        let (value, (c, s)) = packed.at(row, from.filter(|_| passed.backward), joint);
+        let kind = self.tree.kinds()[joint];
+        let (value, c, s) = match (self.offsets.get(joint), kind) {
+            (None, _) => (value, c, s),
+            (Some(&(offset, cosine, sine)), JointKind::Revolute) => {
                 (value + offset, c * cosine - s * sine, s * cosine + c * sine)
             }
-            JointKind::Prismatic => (value + offset, packed.0 + offset, 0.0),
+            (Some(&(offset, ..)), JointKind::Prismatic) => (value + offset, c + offset, 0.0),
+        };
+        match (passed.backward, kind) {
+            (false, _) => (value, c, s),
+            (true, JointKind::Revolute) => (-value, c, -s),
+            (true, JointKind::Prismatic) => (-value, -c, 0.0),
         }
     }
 }
 
 /// One joint in the device's axes, before its own motion: the axis frame's directions and origin (theory.md §5 (19)), and the joint value.
+/// The motion of a joint that is passed backward is by `-θ`.
 #[derive(Clone, Copy, Debug)]
 pub struct JointView {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Whether it is passed from its link towards the base.
+    pub backward: bool,
     /// Revolute or prismatic.
     pub kind: JointKind,
     /// x of the axis frame.
@@ -133,7 +182,8 @@ pub struct JointView {
 /// A row's joints and target in the device's axes. Reused from row to row.
 #[derive(Clone, Debug)]
 pub struct Chain {
-    /// The joints from base to tip.
+    /// The joints from the instrument to the target; of a device on the base from base to tip. One that both configurations of a row move is
+    /// there twice.
     pub joints: Vec<JointView>,
     /// The last link's frame after all motions (the moved frame of the last axis).
     pub last: Pose,
@@ -141,11 +191,19 @@ pub struct Chain {
     pub target: Pose,
     /// Station of the device, in whose axes all vectors are.
     pub station: usize,
+    /// The target whose frame is the device's frame, if there is one.
+    pub shared: Option<usize>,
 }
 
 impl Default for Chain {
     fn default() -> Self {
-        Chain { joints: Vec::new(), last: Pose::identity(), target: Pose::identity(), station: 0 }
+        Chain {
+            joints: Vec::new(),
+            last: Pose::identity(),
+            target: Pose::identity(),
+            station: 0,
+            shared: None,
+        }
     }
 }
 
@@ -153,17 +211,18 @@ impl Chain {
     /// Evaluates the chain of a row in the device's axes, metres and radians: `X T_{i-1} A_i` of each joint (theory.md §5 (19)) and the
     /// prediction of theory.md §4 (13). `seen` is an observation, or a target alone, as measured from the first station.
     pub fn evaluate(&mut self, linkage: &Linkage, packed: &Packed, row: usize, seen: impl Into<Sight>) {
-        let Sight { station, target } = seen.into();
+        let sight = seen.into();
+        let Linkage { tree, .. } = linkage;
         self.joints.clear();
-        self.station = station;
-        let first = linkage.first_step_from(station);
-        let mut moved = Pose::identity();
-        let values = packed.joint_values(row);
-        for (joint, ((step, &kind), &packed)) in
-            linkage.steps.iter().zip(&linkage.kinds).zip(packed.row(row)).enumerate()
-        {
-            let (value, cosine_or_value, sine) = linkage.joint_value(joint, values[joint], packed);
-            let frame = moved * *first.filter(|_| joint == 0).unwrap_or(step);
+        self.station = sight.station;
+        self.shared = tree.shared(sight.station);
+        let mut moved = linkage.still(sight).copied().unwrap_or_else(Pose::identity);
+        let (steps, end) = linkage.frames(sight);
+        for (&passed, step) in tree.route(sight).iter().zip(steps) {
+            let (value, cosine_or_value, sine) = linkage.joint_value(passed, packed, row, sight.from);
+            let Passed { joint, backward } = passed;
+            let kind = tree.kinds()[joint];
+            let frame = moved * *step;
             let x = frame.rotation.column(0).into_owned();
             let y = frame.rotation.column(1).into_owned();
             let z = frame.rotation.column(2).into_owned();
@@ -179,9 +238,25 @@ impl Chain {
                 JointKind::Prismatic => Pose::new(frame.rotation, frame.translation + z * cosine_or_value),
             };
             let origin = frame.translation;
-            self.joints.push(JointView { kind, x, y, z, origin, value, cosine_or_value, sine });
+            self.joints.push(JointView {
+                joint,
+                backward,
+                kind,
+                x,
+                y,
+                z,
+                origin,
+                value,
+                cosine_or_value,
+                sine,
+            });
         }
         self.last = moved;
-        self.target = moved * linkage.ends[target];
+        self.target = moved * *end;
+    }
+
+    /// The views of one joint: none if the target's motion does not depend on it, two if it moved between two configurations of a row.
+    pub fn of_joint(&self, joint: usize) -> impl Iterator<Item = &JointView> {
+        self.joints.iter().filter(move |view| view.joint == joint)
     }
 }

@@ -9,6 +9,7 @@ mod predictions;
 mod row_error;
 mod session;
 mod sight;
+mod tree;
 
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
@@ -17,14 +18,15 @@ pub use row_error::RowError;
 pub(crate) use row_error::position_rms_m;
 pub use session::Session;
 pub use sight::Sight;
+pub use tree::{Passed, Stand, Tree};
 
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
 use crate::lie::{Pose, Screw, rotation};
 use crate::measurement::Dataset;
-use crate::robot::{JointKind, Robot};
+use crate::robot::{Body, JointKind, Robot};
 
 /// The current estimate of everything that may be unknown.
 ///
@@ -40,8 +42,8 @@ use crate::robot::{JointKind, Robot};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// Revolute or prismatic, a joint.
-    pub kinds: Vec<JointKind>,
+    /// Where joints, instruments and targets stand.
+    pub tree: Arc<Tree>,
     /// `base_from_axis` of each joint at zero configuration: z along the screw, origin on the axis.
     pub base_from_axis: Vec<Pose>,
     /// Joint offsets: joint value minus reading, radians or metres; zero but where they are unknowns (lou2009: Δθ).
@@ -56,11 +58,20 @@ pub struct Estimate {
 
 impl Estimate {
     /// The estimate of a robot's screws, targets at zero configuration and a device frame. Axis frames have z along the screw, as in
-    /// theory.md §5 (18).
+    /// theory.md §5 (18). All targets are on the tip's link, and the device stands on the base.
     #[must_use]
     pub fn new(robot: &Robot, base_from_target: Vec<Pose>, device_from_base: Pose) -> Self {
+        let targets = vec![robot.tip_body(); base_from_target.len()];
+        let tree = Tree::new(robot, vec![Stand::On(Body::Base)], targets);
+        Estimate::on(robot, tree, base_from_target, device_from_base)
+    }
+
+    /// The same with instruments and targets where a tree has them; further device frames are that of the first.
+    #[must_use]
+    pub fn on(robot: &Robot, tree: Tree, base_from_target: Vec<Pose>, device_from_base: Pose) -> Self {
+        let further = tree.instruments().len().saturating_sub(1);
         Estimate {
-            kinds: robot.joints.iter().map(|joint| joint.kind).collect(),
+            tree: Arc::new(tree),
             base_from_axis: robot
                 .joints
                 .iter()
@@ -69,7 +80,21 @@ impl Estimate {
             joint_offset: vec![0.0; robot.joints.len()],
             base_from_target,
             device_from_base,
-            further_devices: Vec::new(),
+            further_devices: vec![device_from_base; further],
+        }
+    }
+
+    /// Revolute or prismatic, a joint.
+    #[must_use]
+    pub fn kinds(&self) -> &[JointKind] {
+        self.tree.kinds()
+    }
+
+    /// `device_from_base` of a station, of an instrument on the robot at zero joint values; that of a shared target is found from it.
+    pub(crate) fn device_at_zero(&self, station: usize) -> Pose {
+        match self.tree.shared(station) {
+            Some(target) => self.base_from_target[target].inverse(),
+            None => *self.device(station),
         }
     }
 
@@ -91,13 +116,30 @@ impl Estimate {
     #[must_use]
     pub(crate) fn seen_from(&self, station: usize) -> Self {
         let device_from_base = *self.device(station);
-        Estimate { device_from_base, further_devices: Vec::new(), ..self.clone() }
+        let tree = Arc::new(self.tree.seen_from(station));
+        Estimate { tree, device_from_base, further_devices: Vec::new(), ..self.clone() }
+    }
+
+    /// The same estimate with device frames of further stations on the base.
+    #[must_use]
+    pub fn with_further_devices(&self, further_devices: Vec<Pose>) -> Self {
+        let tree = Arc::new(self.tree.with_further_on_base(further_devices.len()));
+        Estimate { tree, further_devices, ..self.clone() }
+    }
+
+    /// The same estimate with one more target on a body, `base_from_target` at zero joint values.
+    #[must_use]
+    pub(crate) fn with_target(&self, body: Body, pose: Pose) -> Self {
+        let mut estimate = self.clone();
+        estimate.tree = Arc::new(self.tree.with_target(body));
+        estimate.base_from_target.push(pose);
+        estimate
     }
 
     /// The joint screws in the base frame, theory.md §2 (5).
     #[must_use]
     pub fn screws(&self) -> Vec<Screw> {
-        self.kinds
+        self.kinds()
             .iter()
             .zip(&self.base_from_axis)
             .map(|(kind, frame)| {
@@ -126,7 +168,7 @@ impl Estimate {
     #[must_use]
     pub fn rebased(&self, motion: &Pose) -> Self {
         Estimate {
-            kinds: self.kinds.clone(),
+            tree: Arc::clone(&self.tree),
             base_from_axis: self.base_from_axis.iter().map(|&frame| *motion * frame).collect(),
             joint_offset: self.joint_offset.clone(),
             base_from_target: self.base_from_target.iter().map(|&pose| *motion * pose).collect(),
@@ -145,7 +187,7 @@ impl Estimate {
     pub(crate) fn is_for_kernels(&self) -> bool {
         // A new field does not compile here until it is decided whether the kernels serve it.
         let Estimate {
-            kinds: _,
+            tree: _,
             base_from_axis: _,
             joint_offset: _,
             base_from_target: _,
@@ -185,12 +227,12 @@ impl Estimate {
         let count = sample.len() as f64;
         let linkage = Linkage::new(self);
         let mut chain = Chain::default();
-        let mut along = vec![0.0; self.kinds.len()];
+        let mut along = vec![0.0; self.kinds().len()];
         for &row in &sample {
             let seen = session.observation(row);
             chain.evaluate(&linkage, session.packed, row as usize, seen);
-            for (sum, joint) in along.iter_mut().zip(&chain.joints) {
-                *sum += joint.z.dot(&(chain.target.translation - joint.origin)) / count;
+            for view in &chain.joints {
+                along[view.joint] += view.z.dot(&(chain.target.translation - view.origin)) / count;
             }
         }
         for (frame, shift) in self.base_from_axis.iter_mut().zip(along) {
@@ -214,20 +256,19 @@ pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
     (robot.arm_m() + strokes) / 3.0
 }
 
-/// The nominal estimate: nominal screws, each target at its place in the model or else at the tip, device frame at the base.
+/// The nominal estimate: nominal screws, each target and instrument at its place in the model, other targets at the tip, and other
+/// instruments at the base.
 #[must_use]
 pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
-    let mut known: BTreeMap<&str, &Pose> = BTreeMap::new();
-    for (name, tip_from_target) in &robot.targets {
-        known.entry(name).or_insert(tip_from_target);
+    let place = robot.places_of_targets();
+    let base_from_target = data.targets.iter().map(|name| place(name.as_deref()).1).collect();
+    let mut delivered = Estimate::on(robot, Tree::of(robot, data), base_from_target, Pose::identity());
+    for station in 0..data.station_count() {
+        let name = data.stations.get(station).and_then(Option::as_deref);
+        if let Some(mount) = robot.instruments.iter().find(|mount| Some(mount.name.as_str()) == name) {
+            *delivered.device_mut(station) = robot.base_from(mount).inverse();
+        }
     }
-    let tip_from_target = |name: &Option<String>| {
-        let found = name.as_deref().and_then(|name| known.get(name));
-        found.map_or_else(Pose::identity, |tip_from_target| **tip_from_target)
-    };
-    let base_from_target = data.targets.iter().map(|name| robot.home * tip_from_target(name)).collect();
-    let mut delivered = Estimate::new(robot, base_from_target, Pose::identity());
-    delivered.further_devices.resize(data.station_count() - 1, Pose::identity());
     delivered
 }
 

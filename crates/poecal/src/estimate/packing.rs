@@ -29,6 +29,8 @@ pub struct Packed {
     kinds: Vec<JointKind>,
     values: Vec<(f64, f64)>,
     angles: Vec<f64>,
+    /// Configurations of instruments that differ from those of the targets, in rows of their own.
+    further: Option<Box<Packed>>,
 }
 
 impl Packed {
@@ -50,7 +52,12 @@ impl Packed {
     /// Packs the joint values of a data set's rows, theory.md §2 (7).
     #[must_use]
     pub fn of(robot: &Robot, data: &Dataset) -> Self {
-        Packed::new(robot, data.all_readings(), data.reading_names().len())
+        let width = data.reading_names().len();
+        let mut packed = Packed::new(robot, data.all_readings(), width);
+        if !data.further_readings().is_empty() {
+            packed.further = Some(Box::new(Packed::new(robot, data.further_readings(), width)));
+        }
+        packed
     }
 
     /// Whether these are the joint values of a data set's rows.
@@ -98,7 +105,25 @@ impl Packed {
             let chunks = angles.par_chunks_mut(len).zip(values.par_chunks_mut(len)).enumerate();
             chunks.with_max_len(1).for_each(|(chunk, (angles, values))| fill(chunk * CHUNK, angles, values));
         }
-        Packed { joints, kinds, values, angles }
+        Packed { joints, kinds, values, angles, further: None }
+    }
+
+    /// The value of a joint in a row, or in a further configuration in place of it: θ, and `(cos θ, sin θ)` or `(θ, 0)`.
+    pub(crate) fn at(&self, row: usize, further: Option<u32>, joint: usize) -> (f64, (f64, f64)) {
+        let (packed, row) = match (&self.further, further) {
+            (Some(packed), Some(row)) => (&**packed, row as usize),
+            _ => (self, row),
+        };
+        let at = row * packed.joints + joint;
+        (packed.angles[at], packed.values[at])
+    }
+
+    /// All joints of a further configuration, as [`Packed::row`]; those of the row itself if it has none.
+    pub(crate) fn further_row(&self, row: usize, further: Option<u32>) -> &[(f64, f64)] {
+        match (&self.further, further) {
+            (Some(packed), Some(further)) => packed.row(further as usize),
+            _ => self.row(row),
+        }
     }
 
     /// Whether each joint is revolute.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Estimate, Linkage, Packed, RowError, Session};
+use super::{Estimate, Linkage, Passed, RowError, Session, Sight};
 use crate::lanes::{self, FixedMotion, Frames, SimdLevel, WIDTH, Wide};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise, Observation, Residual as _, Written};
@@ -55,23 +55,57 @@ impl Session<'_> {
     ) -> Vec<T> {
         let linkage = Linkage::new(estimate);
         threads::concat_chunks(rows, CHUNK, |_, rows| {
-            let mut found = Vec::with_capacity(rows.len());
-            let mut side_by_side = SideBySide::new(&linkage);
-            for rows in rows.chunks(WIDTH) {
-                side_by_side.predict(self.packed, rows);
-                side_by_side.compare(self.data, rows);
-                for (lane, &row) in rows.iter().enumerate() {
-                    let observation = &self.data.observations[row as usize];
-                    let predicted = || {
-                        let from_first = side_by_side.last_link(lane) * *linkage.end(observation.target);
-                        let station = linkage.station_from_first(observation.station);
-                        station.map_or(from_first, |&it| it * from_first)
-                    };
-                    found.push(each(observation, side_by_side.error(lane, observation), &predicted));
-                }
+            let routes = self.by_route(&linkage, rows);
+            if let [(route, _)] = routes[..] {
+                return self.map_route(&linkage, route, rows, &each);
             }
-            found
+            let mut found: Vec<(usize, T)> = Vec::with_capacity(rows.len());
+            for (route, places) in routes {
+                let own: Vec<u32> = places.iter().map(|&place| rows[place]).collect();
+                found.extend(places.into_iter().zip(self.map_route(&linkage, route, &own, &each)));
+            }
+            found.sort_unstable_by_key(|&(place, _)| place);
+            found.into_iter().map(|(_, found)| found).collect()
         })
+    }
+
+    fn map_route<T>(
+        &self,
+        linkage: &Linkage,
+        route: usize,
+        rows: &[u32],
+        each: impl Fn(&Observation, RowError, &dyn Fn() -> Pose) -> T,
+    ) -> Vec<T> {
+        let mut found = Vec::with_capacity(rows.len());
+        let mut side_by_side = SideBySide::new(linkage, route);
+        for rows in rows.chunks(WIDTH) {
+            side_by_side.predict(self, rows);
+            side_by_side.compare(self, rows);
+            for (lane, &row) in rows.iter().enumerate() {
+                let observation = self.observation(row);
+                let predicted = || {
+                    let (_, end) = linkage.frames(Sight::from(observation));
+                    let from_first = side_by_side.last_link(lane) * *end;
+                    let station = linkage.station_from_first(observation.station);
+                    station.map_or(from_first, |&it| it * from_first)
+                };
+                found.push(each(observation, side_by_side.error(lane, observation), &predicted));
+            }
+        }
+        found
+    }
+
+    /// Places of the rows of each route among these; none are listed if all are of the only one.
+    fn by_route(&self, linkage: &Linkage, rows: &[u32]) -> Vec<(usize, Vec<usize>)> {
+        let routes = linkage.tree().routes().len();
+        if routes == 1 {
+            return vec![(0, Vec::new())];
+        }
+        let mut places = vec![Vec::new(); routes];
+        for (place, &row) in rows.iter().enumerate() {
+            places[linkage.tree().route_index(Sight::from(self.observation(row)))].push(place);
+        }
+        places.into_iter().enumerate().filter(|(_, places)| !places.is_empty()).collect()
     }
 }
 
@@ -89,9 +123,10 @@ pub(crate) fn turn_to_first(data: &Dataset, rows: &[u32], estimate: &Estimate, e
     }
 }
 
-/// [`WIDTH`] rows side by side: joint values, frames of the last link, targets in it, measurements and errors.
+/// [`WIDTH`] rows of one route side by side: joint values, frames of the last link, targets in it, measurements and errors.
 struct SideBySide<'a> {
     linkage: &'a Linkage,
+    route: &'a [Passed],
     level: SimdLevel,
     joints: Vec<(bool, FixedMotion)>,
     values: Vec<[Wide; 2]>,
@@ -104,10 +139,11 @@ struct SideBySide<'a> {
 }
 
 impl<'a> SideBySide<'a> {
-    fn new(linkage: &'a Linkage) -> Self {
-        let joints: Vec<(bool, FixedMotion)> = linkage.turning_steps().collect();
+    fn new(linkage: &'a Linkage, route: usize) -> Self {
+        let joints: Vec<(bool, FixedMotion)> = linkage.turning_steps(route).collect();
         SideBySide {
             linkage,
+            route: &linkage.tree().routes()[route],
             level: SimdLevel::best(),
             values: vec![[Wide::ZERO; 2]; joints.len()],
             joints,
@@ -120,11 +156,16 @@ impl<'a> SideBySide<'a> {
     }
 
     /// Computes `device_from_last_link` after all motions, of each of at most [`WIDTH`] rows.
-    fn predict(&mut self, packed: &Packed, rows: &[u32]) {
+    fn predict(&mut self, session: &Session<'_>, rows: &[u32]) {
+        if self.route.is_empty() {
+            (0..WIDTH).for_each(|lane| put_rows(&mut self.last_links, lane, self.linkage.first_device()));
+            return;
+        }
         for (lane, &row) in rows.iter().enumerate() {
-            let values = packed.joint_values(row as usize).iter().zip(packed.row(row as usize));
-            for (joint, (wide, (&value, &packed))) in self.values.iter_mut().zip(values).enumerate() {
-                let (_, cosine_or_value, sine) = self.linkage.joint_value(joint, value, packed);
+            let from = session.observation(row).from;
+            for (wide, &passed) in self.values.iter_mut().zip(self.route) {
+                let (_, cosine_or_value, sine) =
+                    self.linkage.joint_value(passed, session.packed, row as usize, from);
                 wide[0].0[lane] = cosine_or_value;
                 wide[1].0[lane] = sine;
             }
@@ -133,10 +174,11 @@ impl<'a> SideBySide<'a> {
     }
 
     /// Computes the errors of the same rows.
-    fn compare(&mut self, data: &Dataset, rows: &[u32]) {
+    fn compare(&mut self, session: &Session<'_>, rows: &[u32]) {
         let mut framed = false;
         for (lane, &row) in rows.iter().enumerate() {
-            let Observation { target, measurement, station, .. } = &data.observations[row as usize];
+            let observation = session.observation(row);
+            let Observation { target, measurement, station, .. } = observation;
             let seen = measurement.pose();
             // Measurements from further stations are compared in the device frame of the first.
             let from_first =
@@ -145,7 +187,8 @@ impl<'a> SideBySide<'a> {
             framed |= measurement.sees_orientation();
             if self.targets[lane] != Some(*target) {
                 self.targets[lane] = Some(*target);
-                put(&mut self.ends, lane, self.linkage.end(*target));
+                let (_, end) = self.linkage.frames(Sight::from(observation));
+                put(&mut self.ends, lane, end);
             }
         }
         lanes::errors(self.level, &self.last_links, &self.ends, &self.measured, framed, &mut self.errors);
@@ -166,6 +209,16 @@ impl<'a> SideBySide<'a> {
     }
 }
 
+/// Writes one lane of frames by rows.
+fn put_rows(frames: &mut [[Wide; 4]; 3], lane: usize, pose: &Pose) {
+    for (k, row) in frames.iter_mut().enumerate() {
+        for (column, wide) in row[..3].iter_mut().enumerate() {
+            wide.0[lane] = pose.rotation[(k, column)];
+        }
+        row[3].0[lane] = pose.translation[k];
+    }
+}
+
 /// Writes one lane.
 fn put(frames: &mut Frames, lane: usize, pose: &Pose) {
     let [rotation @ .., place] = frames;
@@ -180,7 +233,7 @@ fn put(frames: &mut Frames, lane: usize, pose: &Pose) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Chain;
+    use crate::estimate::{Chain, Packed};
     use crate::lie::{Screw, rotation};
     use crate::measurement::{Measurement, PointMeasurement, PoseMeasurement};
     use crate::robot::{Joint, Robot};
@@ -207,11 +260,11 @@ mod tests {
     }
 
     /// The last links of all rows, by the instructions of a level.
-    fn last_links(level: SimdLevel, linkage: &Linkage, packed: &Packed) -> Vec<Pose> {
-        let mut side_by_side = SideBySide { level, ..SideBySide::new(linkage) };
+    fn last_links(level: SimdLevel, linkage: &Linkage, session: &Session<'_>) -> Vec<Pose> {
+        let mut side_by_side = SideBySide { level, ..SideBySide::new(linkage, 0) };
         let mut found = Vec::new();
         for rows in (0..ROWS).collect::<Vec<_>>().chunks(WIDTH) {
-            side_by_side.predict(packed, rows);
+            side_by_side.predict(session, rows);
             found.extend((0..rows.len()).map(|lane| side_by_side.last_link(lane)));
         }
         found
@@ -221,14 +274,20 @@ mod tests {
     fn last_links_are_where_the_chain_and_forward_kinematics_have_them_at_every_level() {
         let readings = readings();
         for robot in robots() {
-            let packed = Packed::new(&robot, &readings, 4);
+            let mut data = Dataset::new(robot.reading_names());
+            for readings in readings.chunks_exact(4) {
+                let seen = Measurement::Point(PointMeasurement { position: Vector3::zeros() });
+                data.push(readings, None, seen).unwrap();
+            }
+            let packed = Packed::of(&robot, &data);
+            let session = Session::new(&robot, &data, &packed, false);
             for offsets in [[0.0; 4], [0.3, -0.2, 0.6, 0.1]] {
                 let mut estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
                 estimate.joint_offset = offsets.to_vec();
                 let linkage = Linkage::new(&estimate);
                 let mut chain = Chain::default();
                 for level in lanes::simd_levels() {
-                    for (row, last) in last_links(level, &linkage, &packed).into_iter().enumerate() {
+                    for (row, last) in last_links(level, &linkage, &session).into_iter().enumerate() {
                         let values: Vec<f64> = packed
                             .joint_values(row)
                             .iter()
@@ -237,7 +296,9 @@ mod tests {
                             .collect();
                         let tip = robot.forward_kinematics(&values);
                         chain.evaluate(&linkage, &packed, row, 0);
-                        for (found, expected) in [(last, chain.last), (last * *linkage.end(0), tip)] {
+                        for (found, expected) in
+                            [(last, chain.last), (last * *linkage.frames(Sight::from(0)).1, tip)]
+                        {
                             let turned = (found.rotation - expected.rotation).norm();
                             let moved = (found.translation - expected.translation).norm();
                             // Rounding of a few products of numbers of about one.
@@ -290,11 +351,12 @@ mod tests {
                 .unwrap();
                 expected.push(error);
             }
+            let session = Session::new(&robot, &data, &packed, false);
             for level in lanes::simd_levels() {
-                let mut side_by_side = SideBySide { level, ..SideBySide::new(&linkage) };
+                let mut side_by_side = SideBySide { level, ..SideBySide::new(&linkage, 0) };
                 for rows in data.all_rows().chunks(WIDTH) {
-                    side_by_side.predict(&packed, rows);
-                    side_by_side.compare(&data, rows);
+                    side_by_side.predict(&session, rows);
+                    side_by_side.compare(&session, rows);
                     for (lane, &row) in rows.iter().enumerate() {
                         let found = side_by_side.error(lane, &data.observations[row as usize]);
                         let expected = expected[row as usize];

@@ -1,12 +1,12 @@
-//! Target and station of a row.
+//! Target and instrument of a row.
 
 use crate::measurement::Observation;
 
-/// A target with the station from which it is measured. A target alone is measured from the first station.
+/// A target as an instrument sees it. A target alone is measured from the first station.
 ///
 /// ```
 /// use poecal::estimate::Sight;
-/// assert_eq!(Sight::from(2), Sight { station: 0, target: 2 });
+/// assert_eq!(Sight::from(2), Sight { station: 0, target: 2, from: None });
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sight {
@@ -14,16 +14,26 @@ pub struct Sight {
     pub station: usize,
     /// Index into [`Dataset::targets`](crate::measurement::Dataset::targets).
     pub target: usize,
+    /// The instrument's own configuration, if it is not that of the target: index into the data's further configurations.
+    pub from: Option<u32>,
+}
+
+impl Sight {
+    /// Whether two sights have all frames in common, though perhaps not the instrument's configuration.
+    pub(crate) fn is_like(self, other: Sight) -> bool {
+        (self.station, self.target, self.from.is_some())
+            == (other.station, other.target, other.from.is_some())
+    }
 }
 
 impl From<usize> for Sight {
     fn from(target: usize) -> Self {
-        Sight { station: 0, target }
+        Sight { station: 0, target, from: None }
     }
 }
 
 impl From<&Observation> for Sight {
     fn from(observation: &Observation) -> Self {
-        Sight { station: observation.station, target: observation.target }
+        Sight { station: observation.station, target: observation.target, from: observation.from }
     }
 }

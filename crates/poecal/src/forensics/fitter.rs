@@ -117,7 +117,7 @@ impl<'a> Fitter<'a> {
         registered: &Estimate,
         iterations: usize,
     ) -> (Estimate, Misfit) {
-        let kinds = registered.kinds.iter().enumerate();
+        let kinds = registered.kinds().iter().enumerate();
         // The device frame stays: beside the screws it is redundant.
         let screws = kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind })).collect();
         self.fit(data, registered, screws, iterations)
@@ -127,7 +127,7 @@ impl<'a> Fitter<'a> {
     pub(super) fn offset(&self, data: &Dataset, registered: &Estimate, joint: usize) -> (f64, Misfit) {
         let mut free: Vec<Parameter> = Vec::new();
         free.extend(
-            registered.kinds.get(joint).map(|&kind| Parameter::JointOffset(JointOffset { joint, kind })),
+            registered.kinds().get(joint).map(|&kind| Parameter::JointOffset(JointOffset { joint, kind })),
         );
         if self.device_free {
             let about = data.mean_position(&data.all_rows());

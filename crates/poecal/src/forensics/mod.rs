@@ -141,6 +141,10 @@ pub fn diagnose(
     if rows.len() < FEWEST_ROWS || robot.reading_names() != data.reading_names() {
         return Vec::new();
     }
+    if !data.further_readings().is_empty() {
+        // The searches change the readings of one configuration only.
+        return Vec::new();
+    }
     if data.station_count() > 1 {
         return station_by_station(robot, data, &rows, options);
     }

@@ -8,15 +8,15 @@ use super::plan::Arm;
 use super::vector::{Wide, parts};
 use super::work::WORK;
 
-/// Writes the whitened columns of the rows of one block to their places in `jacobian` (translation columns, then rotation columns), and
-/// their whitened residuals: three numbers of the position, three of the rotation. Numbers that a column does not have stay unchanged.
+/// Adds the whitened columns of the rows of one block at their places in `jacobian` (translation columns, then rotation columns), each with
+/// its sign, and writes their whitened residuals: three numbers of the position, three of the rotation. Numbers that a column does not have stay unchanged.
 /// The plan must have no common ratio, so that the rotation rows exist.
 #[inline(always)]
 pub(super) fn whitened_columns<S: Simd>(
     simd: S,
     arm: &Arm<'_>,
     block: &[Wide],
-    places: &[usize],
+    places: &[(usize, f64)],
     jacobian: &mut [[Wide; NUMBERS]],
     residual: &mut [Wide; NUMBERS],
 ) {
@@ -30,16 +30,25 @@ pub(super) fn whitened_columns<S: Simd>(
         }
     }
     let (turned_rows, stride) = (work.turned_rows, work.waiting);
-    for (index, &place) in places.iter().enumerate() {
+    for (index, &(place, sign)) in places.iter().enumerate() {
         let Some(column) = jacobian.get_mut(place) else { continue };
         let (position, rotation) = column.split_at_mut(NUMBERS / 2);
         if index < plan.columns() {
-            position.copy_from_slice(&work.jacobian[index * stride]);
+            add(position, &work.jacobian[index * stride], sign);
         }
         if let Some(turn) = index.checked_sub(plan.shifts) {
             let first = turn * turned_rows * stride;
-            rotation[..turned_rows].copy_from_slice(&work.turned[first..first + turned_rows]);
+            add(rotation, &work.turned[first..first + turned_rows], sign);
         }
     }
     WORK.set(work);
+}
+
+#[inline(always)]
+fn add(to: &mut [Wide], from: &[Wide], sign: f64) {
+    for (to, from) in to.iter_mut().zip(from) {
+        for (to, from) in to.0.iter_mut().zip(from.0) {
+            *to += sign * from;
+        }
+    }
 }

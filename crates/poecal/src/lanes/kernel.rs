@@ -215,18 +215,22 @@ impl Batch<'_> {
     /// Columns of the device's frame: theory.md §5 (25).
     #[inline(always)]
     fn add_device<S: Simd, const FULL: bool>(&mut self, simd: S, target: &Frame<S>, wrench: &RowWrench<S>) {
-        let Some(about) = &self.plan.device else { return };
+        let Some(device) = &self.plan.device else { return };
         let part = self.part;
-        let arm = (target.origin() - Vectors::splat(simd, about)).scale(wrench.per_length);
+        let arm = (target.origin() - Vectors::splat(simd, &device.about)).scale(wrench.per_length);
         let moment = arm.cross(wrench.force) + wrench.torque;
         for k in 0..3 {
             let mut axis = Vectors([Lanes::splat(simd, 0.0); 3]);
             axis.0[k] = wrench.weight;
             (wrench.weight * wrench.force.0[k]).add_to(&mut self.shift_gradient[k], part);
-            (wrench.weight * moment.0[k]).add_to(&mut self.turn_gradient[k], part);
+            if device.turns {
+                (wrench.weight * moment.0[k]).add_to(&mut self.turn_gradient[k], part);
+            }
             if FULL {
                 axis.store(&mut self.columns[k * self.stride], part);
-                axis.cross(arm).store(&mut self.columns[(self.plan.shifts + k) * self.stride], part);
+                if device.turns {
+                    axis.cross(arm).store(&mut self.columns[(self.plan.shifts + k) * self.stride], part);
+                }
             }
         }
     }

@@ -19,7 +19,7 @@ mod work;
 pub(crate) use dense::Factor;
 pub(crate) use errors::Frames;
 pub(crate) use influence::NUMBERS;
-pub(crate) use plan::{Arm, FixedMotion, JointPlan, PackedRows, Plan, RowData};
+pub(crate) use plan::{Arm, DevicePlan, FixedMotion, JointPlan, PackedRows, Plan, RowData};
 pub(crate) use poses::Exponential;
 pub use simd::{SimdLevel, simd_levels};
 pub(crate) use simd::{

@@ -16,11 +16,25 @@ impl From<&Pose> for FixedMotion {
     }
 }
 
-/// A joint: whether it is revolute, and its first translation and rotation column, if its axis is unknown.
+/// A joint on the way to the target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointPlan {
+    /// Its place among a row's joint values.
+    pub(crate) joint: usize,
+    /// Whether it is passed backward, by minus its value: that of the instrument's configuration if there are two.
+    pub(crate) backward: bool,
+    /// Whether it is revolute.
     pub(crate) turns: bool,
+    /// Its first translation and rotation column, if its axis is unknown.
     pub(crate) columns: Option<(usize, usize)>,
+}
+
+/// An unknown device frame: the first three translation columns, and the first three rotation columns if it `turns`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DevicePlan {
+    /// The point about which it rotates.
+    pub(crate) about: [f64; 3],
+    pub(crate) turns: bool,
 }
 
 /// Columns of one group of rows: *shifts* are translation columns (a direction times the row's weight); *turns* are rotation columns
@@ -28,8 +42,10 @@ pub(crate) struct JointPlan {
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub(crate) joints: Vec<JointPlan>,
-    /// The point about which the device frame rotates, if that is unknown: the first three translation and rotation columns.
-    pub(crate) device: Option<[f64; 3]>,
+    /// Whether these are all joints of a row in their order, none backward.
+    pub(crate) in_order: bool,
+    /// The device frame, if it is unknown.
+    pub(crate) device: Option<DevicePlan>,
     /// First translation column of the target's place, if that is unknown.
     pub(crate) place: Option<usize>,
     /// First rotation column of the target's frame, if that is unknown.
@@ -87,6 +103,8 @@ pub(crate) struct PackedRows {
 pub(crate) struct RowData<'a> {
     /// `(cos θ, sin θ)` or `(θ, 0)` of each joint.
     pub(crate) joints: &'a [(f64, f64)],
+    /// The same in the instrument's configuration.
+    pub(crate) instrument_joints: &'a [(f64, f64)],
     pub(crate) position: &'a [f64; 3],
     /// Columns of the measured orientation, and position over rotation noise.
     pub(crate) orientation: Option<(&'a [[f64; 3]; 3], f64)>,
@@ -107,7 +125,7 @@ impl PackedRows {
             let first = index * WIDTH;
             // The last block is padded with its last row, at weight zero.
             let rows: [RowData<'a>; WIDTH] = std::array::from_fn(|lane| row((first + lane).min(count - 1)));
-            put(block, &rows);
+            put(plan, block, &rows);
             if let Some(weights) = block.first_mut() {
                 weights.0[(count - first).min(WIDTH)..].fill(0.0);
             }
@@ -117,7 +135,7 @@ impl PackedRows {
 
 /// Writes a block, number after number, each of all rows.
 #[inline(always)]
-fn put(block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
+fn put(plan: &Plan, block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
     let Some((noise, rest)) = block.split_first_chunk_mut::<2>() else { return };
     noise[0] = Wide(std::array::from_fn(|lane| rows[lane].weight));
     noise[1] = Wide(std::array::from_fn(|lane| rows[lane].orientation.map_or(0.0, |(_, ratio)| ratio)));
@@ -134,12 +152,30 @@ fn put(block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
             *wide = Wide(std::array::from_fn(|lane| columns[lane][k / 3][k % 3]));
         }
     }
+    if !plan.in_order {
+        return put_route(plan, joints, rows);
+    }
     let values = rows.each_ref().map(|row| row.joints);
     for (joint, pair) in joints.as_chunks_mut::<2>().0.iter_mut().enumerate() {
         for (lane, values) in values.iter().enumerate() {
             let (cosine, sine) = values[joint];
             pair[0].0[lane] = cosine;
             pair[1].0[lane] = sine;
+        }
+    }
+}
+
+/// Writes the joint values of a route: by minus the value, `(cos θ, -sin θ)` or `(-θ, 0)`, where it passes a joint backward.
+fn put_route(plan: &Plan, joints: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
+    for (pair, joint) in joints.as_chunks_mut::<2>().0.iter_mut().zip(&plan.joints) {
+        for (lane, row) in rows.iter().enumerate() {
+            let values = if joint.backward { row.instrument_joints } else { row.joints };
+            let (first, second) = values[joint.joint];
+            (pair[0].0[lane], pair[1].0[lane]) = match (joint.backward, joint.turns) {
+                (false, _) => (first, second),
+                (true, true) => (first, -second),
+                (true, false) => (-first, 0.0),
+            };
         }
     }
 }

@@ -53,6 +53,9 @@ pub struct Observation {
     /// Index into [`Dataset::stations`]; 0 where there is one device frame only.
     #[serde(default)]
     pub station: usize,
+    /// The instrument's own configuration, if it differs from the target's: index into [`Dataset::further_readings`].
+    #[serde(default)]
+    pub from: Option<u32>,
     /// The measurement.
     pub measurement: Measurement,
     /// Standard deviation of each position component, metres, if the row states it.
@@ -97,6 +100,8 @@ impl Observation {
 pub struct Dataset {
     reading_names: Vec<String>,
     readings: Vec<f64>,
+    #[serde(default)]
+    further_readings: Vec<f64>,
     /// Names of the targets; `None` is the single unnamed target, which is the tip itself.
     pub targets: Vec<Option<String>>,
     /// Names of the stations of the device, each with a frame of its own; empty for a single station without a name.
@@ -137,6 +142,7 @@ impl Dataset {
             Observation {
                 target,
                 station: 0,
+                from: None,
                 measurement,
                 sigma_position_m: None,
                 sigma_rotation_rad: None,
@@ -151,6 +157,17 @@ impl Dataset {
     /// # Errors
     /// As [`Dataset::push`].
     pub fn push_observation(&mut self, readings: &[f64], observation: Observation) -> Result<()> {
+        self.check_readings(readings)?;
+        let pose = observation.measurement.pose();
+        if !(is_finite(pose.translation.as_slice()) && is_finite(pose.rotation.as_slice())) {
+            return Err(not_finite());
+        }
+        self.readings.extend_from_slice(readings);
+        self.observations.push(observation);
+        Ok(())
+    }
+
+    fn check_readings(&self, readings: &[f64]) -> Result<()> {
         if readings.len() != self.reading_names.len() {
             return Err(Error::new(
                 ErrorKind::Measurement,
@@ -162,17 +179,7 @@ impl Dataset {
                 ),
             ));
         }
-        let pose = observation.measurement.pose();
-        let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
-        if !(finite(readings) && finite(pose.translation.as_slice()) && finite(pose.rotation.as_slice())) {
-            return Err(Error::new(
-                ErrorKind::Measurement,
-                "found a number that is not finite, expected finite joint readings and measurements",
-            ));
-        }
-        self.readings.extend_from_slice(readings);
-        self.observations.push(observation);
-        Ok(())
+        if is_finite(readings) { Ok(()) } else { Err(not_finite()) }
     }
 
     /// Checks the consistency of a data set of other origin, such as a serialised one.
@@ -181,10 +188,13 @@ impl Dataset {
     /// [`ErrorKind::Measurement`].
     pub fn check(&self) -> Result<()> {
         let files = self.files.len().max(1);
+        let further =
+            u32::try_from(self.further_readings.len() / self.reading_names.len().max(1)).unwrap_or(u32::MAX);
         let fits = self.readings.len() == self.reading_names.len() * self.len()
             && (self.ids.is_empty() || self.ids.len() == self.len())
             && self.observations.iter().all(|row| row.target < self.targets.len())
             && self.observations.iter().all(|row| row.station < self.station_count())
+            && self.observations.iter().filter_map(|row| row.from).all(|from| from < further)
             && self.observations.iter().all(|row| (row.source.file as usize) < files);
         if fits {
             return Ok(());
@@ -334,6 +344,23 @@ impl Dataset {
         rows.iter().map(|&row| self.observations[row as usize].measurement.residual_model().position())
     }
 
+    /// Configurations in which instruments stood while their targets were seen in others, readings one after the other.
+    #[must_use]
+    pub fn further_readings(&self) -> &[f64] {
+        &self.further_readings
+    }
+
+    /// Adds a configuration in which an instrument stood, and returns its index for [`Observation::from`].
+    ///
+    /// # Errors
+    /// [`ErrorKind::Measurement`] if the number of readings is wrong, or a number is not finite.
+    pub fn push_further(&mut self, readings: &[f64]) -> Result<u32> {
+        self.check_readings(readings)?;
+        let index = self.further_readings.len() / self.reading_names.len().max(1);
+        self.further_readings.extend_from_slice(readings);
+        Ok(u32::try_from(index).unwrap_or(u32::MAX))
+    }
+
     /// Marks every row as one to fit, and adds the rows of another data set as held out.
     ///
     /// # Errors
@@ -365,6 +392,11 @@ impl Dataset {
             })
             .collect::<Result<_>>()?;
         let first_file = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
+        let first_further = self.further_readings.len() / self.reading_names.len().max(1);
+        let first_further = u32::try_from(first_further).unwrap_or(u32::MAX);
+        for readings in other.further_readings.chunks_exact(other.reading_names.len().max(1)) {
+            self.further_readings.extend(order.iter().map(|&index| readings[index]));
+        }
         self.files.extend(other.files.iter().cloned());
         let mut readings = Vec::with_capacity(order.len());
         // Looked up once for each target: there may be very many rows.
@@ -378,6 +410,7 @@ impl Dataset {
             readings.clear();
             readings.extend(order.iter().map(|&index| other.readings(row)[index]));
             let mut observation = other.observations[row];
+            observation.from = observation.from.map(|from| from + first_further);
             let target = observation.target;
             let known = targets[target];
             observation.target = known.unwrap_or_else(|| self.target_index(other.targets[target].as_deref()));
@@ -394,4 +427,15 @@ impl Dataset {
         }
         Ok(())
     }
+}
+
+fn is_finite(numbers: &[f64]) -> bool {
+    numbers.iter().all(|number| number.is_finite())
+}
+
+fn not_finite() -> Error {
+    Error::new(
+        ErrorKind::Measurement,
+        "found a number that is not finite, expected finite joint readings and measurements",
+    )
 }

@@ -45,8 +45,27 @@ pub struct Wrench {
     pub torque: Vector3<f64>,
 }
 
+/// What a parameter is of.
+///
+/// ```
+/// use poecal::parameters::{Columns, Subject, TargetPlace};
+/// assert_eq!(TargetPlace { target: 1 }.subject(), Subject::Target(1));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The instrument (station) of this index.
+    Instrument(usize),
+    /// The joint of this index.
+    Joint(usize),
+    /// The target of this index.
+    Target(usize),
+}
+
 /// Interface of a parameter with at most six unknowns: columns of the Jacobian, second derivatives, retraction.
 pub trait Columns {
+    /// What its unknowns are of.
+    fn subject(&self) -> Subject;
+
     /// The unknowns in order.
     fn columns(&self) -> &'static [Column];
 

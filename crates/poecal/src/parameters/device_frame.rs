@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Unit, Wrench};
+use super::columns::{Column, Columns, Subject, Unit, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
 
@@ -25,6 +25,10 @@ const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
 const TURN: Column = Column { unit: Unit::Radian, shifts_only: false };
 
 impl Columns for DeviceFrame {
+    fn subject(&self) -> Subject {
+        Subject::Instrument(self.station)
+    }
+
     fn columns(&self) -> &'static [Column] {
         &[SHIFT, SHIFT, SHIFT, TURN, TURN, TURN]
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Unit};
+use super::columns::{Column, Columns, Subject, Unit};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
 use crate::robot::JointKind;
@@ -24,6 +24,10 @@ pub struct JointOffset {
 }
 
 impl Columns for JointOffset {
+    fn subject(&self) -> Subject {
+        Subject::Joint(self.joint)
+    }
+
     fn columns(&self) -> &'static [Column] {
         match self.kind {
             JointKind::Revolute => &[Column { unit: Unit::Radian, shifts_only: false }],
@@ -32,11 +36,16 @@ impl Columns for JointOffset {
     }
 
     fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
-        let joint = &chain.joints[self.joint];
-        out[0] = match self.kind {
-            JointKind::Revolute => (joint.z.cross(&(chain.target.translation - joint.origin)), joint.z),
-            JointKind::Prismatic => (joint.z, Vector3::zeros()),
-        };
+        out[0] = (Vector3::zeros(), Vector3::zeros());
+        for joint in chain.of_joint(self.joint) {
+            let z = if joint.backward { -joint.z } else { joint.z };
+            let (moved, turned) = match self.kind {
+                JointKind::Revolute => (z.cross(&(chain.target.translation - joint.origin)), z),
+                JointKind::Prismatic => (z, Vector3::zeros()),
+            };
+            out[0].0 += moved;
+            out[0].1 += turned;
+        }
     }
 
     fn has_curvature(&self) -> bool {

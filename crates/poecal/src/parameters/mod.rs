@@ -9,7 +9,7 @@ mod screw_axis;
 mod target_frame;
 mod target_place;
 
-pub use columns::{Column, Columns, Unit, Wrench};
+pub use columns::{Column, Columns, Subject, Unit, Wrench};
 pub use device_frame::DeviceFrame;
 pub use joint_offset::JointOffset;
 pub use other_screw::{OtherScrew, ScrewModel};

@@ -2,7 +2,9 @@
 
 use std::fmt::Debug;
 
-use super::columns::{Column, Columns};
+use nalgebra::Vector3;
+
+use super::columns::{Column, Columns, Subject};
 use crate::estimate::{Chain, Estimate, JointView};
 use crate::lie::{Pose, TargetTwist};
 use crate::robot::JointKind;
@@ -44,12 +46,24 @@ impl PartialEq for OtherScrew {
 }
 
 impl Columns for OtherScrew {
+    fn subject(&self) -> Subject {
+        Subject::Joint(self.joint)
+    }
+
     fn columns(&self) -> &'static [Column] {
         self.model.columns(self.kind)
     }
 
     fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
-        self.model.target_twists(&chain.joints[self.joint], chain, out);
+        let mut own = [(Vector3::zeros(), Vector3::zeros()); 6];
+        out.fill((Vector3::zeros(), Vector3::zeros()));
+        for joint in chain.of_joint(self.joint) {
+            self.model.target_twists(joint, chain, &mut own[..out.len()]);
+            for ((v, w), (moved, turned)) in out.iter_mut().zip(&own) {
+                *v += moved;
+                *w += turned;
+            }
+        }
     }
 
     fn has_curvature(&self) -> bool {

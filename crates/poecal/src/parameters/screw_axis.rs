@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Unit, Wrench};
+use super::columns::{Column, Columns, Subject, Unit, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{Pose, TargetTwist, Twist};
 use crate::robot::JointKind;
@@ -34,6 +34,10 @@ const TILT: Column = Column { unit: Unit::Radian, shifts_only: false };
 const SLIDE: Column = Column { unit: Unit::Radian, shifts_only: true };
 
 impl Columns for ScrewAxis {
+    fn subject(&self) -> Subject {
+        Subject::Joint(self.joint)
+    }
+
     fn columns(&self) -> &'static [Column] {
         match self.kind {
             JointKind::Revolute => &[SHIFT, SHIFT, TILT, TILT],
@@ -42,27 +46,33 @@ impl Columns for ScrewAxis {
     }
 
     fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
-        let joint = &chain.joints[self.joint];
-        match self.kind {
-            JointKind::Revolute => {
-                let versine = 1.0 - joint.cosine_or_value;
-                let dx = joint.x * versine - joint.y * joint.sine;
-                let dy = joint.x * joint.sine + joint.y * versine;
-                let arm = chain.target.translation - joint.origin;
-                out[0] = (dx, Vector3::zeros());
-                out[1] = (dy, Vector3::zeros());
-                out[2] = (dx.cross(&arm), dx);
-                out[3] = (dy.cross(&arm), dy);
-            }
-            JointKind::Prismatic => {
-                out[0] = (joint.y * -joint.cosine_or_value, Vector3::zeros());
-                out[1] = (joint.x * joint.cosine_or_value, Vector3::zeros());
+        out.fill((Vector3::zeros(), Vector3::zeros()));
+        let mut add = |k: usize, (moved, turned): TargetTwist| {
+            out[k].0 += moved;
+            out[k].1 += turned;
+        };
+        for joint in chain.of_joint(self.joint) {
+            match self.kind {
+                JointKind::Revolute => {
+                    let versine = 1.0 - joint.cosine_or_value;
+                    let dx = joint.x * versine - joint.y * joint.sine;
+                    let dy = joint.x * joint.sine + joint.y * versine;
+                    let arm = chain.target.translation - joint.origin;
+                    add(0, (dx, Vector3::zeros()));
+                    add(1, (dy, Vector3::zeros()));
+                    add(2, (dx.cross(&arm), dx));
+                    add(3, (dy.cross(&arm), dy));
+                }
+                JointKind::Prismatic => {
+                    add(0, (joint.y * -joint.cosine_or_value, Vector3::zeros()));
+                    add(1, (joint.x * joint.cosine_or_value, Vector3::zeros()));
+                }
             }
         }
     }
 
     fn curvature(&self, chain: &Chain, wrench: &Wrench, out: &mut [f64]) {
-        let joint = &chain.joints[self.joint];
+        let Some(joint) = chain.of_joint(self.joint).next() else { return };
         let arm = chain.target.translation - joint.origin;
         let (turned_x, turned_y) = match self.kind {
             JointKind::Revolute => (

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Unit};
+use super::columns::{Column, Columns, Subject, Unit};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
 
@@ -23,6 +23,10 @@ const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
 const TURN: Column = Column { unit: Unit::Radian, shifts_only: false };
 
 impl Columns for TargetFrame {
+    fn subject(&self) -> Subject {
+        Subject::Target(self.target)
+    }
+
     fn columns(&self) -> &'static [Column] {
         &[SHIFT, SHIFT, SHIFT, TURN, TURN, TURN]
     }
@@ -34,6 +38,15 @@ impl Columns for TargetFrame {
                 if target == self.target { chain.target.rotation.column(k).into_owned() } else { zero };
             out[k] = (axis, zero);
             out[3 + k] = (zero, axis);
+        }
+        if chain.shared == Some(self.target) {
+            // The device's frame moves with it: the base in the device's axes by the inverse.
+            for k in 0..3 {
+                let axis = Vector3::ith(k, 1.0);
+                out[k].0 -= axis;
+                out[3 + k].0 -= axis.cross(&chain.target.translation);
+                out[3 + k].1 -= axis;
+            }
         }
     }
 

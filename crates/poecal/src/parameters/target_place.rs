@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Unit};
+use super::columns::{Column, Columns, Subject, Unit};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
 
@@ -21,6 +21,10 @@ pub struct TargetPlace {
 const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
 
 impl Columns for TargetPlace {
+    fn subject(&self) -> Subject {
+        Subject::Target(self.target)
+    }
+
     fn columns(&self) -> &'static [Column] {
         &[SHIFT; 3]
     }
@@ -32,6 +36,10 @@ impl Columns for TargetPlace {
             } else {
                 (Vector3::zeros(), Vector3::zeros())
             };
+            if chain.shared == Some(self.target) {
+                // The device's origin moves with it.
+                twist.0[k] -= 1.0;
+            }
         }
     }
 

@@ -1,9 +1,10 @@
 //! Columns of one group of rows: the unknowns that move its target, in the order of the kernels.
 
 use super::{Layout, Problem};
-use crate::estimate::Sight;
-use crate::lanes::{JointPlan, NUMBERS, Plan};
-use crate::parameters::Parameter;
+use crate::estimate::{Estimate, Passed, Sight};
+use crate::lanes::{DevicePlan, JointPlan, NUMBERS, Plan};
+use crate::parameters::{Parameter, ScrewAxis, Subject};
+use crate::robot::JointKind;
 
 /// Columns of one group of rows: their order in the kernels, and their places in a step.
 #[derive(Clone, Debug)]
@@ -11,22 +12,29 @@ pub(super) struct ColumnMap {
     pub(super) sight: Sight,
     pub(super) plan: Plan,
     /// Places of the plan's translation and rotation columns in a step.
-    shift_places: Vec<usize>,
-    pub(super) turn_places: Vec<usize>,
+    shift_places: Vec<Place>,
+    turn_places: Vec<Place>,
+}
+
+/// Place of a column in a step, and its sign: the same unknown may move a target twice, and against its own direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    pub(super) at: usize,
+    pub(super) sign: f64,
 }
 
 impl ColumnMap {
     /// For a problem of the kinds that kernels serve ([`Problem::is_served`]); `None` if its unknowns contradict each other.
-    pub(super) fn new(problem: &Problem<'_>, sight: Sight, framed: bool) -> Option<Self> {
+    pub(super) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, framed: bool) -> Option<Self> {
         let mut made = ColumnMap {
             sight,
-            plan: plan_without_unknowns(problem, framed),
+            plan: plan_without_unknowns(problem, state, sight, framed),
             shift_places: Vec::new(),
             turn_places: Vec::new(),
         };
         // The kernels' order: device frame, joints, target.
-        made.add_device(&problem.layout)?;
-        made.add_joints(&problem.layout)?;
+        made.add_device(&problem.layout, state.tree.shared(sight.station))?;
+        made.add_joints(&problem.layout, state.tree.route(sight))?;
         made.plan.tilts = made.turn_places.len();
         made.add_target(&problem.layout)?;
         made.plan.shifts = made.shift_places.len();
@@ -34,8 +42,13 @@ impl ColumnMap {
     }
 
     /// Places of the plan's columns in a step: translation columns, then rotation columns.
-    pub(super) fn places(&self) -> impl Iterator<Item = usize> {
+    pub(super) fn places(&self) -> impl Iterator<Item = Place> {
         self.shift_places.iter().chain(&self.turn_places).copied()
+    }
+
+    /// Places of the rotation columns.
+    pub(super) fn turn_places(&self) -> &[Place] {
+        &self.turn_places
     }
 
     /// Length of a row's residual.
@@ -43,34 +56,41 @@ impl ColumnMap {
         if self.plan.framed { NUMBERS } else { NUMBERS / 2 }
     }
 
-    fn shift(&mut self, places: &[(usize, f64)]) {
-        self.shift_places.extend(places.iter().map(|&(place, _)| place));
+    fn shift(&mut self, places: &[(usize, f64)], sign: f64) {
+        self.shift_places.extend(places.iter().map(|&(at, _)| Place { at, sign }));
     }
 
     /// Adds rotation columns about the directions of the translation columns from `first` on.
-    fn turn(&mut self, places: &[(usize, f64)], first: usize) {
-        self.turn_places.extend(places.iter().map(|&(place, _)| place));
+    fn turn(&mut self, places: &[(usize, f64)], first: usize, sign: f64) {
+        self.turn_places.extend(places.iter().map(|&(at, _)| Place { at, sign }));
         self.plan.turns.extend(first..first + places.len());
     }
 
-    fn add_device(&mut self, layout: &Layout) -> Option<()> {
+    /// Columns of the device's frame, or of the target whose frame it is: a step of that moves the base the other way.
+    fn add_device(&mut self, layout: &Layout, shared: Option<usize>) -> Option<()> {
+        let subject = shared.map_or(Subject::Instrument(self.sight.station), Subject::Target);
         for (parameter, places) in layout.parameters() {
-            // Frames of other stations do not move these rows.
-            if let Parameter::DeviceFrame(device) = parameter
-                && device.station == self.sight.station
-            {
-                if self.plan.device.is_some() {
-                    return contradiction("one frame of the device is unknown twice");
-                }
-                self.plan.device = Some(device.about.into());
-                self.shift(&places[..3]);
-                self.turn(&places[3..], 0);
+            let model = parameter.model();
+            if model.subject() != subject {
+                continue;
             }
+            if self.plan.device.is_some() {
+                return contradiction("one frame of the device is unknown twice");
+            }
+            let (about, sign) = match parameter {
+                Parameter::DeviceFrame(device) => (device.about.into(), 1.0),
+                Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => ([0.0; 3], -1.0),
+                Parameter::ScrewAxis(_) | Parameter::OtherScrew(_) | Parameter::JointOffset(_) => continue,
+            };
+            self.plan.device = Some(DevicePlan { about, turns: places.len() > 3 });
+            self.shift(&places[..3], sign);
+            self.turn(&places[3..], 0, sign);
         }
         Some(())
     }
 
-    fn add_joints(&mut self, layout: &Layout) -> Option<()> {
+    fn add_joints(&mut self, layout: &Layout, route: &[Passed]) -> Option<()> {
+        let mut axes: Vec<Option<(&ScrewAxis, &[(usize, f64)])>> = Vec::new();
         for (parameter, places) in layout.parameters() {
             let axis = match parameter {
                 Parameter::ScrewAxis(axis) => axis,
@@ -79,30 +99,28 @@ impl ColumnMap {
                 }
                 Parameter::DeviceFrame(_) | Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => continue,
             };
+            axes.resize(axes.len().max(axis.joint + 1), None);
+            if axes[axis.joint].replace((axis, places)).is_some() {
+                return contradiction("a joint is unknown twice");
+            }
+        }
+        for (index, passed) in route.iter().enumerate() {
+            let Some((_, places)) = axes.get(passed.joint).copied().flatten() else { continue };
             let first = self.shift_places.len();
-            let turns = places.len() == 4;
-            let joint = self.plan.joints.get_mut(axis.joint);
-            let Some(joint) = joint.filter(|joint| joint.columns.is_none() && joint.turns == turns) else {
-                return contradiction("a joint is unknown twice, or of another kind than its screw");
-            };
+            let joint = &mut self.plan.joints[index];
+            if joint.turns != (places.len() == 4) {
+                return contradiction("a joint is unknown as another kind than its screw");
+            }
             joint.columns = Some((first, self.turn_places.len()));
-            self.shift(&places[..2]);
-            self.turn(&places[2..], first);
+            self.shift(&places[..2], 1.0);
+            self.turn(&places[2..], first, 1.0);
         }
         Some(())
     }
 
     fn add_target(&mut self, layout: &Layout) -> Option<()> {
         for (parameter, places) in layout.parameters() {
-            let target = match parameter {
-                Parameter::TargetFrame(frame) => frame.target,
-                Parameter::TargetPlace(place) => place.target,
-                Parameter::ScrewAxis(_)
-                | Parameter::OtherScrew(_)
-                | Parameter::JointOffset(_)
-                | Parameter::DeviceFrame(_) => continue,
-            };
-            if target != self.sight.target {
+            if parameter.model().subject() != Subject::Target(self.sight.target) {
                 continue;
             }
             if self.plan.place.is_some() {
@@ -110,10 +128,10 @@ impl ColumnMap {
             }
             let first = self.shift_places.len();
             self.plan.place = Some(first);
-            self.shift(&places[..3]);
+            self.shift(&places[..3], 1.0);
             if places.len() > 3 && self.plan.framed {
                 self.plan.frame = Some(self.turn_places.len());
-                self.turn(&places[3..], first);
+                self.turn(&places[3..], first, 1.0);
             }
         }
         Some(())
@@ -126,9 +144,18 @@ fn contradiction(what: &str) -> Option<()> {
     None
 }
 
-fn plan_without_unknowns(problem: &Problem<'_>, framed: bool) -> Plan {
+fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, framed: bool) -> Plan {
+    let route = state.tree.route(sight);
+    let joints = route.iter().map(|passed| JointPlan {
+        joint: passed.joint,
+        backward: passed.backward,
+        turns: state.kinds()[passed.joint] == JointKind::Revolute,
+        columns: None,
+    });
     Plan {
-        joints: problem.session.packed.turns().map(|turns| JointPlan { turns, columns: None }).collect(),
+        joints: joints.collect(),
+        in_order: route.len() == state.kinds().len()
+            && route.iter().enumerate().all(|(index, passed)| passed.joint == index && !passed.backward),
         device: None,
         place: None,
         frame: None,

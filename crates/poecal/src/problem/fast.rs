@@ -7,7 +7,7 @@ use super::Problem;
 use super::column_map::ColumnMap;
 use super::row_group::{RowGroup, Whitening};
 use super::scatter::GramScatter;
-use crate::estimate::{Estimate, Linkage};
+use crate::estimate::{Estimate, Linkage, Sight};
 use crate::lanes::{self, Arm, FixedMotion, PackedRows, Plan, RowData, SimdLevel, Totals, WIDTH};
 use crate::measurement::{Measurement, PoseMeasurement};
 use crate::solve::Normal;
@@ -54,10 +54,10 @@ struct Group {
 
 impl Fast {
     /// Groups the rows of a problem; `None` if a [`ColumnMap`] does not exist.
-    pub(super) fn new(problem: &Problem<'_>, level: SimdLevel) -> Option<Self> {
+    pub(super) fn new(problem: &Problem<'_>, state: &Estimate, level: SimdLevel) -> Option<Self> {
         let mut groups = Vec::new();
         for group in RowGroup::of_problem(problem) {
-            let mut arranged = ColumnMap::new(problem, group.sight, group.framed)?;
+            let mut arranged = ColumnMap::new(problem, state, group.sight, group.framed)?;
             arranged.plan.ratio = group.ratio;
             let scatter = GramScatter::new(&arranged, problem.layout.dim());
             groups.push((Group { arranged, rows: group.rows, packed: Vec::new() }, scatter));
@@ -84,8 +84,6 @@ impl Fast {
     /// Normal information of all rows, theory.md §6 (28); without `JᵀJ` where only the gradient is wanted.
     pub(super) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Accumulate) -> Normal {
         let linkage = Linkage::new(state);
-        let mut steps: Vec<FixedMotion> = linkage.steps().iter().map(FixedMotion::from).collect();
-        let first = steps.first().copied();
         let mut normal = match sums {
             Accumulate::Gradient => Normal::new(0),
             Accumulate::All | Accumulate::GaussNewton => Normal::new(problem.layout.dim()),
@@ -93,11 +91,7 @@ impl Fast {
         normal.gradient.resize(problem.layout.dim(), 0.0);
         for (group, scatter) in &self.groups {
             let ColumnMap { sight, plan, .. } = &group.arranged;
-            let end = FixedMotion::from(linkage.end(sight.target));
-            let own = linkage.first_step_from(sight.station).map(FixedMotion::from).or(first);
-            if let Some((step, own)) = steps.first_mut().zip(own) {
-                *step = own;
-            }
+            let (steps, end) = fixed_motions(&linkage, *sight);
             let arm = Arm { plan, steps: &steps, end: &end, nearly: sums == Accumulate::GaussNewton };
             let totals = group.sum(problem, self.level, &arm, sums);
             group.put(&totals, &mut normal);
@@ -146,11 +140,18 @@ impl Group {
     /// Adds cost and gradient of the group to the problem's normal information.
     fn put(&self, totals: &Totals, normal: &mut Normal) {
         for (value, place) in totals.gradient.iter().zip(self.arranged.places()) {
-            normal.gradient[place] += value;
+            normal.gradient[place.at] += place.sign * value;
         }
         normal.cost += totals.cost;
         normal.residuals += self.rows.len() * self.arranged.numbers();
     }
+}
+
+/// The relative frames of a sight, and its target in the last one, or in the device frame if no joint is between the two.
+pub(super) fn fixed_motions(linkage: &Linkage, sight: Sight) -> (Vec<FixedMotion>, FixedMotion) {
+    let (steps, end) = linkage.frames(sight);
+    let end = linkage.still(sight).map_or(*end, |&device| device * *end);
+    (steps.map(FixedMotion::from).collect(), FixedMotion::from(&end))
 }
 
 /// Rows of each partial sum: about equal parts, so that threads finish together, and independent of the number of threads, as is the
@@ -179,5 +180,7 @@ fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, framed: 
             (&pose.translation, framed.then_some((&pose.rotation.data.0, ratio)))
         }
     };
-    RowData { joints: problem.session.packed.row(row), position: &position.data.0[0], orientation, weight }
+    let packed = problem.session.packed;
+    let instrument_joints = packed.further_row(row, observation.from);
+    RowData { joints: packed.row(row), instrument_joints, position: &position.data.0[0], orientation, weight }
 }

@@ -2,7 +2,7 @@
 
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
-use crate::parameters::{Parameter, Unit, Wrench};
+use crate::parameters::{Parameter, Subject, Unit, Wrench};
 use nalgebra::Vector3;
 
 /// The free parameters and the place of each of their unknowns in a step: first those that only translate a target, whose rotation
@@ -122,7 +122,22 @@ impl Layout {
         let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); n];
         self.target_twists(chain, target, &mut twists);
         let mut own = [0.0; 36];
-        for (first, (parameter, places)) in self.parameters().enumerate() {
+        // In the order of this chain; what is not in it does not move the target.
+        let mut in_order: Vec<_> = self
+            .parameters()
+            .map(|(parameter, places)| {
+                let place = match parameter.model().subject() {
+                    Subject::Instrument(_) => 0,
+                    Subject::Joint(joint) => {
+                        1 + chain.joints.iter().position(|view| view.joint == joint).unwrap_or(joint)
+                    }
+                    Subject::Target(_) => usize::MAX,
+                };
+                (place, parameter, places)
+            })
+            .collect();
+        in_order.sort_by_key(|&(place, ..)| place);
+        for (first, &(_, parameter, places)) in in_order.iter().enumerate() {
             let dim = places.len();
             own.fill(0.0);
             parameter.model().curvature(chain, wrench, &mut own[..dim * dim]);
@@ -132,8 +147,8 @@ impl Layout {
                 }
                 let turn = twists[a].1;
                 let (pull, twist) = (wrench.force.cross(&turn), wrench.torque.cross(&turn) * 0.5);
-                for (_, later) in self.parameters().skip(first + 1) {
-                    for &(b, _) in later {
+                for (_, _, later) in &in_order[first + 1..] {
+                    for &(b, _) in *later {
                         add(a, b, pull.dot(&twists[b].0) + twist.dot(&twists[b].1));
                     }
                 }

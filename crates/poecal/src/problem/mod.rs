@@ -201,7 +201,7 @@ impl Problem<'_> {
             Some(fast) => fast,
             None => {
                 // Built outside `get_or_init`: a rayon thread that waits may re-enter this function.
-                let made = Fast::new(self, self.level);
+                let made = Fast::new(self, state, self.level);
                 self.fast.get_or_init(|| made)
             }
         };

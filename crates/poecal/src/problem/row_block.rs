@@ -2,10 +2,10 @@
 
 use super::Problem;
 use super::column_map::ColumnMap;
-use super::fast::{ROWS, pack};
+use super::fast::{ROWS, fixed_motions, pack};
 use super::row_group::RowGroup;
 use crate::estimate::{Estimate, Linkage};
-use crate::lanes::{self, Arm, FixedMotion, NUMBERS, WIDTH, Wide};
+use crate::lanes::{self, Arm, NUMBERS, WIDTH, Wide};
 
 /// Whitened Jacobian of the prediction and residuals of up to [`WIDTH`] rows, one a lane: three numbers of the position, three of the
 /// rotation. Numbers that a row does not have are zero.
@@ -57,7 +57,7 @@ impl Problem<'_> {
             return None;
         }
         let groups = RowGroup::of(self, rows, |position, _| position).into_iter();
-        groups.map(|it| Some((ColumnMap::new(self, it.sight, it.framed)?, it.rows))).collect()
+        groups.map(|it| Some((ColumnMap::new(self, state, it.sight, it.framed)?, it.rows))).collect()
     }
 
     fn by_kernel(
@@ -69,14 +69,10 @@ impl Problem<'_> {
         each: &mut impl FnMut(&[u32], &mut RowBlock),
     ) {
         let linkage = Linkage::new(state);
-        let mut steps: Vec<FixedMotion> = linkage.steps().iter().map(FixedMotion::from).collect();
-        if let Some((first, own)) = steps.first_mut().zip(linkage.first_step_from(arranged.sight.station)) {
-            *first = FixedMotion::from(own);
-        }
-        let end = FixedMotion::from(linkage.end(arranged.sight.target));
+        let (steps, end) = fixed_motions(&linkage, arranged.sight);
         let plan = &arranged.plan;
         let arm = Arm { plan, steps: &steps, end: &end, nearly: false };
-        let columns: Vec<usize> = arranged.places().collect();
+        let columns: Vec<(usize, f64)> = arranged.places().map(|place| (place.at, place.sign)).collect();
         let own: Vec<u32> = places.iter().map(|&place| rows[place as usize]).collect();
         let mut packed = ROWS.take();
         pack(self, plan, &own, &mut packed);

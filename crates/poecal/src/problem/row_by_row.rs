@@ -109,6 +109,10 @@ impl Problem<'_> {
             for &row in rows {
                 let row = row as usize;
                 let observation = &self.session.data.observations[row];
+                if observation.from.is_some() {
+                    // An unknown that moves the target twice has no formula for its second derivative.
+                    return normal;
+                }
                 chain.evaluate(&linkage, self.session.packed, row, observation);
                 let written = self.written(row);
                 let Some((force, torque)) = written.model().wrench(&chain.target, &self.noise(row)) else {

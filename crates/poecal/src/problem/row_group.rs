@@ -68,7 +68,7 @@ impl RowGroup {
     }
 
     fn holds(&self, sight: Sight, framed: bool) -> bool {
-        self.sight == sight && self.framed == framed
+        self.sight.is_like(sight) && self.framed == framed
     }
 }
 

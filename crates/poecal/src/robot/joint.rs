@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Body;
 use crate::lie::{Pose, Screw, rotation};
 
 /// Kind of a joint.
@@ -142,6 +143,9 @@ pub struct Joint {
     /// Tolerance of its axis, if it differs from the common one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<Tolerance>,
+    /// The body on which it stands, if that is not the link of the joint before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stands_on: Option<Body>,
 }
 
 impl Joint {
@@ -167,6 +171,7 @@ impl Joint {
             limits: None,
             reading: Reading::own(name),
             tolerance: None,
+            stands_on: None,
         }
     }
 }

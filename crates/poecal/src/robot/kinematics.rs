@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::Robot;
+use super::{Body, Joint, Robot};
 use crate::lanes::{self, Exponential, SimdLevel, WIDTH, Wide};
 use crate::lie::{Pose, Screw, hat};
 
@@ -27,26 +27,22 @@ impl Robot {
 
     /// [`Robot::forward_kinematics`] of several configurations, their readings one after the other.
     pub fn forward_kinematics_of(&self, readings: &[f64]) -> impl Iterator<Item = Pose> {
-        let indices = self.reading_indices();
+        let (joints, indices) = self.path(&self.joints_to(self.tip_body()), &self.reading_indices());
         let width = self.reading_names().len().max(1);
-        let exponentials: Vec<Exponential> =
-            self.joints.iter().map(|joint| exponential(&joint.screw)).collect();
-        let mut values = vec![0.0; self.joints.len() * WIDTH];
+        let exponentials: Vec<Exponential> = joints.iter().map(|joint| exponential(&joint.screw)).collect();
+        let mut values = vec![0.0; joints.len() * WIDTH];
         let mut found = vec![(0.0, 0.0); values.len()];
-        let mut factors = vec![[Wide::ZERO; 2]; self.joints.len()];
+        let mut factors = vec![[Wide::ZERO; 2]; joints.len()];
         readings.chunks(WIDTH * width).flat_map(move |some| {
             let some = some.chunks_exact(width);
             let count = some.len();
-            for ((joint, &index), values) in
-                self.joints.iter().zip(&indices).zip(values.chunks_exact_mut(WIDTH))
-            {
+            for ((joint, &index), values) in joints.iter().zip(&indices).zip(values.chunks_exact_mut(WIDTH)) {
                 for (value, readings) in values.iter_mut().zip(some.clone()) {
                     *value = joint.reading.value(readings.get(index).copied().unwrap_or(0.0));
                 }
             }
             lanes::cosines_and_sines(SimdLevel::best(), &values, &mut found);
-            let each =
-                self.joints.iter().zip(&mut factors).zip(found.chunks(WIDTH).zip(values.chunks(WIDTH)));
+            let each = joints.iter().zip(&mut factors).zip(found.chunks(WIDTH).zip(values.chunks(WIDTH)));
             for ((joint, [first, second]), (found, values)) in each {
                 for (lane, (&found, &value)) in found.iter().zip(values).enumerate() {
                     (first.0[lane], second.0[lane]) = factors_of(&joint.screw, value, found);
@@ -69,25 +65,35 @@ impl Robot {
     /// ```
     #[must_use]
     pub fn joint_poses(&self, readings: &[f64]) -> Vec<Pose> {
-        let mut base_from_link = Pose::identity();
+        let mut base_from_links: Vec<Pose> = Vec::with_capacity(self.joints.len());
         let values = self.joint_values(readings);
-        let joints = self.joints.iter().zip(values);
-        joints
-            .map(|(joint, value)| {
-                base_from_link = base_from_link * joint.screw.exp(value);
-                base_from_link * joint.frame
-            })
-            .collect()
+        for (index, (joint, value)) in self.joints.iter().zip(values).enumerate() {
+            let before = self.body_before(index).joint().and_then(|before| base_from_links.get(before));
+            base_from_links.push(before.copied().unwrap_or_else(Pose::identity) * joint.screw.exp(value));
+        }
+        base_from_links.into_iter().zip(&self.joints).map(|(link, joint)| link * joint.frame).collect()
     }
 
-    /// The rigid motion `T_n = exp(ξ₁θ₁) … exp(ξₙθₙ)` of the last link from its place at zero, for *joint values* θ:
+    /// These joints, with their entries of a list of all joints.
+    fn path<T: Copy>(&self, path: &[usize], of_all: &[T]) -> (Vec<&Joint>, Vec<T>) {
+        path.iter().filter_map(|&at| Some((self.joints.get(at)?, *of_all.get(at)?))).unzip()
+    }
+
+    /// The rigid motion `T_n = exp(ξ₁θ₁) … exp(ξₙθₙ)` of the tip's link from its place at zero, for *joint values* θ:
     /// theory.md §2 (6).
     #[must_use]
     pub fn motion(&self, joint_values: &[f64]) -> Pose {
-        let mut found = vec![(0.0, 0.0); joint_values.len()];
-        lanes::cosines_and_sines(SimdLevel::best(), joint_values, &mut found);
+        self.motion_of(self.tip_body(), joint_values)
+    }
+
+    /// The same of another body.
+    #[must_use]
+    pub fn motion_of(&self, body: Body, joint_values: &[f64]) -> Pose {
+        let (joints, values) = self.path(&self.joints_to(body), joint_values);
+        let mut found = vec![(0.0, 0.0); values.len()];
+        lanes::cosines_and_sines(SimdLevel::best(), &values, &mut found);
         let mut rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
-        for ((joint, &value), found) in self.joints.iter().zip(joint_values).zip(found) {
+        for ((joint, value), found) in joints.into_iter().zip(values).zip(found) {
             let (first, second) = factors_of(&joint.screw, value, found);
             exponential(&joint.screw).advance(&mut rows, first, second, |number| number);
         }

@@ -1,9 +1,11 @@
-//! Serial robots: joints with screws, a home pose, forward kinematics. No estimation here, and no files.
+//! Robots: a chain or a tree of joints with screws, a home pose, forward kinematics. No estimation here, and no files.
 
+mod body;
 mod dh;
 mod joint;
 mod kinematics;
 
+pub use body::{Body, Mount};
 pub use dh::{DhConvention, DhRow};
 pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
 
@@ -19,7 +21,8 @@ pub const MOST_JOINTS: usize = 1000;
 /// Most letters of the name of a joint or a target.
 pub const LONGEST_NAME: usize = 200;
 
-/// A serial robot at its zero configuration, `base_from_tip(θ) = exp(ξ₁θ₁) … exp(ξₙθₙ) M` (lou2009 (2); theory.md §2 (6)).
+/// A robot at its zero configuration, `base_from_tip(θ) = exp(ξ₁θ₁) … exp(ξₙθₙ) M` over the joints between base and tip (lou2009 (2);
+/// theory.md §2 (6)): a serial chain, or a tree if joints stand on other links than that of the joint before.
 ///
 /// All screws and frames are in the base frame. A robot is a value: forward kinematics changes nothing in it.
 ///
@@ -41,12 +44,21 @@ pub struct Robot {
     pub base_name: String,
     /// Name of the tip frame (URDF: the chain's last link).
     pub tip_name: String,
-    /// The moving joints from base to tip.
+    /// The moving joints from base to tip, each after the joint on whose link it stands.
     pub joints: Vec<Joint>,
+    /// Body of the tip, if it is not the last joint's link.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tip: Option<Body>,
     /// Home pose `M = base_from_tip(0)`.
     pub home: Pose,
     /// Tool points and frames of the model, in the tip frame.
     pub targets: Vec<(String, Pose)>,
+    /// Targets on other bodies, or with other frames than the tip's.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mounted: Vec<Mount>,
+    /// Instruments on the robot; all others stand beside it, on its base.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub instruments: Vec<Mount>,
 }
 
 impl Robot {
@@ -84,8 +96,11 @@ impl Robot {
             base_name: "base".to_owned(),
             tip_name: "tip".to_owned(),
             joints,
+            tip: None,
             home,
             targets: Vec::new(),
+            mounted: Vec::new(),
+            instruments: Vec::new(),
         })
     }
 
@@ -143,28 +158,39 @@ impl Robot {
         robot
     }
 
-    /// Pose of the tip frame in the last joint's frame, at any configuration.
+    /// Pose of the tip frame in the frame of the joint that moves it, at any configuration.
     #[must_use]
     pub fn last_joint_from_tip(&self) -> Pose {
-        match self.joints.last() {
+        match self.tip_body().joint().and_then(|joint| self.joints.get(joint)) {
             Some(joint) => joint.frame.inverse() * self.home,
             None => self.home,
         }
     }
 
-    /// Size of the arm (metres): the longest path from axis to axis to the tip at zero joint values, at least 1 cm.
+    /// Size of the arm (metres): the longest path from axis to axis to the tip at zero joint values, at least 1 cm. In a tree the longest to
+    /// the tip, a target or an instrument.
     #[must_use]
     pub fn arm_m(&self) -> f64 {
+        let mounts = self.mounted.iter().chain(&self.instruments);
+        let ends = mounts
+            .filter(|mount| mount.body != Body::Base)
+            .map(|mount| (mount.body, self.base_from(mount).translation));
+        let paths = std::iter::once((self.tip_body(), self.home.translation)).chain(ends);
+        paths.map(|(body, end)| self.path_m(body, &end)).fold(0.01, f64::max)
+    }
+
+    /// Length of the path from the first axis between base and body, from axis to axis, to a point of the body (metres).
+    fn path_m(&self, body: Body, end: &Vector3<f64>) -> f64 {
         let mut at: Option<Vector3<f64>> = None;
         let mut reach = 0.0;
-        for joint in self.joints.iter().filter(|joint| joint.kind == JointKind::Revolute) {
+        let joints = self.joints_to(body).into_iter().filter_map(|joint| self.joints.get(joint));
+        for joint in joints.filter(|joint| joint.kind == JointKind::Revolute) {
             let from = at.unwrap_or(joint.frame.translation);
             let next = joint.screw.nearest_point(&from);
             reach += (next - from).norm();
             at = Some(next);
         }
-        let last = at.unwrap_or_else(Vector3::zeros);
-        (reach + (self.home.translation - last).norm()).max(0.01)
+        reach + (end - at.unwrap_or_else(Vector3::zeros)).norm()
     }
 
     /// Reach of the robot (metres): size of the arm plus the strokes of its prismatic joints. Limits wider than 100 m are placeholders and

@@ -15,8 +15,11 @@ fn robot(name: &str, joints: Vec<Joint>, home: Pose) -> Robot {
         base_name: "base_link".to_owned(),
         tip_name: "tool".to_owned(),
         joints,
+        tip: None,
         home,
         targets: Vec::new(),
+        mounted: Vec::new(),
+        instruments: Vec::new(),
     }
 }
 

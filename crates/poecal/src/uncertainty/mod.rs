@@ -123,7 +123,7 @@ impl Uncertainty {
     /// fifth of the range (theory.md §9 (41)).
     fn outside(&self, values: &[f64]) -> f64 {
         const FULLY: f64 = 0.2;
-        let joints = values.iter().zip(&self.sampled).zip(&self.estimate.kinds);
+        let joints = values.iter().zip(&self.sampled).zip(self.estimate.kinds());
         let beyond = joints.map(|((value, [least, most]), kind)| {
             let way = match kind {
                 JointKind::Prismatic => (least - value).max(value - most),

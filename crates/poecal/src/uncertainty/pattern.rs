@@ -63,12 +63,14 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
         chain.evaluate(&linkage, view.session.packed, row as usize, observation);
         let error = error.position_m / sigma;
         squares += error.norm_squared();
-        for ((sums, joint), &range) in sums.iter_mut().zip(&chain.joints).zip(&ranges) {
+        for joint in &chain.joints {
+            let sign = if joint.backward { -1.0 } else { 1.0 };
             let motion = match joint.kind {
                 JointKind::Revolute => joint.z.cross(&(chain.target.translation - joint.origin)),
                 JointKind::Prismatic => joint.z,
             };
-            sums.add(&shapes(joint.kind, joint.value, range), &(motion / sigma), &error);
+            let shapes = shapes(joint.kind, sign * joint.value, ranges[joint.joint]);
+            sums[joint.joint].add(&shapes, &(motion * sign / sigma), &error);
         }
     }
     // Residuals of exact data are rounding, which may follow any shape.

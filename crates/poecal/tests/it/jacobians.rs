@@ -68,7 +68,7 @@ fn device() -> Pose {
 /// The device stands at two places.
 fn estimate(robot: &Robot) -> Estimate {
     let mut estimate = Estimate::new(robot, vec![robot.home], device());
-    estimate.further_devices.push(Pose::from_xyz_rpy([0.2, -0.1, 0.15], [-0.5, 0.9, 1.4]));
+    estimate = estimate.with_further_devices(vec![Pose::from_xyz_rpy([0.2, -0.1, 0.15], [-0.5, 0.9, 1.4])]);
     estimate
 }
 
@@ -90,7 +90,7 @@ impl Row {
     ) -> Self {
         let packed = Packed::new(robot, readings, readings.len());
         let mut chain = Chain::default();
-        chain.evaluate(&Linkage::new(estimate), &packed, 0, Sight { station, target: 0 });
+        chain.evaluate(&Linkage::new(estimate), &packed, 0, Sight { station, target: 0, from: None });
         let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turn));
         let seen = Pose::new(
             turn * chain.target.rotation,

@@ -209,7 +209,7 @@ fn weights_scale_the_noise_and_zero_leaves_a_row_out() {
     let packed = Packed::new(&robot, data.all_readings(), 6);
     let noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
     let start = delivered(&robot, &data);
-    let free = || screw_axes(&start.kinds);
+    let free = || screw_axes(start.kinds());
     let weights: Vec<f64> = (0..data.len()).map(|row| f64::from(row as u32 % 4) / 4.0).collect();
     let seen = Session::new(&robot, &data, &packed, true).with_length(0.5);
     let weighted = Problem::new(seen, data.all_rows(), free(), noise).with_weights(&weights).normal(&start);

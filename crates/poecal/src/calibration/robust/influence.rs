@@ -53,7 +53,7 @@ impl<'a> RowInfluence<'a> {
         let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
         let Calibration { fit_rows, models, .. } = calibration;
         let free =
-            fit::free_parameters(&models.calibrated, &data, fit_rows, screw_axes(&models.calibrated.kinds));
+            fit::free_parameters(&models.calibrated, &data, fit_rows, screw_axes(models.calibrated.kinds()));
         let length_m = calibration.session(&data, &packed).length_m;
         let mut made = RowInfluence { calibration, data, packed, weights, free, length_m, normal: None };
         if !made.data.is_empty() {

@@ -260,6 +260,7 @@ impl JointEntry {
             limits: self.limits.map(|[lower, upper]| Limits { lower, upper }),
             reading: self.reading.clone(),
             tolerance: None,
+            stands_on: None,
         })
     }
 }

@@ -8,7 +8,6 @@ use crate::analysis::JointCoverage;
 use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Estimate;
-use crate::lie::Pose;
 use crate::measurement::Noise;
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::Layout;
@@ -320,13 +319,15 @@ impl CalibrationFile {
         }
         let mut estimate = Estimate::new(&robot, Vec::new(), self.base_from_device()?.inverse());
         estimate.base_from_axis = axes;
-        let mut free = screw_axes(&estimate.kinds);
-        let place = |name: &str| robot.targets.iter().find(|(known, _)| known == name).map(|(_, pose)| *pose);
+        let mut free = screw_axes(estimate.kinds());
+        let is_known = |name: &str| robot.targets.iter().any(|(known, _)| known == name);
+        let place = robot.places_of_targets();
         for (index, (name, is_frame)) in entry.targets.iter().enumerate() {
-            let tip_from_target = if name.is_empty() { Some(Pose::identity()) } else { place(name) };
-            let tip_from_target =
-                tip_from_target.ok_or_else(|| bad("the uncertainty of an unknown target"))?;
-            estimate.base_from_target.push(robot.home * tip_from_target);
+            if !name.is_empty() && !is_known(name) {
+                return Err(bad("the uncertainty of an unknown target"));
+            }
+            let (body, pose) = place(Some(name));
+            estimate = estimate.with_target(body, pose);
             free.push(if *is_frame {
                 Parameter::TargetFrame(TargetFrame { target: index })
             } else {
@@ -337,8 +338,8 @@ impl CalibrationFile {
             let wanted = wanted.unwrap_or_default();
             entry.targets.iter().position(|(name, _)| name == wanted).unwrap_or_else(|| {
                 // A point on the last link that was not measured itself is as certain as the link.
-                let pose = place(wanted).unwrap_or_else(Pose::identity);
-                estimate.base_from_target.push(robot.home * pose);
+                let (body, pose) = place(Some(wanted));
+                estimate = estimate.with_target(body, pose);
                 estimate.base_from_target.len() - 1
             })
         };

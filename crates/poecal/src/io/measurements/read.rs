@@ -203,6 +203,7 @@ impl<'a> Reader<'a> {
             let observation = Observation {
                 target: self.target(row, layout, target)?,
                 station: self.station(row, layout)?,
+                from: None,
                 measurement,
                 sigma_position_m: sigma(row, target.sigma_position, inputs)?,
                 sigma_rotation_rad: sigma(row, target.sigma_rotation, inputs)?,

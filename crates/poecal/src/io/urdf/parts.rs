@@ -73,6 +73,7 @@ fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_j
         limits: read_limits(&tree.source, joint)?,
         reading: read_reading(tree, joint)?,
         tolerance: None,
+        stands_on: None,
     })
 }
 

@@ -1,0 +1,129 @@
+//! Bodies of a robot: the base, and the links that joints move. Together with the joints they are a tree.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::Robot;
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::Pose;
+
+/// A body: the base, or the link that a joint moves.
+///
+/// ```
+/// use poecal::robot::Body;
+/// let robot = poecal::simulate::elbow();
+/// assert_eq!((robot.body_before(0), robot.body_before(3)), (Body::Base, Body::Link(2)));
+/// assert_eq!(robot.tip_body(), Body::Link(5));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Body {
+    /// The base.
+    Base,
+    /// The link that the joint of this index moves.
+    Link(usize),
+}
+
+impl Body {
+    /// The joint that moves it; none for the base.
+    #[must_use]
+    pub fn joint(self) -> Option<usize> {
+        match self {
+            Body::Base => None,
+            Body::Link(joint) => Some(joint),
+        }
+    }
+}
+
+/// A frame on a body: where an instrument or a target stands.
+///
+/// ```
+/// use poecal::{lie::Pose, robot::{Body, Mount}};
+/// let on_the_wrist = Mount { name: "camera".to_owned(), body: Body::Link(4), pose: Pose::identity() };
+/// let mut robot = poecal::simulate::elbow();
+/// robot.instruments.push(on_the_wrist);
+/// assert_eq!(robot.base_from(&robot.instruments[0]), robot.joints[4].frame);
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mount {
+    /// Name of the instrument or target.
+    pub name: String,
+    /// Its body.
+    pub body: Body,
+    /// Its pose in the frame of the joint that moves the body, or in the base.
+    pub pose: Pose,
+}
+
+impl Robot {
+    /// The body on which a joint stands.
+    #[must_use]
+    pub fn body_before(&self, joint: usize) -> Body {
+        let before = joint.checked_sub(1).map_or(Body::Base, Body::Link);
+        self.joints.get(joint).and_then(|joint| joint.stands_on).unwrap_or(before)
+    }
+
+    /// The body of the tip.
+    #[must_use]
+    pub fn tip_body(&self) -> Body {
+        let last = self.joints.len().checked_sub(1).map_or(Body::Base, Body::Link);
+        self.tip.unwrap_or(last)
+    }
+
+    /// The joints between the base and a body, from the base on.
+    #[must_use]
+    pub fn joints_to(&self, body: Body) -> Vec<usize> {
+        let mut joints: Vec<usize> =
+            std::iter::successors(body.joint(), |&joint| self.body_before(joint).joint()).collect();
+        joints.reverse();
+        joints
+    }
+
+    /// Whether each joint stands on the link of the one before, and the tip is on the last: a robot without branches.
+    #[must_use]
+    pub fn is_serial(&self) -> bool {
+        self.joints_to(self.tip_body()).len() == self.joints.len()
+    }
+
+    /// `base_from_mount` at zero joint values.
+    #[must_use]
+    pub fn base_from(&self, mount: &Mount) -> Pose {
+        match mount.body.joint().and_then(|joint| self.joints.get(joint)) {
+            Some(joint) => joint.frame * mount.pose,
+            None => mount.pose,
+        }
+    }
+
+    /// Where a target stands, by its name: its body, and `base_from_target` at zero joint values. A target that the model does not name is at
+    /// the tip.
+    pub fn places_of_targets(&self) -> impl Fn(Option<&str>) -> (Body, Pose) {
+        let tip = self.tip_body();
+        let at_tip = self.targets.iter().map(|(name, pose)| (name.as_str(), (tip, self.home * *pose)));
+        let mounted =
+            self.mounted.iter().map(|mount| (mount.name.as_str(), (mount.body, self.base_from(mount))));
+        let mut known: BTreeMap<&str, (Body, Pose)> = BTreeMap::new();
+        for (name, place) in mounted.chain(at_tip) {
+            known.entry(name).or_insert(place);
+        }
+        move |name| name.and_then(|name| known.get(name)).copied().unwrap_or((tip, self.home))
+    }
+
+    /// Checks that every joint stands on a body before it, and that tip and mounts stand on bodies of this robot.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`].
+    pub fn check_tree(&self) -> Result<()> {
+        let count = self.joints.len();
+        let is_known = |body: Body, below: usize| body.joint().is_none_or(|joint| joint < below);
+        let joints = (0..count).all(|joint| is_known(self.body_before(joint), joint));
+        let mounts = self.instruments.iter().chain(&self.mounted).all(|mount| is_known(mount.body, count));
+        if joints && mounts && is_known(self.tip_body(), count) {
+            return Ok(());
+        }
+        let message = format!(
+            "robot `{}` has a joint or a frame on a link that does not come before it, expected a tree from the base on",
+            self.name
+        );
+        Err(Error::new(ErrorKind::Model, message))
+    }
+}

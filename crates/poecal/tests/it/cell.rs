@@ -1,0 +1,305 @@
+//! Anything may see anything: instruments and targets on any body of a tree, in one configuration or two. Sensitivities of every way between
+//! them, and ranks in closed form (theory.md §4 and §7).
+
+use crate::largest::larger;
+use nalgebra::Vector3;
+use poecal::analysis::{Setup, identifiability};
+use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
+use poecal::lie::{Pose, Screw, rotation};
+use poecal::measurement::{
+    Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Source,
+};
+use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
+use poecal::problem::Problem;
+use poecal::robot::{Body, Joint, JointKind, Mount, Robot};
+use poecal::simulate::random;
+use poecal::solve::LeastSquares as _;
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng as _;
+use std::f64::consts::PI;
+
+const NOISE: Noise = Noise { position_m: 1e-4, rotation_rad: 2e-4 };
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Seen {
+    Point,
+    Pose,
+}
+
+/// Something that an instrument sees, by their names; in two configurations if `apart`.
+#[derive(Clone, Copy, Debug)]
+struct Sees {
+    instrument: Option<&'static str>,
+    target: Option<&'static str>,
+    seen: Seen,
+    apart: bool,
+}
+
+const fn sees(instrument: Option<&'static str>, target: Option<&'static str>, seen: Seen) -> Sees {
+    Sees { instrument, target, seen, apart: false }
+}
+
+/// A robot with somebody's measurements of it.
+struct Cell {
+    name: &'static str,
+    robot: Robot,
+    sees: Vec<Sees>,
+    /// Rank of the information in closed form.
+    rank: usize,
+}
+
+fn place(generator: &mut ChaCha8Rng, scale: f64) -> Pose {
+    let turn = rotation::exp(&(random::direction(generator) * PI * random::uniform(generator)));
+    Pose::new(turn, random::direction(generator) * scale)
+}
+
+/// Joints of these kinds with random axes: `r` turns, `p` slides.
+fn joints(kinds: &str, prefix: &str, generator: &mut ChaCha8Rng) -> Vec<Joint> {
+    let joint = |(index, kind): (usize, char)| {
+        let name = format!("{prefix}{}", index + 1);
+        let (direction, point) = (random::direction(generator), random::direction(generator) * 0.6);
+        match kind {
+            'p' => Joint::prismatic(&name, Screw::prismatic(&direction)),
+            _ => Joint::revolute(&name, Screw::revolute(&direction, &point)),
+        }
+    };
+    kinds.chars().enumerate().map(joint).collect()
+}
+
+fn chain(kinds: &str, seed: u64) -> Robot {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    let joints = joints(kinds, "joint", &mut generator);
+    Robot::new("chain", joints, place(&mut generator, 0.4)).unwrap()
+}
+
+/// A camera in the hand, a board beside the robot.
+fn eye_in_hand(kinds: &str) -> Robot {
+    let mut robot = chain(kinds, 11);
+    let mut generator = ChaCha8Rng::seed_from_u64(12);
+    let last = Body::Link(kinds.len() - 1);
+    robot.instruments.push(Mount { name: "camera".to_owned(), body: last, pose: place(&mut generator, 0.1) });
+    robot.mounted.push(Mount {
+        name: "board".to_owned(),
+        body: Body::Base,
+        pose: place(&mut generator, 0.8),
+    });
+    robot
+}
+
+/// A torso of two joints with two arms of six, and a head of one that sees both hands.
+fn torso() -> Robot {
+    let mut generator = ChaCha8Rng::seed_from_u64(21);
+    let mut all = joints("rr", "torso", &mut generator);
+    for (prefix, kinds) in [("head", "r"), ("left", "rrrrrr"), ("right", "rrrrrr")] {
+        let mut branch = joints(kinds, prefix, &mut generator);
+        branch[0].stands_on = Some(Body::Link(1));
+        all.append(&mut branch);
+    }
+    let mut robot = Robot::new("torso", all, Pose::identity()).unwrap();
+    let on = |name: &str, body: usize, generator: &mut ChaCha8Rng| Mount {
+        name: name.to_owned(),
+        body: Body::Link(body),
+        pose: place(generator, 0.2),
+    };
+    robot.instruments.push(on("eyes", 2, &mut generator));
+    robot.instruments.push(on("chest", 1, &mut generator));
+    robot.mounted.push(on("left_hand", 8, &mut generator));
+    robot.mounted.push(on("right_hand", 14, &mut generator));
+    robot.check_tree().unwrap();
+    assert!(!robot.is_serial());
+    robot
+}
+
+/// Joints below the base frame that move the instrument, so that the way goes back and forth on one arm.
+fn cells() -> Vec<Cell> {
+    use Seen::{Point, Pose};
+    let tip = |seen| vec![sees(None, None, seen)];
+    let camera = |seen| vec![sees(Some("camera"), Some("board"), seen)];
+    let apart = |seen| vec![Sees { apart: true, ..sees(Some("tool"), Some("tool"), seen) }];
+    let cell = |name, robot, sees, rank| Cell { name, robot, sees, rank };
+    let g = |kinds: &str| kinds.chars().map(|kind| if kind == 'p' { 2 } else { 4 }).sum::<usize>();
+    let mut all = Vec::new();
+    for kinds in ["rrrrrr", "rrrrrrr", "rrrppp", "rrpr"] {
+        all.push(cell("poses", chain(kinds, 1), tip(Pose), g(kinds) + 6));
+        all.push(cell("points of one target", chain(kinds, 2), tip(Point), g(kinds) + 3));
+        all.push(cell("eye in hand", eye_in_hand(kinds), camera(Pose), g(kinds) + 6));
+        all.push(cell("two configurations", chain(kinds, 3), apart(Pose), g(kinds)));
+    }
+    let two_hands = |of: &'static str| {
+        vec![sees(Some(of), Some("left_hand"), Pose), sees(Some(of), Some("right_hand"), Pose)]
+    };
+    // The chest is on the torso: what is below it cancels. The head's own joint is seen.
+    all.push(cell("chest sees both hands", torso(), two_hands("chest"), 48 + 12));
+    all.push(cell("head sees both hands", torso(), two_hands("eyes"), 52 + 12));
+    // A device on the floor sees the torso as well; a second one shares its targets.
+    let floor = vec![sees(None, Some("left_hand"), Pose), sees(None, Some("right_hand"), Point)];
+    all.push(cell("floor sees both hands", torso(), floor.clone(), 8 + 48 + 9));
+    let with_chest = [floor, vec![sees(Some("chest"), Some("left_hand"), Pose)]].concat();
+    all.push(cell("floor and chest", torso(), with_chest, 8 + 48 + 9 + 6));
+    all
+}
+
+/// A cell with measurements, at a state that predicts them but for some residual.
+struct Measured {
+    robot: Robot,
+    data: Dataset,
+    packed: Packed,
+    estimate: Estimate,
+    free: Vec<Parameter>,
+}
+
+impl Measured {
+    fn new(cell: &Cell, rows: usize, off: f64) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(77);
+        let robot = cell.robot.clone();
+        let mut data = Dataset::new(robot.reading_names());
+        for row in 0..rows {
+            let it = cell.sees[row % cell.sees.len()];
+            let mut readings = || -> Vec<f64> {
+                let span = |joint: &Joint| if joint.kind == JointKind::Prismatic { 0.5 } else { PI };
+                robot
+                    .joints
+                    .iter()
+                    .map(|joint| span(joint) * (2.0 * random::uniform(&mut generator) - 1.0))
+                    .collect()
+            };
+            let from = it.apart.then(|| data.push_further(&readings()).unwrap());
+            let (target, station) = (data.target_index(it.target), data.station_index(it.instrument));
+            let measurement = match it.seen {
+                Seen::Point => Measurement::Point(PointMeasurement { position: Vector3::zeros() }),
+                Seen::Pose => Measurement::Pose(PoseMeasurement { pose: Pose::identity() }),
+            };
+            let observation = Observation {
+                target,
+                station,
+                from,
+                measurement,
+                sigma_position_m: None,
+                sigma_rotation_rad: None,
+                set: None,
+                source: Source::default(),
+            };
+            data.push_observation(&readings(), observation).unwrap();
+        }
+        let packed = Packed::of(&robot, &data);
+        let mut estimate = delivered(&robot, &data);
+        if cell.sees.iter().all(|it| it.instrument.is_none()) {
+            estimate.device_from_base = place(&mut generator, 0.9);
+        }
+        let (linkage, mut chain) = (Linkage::new(&estimate), Chain::default());
+        for row in 0..rows {
+            chain.evaluate(&linkage, &packed, row, &data.observations[row]);
+            let turn = rotation::exp(&(random::direction(&mut generator) * off));
+            let position = chain.target.translation + random::direction(&mut generator) * off;
+            data.observations[row].measurement = match data.observations[row].measurement {
+                Measurement::Point(_) => Measurement::Point(PointMeasurement { position }),
+                Measurement::Pose(_) => {
+                    let pose = Pose::new(turn * chain.target.rotation, position);
+                    Measurement::Pose(PoseMeasurement { pose })
+                }
+            };
+        }
+        let mut free: Vec<Parameter> = (1..data.station_count())
+            .map(|station| {
+                Parameter::DeviceFrame(DeviceFrame { station, about: Vector3::new(0.1, -0.2, 0.3) })
+            })
+            .collect();
+        free.extend(screw_axes(estimate.kinds()));
+        free.extend(data.frames(&data.all_rows()).into_iter().enumerate().map(|(target, is_frame)| {
+            if is_frame {
+                Parameter::TargetFrame(TargetFrame { target })
+            } else {
+                Parameter::TargetPlace(TargetPlace { target })
+            }
+        }));
+        Measured { robot, data, packed, estimate, free }
+    }
+
+    fn problem(&self, free: Vec<Parameter>) -> Problem<'_> {
+        let session = Session::new(&self.robot, &self.data, &self.packed, false).with_length(0.5);
+        Problem::new(session, self.data.all_rows(), free, NOISE)
+    }
+}
+
+/// The gradient of the kernels is the derivative of their own cost by every unknown, for every way from instrument to target; and their
+/// products are those of the formulas row by row.
+#[test]
+fn sensitivities_of_every_way_are_those_of_differences() {
+    for cell in cells() {
+        let made = Measured::new(&cell, 24, 0.05);
+        let mut free = made.free.clone();
+        // The first device as well.
+        if made.estimate.tree.shared(0).is_none() {
+            free.insert(
+                0,
+                Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::new(0.2, 0.1, 0.0) }),
+            );
+        }
+        let problem = made.problem(free);
+        assert!(problem.is_served(&made.estimate), "{}", cell.name);
+        let normal = problem.normal(&made.estimate);
+        let n = problem.dim();
+        let (mut worst, mut size) = (0.0, 0.0);
+        for unknown in 0..n {
+            // Central differences of fourth order: at 2e-4 of a radian or metre truncation is 1e-15, rounding of the cost 1e-12 of it.
+            const STEP: f64 = 2e-4;
+            let cost = |by: f64| {
+                let mut step = vec![0.0; n];
+                step[unknown] = by * STEP;
+                problem.normal(&problem.retract(&made.estimate, &step)).cost
+            };
+            let difference = (8.0 * (cost(1.0) - cost(-1.0)) - (cost(2.0) - cost(-2.0))) / (12.0 * STEP);
+            // The gradient is that of the residuals' sign: `Jᵀe` with J of the prediction.
+            worst = larger(worst, (difference + normal.gradient[unknown]).abs());
+            size = larger(size, normal.gradient[unknown].abs());
+        }
+        println!("{:22} {n:3} unknowns: {:.1e} of the gradient", cell.name, worst / size);
+        assert!(worst < 1e-8 * size, "{}: {:e}", cell.name, worst / size);
+
+        let by_rows = problem.normal_row_by_row(&made.estimate);
+        let scale = |k: usize| by_rows.gram[k * n + k].sqrt().max(1e-9);
+        for (a, b) in (0..n).flat_map(|a| (a..n).map(move |b| (a, b))) {
+            let apart = (normal.gram[a * n + b] - by_rows.gram[a * n + b]).abs();
+            assert!(apart < 1e-11 * scale(a) * scale(b), "{}: {a}, {b}: {apart:e}", cell.name);
+        }
+    }
+}
+
+/// theory.md §7: 4 for a revolute joint that is seen, 2 for a prismatic one, and the frames, less the choice of the base.
+#[test]
+fn ranks_are_those_of_the_closed_form() {
+    for cell in cells() {
+        let made = Measured::new(&cell, 60 * cell.sees.len(), 0.0);
+        let problem = made.problem(made.free.clone());
+        assert!(problem.is_served(&made.estimate), "{}", cell.name);
+        let rows = made.data.all_rows();
+        let session = Session::new(&made.robot, &made.data, &made.packed, false).with_length(0.5);
+        let setup =
+            Setup { session, rows: &rows, estimate: &made.estimate, layout: problem.layout(), noise: NOISE };
+        let found = identifiability(&setup, &problem.normal(&made.estimate).gram, 1.0);
+        println!("{:22} {:?}: rank {} of {}", cell.name, made.robot.joints.len(), found.rank, problem.dim());
+        for direction in found.unidentifiable.iter().chain(&found.structural) {
+            println!("    {}", direction.description);
+        }
+        assert_eq!(found.rank, cell.rank, "{}", cell.name);
+    }
+}
+
+/// Errors are those of the formulas, whatever the ways of the rows.
+#[test]
+fn errors_of_every_way_are_measured_minus_predicted() {
+    for cell in cells() {
+        let made = Measured::new(&cell, 31, 0.05);
+        let session = Session::new(&made.robot, &made.data, &made.packed, false);
+        let errors = session.errors(&made.data.all_rows(), &made.estimate);
+        let (linkage, mut chain) = (Linkage::new(&made.estimate), Chain::default());
+        for (row, error) in errors.iter().enumerate() {
+            let seen = &made.data.observations[row];
+            chain.evaluate(&linkage, &made.packed, row, seen);
+            let apart = seen.measurement.pose().translation - chain.target.translation - error.position_m;
+            assert!(apart.norm() < 1e-13, "{} {row}: {:e}", cell.name, apart.norm());
+            assert_eq!(error.rotation_rad.is_some(), seen.measurement.sees_orientation());
+        }
+    }
+}
