@@ -113,6 +113,15 @@ impl Linkage {
         self.further_from_first.get(station.checked_sub(1)?)
     }
 
+    /// Whether the joint values on a route are those of a row, in their order.
+    pub(super) fn is_plain(&self, route: usize) -> bool {
+        let route = &self.tree.routes()[route];
+        let in_order = |(index, passed): (usize, &Passed)| passed.joint == index && !passed.backward;
+        self.offsets.is_empty()
+            && route.len() == self.tree.kinds().len()
+            && route.iter().enumerate().all(in_order)
+    }
+
     /// The tree whose frames these are.
     pub(super) fn tree(&self) -> &Tree {
         &self.tree

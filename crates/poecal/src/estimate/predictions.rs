@@ -127,6 +127,8 @@ pub(crate) fn turn_to_first(data: &Dataset, rows: &[u32], estimate: &Estimate, e
 struct SideBySide<'a> {
     linkage: &'a Linkage,
     route: &'a [Passed],
+    /// Whether the joint values are those of a row, in their order.
+    plain: bool,
     level: SimdLevel,
     joints: Vec<(bool, FixedMotion)>,
     values: Vec<[Wide; 2]>,
@@ -144,6 +146,7 @@ impl<'a> SideBySide<'a> {
         SideBySide {
             linkage,
             route: &linkage.tree().routes()[route],
+            plain: linkage.is_plain(route),
             level: SimdLevel::best(),
             values: vec![[Wide::ZERO; 2]; joints.len()],
             joints,
@@ -160,6 +163,17 @@ impl<'a> SideBySide<'a> {
         if self.route.is_empty() {
             (0..WIDTH).for_each(|lane| put_rows(&mut self.last_links, lane, self.linkage.first_device()));
             return;
+        }
+        if self.plain {
+            for (lane, &row) in rows.iter().enumerate() {
+                for (wide, &(cosine_or_value, sine)) in
+                    self.values.iter_mut().zip(session.packed.row(row as usize))
+                {
+                    wide[0].0[lane] = cosine_or_value;
+                    wide[1].0[lane] = sine;
+                }
+            }
+            return lanes::last_links(self.level, &self.joints, &self.values, &mut self.last_links);
         }
         for (lane, &row) in rows.iter().enumerate() {
             let from = session.observation(row).from;
