@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use poecal::io::measurements::{Quantity, Unit};
+use poecal::io::measurements::{Dimension, Unit};
 use poecal::robot::Tolerance;
 use poecal::{Error, ErrorKind, MOST_THREADS, Result};
 
@@ -10,7 +10,7 @@ use poecal::{Error, ErrorKind, MOST_THREADS, Result};
 ///
 /// # Errors
 /// One sentence with found and expected.
-pub(crate) fn parse(text: &str, quantity: Quantity) -> Result<f64> {
+pub(crate) fn parse(text: &str, quantity: Dimension) -> Result<f64> {
     let (value, symbol) = value_and_symbol(text, example(quantity))?;
     Ok(Unit::parse(symbol, quantity)?.to_si(value))
 }
@@ -19,16 +19,16 @@ pub(crate) fn parse(text: &str, quantity: Quantity) -> Result<f64> {
 ///
 /// # Errors
 /// As [`parse`].
-pub(crate) fn signed(text: &str, quantity: Quantity) -> Result<f64> {
+pub(crate) fn signed(text: &str, quantity: Dimension) -> Result<f64> {
     let (value, symbol) = signed_and_symbol(text, example(quantity))?;
     Ok(Unit::parse(symbol, quantity)?.to_si(value))
 }
 
-fn example(quantity: Quantity) -> &'static str {
+fn example(quantity: Dimension) -> &'static str {
     match quantity {
-        Quantity::Length => "0.05mm",
-        Quantity::Angle => "0.01deg",
-        Quantity::Number => "3",
+        Dimension::Length => "0.05mm",
+        Dimension::Angle => "0.01deg",
+        Dimension::Number => "3",
     }
 }
 
@@ -73,7 +73,7 @@ impl FromStr for LengthAndAngle {
         for part in text.split(',').map(str::trim) {
             let (value, symbol) = value_and_symbol(part, "2mm or 1deg")?;
             let unit = Unit::parse_any(symbol)?;
-            let place = if unit.quantity() == Quantity::Angle { &mut angle_rad } else { &mut length_m };
+            let place = if unit.quantity() == Dimension::Angle { &mut angle_rad } else { &mut length_m };
             if place.replace(unit.to_si(value)).is_some() {
                 let message = format!("found `{text}`, expected one length and one angle, like 2mm,1deg");
                 return Err(Error::new(ErrorKind::Option, message));
@@ -110,15 +110,15 @@ impl FromStr for BelievedTolerance {
 
 /// Parser of a standard deviation of positions for clap.
 pub(crate) fn sigma_m(text: &str) -> std::result::Result<f64, String> {
-    above_zero(text, Quantity::Length)
+    above_zero(text, Dimension::Length)
 }
 
 /// Parser of a standard deviation of rotations for clap.
 pub(crate) fn sigma_rad(text: &str) -> std::result::Result<f64, String> {
-    above_zero(text, Quantity::Angle)
+    above_zero(text, Dimension::Angle)
 }
 
-fn above_zero(text: &str, quantity: Quantity) -> std::result::Result<f64, String> {
+fn above_zero(text: &str, quantity: Dimension) -> std::result::Result<f64, String> {
     match parse(text, quantity) {
         Ok(value) if value > 0.0 => Ok(value),
         Ok(_) => Err(format!("found `{text}`, expected a standard deviation above 0")),

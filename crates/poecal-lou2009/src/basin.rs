@@ -88,7 +88,7 @@ fn reached(seen: MeasurementKind, error_deg: f64, seed: u64, trial: u64) -> Resu
     let truth = Estimate::new(&actual, vec![actual.home], Pose::identity());
     let session = PaperSession::new(&nominal, truth, seen, ROWS, derived(seed, Purpose::TruthRows, trial));
     // Radians count as the length of the arm that they move, so that neither outweighs the other.
-    let noise = Noise { position_m: LENGTH_M, rotation_rad: 1.0 };
+    let noise = Noise::new(LENGTH_M, 1.0);
     let exact = session.exact();
     let mut reached = [false; WAYS.len()];
     for (reached, (formulation, method)) in reached.iter_mut().zip(WAYS) {

@@ -108,7 +108,7 @@ mod tests {
     fn stepped(formulation: Formulation) -> WatchedState {
         let session = runs::session(false, MeasurementKind::Poses, 1);
         let data = session.data(Residual::Spatial, &session.exact()).unwrap();
-        let noise = Noise { position_m: 1.0, rotation_rad: 1.0 };
+        let noise = Noise::new(1.0, 1.0);
         let free = session.free(formulation);
         let problem = Problem::new(session.of(&data, 1.0), session.rows(), free, noise);
         Watched(&problem).retract(&WatchedState::new(session.start()), &vec![1e-2; problem.dim()])

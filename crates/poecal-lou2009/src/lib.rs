@@ -35,13 +35,13 @@ use runs::Ended;
 
 use poecal::error::{Error, ErrorKind, Result};
 use poecal::lie::Screw;
-use poecal::measurement::Noise;
+use poecal::measurement::{Noise, Quantity};
 
 /// Metres that a radian counts in ranks and steps: some third of the elbow's reach.
 const LENGTH_M: f64 = 0.5;
 
 /// Noise of a good laser tracker with a six-degree-of-freedom probe.
-const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 1.745_329_251_994_329_6e-4 };
+const NOISE: Noise = Noise::new(5e-5, 1.745_329_251_994_329_6e-4);
 
 /// How much to try.
 ///
@@ -93,8 +93,8 @@ pub fn lou2009(options: &ReproductionOptions) -> Result<Reproduction> {
             options.trials, options.starts, options.seed
         ),
         seed: options.seed,
-        noise_position_m: NOISE.position_m,
-        noise_rotation_rad: NOISE.rotation_rad,
+        noise_position_m: NOISE[Quantity::Position],
+        noise_rotation_rad: NOISE[Quantity::Rotation],
         length_m: LENGTH_M,
         runs: ended.iter().map(|ended| ended.run.clone()).collect(),
         claims: Vec::new(),

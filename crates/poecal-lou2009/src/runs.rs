@@ -9,7 +9,7 @@ use super::{Iteration, LENGTH_M, MeasurementKind, NOISE, Run};
 use crate::{Formulation, Residual, gauss_newton};
 use poecal::error::Result;
 use poecal::estimate::Estimate;
-use poecal::measurement::{Dataset, Noise};
+use poecal::measurement::{Dataset, Noise, Quantity};
 use poecal::problem::Problem;
 use poecal::solve::{Options, Termination};
 
@@ -82,7 +82,7 @@ fn run(plan: Plan, seed: u64) -> Result<Ended> {
     let measured =
         if plan.noise { session.noisy(NOISE, derived(seed, Purpose::RunNoise, 0)) } else { session.exact() };
     let data = session.data(Residual::Spatial, &measured)?;
-    let sigma = if plan.noise { NOISE } else { Noise { position_m: 1.0, rotation_rad: 1.0 } };
+    let sigma = if plan.noise { NOISE } else { Noise::new(1.0, 1.0) };
     let free = session.free(plan.formulation);
     let problem = Problem::new(session.of(&data, LENGTH_M), session.rows(), free, sigma);
     let once = Options { iterations: 1, ..Options::default() };
@@ -114,7 +114,7 @@ fn measures(
 ) -> Run {
     let estimate = &state.estimate;
     let held_out_rms_m = session.held_out_rms_m(estimate);
-    let most = if plan.noise { NOISY_FACTOR * NOISE.position_m } else { REACHED_M };
+    let most = if plan.noise { NOISY_FACTOR * NOISE[Quantity::Position] } else { REACHED_M };
     let matrix = matrix(session, estimate, plan.formulation);
     let error = ScrewError::of(estimate, &session.truth);
     let equivalent = ScrewError::of(&estimate.without_offsets(), &session.truth.without_offsets());
@@ -149,7 +149,7 @@ fn measures(
 /// Residual and parameter error of an estimate.
 fn iteration(session: &PaperSession, data: &Dataset, estimate: &Estimate) -> Iteration {
     let errors = session.of(data, LENGTH_M).errors(&session.rows(), estimate);
-    let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
+    let squares: f64 = errors.iter().map(|error| error.position_m().norm_squared()).sum();
     Iteration {
         residual_rms_m: (squares / errors.len() as f64).sqrt(),
         screw_error_max: ScrewError::of(estimate, &session.truth).largest(),

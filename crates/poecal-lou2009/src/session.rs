@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use poecal::error::Result;
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity};
 use poecal::parameters::{Parameter, TargetFrame, TargetPlace};
 use poecal::robot::Robot;
 use poecal::simulate::{random, random_configuration};
@@ -63,8 +63,9 @@ impl PaperSession {
     pub(super) fn noisy(&self, sigma: Noise, seed: u64) -> Vec<Pose> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let measured = |pose: Pose| {
-            let position = pose.translation + random::normal_vector(&mut generator) * sigma.position_m;
-            let turn = rotation::exp(&(random::normal_vector(&mut generator) * sigma.rotation_rad));
+            let position =
+                pose.translation + random::normal_vector(&mut generator) * sigma[Quantity::Position];
+            let turn = rotation::exp(&(random::normal_vector(&mut generator) * sigma[Quantity::Rotation]));
             Pose::new(turn * pose.rotation, position)
         };
         poses(&self.truth, &self.packed).map(measured).collect()

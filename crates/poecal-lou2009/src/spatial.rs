@@ -1,8 +1,8 @@
 //! The residual of lou2009 for measured frames.
 
-use nalgebra::Matrix6;
-use poecal::lie::{Pose, TargetTwist, Twist};
-use poecal::measurement::{Noise, PoseResidual};
+use nalgebra::{Matrix6, Vector3};
+use poecal::lie::{Pose, Twist};
+use poecal::measurement::{PoseResidual, Sensitivity};
 
 /// The paper's residual of a measured frame, `e = log(Y P⁻¹)^∨` (lou2009 after equation 7): the twist about the *device's* origin that
 /// takes the predicted frame to the measured one, linear part first.
@@ -12,11 +12,11 @@ use poecal::measurement::{Noise, PoseResidual};
 /// data sheet describes, this is for comparison (docs/theory.md §4 (16a)).
 ///
 /// ```
-/// use poecal::{lie::Pose, measurement::{Noise, PoseResidual}};
+/// use poecal::{lie::Pose, measurement::PoseResidual};
 /// use poecal_lou2009::Spatial;
 /// let pose = Pose::from_xyz_rpy([0.1, 0.2, 0.3], [0.4, 0.5, 0.6]);
 /// let mut e = [1.0; 6];
-/// Spatial.residual(&pose, &pose, &Noise { position_m: 1e-3, rotation_rad: 1e-3 }, &mut e);
+/// Spatial.residual(&pose, &pose, &mut e);
 /// assert!(e.iter().all(|component| component.abs() < 1e-12));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,30 +31,22 @@ impl PoseResidual for Spatial {
         "spatial"
     }
 
-    fn residual(&self, measured: &Pose, predicted: &Pose, noise: &Noise, out: &mut [f64]) {
+    fn residual(&self, measured: &Pose, predicted: &Pose, out: &mut [f64]) {
         let e = error(measured, predicted);
-        out[..3].copy_from_slice((e.v / noise.position_m).as_slice());
-        out[3..6].copy_from_slice((e.w / noise.rotation_rad).as_slice());
+        out[..3].copy_from_slice(e.v.as_slice());
+        out[3..6].copy_from_slice(e.w.as_slice());
     }
 
-    fn project(
-        &self,
-        measured: &Pose,
-        predicted: &Pose,
-        columns: &[TargetTwist],
-        noise: &Noise,
-        stride: usize,
-        out: &mut [f64],
-    ) {
+    fn sensitivity(&self, measured: &Pose, predicted: &Pose, out: &mut [Sensitivity]) {
         let e = error(measured, predicted);
-        let sensitivity: Matrix6<f64> = Twist::new(-e.v, -e.w).inverse_left_jacobian();
-        for (column, (v, w)) in columns.iter().enumerate() {
-            // From the target's origin to the device's.
-            let spatial = Twist::new(v + predicted.translation.cross(w), *w).to_vector();
-            let moved = sensitivity * spatial;
-            for row in 0..6 {
-                let sigma = if row < 3 { noise.position_m } else { noise.rotation_rad };
-                out[row * stride + column] = moved[row] / sigma;
+        let of_spatial: Matrix6<f64> = Twist::new(-e.v, -e.w).inverse_left_jacobian();
+        for k in 0..3 {
+            // Unit motions of the target, as twists about the device's origin.
+            let unit = Vector3::ith(k, 1.0);
+            let moved = of_spatial * Twist::new(unit, Vector3::zeros()).to_vector();
+            let turned = of_spatial * Twist::new(predicted.translation.cross(&unit), unit).to_vector();
+            for (row, out) in out[..6].iter_mut().enumerate() {
+                (out[k], out[3 + k]) = (moved[row], turned[row]);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use poecal::calibration::{self, Level};
 use poecal::report::table::number;
+use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 
 use crate::arguments as arg;
@@ -36,29 +37,63 @@ impl From<calibration::Statistic> for Statistic {
 }
 
 /// Errors of one model on one set of rows.
-#[pyclass(frozen, eq, get_all, module = "poecal", name = "ModelAccuracy")]
+#[pyclass(frozen, eq, module = "poecal", name = "ModelAccuracy")]
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) struct ModelAccuracy {
-    /// Distance from measured to predicted position, millimetres.
-    position_mm: Statistic,
-    /// Angle from measured to predicted orientation, degrees; None where no orientation was measured.
-    rotation_deg: Option<Statistic>,
-}
+pub(crate) struct ModelAccuracy(calibration::ModelAccuracy);
 
 #[pymethods]
 impl ModelAccuracy {
+    /// Distance from measured to predicted position, millimetres.
+    #[getter]
+    fn position_mm(&self) -> PyResult<Statistic> {
+        self.__getattr__("position_mm")
+    }
+
+    /// Angle from measured to predicted orientation, degrees; None where no orientation was measured.
+    #[getter]
+    fn rotation_deg(&self) -> Option<Statistic> {
+        self.0.rotation_deg().map(Into::into)
+    }
+
+    /// The errors of any other measured quantity, by its key in `calibration.json`.
+    fn __getattr__(&self, name: &str) -> PyResult<Statistic> {
+        let found = self.0.iter().find(|(quantity, _)| quantity.key() == name);
+        found.map(|(_, found)| found.into()).ok_or_else(|| {
+            let known: Vec<&str> = self.0.iter().map(|(quantity, _)| quantity.key()).collect();
+            PyAttributeError::new_err(format!(
+                "found no errors named `{name}`, expected {}",
+                known.join(" or ")
+            ))
+        })
+    }
+
     fn __repr__(&self) -> String {
-        let rotation = self.rotation_deg.map_or_else(String::new, |it| format!(", {} deg", number(it.rms)));
-        format!("<poecal.ModelAccuracy {} mm{rotation} RMS>", number(self.position_mm.rms))
+        format!("<poecal.ModelAccuracy {} RMS>", self.words())
+    }
+}
+
+impl ModelAccuracy {
+    /// Root mean square of each measured quantity.
+    fn words(&self) -> String {
+        let words =
+            self.0.iter().map(|(quantity, it)| format!("{} {}", number(it.rms), quantity.unit().symbol()));
+        words.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Root mean square of the quantity by which it is judged.
+    fn leading(&self) -> String {
+        number(self.0.lead().rms)
+    }
+
+    /// Unit of that.
+    fn unit(&self) -> &'static str {
+        self.0.leading().map_or("mm", |(quantity, _)| quantity.unit().symbol())
     }
 }
 
 impl From<calibration::ModelAccuracy> for ModelAccuracy {
     fn from(found: calibration::ModelAccuracy) -> Self {
-        ModelAccuracy {
-            position_mm: found.position_mm.into(),
-            rotation_deg: found.rotation_deg.map(Into::into),
-        }
+        ModelAccuracy(found)
     }
 }
 
@@ -80,10 +115,11 @@ pub(crate) struct SetAccuracy {
 impl SetAccuracy {
     fn __repr__(&self) -> String {
         let [nominal, registered, calibrated] =
-            [self.nominal, self.registered, self.calibrated].map(|it| number(it.position_mm.rms));
+            [self.nominal, self.registered, self.calibrated].map(|it| it.leading());
         format!(
-            "<poecal.SetAccuracy of {} rows: nominal {nominal}, registered {registered}, calibrated {calibrated} mm RMS>",
-            self.count
+            "<poecal.SetAccuracy of {} rows: nominal {nominal}, registered {registered}, calibrated {calibrated} {} RMS>",
+            self.count,
+            self.calibrated.unit()
         )
     }
 }
@@ -113,7 +149,8 @@ pub(crate) struct Accuracy {
 impl Accuracy {
     fn __repr__(&self) -> String {
         let words = |set: &SetAccuracy, name: &str| {
-            format!("{} mm RMS on {} {name} rows", number(set.calibrated.position_mm.rms), set.count)
+            let calibrated = set.calibrated;
+            format!("{} {} RMS on {} {name} rows", calibrated.leading(), calibrated.unit(), set.count)
         };
         let held_out = self.held_out.as_ref().map_or_else(String::new, |set| words(set, "held-out") + ", ");
         format!("<poecal.Accuracy: {held_out}{}>", words(&self.training, "fitted"))

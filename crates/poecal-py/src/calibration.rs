@@ -409,7 +409,8 @@ impl Calibration {
             None => (&file.accuracy.training, "fitted"),
         };
         let verdict = file.verdict.as_ref().map_or("no verdict", |verdict| verdict.level.words());
-        let [registered, calibrated] = [set.registered, set.calibrated].map(|it| number(it.position_mm.rms));
+        let [registered, calibrated] =
+            [set.registered, set.calibrated].map(|it| number(it.position_mm().rms));
         format!(
             "<poecal.Calibration of {}: {verdict}, {calibrated} mm RMS on {} {name} rows (nominal, tool and device fitted: {registered})>",
             file.robot.name, set.count

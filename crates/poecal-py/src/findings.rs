@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use poecal::analysis::{self, PlannedSession};
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::output::{self, Contents, Existing};
-use poecal::measurement::Noise;
+use poecal::measurement::{Noise, Quantity};
 use poecal::{forensics, offsets as explanations, report};
 use poecal_lou2009::{self as experiments, report as reproduced};
 use pyo3::prelude::*;
@@ -163,10 +163,10 @@ pub(crate) fn identify(
     let usual = PlannedSession::default();
     let session = PlannedSession {
         kind: kind_word(kind)?,
-        noise: Noise {
-            position_m: position_m.transpose()?.unwrap_or(usual.noise.position_m),
-            rotation_rad: rotation_rad.transpose()?.unwrap_or(usual.noise.rotation_rad),
-        },
+        noise: Noise::new(
+            position_m.transpose()?.unwrap_or(usual.noise[Quantity::Position]),
+            rotation_rad.transpose()?.unwrap_or(usual.noise[Quantity::Rotation]),
+        ),
         device_free: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
     };
     let found = py.detach(|| analysis::identify(&model.robot, &joints.readings, &session)).map_err(raise)?;

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use poecal::Error;
-use poecal::io::measurements::{LARGEST_NUMBER, Quantity, Unit};
+use poecal::io::measurements::{Dimension, LARGEST_NUMBER, Unit};
 use poecal::lie::Pose;
 use poecal::measurement::{
-    Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Set, Source,
+    ByQuantity, Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Set, Source,
 };
 use poecal::robot::{JointKind, Robot};
 use pyo3::prelude::*;
@@ -38,7 +38,7 @@ pub(crate) struct ArrayColumns<'a, 'py> {
 /// The rows.
 pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult<Dataset> {
     let length =
-        Unit::parse(columns.length_unit, Quantity::Length).map_err(|error| named("length_unit", error))?;
+        Unit::parse(columns.length_unit, Dimension::Length).map_err(|error| named("length_unit", error))?;
     let readings = readings(robot, columns, length)?;
     let names = robot.reading_names();
     let m = readings.len() / names.len().max(1);
@@ -67,6 +67,9 @@ pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for (row, (readings, measurement)) in readings.chunks_exact(width.max(1)).zip(seen).enumerate() {
         let target = columns.targets.as_ref().and_then(|targets| targets.get(row)).map(String::as_str);
+        let mut stated = ByQuantity::default();
+        stated[Quantity::Position] = at(&sigma_position_m, row);
+        stated[Quantity::Rotation] = at(&sigma_rotation_rad, row);
         let observation = Observation {
             target: *known.entry(target).or_insert_with(|| data.target_index(target)),
             station: match columns.instruments.as_ref().and_then(|names| names.get(row)) {
@@ -74,8 +77,8 @@ pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult
                 None => 0,
             },
             measurement,
-            sigma_position_m: at(&sigma_position_m, row),
-            sigma_rotation_rad: at(&sigma_rotation_rad, row),
+            from: None,
+            stated,
             set: sets.get(row).copied().flatten(),
             source: Source::default(),
         };
@@ -95,7 +98,7 @@ fn named(argument: &str, error: Error) -> PyErr {
 /// Readings of all rows in SI.
 fn readings(robot: &Robot, columns: &ArrayColumns<'_, '_>, length: Unit) -> PyResult<Vec<f64>> {
     let angle =
-        Unit::parse(columns.angle_unit, Quantity::Angle).map_err(|error| named("angle_unit", error))?;
+        Unit::parse(columns.angle_unit, Dimension::Angle).map_err(|error| named("angle_unit", error))?;
     let names = robot.reading_names();
     let n = names.len();
     let expected = format!("shape (m, {n}): in each row {}", names.join(", "));

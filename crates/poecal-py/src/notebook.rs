@@ -59,9 +59,9 @@ pub(crate) fn calibration(file: &CalibrationFile, warnings: &[String]) -> String
                     @let models = [&set.nominal, &set.registered, &set.calibrated];
                     tr {
                         td { "position, " (name) } td { (set.count) }
-                        @for model in models { td { (format_args!("{:.4} mm", model.position_mm.rms)) } }
+                        @for model in models { td { (format_args!("{:.4} mm", model.position_mm().rms)) } }
                     }
-                    @if let [Some(a), Some(b), Some(c)] = models.map(|model| model.rotation_deg) {
+                    @if let [Some(a), Some(b), Some(c)] = models.map(|model| model.rotation_deg()) {
                         tr {
                             td { "rotation, " (name) } td { (set.count) }
                             @for it in [a, b, c] { td { (format_args!("{:.4}°", it.rms)) } }

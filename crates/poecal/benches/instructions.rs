@@ -18,11 +18,12 @@ fn main() {
     let number = |at: usize| arguments.get(at).and_then(|text| text.parse::<usize>().ok());
     let (rows, repeats) = (number(0).unwrap_or(500), number(1).unwrap_or(0));
     let kind = if arguments.get(2).is_some_and(|word| word == "points") { Kind::Point } else { Kind::Pose };
-    let noise = Noise { position_m: 5e-5, rotation_rad: 5e-4 };
+    let (noise_position_m, noise_rotation_rad) = (5e-5, 5e-4);
+    let noise = Noise::new(noise_position_m, noise_rotation_rad);
     let simulation = Simulation {
         count: rows,
-        noise_position_m: noise.position_m,
-        noise_rotation_rad: noise.rotation_rad,
+        noise_position_m,
+        noise_rotation_rad,
         device_anywhere: false,
         ..Simulation::default()
     };

@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let squares: f64 = found
         .iter()
         .flat_map(|(estimate, _)| session.errors(&rows, estimate))
-        .map(|error| error.position_m.norm_squared())
+        .map(|error| error.position_m().norm_squared())
         .sum();
     let mean = |sum: f64, count: usize| sum / count.max(1) as f64;
     let held_out_mm = 1e3 * mean(squares, found.len() * rows.len()).sqrt();

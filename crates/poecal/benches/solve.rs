@@ -12,7 +12,7 @@ use divan::{Bencher, black_box};
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered, fit_screws};
 use poecal::estimate::{Packed, Session};
 use poecal::forensics::{self, diagnose};
-use poecal::measurement::Measurement;
+use poecal::measurement::{Measurement, Quantity};
 use poecal::parameters::{Parameter, TargetFrame, screw_axes};
 use poecal::problem::{Problem, Refit};
 use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain};
@@ -30,8 +30,8 @@ const ROWS: [usize; 4] = [50, 500, 5_000, 50_000];
 fn simulation(count: usize) -> Simulation {
     Simulation {
         count,
-        noise_position_m: NOISE.position_m,
-        noise_rotation_rad: NOISE.rotation_rad,
+        noise_position_m: NOISE[Quantity::Position],
+        noise_rotation_rad: NOISE[Quantity::Rotation],
         device_anywhere: false,
         ..Simulation::default()
     }

@@ -19,7 +19,7 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
-use poecal::{CalibrationOptions, Kind, Model, Simulation, calibrate};
+use poecal::{CalibrationOptions, Kind, Model, Quantity, Simulation, calibrate};
 
 const ELBOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
 
@@ -36,12 +36,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("registered", held_out.registered),
         ("calibrated", held_out.calibrated),
     ] {
-        let rotation = model.rotation_deg.ok_or("no orientation was measured")?;
-        println!("{name:<12} {:8.4} mm {:8.4} deg (RMS)", model.position_mm.rms, rotation.rms);
+        let rotation = model.rotation_deg().ok_or("no orientation was measured")?;
+        println!("{name:<12} {:8.4} mm {:8.4} deg (RMS)", model.position_mm().rms, rotation.rms);
     }
     println!(
         "noise        {:8.4} mm each component, as the fit estimates it",
-        calibration.noise.position_m * 1e3
+        calibration.noise[Quantity::Position] * 1e3
     );
     println!("verdict      {}", calibration.verdict.level.word());
     for (joint, found) in made.nominal.joints.iter().zip(&calibration.trust.joints) {

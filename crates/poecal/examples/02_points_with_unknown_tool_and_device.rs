@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("registered", held_out.registered),
         ("calibrated", held_out.calibrated),
     ] {
-        println!("{name:<12} {:8.4} mm (RMS) on {} points", model.position_mm.rms, held_out.count);
+        println!("{name:<12} {:8.4} mm (RMS) on {} points", model.position_mm().rms, held_out.count);
     }
     let found = &calibration.identifiability;
     println!("determined   {} of {} unknowns", found.rank, found.parameters);

@@ -48,12 +48,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let calibration = calibrate(&nominal, &made.data, &options)?;
     let judgement =
         CalibrationFile::new(&calibration, &made.data, Inputs::default()).judge(&others, false, false)?;
-    let error = judgement.calibrated.position_mm;
+    let error = judgement.calibrated.position_mm();
     println!(
         "{} other points: error {:.4} mm (RMS), {:.4} mm at most",
         judgement.count, error.rms, error.max
     );
-    let kept = judgement.promised.ok_or("a calibration has bounds")?.position_mm;
+    let kept = judgement.promised.ok_or("a calibration has bounds")?.position_mm();
     println!(
         "expected {:.4} mm with noise; {:.1} % are inside their 95 % bounds",
         kept.expected_rms,

@@ -93,6 +93,7 @@ pub mod text;
 mod threads;
 #[cfg_attr(doc, doc(hidden))]
 pub mod uncertainty;
+mod unit;
 
 pub use analysis::{Direction, Foresight, Identifiability, PlannedSession, identify};
 pub use calibration::{
@@ -107,7 +108,9 @@ pub use io::model::{Model, ModelFormat, ModelSource};
 pub use io::predictions::{Predicted, PredictionFrame, predicted};
 pub use io::residuals::Residuals;
 pub use io::urdf::ChainSelection;
-pub use measurement::{Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Set};
+pub use measurement::{
+    Dataset, Measured, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Quantity, Set,
+};
 pub use report::{calibration_page, summary};
 pub use robot::{Joint, JointKind, Limits, Reading, Robot, Tolerance};
 pub use simulate::{Kind, Simulated, Simulation};
@@ -115,7 +118,11 @@ pub use simulate::{Kind, Simulated, Simulation};
 #[doc(hidden)]
 pub use error::nearest;
 #[doc(hidden)]
+pub use measurement::ByQuantity;
+#[doc(hidden)]
 pub use threads::MOST_THREADS;
+#[doc(hidden)]
+pub use unit::Unit;
 
 /// The example of the README is compiled with the tests.
 #[cfg(doctest)]

@@ -5,7 +5,7 @@ use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::measurements;
 use poecal::io::model::Model;
 use poecal::io::named_files::refuse_repeats;
-use poecal::measurement::Noise;
+use poecal::measurement::{Noise, Quantity};
 use poecal::{Result, report};
 
 use crate::DONE;
@@ -25,10 +25,10 @@ pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     let usual = PlannedSession::default();
     let session = PlannedSession {
         kind: arguments.kind,
-        noise: Noise {
-            position_m: arguments.sigma_position.unwrap_or(usual.noise.position_m),
-            rotation_rad: arguments.sigma_rotation.unwrap_or(usual.noise.rotation_rad),
-        },
+        noise: Noise::new(
+            arguments.sigma_position.unwrap_or(usual.noise[Quantity::Position]),
+            arguments.sigma_rotation.unwrap_or(usual.noise[Quantity::Rotation]),
+        ),
         device_free: arguments.frame == DeviceFrameKnowledge::Unknown,
     };
     let found = foresee(&model.robot, &readings, &session)?;

@@ -29,8 +29,8 @@ fn calibrate_writes_its_folder_and_tells_three_models() {
     let held_out = calibration(&folder, "poecal-out").accuracy.held_out.unwrap();
     println!("held out, calibrated: {:?}", held_out.calibrated);
     // Simulated noise: 0.05 mm and 0.01 degrees a component.
-    assert!(held_out.calibrated.position_mm.rms < 0.2 && held_out.nominal.position_mm.rms > 5.0);
-    assert!(held_out.calibrated.rotation_deg.unwrap().rms < 0.04);
+    assert!(held_out.calibrated.position_mm().rms < 0.2 && held_out.nominal.position_mm().rms > 5.0);
+    assert!(held_out.calibrated.rotation_deg().unwrap().rms < 0.04);
 }
 
 /// A URDF without its attributes `xyz` and `rpy`.

@@ -94,7 +94,7 @@ fn filled_project_calibrates(model: &str, text: &str, chain: &str, measure: &str
     });
     let file = calibration(&folder, "poecal-out");
     let held_out = file.accuracy.held_out.unwrap();
-    let (before, after) = (held_out.registered.position_mm.rms, held_out.calibrated.position_mm.rms);
+    let (before, after) = (held_out.registered.position_mm().rms, held_out.calibrated.position_mm().rms);
     println!(
         "{model} {measure}: {before:.2} mm registered, {after:.4} mm calibrated, verdict {:?}",
         file.verdict.unwrap().level

@@ -41,7 +41,7 @@ fn each_file_or_instrument_has_a_frame_of_its_own() {
     folder.done("calibrate robot.urdf measurements.csv --out one");
     folder.done("calibrate robot.urdf both.csv --out named");
     folder.done("calibrate robot.urdf monday.csv tuesday.csv --frames per-file --out files");
-    let rms = |name: &str| calibration(&folder, name).accuracy.held_out.unwrap().calibrated.position_mm.rms;
+    let rms = |name: &str| calibration(&folder, name).accuracy.held_out.unwrap().calibrated.position_mm().rms;
     assert!(rms("named") < 1.5 * rms("one"), "{} {}", rms("named"), rms("one"));
     assert!((rms("named") - rms("files")).abs() < 1e-6, "{} {}", rms("named"), rms("files"));
     assert!(calibration(&folder, "one").stations.is_empty());

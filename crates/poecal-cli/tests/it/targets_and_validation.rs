@@ -57,7 +57,7 @@ fn named_targets_are_predicted_by_name() {
 fn validation_judges_other_sessions() {
     let folder = session(Kind::Pose);
     folder.done("calibrate robot.urdf measurements.csv");
-    let own_rms = calibration(&folder, "poecal-out").accuracy.held_out.unwrap().calibrated.position_mm.rms;
+    let own_rms = calibration(&folder, "poecal-out").accuracy.held_out.unwrap().calibrated.position_mm().rms;
     let json = |arguments: &str| -> serde_json::Value {
         serde_json::from_str(
             &folder.done(&format!("validate poecal-out/calibration.json {arguments} --json")),

@@ -1,7 +1,7 @@
 //! The formulations of lou2009 side by side: what each finds, and where they part.
 
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
-use poecal::measurement::Noise;
+use poecal::measurement::{Noise, Quantity};
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulated, Simulation, elbow, gantry, random_chain, scara, seven_axis};
 use poecal_lou2009::{Formulation, Method, Residual, formulated};
@@ -15,8 +15,8 @@ fn robots() -> Vec<Robot> {
 
 fn session(robot: &Robot, kind: Kind, noise: Noise, device_anywhere: bool) -> Simulated {
     let simulation = Simulation {
-        noise_position_m: noise.position_m,
-        noise_rotation_rad: noise.rotation_rad,
+        noise_position_m: noise[Quantity::Position],
+        noise_rotation_rad: noise[Quantity::Rotation],
         count: 90,
         device_anywhere,
         ..Simulation::default()
@@ -33,12 +33,12 @@ fn options(made: &Simulated, way: Formulation) -> CalibrationOptions {
 
 /// Largest held-out position error, millimetres.
 fn worst_mm(calibration: &Calibration) -> f64 {
-    calibration.accuracy.held_out.unwrap().calibrated.position_mm.max
+    calibration.accuracy.held_out.unwrap().calibrated.position_mm().max
 }
 
 #[test]
 fn every_formulation_finds_the_robot_without_noise() {
-    let none = Noise { position_m: 0.0, rotation_rad: 0.0 };
+    let none = Noise::new(0.0, 0.0);
     for robot in robots() {
         for kind in [Kind::Pose, Kind::Point] {
             for anywhere in [false, true] {
@@ -63,7 +63,7 @@ fn every_formulation_finds_the_robot_without_noise() {
 
 #[test]
 fn offsets_of_the_joints_are_found_without_being_unknowns() {
-    let none = Noise { position_m: 0.0, rotation_rad: 0.0 };
+    let none = Noise::new(0.0, 0.0);
     for robot in robots() {
         let mut made = session(&robot, Kind::Pose, none, false);
         let offsets: Vec<f64> =
@@ -89,7 +89,7 @@ fn offsets_of_the_joints_are_found_without_being_unknowns() {
 /// With noise, the adjoint forms end at one optimum by either method; free screws, normalised after each step, do not.
 #[test]
 fn formulations_part_with_noise() {
-    let noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
+    let noise = Noise::new(5e-5, 2e-4);
     let made = session(&elbow(), Kind::Point, noise, false);
     let fit = |formulation, method| {
         let mut options = options(&made, formulation);
@@ -98,7 +98,7 @@ fn formulations_part_with_noise() {
         options.tolerance = None;
         options.formulation = formulated(formulation, Residual::Tool, method);
         options.solver.decrement = 1e-14;
-        calibrate(&made.nominal, &made.data, &options).unwrap().accuracy.training.calibrated.position_mm.rms
+        calibrate(&made.nominal, &made.data, &options).unwrap().accuracy.training.calibrated.position_mm().rms
     };
     let best = fit(Formulation::Adjoint, Method::LevenbergMarquardt);
     let others = [
@@ -116,19 +116,19 @@ fn formulations_part_with_noise() {
 /// The residual of the paper finds the same robot without noise, and a worse one with it.
 #[test]
 fn spatial_residual_costs_accuracy() {
-    let exact = session(&elbow(), Kind::Pose, Noise { position_m: 0.0, rotation_rad: 0.0 }, true);
+    let exact = session(&elbow(), Kind::Pose, Noise::new(0.0, 0.0), true);
     let with = |residual| formulated(Formulation::Adjoint, residual, Method::LevenbergMarquardt);
     let spatial =
         CalibrationOptions { formulation: with(Residual::Spatial), ..CalibrationOptions::default() };
     let found = calibrate(&exact.nominal, &exact.data, &spatial).unwrap();
     println!("noise-free {:.1e} mm", worst_mm(&found));
     assert!(worst_mm(&found) < EXACT_MM);
-    let noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
+    let noise = Noise::new(5e-5, 2e-4);
     let (mut with_spatial, mut with_tool) = (0.0, 0.0);
     for seed in 0..20 {
         let simulation = Simulation {
-            noise_position_m: noise.position_m,
-            noise_rotation_rad: noise.rotation_rad,
+            noise_position_m: noise[Quantity::Position],
+            noise_rotation_rad: noise[Quantity::Rotation],
             count: 60,
             seed,
             device_anywhere: false,
@@ -140,8 +140,8 @@ fn spatial_residual_costs_accuracy() {
             let options = CalibrationOptions {
                 frame: DeviceFrameKnowledge::Base,
                 formulation: with(residual),
-                sigma_position_m: Some(noise.position_m),
-                sigma_rotation_rad: Some(noise.rotation_rad),
+                sigma_position_m: Some(noise[Quantity::Position]),
+                sigma_rotation_rad: Some(noise[Quantity::Rotation]),
                 held_out: 0.0,
                 ..CalibrationOptions::default()
             };

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
 use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
-use poecal::parameters::{JointOffset, Parameter, ScrewAxis, TargetFrame};
+use poecal::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis, TargetFrame};
 use poecal::problem::Problem;
 use poecal::robot::{Joint, Robot};
 use poecal::solve::LeastSquares as _;
@@ -17,7 +17,7 @@ const RELATIVE: f64 = 1e-6;
 /// Rounding of one whitened residual of order one, which differences magnify by the inverse of their step.
 const ROUNDING: f64 = 2e-15;
 /// Different for position and rotation, so that a mix-up shows.
-const NOISE: Noise = Noise { position_m: 0.5, rotation_rad: 0.8 };
+const NOISE: Noise = Noise::new(0.5, 0.8);
 const LENGTH_M: f64 = 0.7;
 
 fn robot() -> Robot {
@@ -138,4 +138,40 @@ fn jacobians_agree_with_differences() {
 fn problem_keeps(problem: &Problem<'_>, kept: &[f64], place: usize) -> bool {
     let own = problem.layout().parameters().flat_map(|(_, places)| places);
     own.zip(kept).any(|(&(other, _), &kept)| other == place && kept != 0.0)
+}
+
+/// The kernels take the paper's residual as any function of the target's pose.
+#[test]
+fn the_kernels_sum_it_as_its_formulas_do() {
+    let simulation = poecal::Simulation { count: 60, ..poecal::Simulation::default() };
+    for robot in [poecal::simulate::elbow(), poecal::simulate::gantry()] {
+        let mut made = simulation.run(&robot, poecal::Kind::Pose).unwrap();
+        made.data.write_poses_by(Some(&poecal_lou2009::Spatial));
+        let packed = poecal::estimate::Packed::of(&robot, &made.data);
+        let seen = poecal::estimate::Session::new(&robot, &made.data, &packed, true);
+        let mut free =
+            vec![Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::new(0.3, 0.1, 0.2) })];
+        free.extend(poecal::parameters::screw_axes(
+            &robot.joints.iter().map(|it| it.kind).collect::<Vec<_>>(),
+        ));
+        free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
+        let noise = Noise::new(5e-5, 2e-4);
+        let problem = Problem::new(seen, made.data.all_rows(), free, noise);
+        let estimate = Estimate::new(&robot, vec![robot.home], made.device_from_base);
+        assert!(problem.is_served(&estimate));
+        let (fast, rows) = (problem.normal(&estimate), problem.normal_row_by_row(&estimate));
+        let n = problem.dim();
+        let size = |k: usize| rows.gram[k * n + k].sqrt();
+        let mut worst = (fast.cost - rows.cost).abs() / rows.cost;
+        for a in 0..n {
+            let length = (2.0 * rows.cost).sqrt();
+            worst = worst.max((fast.gradient[a] - rows.gradient[a]).abs() / (size(a) * length));
+            for b in a..n {
+                worst = worst.max((fast.gram[a * n + b] - rows.gram[a * n + b]).abs() / (size(a) * size(b)));
+            }
+        }
+        println!("{}: {worst:.1e}", robot.name);
+        // Rounding of sums of sixty rows of six numbers, in units of their own size.
+        assert!(worst < 1e-11);
+    }
 }

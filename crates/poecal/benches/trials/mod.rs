@@ -1,18 +1,18 @@
 //! What the benchmarks of Monte Carlo share: noise, and measurements with it.
 
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement, Noise, PoseMeasurement, Quantity};
 use poecal::simulate::random;
 use rand_chacha::ChaCha8Rng;
 
 /// Of the workload: 0.05 mm and 0.0005 rad.
-pub(crate) const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 5e-4 };
+pub(crate) const NOISE: Noise = Noise::new(5e-5, 5e-4);
 
 /// Measurements with further noise.
 pub(crate) fn disturbed(data: &Dataset, generator: &mut ChaCha8Rng) -> Vec<Measurement> {
     let mut disturb = |seen: &Measurement| {
-        let shift = random::normal_vector(generator) * NOISE.position_m;
-        let turn = random::normal_vector(generator) * NOISE.rotation_rad;
+        let shift = random::normal_vector(generator) * NOISE[Quantity::Position];
+        let turn = random::normal_vector(generator) * NOISE[Quantity::Rotation];
         let seen = seen.pose();
         let pose = Pose::new(rotation::exp(&turn) * seen.rotation, seen.translation + shift);
         Measurement::Pose(PoseMeasurement { pose })

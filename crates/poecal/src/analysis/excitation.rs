@@ -151,7 +151,7 @@ impl Excitation {
             let place: Vec<i64> = values.map(|(joint, value)| (value / step(joint)).round() as i64).collect();
             all.insert(place.clone());
             if of_targets.insert((observation.target, place)) {
-                self.numbers += observation.measurement.residual_model().dim();
+                self.numbers += observation.measurement.observe().dim();
                 self.seen[observation.target] += 1;
             }
         }

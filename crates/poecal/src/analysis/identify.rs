@@ -45,7 +45,7 @@ pub struct PlannedSession {
 impl Default for PlannedSession {
     /// Poses with 0.05 mm and 0.01°, device frame unknown.
     fn default() -> Self {
-        let noise = Noise { position_m: 5e-5, rotation_rad: 0.01_f64.to_radians() };
+        let noise = Noise::new(5e-5, 0.01_f64.to_radians());
         PlannedSession { kind: Kind::Pose, noise, device_free: true }
     }
 }

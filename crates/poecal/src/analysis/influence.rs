@@ -79,7 +79,7 @@ mod tests {
     use crate::estimate::{Packed, Session};
     use crate::lanes::simd_levels;
     use crate::lie::{Pose, rotation};
-    use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement};
+    use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, Quantity};
     use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
     use crate::robot::Robot;
     use crate::simulate::{Kind, Simulation, elbow, gantry, scara};
@@ -121,7 +121,7 @@ mod tests {
         let mut free = screw_axes(estimate.kinds());
         free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
         let rows = data.all_rows();
-        let noise = Noise { position_m: 1e-3, rotation_rad: 1e-2 };
+        let noise = Noise::new(1e-3, 1e-2);
         let session = Session::new(robot, data, &packed, true).with_length(0.5);
         let problem = Problem::new(session, rows.clone(), free, noise);
         let normal = problem.normal(&estimate);
@@ -154,7 +154,7 @@ mod tests {
         data.targets = vec![Some("a".to_owned()), Some("b".to_owned())];
         for (row, observation) in data.observations.iter_mut().enumerate() {
             observation.target = row % 2;
-            observation.sigma_position_m = (row % 4 == 0).then_some(1e-4 * (1 + row % 5) as f64);
+            observation.stated[Quantity::Position] = (row % 4 == 0).then_some(1e-4 * (1 + row % 5) as f64);
             if let Measurement::Pose(seen) = &mut observation.measurement {
                 let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turned_rad));
                 seen.pose.rotation = turn * seen.pose.rotation;
@@ -179,7 +179,7 @@ mod tests {
             free.push(Parameter::TargetPlace(TargetPlace { target: 0 }));
             free.push(Parameter::TargetFrame(TargetFrame { target: 1 }));
             let rows = data.all_rows();
-            let noise = Noise { position_m: 1e-3, rotation_rad: 1e-2 };
+            let noise = Noise::new(1e-3, 1e-2);
             let session = Session::new(robot, &data, &packed, true).with_length(0.5);
             let problem = Problem::new(session, rows.clone(), free, noise);
             let mut expected = Vec::new();

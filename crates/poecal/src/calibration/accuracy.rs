@@ -4,6 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::estimate::{Estimate, RowError, Session};
+use crate::measurement::Measured;
+use crate::unit::Unit;
 
 /// The three models of every result, as estimates.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +25,7 @@ pub struct Models {
 /// let s = Statistic::of(vec![3.0, 4.0]).expect("two values");
 /// assert_eq!((s.mean, s.rms, s.max), (3.5, 12.5_f64.sqrt(), 4.0));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Statistic {
     /// Mean.
     pub mean: f64,
@@ -56,22 +58,25 @@ impl Statistic {
     }
 }
 
-/// Errors of one model on one set of rows.
+/// Errors of one model on one set of rows, of each quantity: distance from measured to predicted position (millimetres), angle from measured
+/// to predicted orientation (degrees).
 ///
 /// ```
 /// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
 /// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let calibrated = calibration.accuracy.training.calibrated;
-/// assert!(calibrated.position_mm.rms < 0.1 && calibrated.rotation_deg.is_some());
+/// assert!(calibrated.position_mm().rms < 0.1 && calibrated.rotation_deg().is_some());
 /// # Ok::<(), poecal::Error>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ModelAccuracy {
-    /// Distance from measured to predicted position, millimetres.
-    pub position_mm: Statistic,
-    /// Angle from measured to predicted orientation, degrees; null where no orientation was measured.
-    pub rotation_deg: Option<Statistic>,
+pub type ModelAccuracy = Measured<Statistic>;
+
+impl Measured<Statistic> {
+    /// Root mean square of the leading quantity, metres, if it is a length.
+    pub(super) fn leading_m(&self) -> f64 {
+        let length = self.leading().filter(|(quantity, _)| quantity.unit() == Unit::Metre);
+        length.map_or(0.0, |(_, found)| 1e-3 * found.rms)
+    }
 }
 
 /// Errors of the three models on one set of rows.
@@ -81,7 +86,7 @@ pub struct ModelAccuracy {
 /// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
 /// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let fitted = calibration.accuracy.training;
-/// assert!(fitted.calibrated.position_mm.rms < fitted.registered.position_mm.rms);
+/// assert!(fitted.calibrated.position_mm().rms < fitted.registered.position_mm().rms);
 /// # Ok::<(), poecal::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -128,12 +133,8 @@ pub fn set_accuracy(session: &Session<'_>, rows: &[u32], models: &Models) -> Set
 
 /// Statistics of one model's row errors.
 pub(super) fn model_accuracy(errors: &[RowError]) -> ModelAccuracy {
-    let nothing = Statistic { mean: 0.0, rms: 0.0, p95: 0.0, max: 0.0 };
-    ModelAccuracy {
-        position_mm: Statistic::of(errors.iter().map(|e| e.position_m.norm() * 1e3).collect())
-            .unwrap_or(nothing),
-        rotation_deg: Statistic::of(
-            errors.iter().filter_map(|e| e.rotation_rad.map(|w| w.norm().to_degrees())).collect(),
-        ),
-    }
+    Measured::of(|quantity| {
+        let shown = |length: f64| quantity.unit().shown(length);
+        Statistic::of(errors.iter().filter_map(|error| error.length(quantity).map(shown)).collect())
+    })
 }

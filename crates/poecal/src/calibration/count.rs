@@ -37,7 +37,7 @@ pub(super) fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Re
         ));
     }
     let given: usize =
-        fit_rows.iter().map(|&row| data.observations[row as usize].measurement.residual_model().dim()).sum();
+        fit_rows.iter().map(|&row| data.observations[row as usize].measurement.observe().dim()).sum();
     if given < needed {
         return Err(Error::new(
             ErrorKind::Problem,

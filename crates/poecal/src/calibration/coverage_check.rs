@@ -5,10 +5,11 @@ use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy};
 use crate::analysis::{JointCoverage, inside};
-use crate::estimate::{Estimate, RowError, Session};
-use crate::measurement::Noise;
+use crate::estimate::{Chain, Estimate, Linkage, RowError, Session};
+use crate::measurement::{ByQuantity, Measured, NUMBERS, Noise, Quantity};
 use crate::parameters::Parameter;
-use crate::uncertainty::{Discrepancy, Quantile, Refit, Uncertainty};
+use crate::uncertainty::{Discrepancy, PredictedError, Quantile, Refit, Uncertainty};
+use crate::unit::Unit;
 
 /// Floor of the scatter of exact data: rounding.
 pub(super) const ROUNDING: f64 = 1e-12;
@@ -37,22 +38,22 @@ pub struct PredictedUncertainty<'a> {
 /// Errors compared with their predicted uncertainty (theory.md §9 (40), *Coverage*).
 ///
 /// ```
-/// use poecal::calibration::{CoverageCheck, PartCoverage};
+/// use poecal::{Measured, Quantity, calibration::{CoverageCheck, PartCoverage}};
 /// let position = PartCoverage { expected_rms: 0.67, inside_bound95: 0.97 };
-/// let kept = CoverageCheck { position_mm: position, rotation_deg: None, inside_sampled_range: 1.0 };
+/// let parts = Measured::of(|quantity| (quantity == Quantity::Position).then_some(position));
+/// let kept = CoverageCheck { parts, inside_sampled_range: 1.0 };
 /// assert!(kept.least_inside() > 0.95);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CoverageCheck {
-    /// Of positions, millimetres.
-    pub position_mm: PartCoverage,
-    /// Of rotations, degrees, if orientation was measured and calibrated.
-    pub rotation_deg: Option<PartCoverage>,
+    /// Of each measured quantity, millimetres or degrees; of rotations if they were calibrated too.
+    #[serde(flatten)]
+    pub parts: Measured<PartCoverage>,
     /// Share of the configurations with every joint inside the sampled range.
     pub inside_sampled_range: f64,
 }
 
-/// The same for positions or rotations.
+/// The same for one quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PartCoverage {
     /// Expected root mean square error between measured and predicted, measurement noise included.
@@ -62,15 +63,33 @@ pub struct PartCoverage {
 }
 
 impl CoverageCheck {
-    /// The smaller share of errors within their bounds, of positions and rotations.
+    /// Of positions, millimetres.
+    #[must_use]
+    pub fn position_mm(&self) -> PartCoverage {
+        self.parts.position_mm()
+    }
+
+    /// Of rotations, degrees, if orientation was measured.
+    #[must_use]
+    pub fn rotation_deg(&self) -> Option<PartCoverage> {
+        self.parts.rotation_deg()
+    }
+
+    /// The smallest share of errors within their bounds, of all quantities.
     #[must_use]
     pub fn least_inside(&self) -> f64 {
-        let rotation = self.rotation_deg.map_or(1.0, |part| part.inside_bound95);
-        self.position_mm.inside_bound95.min(rotation)
+        self.parts.iter().map(|(_, part)| part.inside_bound95).fold(1.0, f64::min)
     }
 }
 
-#[derive(Default)]
+impl Default for PartCoverage {
+    /// Of no errors at all.
+    fn default() -> Self {
+        PartCoverage { expected_rms: 0.0, inside_bound95: 1.0 }
+    }
+}
+
+#[derive(Clone, Copy, Default)]
 struct CoverageSums {
     squares: f64,
     within: usize,
@@ -78,25 +97,31 @@ struct CoverageSums {
 }
 
 impl CoverageSums {
-    fn add(&mut self, predicted: &Matrix3<f64>, quantile: &Quantile, error: &Vector3<f64>) {
+    fn add(&mut self, predicted: &Matrix3<f64>, quantile: &Quantile, length: f64) {
         self.squares += predicted.trace();
-        self.within += usize::from(error.norm() <= quantile.bound(predicted));
+        self.within += usize::from(length <= quantile.bound(predicted));
         self.count += 1;
     }
 
-    fn part(&self, unit: f64) -> Option<PartCoverage> {
+    fn part(&self, unit: Unit) -> Option<PartCoverage> {
         let count = self.count as f64;
         (self.count > 0).then(|| PartCoverage {
-            expected_rms: unit * (self.squares / count).sqrt(),
+            expected_rms: unit.shown(1.0) * (self.squares / count).sqrt(),
             inside_bound95: self.within as f64 / count,
         })
     }
 }
 
 impl PredictedUncertainty<'_> {
-    /// Compares the errors of some rows with their bounds: theory.md §9 (40), *Coverage*.
+    /// Compares the errors of some rows, by the predictions of an estimate, with their bounds: theory.md §9 (40), *Coverage*.
     #[must_use]
-    pub fn check(&self, session: &Session<'_>, rows: &[u32], errors: &[RowError]) -> CoverageCheck {
+    pub fn check(
+        &self,
+        session: &Session<'_>,
+        estimate: &Estimate,
+        rows: &[u32],
+        errors: &[RowError],
+    ) -> CoverageCheck {
         let Session { robot, data, packed, .. } = *session;
         let target = |row: &u32| data.observations[*row as usize].target;
         let places = rows
@@ -104,44 +129,81 @@ impl PredictedUncertainty<'_> {
             .map(|row| (*row as usize, self.targets.get(target(row)).copied().unwrap_or_default()));
         let predicted = self.uncertainty.predictions_of(places, packed);
         // The model error contains the noise, unless the two were separated.
-        let Noise { position_m, rotation_rad } = self.uncertainty.discrepancy.noise;
-        let (mut position, mut rotation) = (CoverageSums::default(), CoverageSums::default());
-        let observations = rows.iter().map(|&row| &data.observations[row as usize]);
-        for ((predicted, error), observation) in predicted.into_iter().zip(errors).zip(observations) {
-            let own = |sigma: Option<f64>, usual: f64| Matrix3::identity() * sigma.unwrap_or(usual).powi(2);
-            position.add(
-                &(predicted.position + own(observation.sigma_position_m, position_m)),
-                &predicted.quantiles[0],
-                &error.position_m,
-            );
-            if let Some(turn) = error.rotation_rad {
-                rotation.add(
-                    &(predicted.rotation + own(observation.sigma_rotation_rad, rotation_rad)),
-                    &predicted.quantiles[1],
-                    &turn,
-                );
+        let noise = self.uncertainty.discrepancy.noise;
+        let mut sums: ByQuantity<CoverageSums> = ByQuantity::default();
+        let mut observed =
+            Observed { session, estimate, linkage: Linkage::new(estimate), chain: Chain::default() };
+        for ((predicted, error), &row) in predicted.into_iter().zip(errors).zip(rows) {
+            let own = session.observation(row).noise_or(noise);
+            for (quantity, sums) in sums.values_mut() {
+                let Some(length) = error.length(quantity) else { continue };
+                let of_robot = observed.covariance(&predicted, row, quantity);
+                // As many components as there are numbers.
+                let mut of_noise = Matrix3::zeros();
+                (0..error.part(quantity).len()).for_each(|k| of_noise[(k, k)] = own[quantity].powi(2));
+                sums.add(&(of_robot + of_noise), &predicted.quantiles[quantity], length);
             }
         }
         let is_inside = |row: &&u32| inside(robot, self.coverage, data.readings(**row as usize));
         let sampled = rows.iter().filter(is_inside).count();
         CoverageCheck {
-            position_mm: position
-                .part(1e3)
-                .unwrap_or(PartCoverage { expected_rms: 0.0, inside_bound95: 1.0 }),
-            rotation_deg: rotation.part(1f64.to_degrees()),
+            parts: Measured::of(|quantity| sums[quantity].part(quantity.unit())),
             inside_sampled_range: sampled as f64 / rows.len().max(1) as f64,
         }
+    }
+}
+
+/// What rows show of their targets' uncertainty.
+struct Observed<'a> {
+    session: &'a Session<'a>,
+    estimate: &'a Estimate,
+    linkage: Linkage,
+    chain: Chain,
+}
+
+impl Observed<'_> {
+    /// Covariance of a row's numbers of one quantity: the target's own where its position or orientation was measured, `S P Sᵀ` of any other
+    /// function, in the axes of the row's device.
+    fn covariance(&mut self, predicted: &PredictedError, row: u32, quantity: Quantity) -> Matrix3<f64> {
+        let observation = self.session.observation(row);
+        let seen = observation.measurement.observe();
+        match quantity {
+            Quantity::Position if seen.position().is_some() => return predicted.position,
+            Quantity::Rotation if seen.orientation().is_some() => return predicted.rotation,
+            Quantity::Position | Quantity::Rotation => {}
+        }
+        let mut sensitivity = [[0.0; 6]; NUMBERS];
+        self.chain.evaluate(&self.linkage, self.session.packed, row as usize, observation);
+        seen.sensitivity(&self.chain.target, &mut sensitivity);
+        let own = self.estimate.device(observation.station).rotation;
+        let turn = own * self.estimate.device_from_base.rotation.transpose();
+        let [place, rotation] =
+            [predicted.position, predicted.rotation].map(|it| turn * it * turn.transpose());
+        let rows =
+            sensitivity.iter().zip(seen.channels()).filter(|(_, channel)| channel.quantity == quantity);
+        let rows: Vec<[Vector3<f64>; 2]> = rows
+            .take(3)
+            .map(|([a, b, c, p, q, r], _)| [Vector3::new(*a, *b, *c), Vector3::new(*p, *q, *r)])
+            .collect();
+        let mut covariance = Matrix3::zeros();
+        for (i, [v, w]) in rows.iter().enumerate() {
+            for (j, [moved, turned]) in rows.iter().enumerate() {
+                covariance[(i, j)] = v.dot(&(place * moved)) + w.dot(&(rotation * turned));
+            }
+        }
+        covariance
     }
 }
 
 /// Errors of the rows inside the sampled range.
 ///
 /// ```
-/// use poecal::calibration::{InSampledRange, CoverageCheck, PartCoverage, ModelAccuracy, Statistic};
-/// let position_mm = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
+/// use poecal::{Measured, Quantity, calibration::{InSampledRange, CoverageCheck, PartCoverage, Statistic}};
+/// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let part = PartCoverage { expected_rms: 0.1, inside_bound95: 0.95 };
-/// let promised = CoverageCheck { position_mm: part, rotation_deg: None, inside_sampled_range: 1.0 };
-/// let calibrated = ModelAccuracy { position_mm, rotation_deg: None };
+/// let parts = Measured::of(|quantity| (quantity == Quantity::Position).then_some(part));
+/// let promised = CoverageCheck { parts, inside_sampled_range: 1.0 };
+/// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// assert!(InSampledRange { count: 20, calibrated, promised }.promised.least_inside() > 0.9);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -178,13 +240,13 @@ pub(super) fn coverage_checks(
         None => *predicted,
     };
     let mut rows = data.all_rows();
-    let all = predicted.check(&seen.session, &rows, &seen.errors);
+    let all = predicted.check(&seen.session, &seen.estimate, &rows, &seen.errors);
     rows.retain(|&row| inside(robot, predicted.coverage, data.readings(row as usize)));
     if rows.is_empty() {
         return Some((all, None));
     }
     let errors: Vec<_> = rows.iter().map(|&row| seen.errors[row as usize]).collect();
-    let promised = predicted.check(&seen.session, &rows, &errors);
+    let promised = predicted.check(&seen.session, &seen.estimate, &rows, &errors);
     let calibrated = model_accuracy(&errors);
     Some((all, Some(InSampledRange { count: rows.len(), calibrated, promised })))
 }
@@ -209,9 +271,5 @@ fn refitted(
 /// Scatter of a row that states no noise: measurement noise and model error.
 fn scatter(predicted: &PredictedUncertainty<'_>) -> Noise {
     let Discrepancy { standard_deviation, noise, .. } = predicted.uncertainty.discrepancy;
-    let both = |robot: f64, instrument: f64| robot.hypot(instrument).max(ROUNDING);
-    Noise {
-        position_m: both(standard_deviation.position_m, noise.position_m),
-        rotation_rad: both(standard_deviation.rotation_rad, noise.rotation_rad),
-    }
+    ByQuantity::from_fn(|quantity| standard_deviation[quantity].hypot(noise[quantity]).max(ROUNDING))
 }

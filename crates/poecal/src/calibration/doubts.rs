@@ -18,7 +18,7 @@ pub(super) fn doubts(
 ) -> Vec<String> {
     let mut doubts = Vec::new();
     let spread_mm = data.spread_m(rows) * 1e3;
-    let error_mm = registered.position_mm.rms;
+    let error_mm = registered.position_mm().rms;
     if error_mm > MISFIT * spread_mm {
         let base = match frame {
             DeviceFrameKnowledge::Base => ", a device that does not stand at the base (--frame base)",
@@ -30,7 +30,7 @@ pub(super) fn doubts(
             100.0 * error_mm / spread_mm
         ));
     }
-    if let Some(rotation) = registered.rotation_deg.filter(|rotation| rotation.rms > TURNED_DEG) {
+    if let Some(rotation) = registered.rotation_deg().filter(|rotation| rotation.rms > TURNED_DEG) {
         doubts.push(format!(
             "with nominal screws the orientation error is {:.0} deg (RMS): check the quaternion's order (x, y, z, w), \
              inverted poses, or another Euler convention",

@@ -9,9 +9,9 @@ use super::{CalibrationOptions, Formulation, Minimum, NoiseSource, delivered, es
 use crate::analysis::effective_unknowns;
 use crate::distributions::is_within_band;
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Estimate, Session, position_rms_m, sample_rows};
+use crate::estimate::{Estimate, Session, rms_m, sample_rows};
 use crate::gauge;
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{Dataset, Noise, Quantity};
 use crate::parameters::{DeviceFrame, Parameter, screw_axes};
 use crate::problem::{Layout, Prior, Problem};
 use crate::simulate::random;
@@ -131,7 +131,7 @@ impl Task<'_> {
     /// The prior's weight in the first fit. An estimated noise is then mostly error of the screws, so the prior counts as beside the usual
     /// error of gears and links.
     pub(super) fn with_first_prior_weight(&self, noise: Noise, source: NoiseSource) -> Self {
-        let usual = 0.1 * SUSPICIOUS * 3.0 * self.session.length_m / noise.position_m;
+        let usual = 0.1 * SUSPICIOUS * 3.0 * self.session.length_m / noise.of_lengths();
         let is_open = source == NoiseSource::Estimated;
         self.with_prior_weight(if is_open { (usual * usual).min(1.0) } else { 1.0 })
     }
@@ -147,7 +147,7 @@ impl Task<'_> {
     pub(super) fn effective_unknowns(&self, found: &OngoingFit) -> f64 {
         let unknowns = found.normal.dim();
         let Some((prior, weight)) = self.prior else { return unknowns as f64 };
-        let layout = self.problem(&found.estimate, Noise { position_m: 1.0, rotation_rad: 1.0 });
+        let layout = self.problem(&found.estimate, Noise::new(1.0, 1.0));
         let mut believed = Normal::new(unknowns);
         prior.add(&found.estimate, layout.layout(), weight, &mut believed);
         unknowns as f64 - effective_unknowns(&found.normal, &believed)
@@ -197,8 +197,11 @@ impl Task<'_> {
             }
             // The axes' deviations estimate how good the nominal model is.
             weight /= task.prior.map_or(1.0, |(prior, _)| prior.looseness(&found.estimate));
-            let change =
-                (noise.position_m * before.rotation_rad / (noise.rotation_rad * before.position_m)).ln();
+            // Change of the ratios of noises: of the largest to the smallest change of any of them.
+            let is_used = |quantity| self.session.data.has(quantity) || quantity <= Quantity::Rotation;
+            let used = || noise.iter().filter(|(quantity, _)| is_used(*quantity));
+            let logs = || used().map(|(quantity, sigma)| (sigma / before[quantity]).ln());
+            let change = logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min);
             let weighed = task.prior.is_none_or(|(_, counted)| (weight / counted).ln().abs() < 0.5);
             let fits = source != NoiseSource::Estimated
                 || noise == before
@@ -223,7 +226,7 @@ impl Task<'_> {
         if self.rows.len() > FEW || !self.rows.iter().any(turns) {
             return None;
         }
-        let rotations = Noise { position_m: UNMEASURED_M, ..noise };
+        let rotations = noise.without_lengths(UNMEASURED_M);
         let seen = Task { prior: None, ..*self };
         let part = seen.problem(&found.estimate, rotations).normal(&found.estimate);
         Some(effective_unknowns(&found.normal, &part))
@@ -330,12 +333,12 @@ impl Task<'_> {
 
     /// Root mean square distance from prediction to measurement, metres.
     fn position_rms(&self, estimate: &Estimate) -> f64 {
-        position_rms_m(&self.session.errors(self.rows, estimate))
+        rms_m(&self.session.errors(self.rows, estimate))
     }
 
     /// The estimate with every axis tilted by about `scale` radians and shifted by as much of the arm's length.
     fn scattered(&self, estimate: &Estimate, scale: f64, generator: &mut ChaCha8Rng) -> Estimate {
-        let layout = self.problem(estimate, Noise { position_m: 1.0, rotation_rad: 1.0 }).layout().clone();
+        let layout = self.problem(estimate, Noise::new(1.0, 1.0)).layout().clone();
         let step: Vec<f64> =
             (0..layout.dim()).map(|_| scale * self.session.length_m * random::normal(generator)).collect();
         layout.retract(estimate, &step)

@@ -170,7 +170,7 @@ fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
         );
         return Err(Error::new(ErrorKind::Problem, message));
     }
-    let given: usize = data.observations.iter().map(|row| row.measurement.residual_model().dim()).sum();
+    let given: usize = data.observations.iter().map(|row| row.measurement.observe().dim()).sum();
     if given > frame + tool {
         return Ok(());
     }
@@ -204,12 +204,12 @@ impl Judgement {
                 Some(_) => "no row lies inside the sampled range".to_owned(),
             });
         };
-        let rotation = kept
-            .rotation_deg
-            .zip(errors.rotation_deg)
-            .map(|(part, found)| ("rotation", part, found.rms, "deg"));
-        let position = ("position", kept.position_mm, errors.position_mm.rms, "mm");
-        std::iter::once(position).chain(rotation).find_map(|(what, part, rms, unit)| {
+        let mut errors = kept
+            .parts
+            .iter()
+            .filter_map(|(quantity, part)| Some((quantity, part, errors.get(quantity)?.rms)));
+        errors.find_map(|(quantity, part, rms)| {
+            let (what, unit) = (quantity.name(), quantity.unit().symbol());
             let PartCoverage { expected_rms, inside_bound95 } = part;
             // Exact data leave only rounding.
             if rms <= ROUNDING * 1e6 {

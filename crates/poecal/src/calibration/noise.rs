@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::CalibrationOptions;
 use crate::estimate::{Estimate, Session};
-use crate::measurement::{Dataset, Noise, Observation};
+use crate::measurement::{ByQuantity, Dataset, Noise, Observation, Quantity};
+use crate::unit::Unit;
 
 /// Source of the noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -28,53 +29,48 @@ const REDUNDANT: f64 = 6.0;
 
 /// The stated noise; otherwise 1 mm and 1 mrad to begin with.
 pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Noise, NoiseSource) {
-    let source = if options.sigma_position_m.is_some() && options.sigma_rotation_rad.is_some() {
+    let by_rows = |row: &Observation| {
+        Quantity::ALL.into_iter().all(|it| !row.measurement.has(it) || row.stated[it].is_some())
+    };
+    let by_option = |quantity: Quantity| options.sigma(quantity).is_some() || !data.has(quantity);
+    let is_given = Quantity::ALL.into_iter().all(by_option);
+    let source = if is_given && options.sigma_position_m.is_some() && options.sigma_rotation_rad.is_some() {
         NoiseSource::Given
-    } else if data.observations.iter().all(|row| {
-        row.sigma_position_m.is_some()
-            && (row.sigma_rotation_rad.is_some() || !row.measurement.sees_orientation())
-    }) {
+    } else if data.observations.iter().all(by_rows) {
         NoiseSource::Rows
-    } else if options.sigma_position_m.is_some()
-        && !data.observations.iter().any(|row| row.measurement.sees_orientation())
-    {
+    } else if is_given {
         NoiseSource::Given
     } else {
         NoiseSource::Estimated
     };
-    let mut noise = Noise { position_m: 1e-3, rotation_rad: 1e-3 };
+    let mut noise = Noise::new(1e-3, 1e-3);
     if source == NoiseSource::Rows {
         // No row uses this; it is the value that users see.
-        let usual = |of: fn(&Observation) -> Option<f64>, other: f64| {
-            let stated: Vec<f64> = data.observations.iter().filter_map(of).collect();
+        for (quantity, noise) in noise.values_mut() {
+            let stated: Vec<f64> = data.observations.iter().filter_map(|row| row.stated[quantity]).collect();
             let squares: f64 = stated.iter().map(|sigma| sigma * sigma).sum();
-            if stated.is_empty() { other } else { (squares / stated.len() as f64).sqrt() }
-        };
-        noise.position_m = usual(|row| row.sigma_position_m, noise.position_m);
-        noise.rotation_rad = usual(|row| row.sigma_rotation_rad, noise.rotation_rad);
+            if !stated.is_empty() {
+                *noise = (squares / stated.len() as f64).sqrt();
+            }
+        }
     }
     (stated(options, noise), source)
 }
 
-/// Whether the noise of positions, and that of rotations, is stated, by the options or by every row.
-pub(super) fn is_stated(data: &Dataset, options: &CalibrationOptions) -> [bool; 2] {
-    let by_rows = |of: fn(&Observation) -> bool| !data.is_empty() && data.observations.iter().all(of);
-    [
-        options.sigma_position_m.is_some() || by_rows(|row| row.sigma_position_m.is_some()),
-        options.sigma_rotation_rad.is_some()
-            || by_rows(|row| row.sigma_rotation_rad.is_some() || !row.measurement.sees_orientation()),
-    ]
+/// Of each quantity, whether its noise is stated, by the options or by every row that has it.
+pub(super) fn is_stated(data: &Dataset, options: &CalibrationOptions) -> ByQuantity<bool> {
+    ByQuantity::from_fn(|quantity| {
+        let by_row = |row: &Observation| row.stated[quantity].is_some() || !row.measurement.has(quantity);
+        options.sigma(quantity).is_some() || !data.is_empty() && data.observations.iter().all(by_row)
+    })
 }
 
 /// Estimated noise, with the parts that the user stated in their place.
 pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
-    Noise {
-        position_m: options.sigma_position_m.unwrap_or(found.position_m),
-        rotation_rad: options.sigma_rotation_rad.unwrap_or(found.rotation_rad),
-    }
+    ByQuantity::from_fn(|quantity| options.sigma(quantity).unwrap_or(found[quantity]))
 }
 
-/// Noise of positions and of rotations from the residuals of an estimate, each variance corrected for the unknowns: theory.md §6 (34). Rows
+/// Noise of each quantity from the residuals of an estimate, each variance corrected for the unknowns: theory.md §6 (34). Rows
 /// that state their noise do not count; a part with few measurements keeps `before`. `None` if the residuals are only rounding.
 #[must_use]
 pub fn estimate_noise(
@@ -86,13 +82,12 @@ pub fn estimate_noise(
     before: Noise,
 ) -> Option<Noise> {
     let squares = session.map_squares(rows, estimate, |_, squares| squares);
-    let (mut position, mut rotation) = (Share::default(), Share::default());
+    let mut shares: ByQuantity<Share> = ByQuantity::default();
     let mut stated = 0;
     for (&row, squares) in rows.iter().zip(squares) {
-        let Observation { sigma_position_m, sigma_rotation_rad, .. } = session.observation(row);
-        let shares = [(&mut position, sigma_position_m), (&mut rotation, sigma_rotation_rad)];
-        for ((squares, count), (share, sigma)) in squares.into_iter().zip(shares) {
-            if sigma.is_some() {
+        for (quantity, share) in shares.values_mut() {
+            let (squares, count) = squares[quantity];
+            if session.observation(row).stated[quantity].is_some() {
                 stated += count;
             } else {
                 share.squares += squares;
@@ -102,26 +97,36 @@ pub fn estimate_noise(
     }
     // Each target's orientation (3 unknowns) is determined by rotations alone; all other unknowns are shared in proportion.
     let turned = 3 * session.data.frames(rows).iter().filter(|&&is_frame| is_frame).count();
-    let total = (position.count + rotation.count + stated) as f64;
+    let total = (shares.iter().map(|(_, share)| share.count).sum::<usize>() + stated) as f64;
     let others = ((unknowns - turned as f64).max(0.0) / (total - turned as f64).max(1.0)).min(1.0);
-    let (position_m, rotation_rad) = match determined_by_rotations {
-        Some(of_rotations) if stated == 0 => {
-            (position.less(unknowns - of_rotations, 0.0), rotation.less(of_rotations, turned as f64))
+    let lengths = shares.iter().filter(|(quantity, _)| quantity.unit() == Unit::Metre);
+    let lengths: usize = lengths.map(|(_, share)| share.count).sum();
+    let angles = total as usize - stated - lengths;
+    let found: ByQuantity<Option<f64>> = ByQuantity::from_fn(|quantity| {
+        let share = &shares[quantity];
+        let of_all = |all: usize| share.count as f64 / all.max(1) as f64;
+        match (determined_by_rotations, quantity.unit()) {
+            (Some(of_angles), Unit::Metre) if stated == 0 => {
+                share.less((unknowns - of_angles) * of_all(lengths), 0.0)
+            }
+            (Some(of_angles), Unit::Radian) if stated == 0 => {
+                share.less(of_angles * of_all(angles), turned as f64)
+            }
+            (_, Unit::Metre) => share.deviation(0, others),
+            (_, Unit::Radian) => share.deviation(turned, others),
         }
-        _ => (position.deviation(0, others), rotation.deviation(turned, others)),
-    };
-    let mut estimated = [position_m, rotation_rad].into_iter().flatten().peekable();
+    });
+    let mut estimated = found.iter().filter_map(|(_, deviation)| *deviation).peekable();
     if estimated.peek().is_some() && estimated.all(|deviation| deviation < ROUNDING) {
         return None;
     }
-    Some(Noise {
-        position_m: position_m.map_or(before.position_m, |deviation| deviation.max(ROUNDING)),
-        rotation_rad: rotation_rad.map_or(before.rotation_rad, |deviation| deviation.max(ROUNDING)),
-    })
+    Some(ByQuantity::from_fn(|quantity| {
+        found[quantity].map_or(before[quantity], |deviation| deviation.max(ROUNDING))
+    }))
 }
 
 /// Residuals of one noise.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 struct Share {
     squares: f64,
     count: usize,

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use crate::measurement::Quantity;
 use crate::uncertainty::{Part, Remainder};
 
 /// Contradiction between residuals and stated noise.
@@ -20,13 +21,8 @@ const IN_TIME: f64 = 0.5;
 
 /// Contradictions between residuals and stated noise, and correlation in time (theory.md §9 (41)).
 pub(super) fn noise_doubts(remainder: &Remainder, lag_one: Option<f64>) -> Vec<NoiseDoubt> {
-    let mut doubts: Vec<NoiseDoubt> = [
-        ("position", &remainder.position, 1e3, "mm"),
-        ("rotation", &remainder.rotation, 1f64.to_degrees(), "deg"),
-    ]
-    .into_iter()
-    .filter_map(|(what, part, unit, name)| of_part(what, part, unit, name))
-    .collect();
+    let parts = remainder.parts.iter();
+    let mut doubts: Vec<NoiseDoubt> = parts.filter_map(|(quantity, part)| of_part(quantity, part)).collect();
     if let Some(correlation) = lag_one.filter(|correlation| *correlation > IN_TIME) {
         doubts.push(NoiseDoubt {
             statement: format!(
@@ -39,7 +35,8 @@ pub(super) fn noise_doubts(remainder: &Remainder, lag_one: Option<f64>) -> Vec<N
     doubts
 }
 
-fn of_part(what: &str, part: &Part, unit: f64, name: &str) -> Option<NoiseDoubt> {
+fn of_part(quantity: Quantity, part: &Part) -> Option<NoiseDoubt> {
+    let (what, name) = (quantity.name(), quantity.unit().symbol());
     let (variance, square) = part.stated?;
     let (stated, ratio) = (variance.sqrt(), square.sqrt());
     // Exact data with a stated noise are a test, not a mistake.
@@ -47,7 +44,7 @@ fn of_part(what: &str, part: &Part, unit: f64, name: &str) -> Option<NoiseDoubt>
         return None;
     }
     let number = |value: f64| {
-        let value = value * unit;
+        let value = quantity.unit().shown(value);
         let digits = (2 - value.log10().floor() as i32).clamp(0, 9) as usize;
         format!("{value:.digits$}")
     };

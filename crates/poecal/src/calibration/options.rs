@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::estimate::Session;
+use crate::measurement::Quantity;
 use crate::problem::Prior;
 use crate::robot::Tolerance;
 use crate::solve;
@@ -83,6 +84,15 @@ impl Default for CalibrationOptions {
 }
 
 impl CalibrationOptions {
+    /// Stated standard deviation of each component of a quantity, metres or radians.
+    #[must_use]
+    pub fn sigma(&self, quantity: Quantity) -> Option<f64> {
+        match quantity {
+            Quantity::Position => self.sigma_position_m,
+            Quantity::Rotation => self.sigma_rotation_rad,
+        }
+    }
+
     /// Prior of the fit: `None` with formulations for comparison.
     #[must_use]
     pub(in crate::calibration) fn prior(&self, session: &Session<'_>) -> Option<Prior> {

@@ -72,13 +72,13 @@ fn groups(data: &Dataset) -> Vec<Vec<u32>> {
 
 /// The mean of the errors.
 fn mean(errors: &[RowError]) -> Vector3<f64> {
-    errors.iter().map(|error| error.position_m).sum::<Vector3<f64>>() / errors.len().max(1) as f64
+    errors.iter().map(RowError::lead).sum::<Vector3<f64>>() / errors.len().max(1) as f64
 }
 
 /// Mean distance from the mean, plus three standard deviations of it: R of theory.md §9 (46).
 fn scatter(errors: &[RowError]) -> f64 {
     let middle = mean(errors);
-    let distances: Vec<f64> = errors.iter().map(|error| (error.position_m - middle).norm()).collect();
+    let distances: Vec<f64> = errors.iter().map(|error| (error.lead() - middle).norm()).collect();
     let count = distances.len().max(2) as f64;
     let average = distances.iter().sum::<f64>() / count;
     let squares: f64 = distances.iter().map(|distance| (distance - average).powi(2)).sum();
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn scatter_is_the_mean_distance_and_three_deviations() {
-        let at = |x: f64| RowError { position_m: Vector3::new(x, 1.0, 0.0), rotation_rad: None };
+        let at = |x: f64| RowError::of_position(Vector3::new(x, 1.0, 0.0));
         // Distances from the mean 2: 2, 1, 3; their mean is 2, their standard deviation 1.
         assert_eq!(scatter(&[at(0.0), at(1.0), at(5.0)]), 5.0);
         assert_eq!(mean(&[at(0.0), at(1.0), at(5.0)]), Vector3::new(2.0, 1.0, 0.0));

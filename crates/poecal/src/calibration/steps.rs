@@ -22,11 +22,12 @@ use crate::error::Result;
 use crate::estimate::{Estimate, Packed, Session};
 use crate::forensics::{self, Diagnosis, DiagnosisKind};
 use crate::gauge;
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{ByQuantity, Dataset, Noise};
 use crate::parameters::Parameter;
 use crate::problem::Prior;
 use crate::start::{Registration, register, register_again};
 use crate::uncertainty::{PriorInformation, Remainder, View, remainder};
+use crate::unit::Unit;
 
 /// Factor on the noise of rotations where tool and frame are registered for the best positions.
 const POSITIONS_FIRST: f64 = 100.0;
@@ -173,8 +174,10 @@ impl<'a> Prepared<'a> {
     /// The three models; the first two are registered by the rows that a robust fit keeps, the third in the nominal base frame.
     fn models(&self, registered: Estimate, fitted: &Fitted, kept: &[u32], is_robust: bool) -> Models {
         // Positions decide tool and frame; orientations decide only the directions that positions do not determine.
-        let Noise { position_m, rotation_rad } = fitted.noise;
-        let positions = Noise { position_m, rotation_rad: POSITIONS_FIRST * rotation_rad };
+        let positions = ByQuantity::from_fn(|quantity| match quantity.unit() {
+            Unit::Metre => fitted.noise[quantity],
+            Unit::Radian => POSITIONS_FIRST * fitted.noise[quantity],
+        });
         let again =
             |targets_free| register(&self.registration(kept, positions, targets_free), &self.delivered).0;
         let found = fitted.estimate.without_offsets();
@@ -274,7 +277,7 @@ impl<'a> Prepared<'a> {
         let targets: Vec<usize> = (0..self.session.data.targets.len()).collect();
         let predicted = PredictedUncertainty { uncertainty, targets: &targets, coverage: &trust.coverage };
         let errors = self.session.errors(&self.held_out_rows, calibrated);
-        Some(predicted.check(&self.session, &self.held_out_rows, &errors))
+        Some(predicted.check(&self.session, calibrated, &self.held_out_rows, &errors))
     }
 
     /// Doubts about the input, by the rows that are not suspected.
@@ -297,7 +300,7 @@ impl<'a> Prepared<'a> {
 
     /// Different device frames, if a fit with one has larger errors than a robot's own.
     fn frames_apart(&self, fitted: &Fitted, accuracy: &Accuracy) -> Option<FramesApart> {
-        let left_m = 1e-3 * accuracy.training.calibrated.position_mm.rms;
+        let left_m = accuracy.training.calibrated.leading_m();
         if !self.session.device_free || !fit::is_suspicious(left_m, self.session.length_m) {
             return None;
         }

@@ -7,8 +7,9 @@ use rand_core::SeedableRng;
 use super::suspicion::{JointCorrection, suspicions};
 use super::{CoverageCheck, Models};
 use crate::analysis::{JointCoverage, PLAUSIBLE, coverage};
-use crate::estimate::{Estimate, Packed, Session, position_rms_m, sample_rows};
+use crate::estimate::{Estimate, Packed, Session, rms_m, sample_rows};
 use crate::gauge::{Deviation, screw_deviations};
+use crate::measurement::Quantity;
 use crate::problem::Layout;
 use crate::robot::{Joint, JointKind, Robot};
 use crate::simulate::random;
@@ -120,7 +121,7 @@ pub(super) fn trust(finished: &Finished<'_>) -> Trust {
     let anywhere = anywhere(robot, &ranges, finished.seed);
     let (mut measured, mut range, mut parts) = (None, None, Vec::new());
     if let Some(uncertainty) = &uncertainty {
-        let quantile = uncertainty.quantiles()[0];
+        let quantile = uncertainty.quantiles()[Quantity::Position];
         let targets = data.targets.len().clamp(1, MOST_TARGETS);
         let of = |values: &[f64]| -> Vec<Vec<Matrix3<f64>>> {
             let packed = Packed::of_values(robot, values);
@@ -242,7 +243,7 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
                 shift_m: deviation.shift_m,
                 sigma_tilt_rad,
                 sigma_shift_m,
-                left_nominal_rms_m: position_rms_m(&view.session.errors(&rows, &left)),
+                left_nominal_rms_m: rms_m(&view.session.errors(&rows, &left)),
                 suspicious: None,
             }
         })

@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::noise_doubts::NoiseDoubt;
 use super::trust::Trust;
-use super::{Accuracy, Robustness, SolverReport};
+use super::{Accuracy, ModelAccuracy, Robustness, SolverReport};
 use crate::analysis::{Direction, Identifiability};
+use crate::measurement::Quantity;
 use crate::robot::Robot;
 
 /// Level of a verdict.
@@ -130,15 +131,18 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
         Some(set) => (robustness.held_out_rest.as_ref().unwrap_or(set), "held-out"),
         None => (robustness.training_rest.as_ref().unwrap_or(&accuracy.training), "fitted"),
     };
-    let (registered, calibrated) = (set.registered.position_mm.rms, set.calibrated.position_mm.rms);
+    let leading = set.calibrated.leading().map(|(quantity, _)| quantity).unwrap_or(Quantity::Position);
+    let of = |model: &ModelAccuracy| model.get(leading).unwrap_or_default().rms;
+    let (registered, calibrated) = (of(&set.registered), of(&set.calibrated));
+    let (what, unit) = (leading.name(), leading.unit().symbol());
     if calibrated > (1.0 - WORTH) * registered {
         reasons.push(format!(
-            "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} mm against {registered:.3} mm)"
+            "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
         ));
     }
-    if calibrated > 1e3 * TOO_LARGE * grounds.reach_m {
+    if set.calibrated.leading_m() > TOO_LARGE * grounds.reach_m {
         reasons.push(format!(
-            "the position error of the calibrated model on {name} rows is {calibrated:.1} mm (RMS), more than 1 % of the robot's reach"
+            "the {what} error of the calibrated model on {name} rows is {calibrated:.1} {unit} (RMS), more than 1 % of the robot's reach"
         ));
     }
     if reasons.is_empty() {

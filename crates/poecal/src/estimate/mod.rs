@@ -15,7 +15,7 @@ pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
 pub(crate) use predictions::turn_to_first;
 pub use row_error::RowError;
-pub(crate) use row_error::position_rms_m;
+pub(crate) use row_error::rms_m;
 pub use session::Session;
 pub use sight::Sight;
 pub use tree::{Passed, Stand, Tree};

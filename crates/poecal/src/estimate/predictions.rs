@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::{Estimate, Linkage, Passed, RowError, Session, Sight};
 use crate::lanes::{self, FixedMotion, Frames, SimdLevel, WIDTH, Wide};
 use crate::lie::Pose;
-use crate::measurement::{Dataset, Noise, Observation, Residual as _, Written};
+use crate::measurement::{ByQuantity, Dataset, Measurement, NUMBERS, Observation, Written};
 use crate::threads;
 
 /// Rows that one thread takes at a time.
@@ -19,28 +19,21 @@ impl Session<'_> {
         self.map_errors(rows, estimate, |_, error, _| error)
     }
 
-    /// Maps each row by `each`, from its observation and the two parts of its residual, position and rotation: the sum of squares (m²,
-    /// rad²) and the count of numbers. Residuals are those of theory.md §4 (15), (16), or of the data set's own formulation (16a).
+    /// Maps each row by `each`, from its observation and, of each quantity, the sum of squares (m², rad²) and the count of its residual's
+    /// numbers. Residuals are those of theory.md §4 (15), (16), or of the data set's own formulation (16a).
     pub(crate) fn map_squares<T: Send>(
         &self,
         rows: &[u32],
         estimate: &Estimate,
-        each: impl Fn(&Observation, [(f64, usize); 2]) -> T + Sync,
+        each: impl Fn(&Observation, ByQuantity<(f64, usize)>) -> T + Sync,
     ) -> Vec<T> {
-        const UNIT: Noise = Noise { position_m: 1.0, rotation_rad: 1.0 };
         self.map_errors(rows, estimate, |observation, error, predicted| {
-            let squares = match Written::new(&observation.measurement, self.data.pose_residual) {
-                Written::Usual(_) => {
-                    let rotation = error.rotation_rad.map_or((0.0, 0), |turn| (turn.norm_squared(), 3));
-                    [(error.position_m.norm_squared(), 3), rotation]
-                }
-                Written::Other(pose) => {
-                    let mut e = [0.0; 6];
-                    pose.residual(&predicted(), &UNIT, &mut e);
-                    let (position, rotation) = e.split_at(pose.rotation_row());
-                    [position, rotation].map(|part| (part.iter().map(|e| e * e).sum(), part.len()))
-                }
+            let error = match Written::new(&observation.measurement, self.data.pose_residual) {
+                Written::Usual(_) => error,
+                Written::Other(pose) => RowError::new(&pose, &predicted()),
             };
+            let squares =
+                ByQuantity::from_fn(|quantity| (error.square(quantity), error.part(quantity).len()));
             each(observation, squares)
         })
     }
@@ -83,12 +76,7 @@ impl Session<'_> {
             side_by_side.compare(self, rows);
             for (lane, &row) in rows.iter().enumerate() {
                 let observation = self.observation(row);
-                let predicted = || {
-                    let (_, end) = linkage.frames(Sight::from(observation));
-                    let from_first = side_by_side.last_link(lane) * *end;
-                    let station = linkage.station_from_first(observation.station);
-                    station.map_or(from_first, |&it| it * from_first)
-                };
+                let predicted = || side_by_side.predicted(lane, observation);
                 found.push(each(observation, side_by_side.error(lane, observation), &predicted));
             }
         }
@@ -117,9 +105,7 @@ pub(crate) fn turn_to_first(data: &Dataset, rows: &[u32], estimate: &Estimate, e
     }
     for (&row, error) in rows.iter().zip(errors) {
         let own = estimate.device(data.observations[row as usize].station).rotation;
-        let turn = estimate.device_from_base.rotation * own.transpose();
-        error.position_m = turn * error.position_m;
-        error.rotation_rad = error.rotation_rad.map(|rotation| turn * rotation);
+        *error = error.turned(&(estimate.device_from_base.rotation * own.transpose()));
     }
 }
 
@@ -213,13 +199,28 @@ impl<'a> SideBySide<'a> {
     }
 
     fn error(&self, lane: usize, seen: &Observation) -> RowError {
-        let vector = |[x, y, z]: &[Wide; 3]| Vector3::new(x.0[lane], y.0[lane], z.0[lane]);
-        let own = |error: Vector3<f64>| match self.linkage.station_from_first(seen.station) {
-            Some(station) => station.rotation * error,
-            None => error,
-        };
-        let rotation_rad = seen.measurement.sees_orientation().then(|| own(vector(&self.errors[1])));
-        RowError { position_m: own(vector(&self.errors[0])), rotation_rad }
+        match seen.measurement {
+            Measurement::Point(_) | Measurement::Pose(_) => {
+                let mut values = [0.0; NUMBERS];
+                for (values, [x, y, z]) in values.chunks_exact_mut(3).zip(&self.errors) {
+                    let error = Vector3::new(x.0[lane], y.0[lane], z.0[lane]);
+                    let own = match self.linkage.station_from_first(seen.station) {
+                        Some(station) => station.rotation * error,
+                        None => error,
+                    };
+                    values.copy_from_slice(own.as_slice());
+                }
+                RowError::of(seen.measurement.observe(), values)
+            }
+        }
+    }
+
+    /// The predicted pose of a row's target in the frame of its own device.
+    fn predicted(&self, lane: usize, seen: &Observation) -> Pose {
+        let (_, end) = self.linkage.frames(Sight::from(seen));
+        let from_first = self.last_link(lane) * *end;
+        let station = self.linkage.station_from_first(seen.station);
+        station.map_or(from_first, |&it| it * from_first)
     }
 }
 
@@ -249,7 +250,7 @@ mod tests {
     use super::*;
     use crate::estimate::{Chain, Packed};
     use crate::lie::{Screw, rotation};
-    use crate::measurement::{Measurement, PointMeasurement, PoseMeasurement};
+    use crate::measurement::{PointMeasurement, PoseMeasurement, Quantity};
     use crate::robot::{Joint, Robot};
 
     const ROWS: u32 = 21;
@@ -345,12 +346,10 @@ mod tests {
                 chain.evaluate(&linkage, &packed, row, target);
                 // Every seventh is turned by as much as a rotation can be, every fourth a point.
                 let angle = if row % 7 == 6 { 3.0 } else { 1e-3 * row as f64 };
-                let error = RowError {
-                    position_m: Vector3::new(1e-3, 2e-4 * row as f64, -0.5),
-                    rotation_rad: (row % 4 != 3).then(|| Vector3::new(0.6, 0.0, -0.8) * angle),
-                };
-                let position = chain.target.translation + error.position_m;
-                let measurement = match error.rotation_rad {
+                let shift = Vector3::new(1e-3, 2e-4 * row as f64, -0.5);
+                let turn = (row % 4 != 3).then(|| Vector3::new(0.6, 0.0, -0.8) * angle);
+                let position = chain.target.translation + shift;
+                let measurement = match turn {
                     None => Measurement::Point(PointMeasurement { position }),
                     Some(turn) => {
                         let pose = Pose::new(rotation::exp(&turn) * chain.target.rotation, position);
@@ -363,7 +362,7 @@ mod tests {
                     measurement,
                 )
                 .unwrap();
-                expected.push(error);
+                expected.push((shift, turn));
             }
             let session = Session::new(&robot, &data, &packed, false);
             for level in lanes::simd_levels() {
@@ -373,12 +372,10 @@ mod tests {
                     side_by_side.compare(&session, rows);
                     for (lane, &row) in rows.iter().enumerate() {
                         let found = side_by_side.error(lane, &data.observations[row as usize]);
-                        let expected = expected[row as usize];
-                        assert_eq!(found.rotation_rad.is_some(), expected.rotation_rad.is_some());
-                        let zero = Vector3::zeros();
-                        let turns = [found, expected].map(|it| it.rotation_rad.unwrap_or(zero));
-                        let apart =
-                            (found.position_m - expected.position_m).norm() + (turns[0] - turns[1]).norm();
+                        let (shift, turn) = expected[row as usize];
+                        assert_eq!(found.length(Quantity::Rotation).is_some(), turn.is_some());
+                        let turned = found.vector(Quantity::Rotation) - turn.unwrap_or_default();
+                        let apart = (found.vector(Quantity::Position) - shift).norm() + turned.norm();
                         // Rounding of products of rotations, and of a logarithm near half a turn.
                         assert!(apart < 1e-14, "{level:?} {row}: {apart:e}");
                     }

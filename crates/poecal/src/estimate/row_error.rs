@@ -1,24 +1,149 @@
 //! The error of one row.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
-/// Error of one row: measured minus predicted, in the device's axes; `y - p` and `log(Y Rᵀ)` of theory.md §4 (16).
+use crate::lie::Pose;
+use crate::measurement::{Channel, Measurement, NUMBERS, Observe, PointMeasurement, Quantity};
+use crate::unit::Unit;
+
+/// Error of one row: measured minus predicted, in the device's axes; `y - p` and `log(Y Rᵀ)` of theory.md §4 (16). One number for each
+/// channel of the measurement, metres and radians.
 ///
 /// ```
-/// use nalgebra::Vector3;
-/// let error = poecal::estimate::RowError { position_m: Vector3::x(), rotation_rad: None };
-/// assert_eq!(error.position_m.norm(), 1.0);
+/// use nalgebra::{Matrix3, Vector3};
+/// use poecal::{Quantity, estimate::RowError};
+/// let error = RowError::of_position(Vector3::x() * 2.0);
+/// assert_eq!((error.part(Quantity::Position), error.length(Quantity::Rotation)), (&[2.0, 0.0, 0.0][..], None));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowError {
-    /// Position, metres.
-    pub position_m: Vector3<f64>,
-    /// Rotation vector, radians, if orientation was measured.
-    pub rotation_rad: Option<Vector3<f64>>,
+    channels: &'static [Channel],
+    values: [f64; NUMBERS],
 }
 
-/// Root mean square length of position errors, metres: theory.md §9. 0 without errors.
-pub(crate) fn position_rms_m(errors: &[RowError]) -> f64 {
-    let squares: f64 = errors.iter().map(|error| error.position_m.norm_squared()).sum();
+impl RowError {
+    /// Of a measurement and the predicted `device_from_target`.
+    #[must_use]
+    pub fn new(seen: &dyn Observe, predicted: &Pose) -> Self {
+        let mut values = [0.0; NUMBERS];
+        seen.residual(predicted, &mut values);
+        RowError { channels: seen.channels(), values }
+    }
+
+    /// Of a measurement with these numbers.
+    pub(crate) fn of(seen: &dyn Observe, values: [f64; NUMBERS]) -> Self {
+        RowError { channels: seen.channels(), values }
+    }
+
+    /// The error of a measured position, metres.
+    #[must_use]
+    pub fn of_position(error: Vector3<f64>) -> Self {
+        let seen = Measurement::Point(PointMeasurement { position: error });
+        RowError::new(seen.observe(), &Pose::identity())
+    }
+
+    /// The numbers with their channels.
+    pub fn numbers(&self) -> impl Iterator<Item = (&'static Channel, f64)> {
+        self.channels.iter().zip(self.values)
+    }
+
+    /// Number of numbers.
+    #[must_use]
+    pub fn dim(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// The numbers of one quantity, none if it was not measured.
+    #[must_use]
+    pub fn part(&self, quantity: Quantity) -> &[f64] {
+        let is_of = |channel: &Channel| channel.quantity == quantity;
+        let first = self.channels.iter().position(is_of).unwrap_or(self.channels.len());
+        let count = self.channels.iter().filter(|channel| is_of(channel)).count();
+        &self.values[first..first + count]
+    }
+
+    /// Length of the error of one quantity, metres or radians, if it was measured.
+    #[must_use]
+    pub fn length(&self, quantity: Quantity) -> Option<f64> {
+        let part = self.part(quantity);
+        (!part.is_empty()).then(|| squared(part).sqrt())
+    }
+
+    /// Squared length of the error of one quantity, 0 if it was not measured.
+    #[must_use]
+    pub fn square(&self, quantity: Quantity) -> f64 {
+        squared(self.part(quantity))
+    }
+
+    /// The first three numbers of a quantity as a vector, zero beyond them.
+    #[must_use]
+    pub fn vector(&self, quantity: Quantity) -> Vector3<f64> {
+        let mut vector = Vector3::zeros();
+        vector.iter_mut().zip(self.part(quantity)).for_each(|(to, from)| *to = *from);
+        vector
+    }
+
+    /// The error of a measured position, metres; zero if none was measured.
+    #[must_use]
+    pub fn position_m(&self) -> Vector3<f64> {
+        self.vector(Quantity::Position)
+    }
+
+    /// The error of a measured orientation, a rotation vector in radians.
+    #[must_use]
+    pub fn rotation_rad(&self) -> Option<Vector3<f64>> {
+        self.length(Quantity::Rotation).map(|_| self.vector(Quantity::Rotation))
+    }
+
+    /// The first quantity, by which rows of one kind are compared.
+    #[must_use]
+    pub fn leading(&self) -> Option<Quantity> {
+        self.channels.first().map(|channel| channel.quantity)
+    }
+
+    /// The error of its first quantity as a vector, zero beyond the numbers it has.
+    #[must_use]
+    pub fn lead(&self) -> Vector3<f64> {
+        self.leading().map_or_else(Vector3::zeros, |quantity| self.vector(quantity))
+    }
+
+    /// The error of all numbers that are lengths, metres: the position's, a distance's.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.square_m2().sqrt()
+    }
+
+    /// Its square.
+    pub(crate) fn square_m2(&self) -> f64 {
+        let lengths = Quantity::ALL.into_iter().filter(|quantity| quantity.unit() == Unit::Metre);
+        lengths.map(|quantity| self.square(quantity)).sum()
+    }
+
+    /// The same error in other axes, turned by a rotation; a quantity that is no vector stays.
+    pub(crate) fn turned(mut self, turn: &Matrix3<f64>) -> Self {
+        for quantity in Quantity::ALL {
+            let part = self.part(quantity);
+            if let [x, y, z] = *part {
+                let first =
+                    self.channels.iter().position(|channel| channel.quantity == quantity).unwrap_or(0);
+                let turned = turn * Vector3::new(x, y, z);
+                self.values[first..first + 3].copy_from_slice(turned.as_slice());
+            }
+        }
+        self
+    }
+}
+
+fn squared(part: &[f64]) -> f64 {
+    match *part {
+        // The order of nalgebra's norm.
+        [x, y, z] => Vector3::new(x, y, z).norm_squared(),
+        _ => part.iter().map(|value| value * value).sum(),
+    }
+}
+
+/// Root mean square of all errors that are lengths, metres: theory.md §9. 0 without errors.
+pub(crate) fn rms_m(errors: &[RowError]) -> f64 {
+    let squares: f64 = errors.iter().map(RowError::square_m2).sum();
     (squares / errors.len().max(1) as f64).sqrt()
 }

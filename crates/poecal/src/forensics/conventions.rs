@@ -40,7 +40,7 @@ pub(super) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<Hypothesis
     let mut chain = Chain::default();
     let mut seen = Vec::new();
     for (row, observation) in data.observations.iter().enumerate() {
-        if let Some(turned) = observation.measurement.residual_model().orientation() {
+        if let Some(turned) = observation.measurement.observe().orientation() {
             chain.evaluate(&linkage, &packed, row, observation);
             let link_from_device = chain.target.rotation.transpose();
             seen.push(MeasuredOrientation { row, target: observation.target, link_from_device, turned });

@@ -116,10 +116,12 @@ fn place(fitter: &Fitter<'_>, all: &Dataset, estimate: &mut Estimate) {
     let mut turns: Vec<Vec<Matrix3<f64>>> = vec![Vec::new(); places.len()];
     for_links(fitter, all, estimate, |row, link| {
         let (target, seen) = (all.observations[row].target, &all.observations[row].measurement);
-        let model = seen.residual_model();
-        let (count, sum) = &mut places[target];
-        *count += 1;
-        *sum += link.act(&model.position());
+        let model = seen.observe();
+        if let Some(position) = model.position() {
+            let (count, sum) = &mut places[target];
+            *count += 1;
+            *sum += link.act(&position);
+        }
         turns[target].extend(model.orientation().map(|turned| link.rotation * turned));
     });
     for (target, ((count, sum), turned)) in places.into_iter().zip(turns).enumerate() {

@@ -4,7 +4,7 @@ use super::change::{like, push};
 use crate::estimate::{Estimate, Packed, RowError, Session, delivered, sample_rows};
 use crate::gauge;
 use crate::lie::{Pose, Screw};
-use crate::measurement::{Dataset, Noise, Observation};
+use crate::measurement::{ByQuantity, Dataset, Noise, Observation, Quantity};
 use crate::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis};
 use crate::problem::Problem;
 use crate::robot::{Joint, JointKind, Robot};
@@ -69,7 +69,7 @@ impl<'a> Fitter<'a> {
     pub(super) fn new(robot: &'a Robot, data: &Dataset, device_free: bool) -> Self {
         // Not from strokes in the data, whose unit may be wrong.
         let length_m = robot.reach_m() / 3.0;
-        let noise = Noise { position_m: NOISE_M, rotation_rad: NOISE_M / length_m };
+        let noise = Noise::new(NOISE_M, NOISE_M / length_m);
         Fitter { robot, device_free, length_m, start: delivered(robot, data), noise }
     }
 
@@ -196,19 +196,16 @@ impl<'a> Fitter<'a> {
 
     /// Squared error of a row, an angle counted as its arc at `length_m`.
     pub(super) fn squared_m2(&self, error: &RowError) -> f64 {
-        let turned = error.rotation_rad.map_or(0.0, |turn| turn.norm_squared() * self.length_m.powi(2));
-        error.position_m.norm_squared() + turned
+        error.square_m2() + error.square(Quantity::Rotation) * self.length_m.powi(2)
     }
 
     pub(super) fn misfit(&self, session: &Session<'_>, estimate: &Estimate) -> Misfit {
         let (mut position, mut rotation, mut turned) = (0.0, 0.0, 0usize);
         let errors = session.errors(&session.data.all_rows(), estimate);
         for error in &errors {
-            position += error.position_m.norm_squared();
-            if let Some(turn) = &error.rotation_rad {
-                rotation += turn.norm_squared();
-                turned += 1;
-            }
+            position += error.square_m2();
+            rotation += error.square(Quantity::Rotation);
+            turned += usize::from(!error.part(Quantity::Rotation).is_empty());
         }
         let count = errors.len().max(1) as f64;
         Misfit {
@@ -224,7 +221,7 @@ pub(super) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
     let mut taken = like(data);
     for &row in rows {
         let observation = data.observations[row as usize];
-        let plain = Observation { sigma_position_m: None, sigma_rotation_rad: None, ..observation };
+        let plain = Observation { stated: ByQuantity::default(), ..observation };
         push(&mut taken, data.readings(row as usize), plain);
     }
     taken

@@ -10,12 +10,13 @@ use super::work::WORK;
 
 /// Adds the whitened columns of the rows of one block at their places in `jacobian` (translation columns, then rotation columns), each with
 /// its sign, and writes their whitened residuals: three numbers of the position, three of the rotation. Numbers that a column does not have stay unchanged.
-/// The plan must have no common ratio, so that the rotation rows exist.
+/// The block's first row has a place among all. The plan must have no common ratio, so that the rotation rows exist.
 #[inline(always)]
 pub(super) fn whitened_columns<S: Simd>(
     simd: S,
     arm: &Arm<'_>,
     block: &[Wide],
+    first: usize,
     places: &[(usize, f64)],
     jacobian: &mut [[Wide; NUMBERS]],
     residual: &mut [Wide; NUMBERS],
@@ -24,7 +25,7 @@ pub(super) fn whitened_columns<S: Simd>(
     let mut work = WORK.take();
     work.begin(arm, true);
     for part in parts(simd) {
-        let found = add_rows::<S, true>(simd, arm, block, &mut work, 0, part);
+        let found = add_rows::<S, true>(simd, arm, (block, first), &mut work, 0, part);
         for (k, &value) in found.iter().flat_map(|part| &part.0).enumerate() {
             value.store(&mut residual[k], part);
         }
@@ -32,6 +33,11 @@ pub(super) fn whitened_columns<S: Simd>(
     let (turned_rows, stride) = (work.turned_rows, work.waiting);
     for (index, &(place, sign)) in places.iter().enumerate() {
         let Some(column) = jacobian.get_mut(place) else { continue };
+        if plan.shaped > 0 {
+            let own = &work.jacobian[index * stride..][..plan.slots()];
+            add(column, own.as_flattened(), sign);
+            continue;
+        }
         let (position, rotation) = column.split_at_mut(NUMBERS / 2);
         if index < plan.columns() {
             add(position, &work.jacobian[index * stride], sign);

@@ -7,6 +7,7 @@ use pulp::Simd;
 use super::frame::{Frame, moved, turned};
 use super::gram::{TILE, add_products};
 use super::plan::{Arm, FixedMotion, Plan};
+use super::shape::ShapedRows;
 use super::totals::Totals;
 use super::turn::Turn;
 use super::vector::{Lanes, Vectors, WIDTH, Wide, parts};
@@ -36,14 +37,16 @@ fn sum<S: Simd, const FULL: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> To
         work.begin_products(plan, S::F64_LANES);
     }
     let len = plan.block_len();
-    for blocks in blocks.chunks(len * work.waiting) {
+    let (slots, mut first) = (plan.slots(), 0);
+    for blocks in blocks.chunks(len * (work.waiting / slots)) {
         for (filled, block) in blocks.chunks_exact(len).enumerate() {
             for part in parts(simd) {
-                add_rows::<S, FULL>(simd, arm, block, work, filled, part);
+                add_rows::<S, FULL>(simd, arm, (block, first), work, filled * slots, part);
             }
+            first += WIDTH;
         }
         if FULL {
-            multiply(simd, plan, work, blocks.len() / len);
+            multiply(simd, plan, work, blocks.len() / len * slots);
         }
     }
     for (joint, axis) in plan.joints.iter().zip(&work.axes) {
@@ -119,23 +122,25 @@ struct RowWrench<S: Simd> {
     torque: Vectors<S>,
 }
 
-/// Columns and gradient of part `part` of a block; gives the whitened residuals of position and rotation.
+/// Columns and gradient of part `part` of a block, whose first row has a place among all; gives the whitened residuals: of position and
+/// rotation, or the numbers of shaped rows.
 #[inline(always)]
 pub(super) fn add_rows<S: Simd, const FULL: bool>(
     simd: S,
     arm: &Arm<'_>,
-    block: &[Wide],
+    (block, first): (&[Wide], usize),
     work: &mut Work,
     filled: usize,
     part: usize,
 ) -> [Vectors<S>; 2] {
     let none = [Vectors([Lanes::splat(simd, 0.0); 3]); 2];
     let Arm { plan, steps, end, .. } = *arm;
-    let Work { jacobian, turned, axes, shift_gradient, turn_gradient, square, waiting, .. } = work;
+    let Work { jacobian, turned, axes, shift_gradient, turn_gradient, square: square_sum, waiting, .. } =
+        work;
     let rows = work.turned_rows;
     let Some((noise, rest)) = block.split_first_chunk::<2>() else { return none };
     let Some((position, rest)) = rest.split_first_chunk::<3>() else { return none };
-    let (measured, joints) = rest.split_at(if plan.framed { 9 } else { 0 });
+    let (measured, joints) = rest.split_at(if plan.is_pose() { 9 } else { 0 });
     let (weight, per_length) = (Lanes::load(simd, &noise[0], part), Lanes::splat(simd, 1.0 / plan.length_m));
     if !FULL && weight.are_below(f64::MIN_POSITIVE) {
         // All rows are padding of the block.
@@ -146,6 +151,24 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
     let stride = *waiting;
     let mut batch = Batch { plan, part, columns, stride, axes, shift_gradient, turn_gradient };
 
+    if let Some(shape) = arm.shape {
+        let whole = Lanes::splat(simd, 1.0);
+        let last = batch.chain(simd, steps, joints.as_chunks::<2>().0, whole, per_length);
+        let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
+        let rows = ShapedRows::new(shape, first + part * S::F64_LANES, &target, weight);
+        let residuals = rows.residual(simd);
+        let [force, torque] = rows.wrench(simd);
+        let square = residuals[0].dot(residuals[0]) + residuals[1].dot(residuals[1]);
+        square.add_to(square_sum, part);
+        let wrench = RowWrench { weight: whole, per_length, force, torque: torque.scale(per_length) };
+        batch.add_device::<S, FULL>(simd, &target, &wrench);
+        batch.add_axes::<S, FULL>(simd, &target, &wrench);
+        batch.add_place::<S, FULL>(&target, &wrench);
+        if FULL {
+            rows.project(simd, plan, batch.columns, stride, part);
+        }
+        return residuals;
+    }
     let last = batch.chain(simd, steps, joints.as_chunks::<2>().0, weight, per_length);
     let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
     let force = (Vectors::load(simd, position, part) - target.origin()).scale(weight);
@@ -164,7 +187,7 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
         wrench.torque = whitened.scale(ratio * per_length);
         turn = Some((found, ratio * per_length));
     }
-    squares.add_to(square, part);
+    squares.add_to(square_sum, part);
     batch.add_device::<S, FULL>(simd, &target, &wrench);
     batch.add_axes::<S, FULL>(simd, &target, &wrench);
     batch.add_place::<S, FULL>(&target, &wrench);

@@ -8,6 +8,8 @@ mod influence;
 mod kernel;
 mod plan;
 mod poses;
+mod rows;
+mod shape;
 mod simd;
 mod sincos;
 mod tip;
@@ -21,6 +23,7 @@ pub(crate) use errors::Frames;
 pub(crate) use influence::NUMBERS;
 pub(crate) use plan::{Arm, DevicePlan, FixedMotion, JointPlan, PackedRows, Plan, RowData};
 pub(crate) use poses::Exponential;
+pub(crate) use rows::{Shape, ShapedRow};
 pub use simd::{SimdLevel, simd_levels};
 pub(crate) use simd::{
     cholesky, cosines_and_sines, errors, influences, inverse, last_links, product_of_exponentials, solve,

@@ -1,5 +1,6 @@
 //! Input of the kernels: an arm's frames, its columns, and rows side by side.
 
+use super::rows::Shape;
 use super::vector::{WIDTH, Wide};
 use crate::lie::Pose;
 
@@ -56,23 +57,35 @@ pub(crate) struct Plan {
     pub(crate) turns: Vec<usize>,
     /// Metres that a radian counts.
     pub(crate) length_m: f64,
-    /// Whether orientation was measured.
+    /// Whether the rows depend on the target's orientation.
     pub(crate) framed: bool,
+    /// Numbers of each row, if they are another function of the target's pose than its position and orientation ([`Arm::shape`]); else 0.
+    pub(crate) shaped: usize,
     /// Position over rotation noise in m/rad, if it is the same in all rows: rotation products then follow from those of the translation
     /// columns (theory.md §6 (28a)).
     pub(crate) ratio: Option<f64>,
 }
 
 impl Plan {
-    /// Columns of position rows.
+    /// Columns of position rows; all columns of shaped rows.
     pub(crate) fn columns(&self) -> usize {
-        self.shifts + self.tilts
+        self.shifts + if self.shaped > 0 { self.turns.len() } else { self.tilts }
+    }
+
+    /// Groups of three numbers of a row whose products are summed at once.
+    pub(crate) fn slots(&self) -> usize {
+        self.shaped.div_ceil(3).max(1)
+    }
+
+    /// Whether a row has a measured orientation beside its position.
+    pub(crate) fn is_pose(&self) -> bool {
+        self.framed && self.shaped == 0
     }
 
     /// Rows that rotation adds to the products of rotation columns: two of the curvature of the logarithm, which may be left out, or all
     /// three where the ratio of noises differs between rows (theory.md §6 (28a)).
     pub(super) fn turned_rows(&self, nearly: bool) -> usize {
-        match (self.framed, self.ratio) {
+        match (self.is_pose(), self.ratio) {
             (false, _) => 0,
             (true, Some(_)) => {
                 if nearly {
@@ -88,7 +101,7 @@ impl Plan {
     /// Wide numbers of a block of [`WIDTH`] rows: the weight `1/σ` and the ratio of noises, the measured position, the columns of a
     /// measured orientation, and `(cos θ, sin θ)` or `(θ, 0)` of each joint.
     pub(crate) fn block_len(&self) -> usize {
-        let seen = if self.framed { 12 } else { 3 };
+        let seen = if self.is_pose() { 12 } else { 3 };
         2 + seen + 2 * self.joints.len()
     }
 }
@@ -186,6 +199,8 @@ pub(crate) struct Arm<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) steps: &'a [FixedMotion],
     pub(crate) end: &'a FixedMotion,
+    /// The rows' own functions, if they have them ([`Plan::shaped`]).
+    pub(crate) shape: Option<&'a dyn Shape>,
     /// Whether the products may omit the curvature of the logarithm, to save time (theory.md §6 (28a)).
     pub(crate) nearly: bool,
 }

@@ -136,6 +136,7 @@ dispatch!(
     columns::whitened_columns(
         arm: &Arm<'_>,
         block: &[Wide],
+        first: usize,
         places: &[(usize, f64)],
         jacobian: &mut [[Wide; NUMBERS]],
         residual: &mut [Wide; NUMBERS]

@@ -74,10 +74,11 @@ impl Work {
         self.turned_rows = plan.turned_rows(arm.nearly);
         self.products.clear();
         self.turned_products.clear();
-        self.waiting = 1;
+        self.waiting = plan.slots();
         if with_columns {
             let [columns, turns] = padded(plan);
             self.waiting = (WAITING / (3 * columns).max(1)).clamp(BLOCKS_WAITING.0, BLOCKS_WAITING.1);
+            self.waiting = self.waiting.next_multiple_of(plan.slots());
             // Columns are written before they are read, except for the padding of the last tile.
             self.jacobian.resize(self.waiting * columns, [Wide::ZERO; 3]);
             self.jacobian[self.waiting * plan.columns()..].fill([Wide::ZERO; 3]);

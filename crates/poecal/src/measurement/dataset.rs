@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::{Measurement, Noise, PoseResidual};
+use super::{ByQuantity, Measurement, Noise, PoseResidual, Quantity};
 use crate::error::{Error, ErrorKind, Result};
 
 /// Set of a row: training or held out.
@@ -58,10 +58,8 @@ pub struct Observation {
     pub from: Option<u32>,
     /// The measurement.
     pub measurement: Measurement,
-    /// Standard deviation of each position component, metres, if the row states it.
-    pub sigma_position_m: Option<f64>,
-    /// Standard deviation of each rotation component, radians, if the row states it.
-    pub sigma_rotation_rad: Option<f64>,
+    /// Standard deviations of each component, metres or radians, where the row states them.
+    pub stated: ByQuantity<Option<f64>>,
     /// Set of the row, if it states it.
     pub set: Option<Set>,
     /// File and line.
@@ -69,19 +67,30 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// The noise that the row states; `usual` for a standard deviation that it does not state.
+    /// A measurement of a target from the first station, in one configuration, without stated noise.
     #[must_use]
-    pub fn noise_or(&self, usual: Noise) -> Noise {
-        Noise {
-            position_m: self.sigma_position_m.unwrap_or(usual.position_m),
-            rotation_rad: self.sigma_rotation_rad.unwrap_or(usual.rotation_rad),
+    pub fn new(target: usize, measurement: Measurement) -> Self {
+        Observation {
+            target,
+            station: 0,
+            from: None,
+            measurement,
+            stated: ByQuantity::default(),
+            set: None,
+            source: Source::default(),
         }
     }
 
-    /// Squares of a residual's position and rotation (m², rad²) in units of the row's variances, of `usual` noise if it states none.
-    pub(crate) fn whitened(&self, [position, rotation]: [f64; 2], usual: Noise) -> [f64; 2] {
-        let Noise { position_m, rotation_rad } = self.noise_or(usual);
-        [position / (position_m * position_m), rotation / (rotation_rad * rotation_rad)]
+    /// The noise that the row states; `usual` for a standard deviation that it does not state.
+    #[must_use]
+    pub fn noise_or(&self, usual: Noise) -> Noise {
+        ByQuantity::from_fn(|quantity| self.stated[quantity].unwrap_or(usual[quantity]))
+    }
+
+    /// Squares of a residual (m², rad²) in units of the row's variances, of `usual` noise if it states none.
+    pub(crate) fn whitened(&self, squares: ByQuantity<f64>, usual: Noise) -> ByQuantity<f64> {
+        let noise = self.noise_or(usual);
+        ByQuantity::from_fn(|quantity| squares[quantity] / (noise[quantity] * noise[quantity]))
     }
 }
 
@@ -137,19 +146,7 @@ impl Dataset {
     /// [`ErrorKind::Measurement`] if the number of readings is wrong, or a number is not finite.
     pub fn push(&mut self, readings: &[f64], target: Option<&str>, measurement: Measurement) -> Result<()> {
         let target = self.target_index(target);
-        self.push_observation(
-            readings,
-            Observation {
-                target,
-                station: 0,
-                from: None,
-                measurement,
-                sigma_position_m: None,
-                sigma_rotation_rad: None,
-                set: None,
-                source: Source::default(),
-            },
-        )
+        self.push_observation(readings, Observation::new(target, measurement))
     }
 
     /// Adds a row by the index of its target.
@@ -158,8 +155,7 @@ impl Dataset {
     /// As [`Dataset::push`].
     pub fn push_observation(&mut self, readings: &[f64], observation: Observation) -> Result<()> {
         self.check_readings(readings)?;
-        let pose = observation.measurement.pose();
-        if !(is_finite(pose.translation.as_slice()) && is_finite(pose.rotation.as_slice())) {
+        if !observation.measurement.observe().is_finite() {
             return Err(not_finite());
         }
         self.readings.extend_from_slice(readings);
@@ -329,19 +325,28 @@ impl Dataset {
     /// Mean of the positions that some rows measured, metres, device frame.
     #[must_use]
     pub fn mean_position(&self, rows: &[u32]) -> Vector3<f64> {
-        self.positions(rows).sum::<Vector3<f64>>() / rows.len().max(1) as f64
+        let (sum, count) =
+            self.positions(rows).fold((Vector3::zeros(), 0), |(sum, count), it| (sum + it, count + 1));
+        sum / f64::from(count.max(1))
     }
 
     /// Root mean square distance of the positions that some rows measured from their mean, metres.
     #[must_use]
     pub fn spread_m(&self, rows: &[u32]) -> f64 {
         let mean = self.mean_position(rows);
-        let squares: f64 = self.positions(rows).map(|position| (position - mean).norm_squared()).sum();
-        (squares / rows.len().max(1) as f64).sqrt()
+        let squares = self.positions(rows).map(|position| (position - mean).norm_squared());
+        let (sum, count) = squares.fold((0.0, 0), |(sum, count), it| (sum + it, count + 1));
+        (sum / f64::from(count.max(1))).sqrt()
     }
 
     fn positions(&self, rows: &[u32]) -> impl Iterator<Item = Vector3<f64>> {
-        rows.iter().map(|&row| self.observations[row as usize].measurement.residual_model().position())
+        rows.iter().filter_map(|&row| self.observations[row as usize].measurement.observe().position())
+    }
+
+    /// Whether some row measured a quantity.
+    #[must_use]
+    pub fn has(&self, quantity: Quantity) -> bool {
+        self.observations.iter().any(|row| row.measurement.has(quantity))
     }
 
     /// Configurations in which instruments stood while their targets were seen in others, readings one after the other.

@@ -4,29 +4,21 @@ use std::fmt::Debug;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Measurement, Noise, PoseMeasurement, Residual};
-use crate::lie::{Pose, TargetTwist};
+use super::pose::POSE;
+use super::{Channel, Measurement, Observe, PoseMeasurement, Sensitivity};
+use crate::lie::Pose;
 
-/// Formulation of the residuals of measured frames as six numbers, first those that depend on the target's translation. It holds for all
-/// frames of a data set ([`Dataset::pose_residual`](super::Dataset::pose_residual)). Such a problem takes the row-by-row path, without the
-/// full Hessian.
+/// Formulation of the residuals of measured frames as six numbers, of position and rotation. It holds for all frames of a data set
+/// ([`Dataset::pose_residual`](super::Dataset::pose_residual)). Such a problem is solved without the full Hessian.
 pub trait PoseResidual: Debug + Sync {
     /// Its name; residuals of one name are equal.
     fn name(&self) -> &'static str;
 
-    /// As [`Residual::residual`], for a measured `device_from_target`.
-    fn residual(&self, measured: &Pose, predicted: &Pose, noise: &Noise, out: &mut [f64]);
+    /// As [`Observe::residual`], for a measured `device_from_target`.
+    fn residual(&self, measured: &Pose, predicted: &Pose, out: &mut [f64]);
 
-    /// As [`Residual::project`].
-    fn project(
-        &self,
-        measured: &Pose,
-        predicted: &Pose,
-        columns: &[TargetTwist],
-        noise: &Noise,
-        stride: usize,
-        out: &mut [f64],
-    );
+    /// As [`Observe::sensitivity`].
+    fn sensitivity(&self, measured: &Pose, predicted: &Pose, out: &mut [Sensitivity]);
 }
 
 impl PartialEq for dyn PoseResidual {
@@ -53,9 +45,9 @@ impl<'a> Written<'a> {
         }
     }
 
-    pub(crate) fn model(&self) -> &dyn Residual {
+    pub(crate) fn model(&self) -> &dyn Observe {
         match self {
-            Written::Usual(measurement) => measurement.residual_model(),
+            Written::Usual(measurement) => measurement.observe(),
             Written::Other(pose) => pose,
         }
     }
@@ -67,39 +59,28 @@ pub(crate) struct OtherPose {
     residual: &'static dyn PoseResidual,
 }
 
-impl Residual for OtherPose {
-    fn dim(&self) -> usize {
-        6
+impl Observe for OtherPose {
+    fn channels(&self) -> &'static [Channel] {
+        &POSE
     }
 
-    fn residual(&self, predicted: &Pose, noise: &Noise, out: &mut [f64]) {
-        self.residual.residual(&self.pose, predicted, noise, out);
+    fn residual(&self, predicted: &Pose, out: &mut [f64]) {
+        self.residual.residual(&self.pose, predicted, out);
     }
 
-    fn project(
-        &self,
-        predicted: &Pose,
-        columns: &[TargetTwist],
-        noise: &Noise,
-        stride: usize,
-        out: &mut [f64],
-    ) {
-        self.residual.project(&self.pose, predicted, columns, noise, stride, out);
+    fn sensitivity(&self, predicted: &Pose, out: &mut [Sensitivity]) {
+        self.residual.sensitivity(&self.pose, predicted, out);
     }
 
-    fn wrench(&self, _: &Pose, _: &Noise) -> Option<(Vector3<f64>, Vector3<f64>)> {
-        None
-    }
-
-    fn rotation_row(&self) -> usize {
-        3
-    }
-
-    fn position(&self) -> Vector3<f64> {
-        self.pose.translation
+    fn position(&self) -> Option<Vector3<f64>> {
+        Some(self.pose.translation)
     }
 
     fn orientation(&self) -> Option<Matrix3<f64>> {
         Some(self.pose.rotation)
+    }
+
+    fn is_finite(&self) -> bool {
+        PoseMeasurement { pose: self.pose }.is_finite()
     }
 }

@@ -4,15 +4,7 @@ use nalgebra::Vector3;
 
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
-
-/// Unit of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Metres.
-    Metre,
-    /// Radians.
-    Radian,
-}
+use crate::unit::Unit;
 
 /// One unknown of a parameter.
 ///

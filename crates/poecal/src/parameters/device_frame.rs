@@ -2,9 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, Unit, Wrench};
+use super::columns::{Column, Columns, Subject, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
+use crate::unit::Unit;
 
 /// The device frame, stepped about the point `about` of that frame (the middle of the data, so that rotation and translation are nearly
 /// uncorrelated): columns `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)). They are zero in rows of another station.

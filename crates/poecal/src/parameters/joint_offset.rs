@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, Unit};
+use super::columns::{Column, Columns, Subject};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
 use crate::robot::JointKind;
+use crate::unit::Unit;
 
 /// The offset of joint `joint`, `θ ← θ + dθ`: the column `r = Ad_T ξ` of lou2009 (8d). At the target it is `(z × d; z)`, or `(z; 0)` of a
 /// prismatic joint (theory.md §5 (26)). Beside free screws it adds no rank (lou2009 Proposition 1, theory.md §3 (9)).

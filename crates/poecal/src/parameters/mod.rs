@@ -9,7 +9,8 @@ mod screw_axis;
 mod target_frame;
 mod target_place;
 
-pub use columns::{Column, Columns, Subject, Unit, Wrench};
+pub use crate::unit::Unit;
+pub use columns::{Column, Columns, Subject, Wrench};
 pub use device_frame::DeviceFrame;
 pub use joint_offset::JointOffset;
 pub use other_screw::{OtherScrew, ScrewModel};

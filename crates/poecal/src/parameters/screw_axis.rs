@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, Unit, Wrench};
+use super::columns::{Column, Columns, Subject, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{Pose, TargetTwist, Twist};
 use crate::robot::JointKind;
+use crate::unit::Unit;
 
 /// The screw of joint `joint`, moved by the adjoint of a local step `ε` in its axis frame: `A ← A exp(ε)`, which is
 /// `ξ ← Ad_exp(η) ξ` with `η = Ad_A ε` (theory.md §5 (18); lou2009 (16) to (18) without the kernel of η).

@@ -2,9 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, Unit};
+use super::columns::{Column, Columns, Subject};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
+use crate::unit::Unit;
 
 /// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`
 /// (theory.md §5 (24)).

@@ -2,9 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, Unit};
+use super::columns::{Column, Columns, Subject};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
+use crate::unit::Unit;
 
 /// The point `P_c0` of lou2009 (19) to (26), stepped in the target's own axes: columns `(R_target e_k; 0)` (theory.md §5 (23)).
 ///

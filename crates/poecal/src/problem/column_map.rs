@@ -1,8 +1,9 @@
 //! Columns of one group of rows: the unknowns that move its target, in the order of the kernels.
 
+use super::row_group::Form;
 use super::{Layout, Problem};
 use crate::estimate::{Estimate, Passed, Sight};
-use crate::lanes::{DevicePlan, JointPlan, NUMBERS, Plan};
+use crate::lanes::{DevicePlan, JointPlan, Plan};
 use crate::parameters::{Parameter, ScrewAxis, Subject};
 use crate::robot::JointKind;
 
@@ -10,6 +11,7 @@ use crate::robot::JointKind;
 #[derive(Clone, Debug)]
 pub(super) struct ColumnMap {
     pub(super) sight: Sight,
+    form: Form,
     pub(super) plan: Plan,
     /// Places of the plan's translation and rotation columns in a step.
     shift_places: Vec<Place>,
@@ -25,10 +27,11 @@ pub(super) struct Place {
 
 impl ColumnMap {
     /// For a problem of the kinds that kernels serve ([`Problem::is_served`]); `None` if its unknowns contradict each other.
-    pub(super) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, framed: bool) -> Option<Self> {
+    pub(super) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Option<Self> {
         let mut made = ColumnMap {
             sight,
-            plan: plan_without_unknowns(problem, state, sight, framed),
+            form,
+            plan: plan_without_unknowns(problem, state, sight, form),
             shift_places: Vec::new(),
             turn_places: Vec::new(),
         };
@@ -53,7 +56,7 @@ impl ColumnMap {
 
     /// Length of a row's residual.
     pub(super) fn numbers(&self) -> usize {
-        if self.plan.framed { NUMBERS } else { NUMBERS / 2 }
+        self.form.numbers()
     }
 
     fn shift(&mut self, places: &[(usize, f64)], sign: f64) {
@@ -144,7 +147,7 @@ fn contradiction(what: &str) -> Option<()> {
     None
 }
 
-fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, framed: bool) -> Plan {
+fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Plan {
     let route = state.tree.route(sight);
     let joints = route.iter().map(|passed| JointPlan {
         joint: passed.joint,
@@ -163,7 +166,11 @@ fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, 
         tilts: 0,
         turns: Vec::new(),
         length_m: problem.layout.length_m(),
-        framed,
+        framed: form.sees_orientation(),
+        shaped: match form {
+            Form::Point | Form::Pose => 0,
+            Form::Shaped(numbers, _) => numbers,
+        },
         ratio: None,
     }
 }

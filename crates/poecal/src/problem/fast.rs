@@ -8,7 +8,10 @@ use super::column_map::ColumnMap;
 use super::row_group::{RowGroup, Whitening};
 use super::scatter::GramScatter;
 use crate::estimate::{Estimate, Linkage, Sight};
-use crate::lanes::{self, Arm, FixedMotion, PackedRows, Plan, RowData, SimdLevel, Totals, WIDTH};
+use crate::lanes::{
+    self, Arm, FixedMotion, PackedRows, Plan, RowData, Shape, ShapedRow, SimdLevel, Totals, WIDTH,
+};
+use crate::lie::Pose;
 use crate::measurement::{Measurement, PoseMeasurement};
 use crate::solve::Normal;
 use crate::threads;
@@ -57,7 +60,7 @@ impl Fast {
     pub(super) fn new(problem: &Problem<'_>, state: &Estimate, level: SimdLevel) -> Option<Self> {
         let mut groups = Vec::new();
         for group in RowGroup::of_problem(problem) {
-            let mut arranged = ColumnMap::new(problem, state, group.sight, group.framed)?;
+            let mut arranged = ColumnMap::new(problem, state, group.sight, group.form)?;
             arranged.plan.ratio = group.ratio;
             let scatter = GramScatter::new(&arranged, problem.layout.dim());
             groups.push((Group { arranged, rows: group.rows, packed: Vec::new() }, scatter));
@@ -92,7 +95,8 @@ impl Fast {
         for (group, scatter) in &self.groups {
             let ColumnMap { sight, plan, .. } = &group.arranged;
             let (steps, end) = fixed_motions(&linkage, *sight);
-            let arm = Arm { plan, steps: &steps, end: &end, nearly: sums == Accumulate::GaussNewton };
+            let nearly = sums == Accumulate::GaussNewton;
+            let arm = Arm { plan, steps: &steps, end: &end, shape: None, nearly };
             let totals = group.sum(problem, self.level, &arm, sums);
             group.put(&totals, &mut normal);
             if sums != Accumulate::Gradient {
@@ -108,15 +112,20 @@ impl Group {
     fn sum(&self, problem: &Problem<'_>, level: SimdLevel, arm: &Arm<'_>, sums: Accumulate) -> Totals {
         let sum = if sums == Accumulate::Gradient { lanes::sum_gradient } else { lanes::sum_products };
         let size = chunk_size(self.rows.len());
-        let chunk = |index: usize| match self.packed.get(index) {
-            Some(rows) => sum(level, arm, &rows.blocks),
-            None => {
-                let last = self.rows.len().min((index + 1) * size);
-                let mut packed = ROWS.take();
-                pack(problem, &self.arranged.plan, &self.rows[index * size..last], &mut packed);
-                let totals = sum(level, arm, &packed.blocks);
-                ROWS.set(packed);
-                totals
+        let chunk = |index: usize| {
+            let last = self.rows.len().min((index + 1) * size);
+            let rows = &self.rows[index * size..last];
+            let shapes = RowShapes { problem, rows };
+            let arm = &Arm { shape: shapes.of(&self.arranged.plan), ..*arm };
+            match self.packed.get(index) {
+                Some(rows) => sum(level, arm, &rows.blocks),
+                None => {
+                    let mut packed = ROWS.take();
+                    pack(problem, &self.arranged.plan, rows, &mut packed);
+                    let totals = sum(level, arm, &packed.blocks);
+                    ROWS.set(packed);
+                    totals
+                }
             }
         };
         let chunks = self.rows.len().div_ceil(size);
@@ -147,6 +156,28 @@ impl Group {
     }
 }
 
+/// Rows whose functions of their targets' poses are their own.
+pub(super) struct RowShapes<'a> {
+    pub(super) problem: &'a Problem<'a>,
+    pub(super) rows: &'a [u32],
+}
+
+impl RowShapes<'_> {
+    /// These, if the plan needs them.
+    pub(super) fn of(&self, plan: &Plan) -> Option<&dyn Shape> {
+        (plan.shaped > 0).then_some(self)
+    }
+}
+
+impl Shape for RowShapes<'_> {
+    fn row(&self, place: usize, predicted: &Pose) -> ShapedRow {
+        match self.rows.get(place) {
+            Some(&row) => self.problem.shaped(row as usize, predicted),
+            None => ShapedRow::NONE,
+        }
+    }
+}
+
 /// The relative frames of a sight, and its target in the last one, or in the device frame if no joint is between the two.
 pub(super) fn fixed_motions(linkage: &Linkage, sight: Sight) -> (Vec<FixedMotion>, FixedMotion) {
     let (steps, end) = linkage.frames(sight);
@@ -163,11 +194,11 @@ fn chunk_size(rows: usize) -> usize {
 /// Packs rows side by side.
 pub(super) fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut PackedRows) {
     let usual = Whitening::new(problem.noise);
-    packed.pack(plan, rows.len(), |at| row_data(problem, usual, rows[at] as usize, plan.framed));
+    packed.pack(plan, rows.len(), |at| row_data(problem, usual, rows[at] as usize, plan.is_pose()));
 }
 
 #[inline(always)]
-fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, framed: bool) -> RowData<'a> {
+fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, is_pose: bool) -> RowData<'a> {
     let observation = &problem.session.data.observations[row];
     let Whitening { weight, ratio } = usual.of(observation, problem.noise);
     let weight = match problem.weights.and_then(|weights| weights.get(row)) {
@@ -177,7 +208,7 @@ fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, framed: 
     let (position, orientation) = match problem.measurement(row) {
         Measurement::Point(point) => (&point.position, None),
         Measurement::Pose(PoseMeasurement { pose }) => {
-            (&pose.translation, framed.then_some((&pose.rotation.data.0, ratio)))
+            (&pose.translation, is_pose.then_some((&pose.rotation.data.0, ratio)))
         }
     };
     let packed = problem.session.packed;

@@ -2,7 +2,7 @@
 
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
-use crate::parameters::{Parameter, Subject, Unit, Wrench};
+use crate::parameters::{Parameter, Subject, Wrench};
 use nalgebra::Vector3;
 
 /// The free parameters and the place of each of their unknowns in a step: first those that only translate a target, whose rotation
@@ -34,11 +34,7 @@ impl Layout {
             .map(|column| {
                 let next = if column.shifts_only { &mut next_shift } else { &mut next_other };
                 *next += 1;
-                let scale = match column.unit {
-                    Unit::Metre => 1.0,
-                    Unit::Radian => length_m,
-                };
-                (*next - 1, scale)
+                (*next - 1, column.unit.metres(length_m))
             })
             .collect();
         Layout { parameters, places, shifts, length_m }

@@ -17,6 +17,8 @@ pub use refit::Refit;
 pub(crate) use row_block::RowBlock;
 
 use crate::estimate::{Estimate, Session};
+use crate::lanes::ShapedRow;
+use crate::lie::Pose;
 use crate::measurement::{Measurement, Noise, Written};
 use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
@@ -45,7 +47,7 @@ const SEEN: usize = 500;
 /// # }
 /// let packed = Packed::new(&robot, data.all_readings(), 1);
 /// let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
-/// let noise = Noise { position_m: 1e-4, rotation_rad: 1e-4 };
+/// let noise = Noise::new(1e-4, 1e-4);
 /// let session = Session::new(&robot, &data, &packed, false);
 /// let problem = Problem::new(session, vec![0, 1, 2], free, noise);
 /// let start = Estimate::new(&robot, vec![robot.home], Pose::identity());
@@ -76,7 +78,7 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub fn new(session: Session<'a>, rows: Vec<u32>, free: Vec<Parameter>, noise: Noise) -> Self {
         // A few roundings of about the largest number: the distance from the device.
-        let position = |&row: &u32| session.observation(row).measurement.residual_model().position();
+        let position = |&row: &u32| session.observation(row).measurement.pose().translation;
         let some = rows.iter().step_by(rows.len().div_ceil(SEEN).max(1));
         let farthest = some.map(|row| position(row).amax());
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
@@ -151,7 +153,7 @@ impl<'a> Problem<'a> {
         let noise = self.session.data.observations[row].noise_or(self.noise);
         let Some(weight) = self.weights.and_then(|weights| weights.get(row)) else { return noise };
         let root = weight.sqrt();
-        Noise { position_m: noise.position_m / root, rotation_rad: noise.rotation_rad / root }
+        noise.map(|sigma| sigma / root)
     }
 
     /// Measurement of a row.
@@ -184,12 +186,28 @@ impl<'a> Problem<'a> {
 }
 
 impl Problem<'_> {
+    /// Whitened residual and sensitivity of a row for its predicted target, theory.md §4 (17).
+    pub(crate) fn shaped(&self, row: usize, predicted: &Pose) -> ShapedRow {
+        let written = self.written(row);
+        let (seen, noise) = (written.model(), self.noise(row));
+        let mut shaped = ShapedRow::NONE;
+        seen.residual(predicted, &mut shaped.residual);
+        seen.sensitivity(predicted, &mut shaped.sensitivity);
+        let ShapedRow { residual, sensitivity } = &mut shaped;
+        for ((e, numbers), channel) in residual.iter_mut().zip(sensitivity).zip(seen.channels()) {
+            let sigma = noise[channel.quantity];
+            *e /= sigma;
+            numbers.iter_mut().for_each(|number| *number /= sigma);
+        }
+        shaped
+    }
+
     /// Whether the kernels serve this problem in this state: points and poses with the residuals of their types; screws in the minimal
     /// basis, targets and device frames; no joint offsets. All other problems take the row-by-row path.
     #[doc(hidden)]
     #[must_use]
     pub fn is_served(&self, state: &Estimate) -> bool {
-        self.session.data.pose_residual.is_none() && self.layout.is_minimal() && state.is_for_kernels()
+        self.layout.is_minimal() && state.is_for_kernels()
     }
 
     /// The hot path, if it applies to this problem in this state.
@@ -248,7 +266,8 @@ impl LeastSquares for Problem<'_> {
 
     fn rounding(&self) -> f64 {
         let noise = self.noise;
-        (self.rounding_m / noise.position_m).max(self.rounding_m / noise.rotation_rad).powi(2)
+        let relative = noise.iter().map(|(_, sigma)| self.rounding_m / sigma);
+        relative.fold(0.0, f64::max).powi(2)
     }
 
     fn retract(&self, state: &Estimate, step: &[f64]) -> Estimate {

@@ -30,7 +30,7 @@ const TOGETHER: usize = 25;
 /// }
 /// let packed = Packed::new(&robot, data.all_readings(), 1);
 /// let free = vec![Parameter::TargetPlace(TargetPlace { target: 0 })];
-/// let noise = Noise { position_m: 1e-4, rotation_rad: 1e-4 };
+/// let noise = Noise::new(1e-4, 1e-4);
 /// let session = Session::new(&robot, &data, &packed, false);
 /// let problem = Problem::new(session, vec![0, 1, 2], free, noise);
 /// let start = Estimate::new(&robot, vec![robot.home], Pose::identity());

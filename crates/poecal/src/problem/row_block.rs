@@ -2,7 +2,7 @@
 
 use super::Problem;
 use super::column_map::ColumnMap;
-use super::fast::{ROWS, fixed_motions, pack};
+use super::fast::{ROWS, RowShapes, fixed_motions, pack};
 use super::row_group::RowGroup;
 use crate::estimate::{Estimate, Linkage};
 use crate::lanes::{self, Arm, NUMBERS, WIDTH, Wide};
@@ -57,7 +57,7 @@ impl Problem<'_> {
             return None;
         }
         let groups = RowGroup::of(self, rows, |position, _| position).into_iter();
-        groups.map(|it| Some((ColumnMap::new(self, state, it.sight, it.framed)?, it.rows))).collect()
+        groups.map(|it| Some((ColumnMap::new(self, state, it.sight, it.form)?, it.rows))).collect()
     }
 
     fn by_kernel(
@@ -71,16 +71,18 @@ impl Problem<'_> {
         let linkage = Linkage::new(state);
         let (steps, end) = fixed_motions(&linkage, arranged.sight);
         let plan = &arranged.plan;
-        let arm = Arm { plan, steps: &steps, end: &end, nearly: false };
         let columns: Vec<(usize, f64)> = arranged.places().map(|place| (place.at, place.sign)).collect();
         let own: Vec<u32> = places.iter().map(|&place| rows[place as usize]).collect();
+        let shapes = RowShapes { problem: self, rows: &own };
+        let arm = Arm { plan, steps: &steps, end: &end, shape: shapes.of(plan), nearly: false };
         let mut packed = ROWS.take();
         pack(self, plan, &own, &mut packed);
-        for (places, packed) in places.chunks(WIDTH).zip(packed.blocks.chunks_exact(plan.block_len())) {
+        let blocks = packed.blocks.chunks_exact(plan.block_len());
+        for ((places, packed), first) in places.chunks(WIDTH).zip(blocks).zip((0..).step_by(WIDTH)) {
             block.clear();
             block.numbers[..places.len()].fill(arranged.numbers());
             let RowBlock { jacobian, residual, numbers: _ } = &mut *block;
-            lanes::whitened_columns(self.level, &arm, packed, &columns, jacobian, residual);
+            lanes::whitened_columns(self.level, &arm, packed, first, &columns, jacobian, residual);
             each(places, block);
         }
         ROWS.set(packed);

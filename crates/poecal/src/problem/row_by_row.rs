@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 
 use super::Problem;
 use crate::estimate::{Chain, Estimate, Linkage};
-use crate::lie::TargetTwist;
+use crate::lie::{Pose, TargetTwist};
+use crate::measurement::NUMBERS;
 use crate::parameters::Wrench;
 use crate::solve::{LeastSquares as _, Normal};
 use crate::threads;
@@ -24,19 +25,43 @@ impl Problem<'_> {
         let linkage = Linkage::new(state);
         let mut chain = Chain::default();
         let mut columns: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
-        let mut jacobian = vec![0.0; 6 * n];
-        let mut residual = [0.0; 6];
+        let mut jacobian = vec![0.0; NUMBERS * n];
+        let mut residual = [0.0; NUMBERS];
         for &row in rows {
             let observation = self.session.observation(row);
-            let written = self.written(row as usize);
-            let measurement = written.model();
-            let (noise, dim) = (self.noise(row as usize), measurement.dim());
             chain.evaluate(&linkage, self.session.packed, row as usize, observation);
             self.layout.target_twists(&chain, observation.target, &mut columns);
-            measurement.project(&chain.target, &columns, &noise, n, &mut jacobian);
-            measurement.residual(&chain.target, &noise, &mut residual);
+            let dim = self.project(row as usize, &chain.target, &columns, &mut jacobian);
+            self.residual(row as usize, &chain.target, &mut residual);
             each(row, &jacobian[..dim * n], &residual[..dim]);
         }
+    }
+
+    /// The whitened residual of a row for its predicted target.
+    fn residual(&self, row: usize, predicted: &Pose, out: &mut [f64]) {
+        let written = self.written(row);
+        let (seen, noise) = (written.model(), self.noise(row));
+        seen.residual(predicted, out);
+        for (e, channel) in out.iter_mut().zip(seen.channels()) {
+            *e /= noise[channel.quantity];
+        }
+    }
+
+    /// Writes the whitened sensitivity of the prediction to each column twist, row-major; returns the number of rows.
+    fn project(&self, row: usize, predicted: &Pose, columns: &[TargetTwist], out: &mut [f64]) -> usize {
+        let written = self.written(row);
+        let (seen, noise) = (written.model(), self.noise(row));
+        let mut sensitivity = [[0.0; 6]; NUMBERS];
+        seen.sensitivity(predicted, &mut sensitivity);
+        let rows = sensitivity.iter().zip(seen.channels());
+        for ((numbers, channel), out) in rows.zip(out.chunks_exact_mut(columns.len().max(1))) {
+            let weight = 1.0 / noise[channel.quantity];
+            let [a, b, c, p, q, r] = numbers.map(|number| number * weight);
+            for ((v, w), out) in columns.iter().zip(out) {
+                *out = a * v.x + b * v.y + c * v.z + p * w.x + q * w.y + r * w.z;
+            }
+        }
+        seen.dim()
     }
 
     /// [`LeastSquares::normal`] by the general path, which serves every problem: theory.md §6 (28), row after row.
@@ -48,9 +73,7 @@ impl Problem<'_> {
             self.for_blocks(
                 &linkage,
                 rows,
-                |chain, row, out| {
-                    self.written(row).model().residual(&chain.target, &self.noise(row), out);
-                },
+                |chain, row, out| self.residual(row, &chain.target, out),
                 &mut normal,
             );
             normal
@@ -72,20 +95,17 @@ impl Problem<'_> {
         let total = self.sum_chunks(|rows| {
             let mut normal = Normal::new(self.layout.dim());
             let mut chain = Chain::default();
-            let (mut e_ahead, mut e_behind) = ([0.0; 6], [0.0; 6]);
+            let (mut e_ahead, mut e_behind) = ([0.0; NUMBERS], [0.0; NUMBERS]);
             self.for_blocks(
                 &linkage,
                 rows,
                 |here, row, out| {
                     let observation = &self.session.data.observations[row];
-                    let written = self.written(row);
-                    let measurement = written.model();
-                    let noise = self.noise(row);
                     chain.evaluate(&ahead, self.session.packed, row, observation);
-                    measurement.residual(&chain.target, &noise, &mut e_ahead);
+                    self.residual(row, &chain.target, &mut e_ahead);
                     chain.evaluate(&behind, self.session.packed, row, observation);
-                    measurement.residual(&chain.target, &noise, &mut e_behind);
-                    measurement.residual(&here.target, &noise, out);
+                    self.residual(row, &chain.target, &mut e_behind);
+                    self.residual(row, &here.target, out);
                     for (e, (a, b)) in out.iter_mut().zip(e_ahead.iter().zip(&e_behind)) {
                         *e = (a + b - 2.0 * *e) / (FRACTION * FRACTION);
                     }
@@ -114,17 +134,29 @@ impl Problem<'_> {
                     return normal;
                 }
                 chain.evaluate(&linkage, self.session.packed, row, observation);
-                let written = self.written(row);
-                let Some((force, torque)) = written.model().wrench(&chain.target, &self.noise(row)) else {
-                    return normal;
-                };
+                let Some(wrench) = self.wrench(row, &chain.target) else { return normal };
                 normal.residuals += 1;
-                let wrench = Wrench { force, torque };
                 self.layout.add_curvature(&chain, observation.target, &wrench, &mut normal.gram);
             }
             normal
         });
         (total.residuals == self.rows.len()).then_some(total.gram)
+    }
+
+    /// The whitened residual of a row as force and torque on its target, `Sᵀ W e`, where the curvature is theirs (theory.md §6 (31a)).
+    fn wrench(&self, row: usize, predicted: &Pose) -> Option<Wrench> {
+        let written = self.written(row);
+        let (seen, noise) = (written.model(), self.noise(row));
+        let (mut e, mut sensitivity) = ([0.0; NUMBERS], [[0.0; 6]; NUMBERS]);
+        seen.residual(predicted, &mut e);
+        seen.sensitivity(predicted, &mut sensitivity);
+        let mut wrench = Wrench { force: Vector3::zeros(), torque: Vector3::zeros() };
+        for ((e, [a, b, c, p, q, r]), channel) in e.into_iter().zip(sensitivity).zip(seen.channels()) {
+            let pull = e / (noise[channel.quantity] * noise[channel.quantity]);
+            wrench.force += Vector3::new(a, b, c) * pull;
+            wrench.torque += Vector3::new(p, q, r) * pull;
+        }
+        seen.is_wrench().then_some(wrench)
     }
 
     /// Adds up `add` of each fixed chunk of rows, in the order of the rows whatever the number of threads.
@@ -151,29 +183,22 @@ impl Problem<'_> {
         let n = self.layout.dim();
         let mut chain = Chain::default();
         let mut columns: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
-        let mut jacobian = vec![0.0; 6 * n];
-        let mut residuals = [0.0; 6];
+        let mut jacobian = vec![0.0; NUMBERS * n];
+        let mut residuals = [0.0; NUMBERS];
         let mut full = Block::default();
-        let mut turning = Block::default();
         for (count, &row) in rows.iter().enumerate() {
             let row = row as usize;
             let observation = &self.session.data.observations[row];
-            let written = self.written(row);
-            let measurement = written.model();
             chain.evaluate(linkage, self.session.packed, row, observation);
             self.layout.target_twists(&chain, observation.target, &mut columns);
-            let (dim, split) = (measurement.dim(), measurement.rotation_row());
-            measurement.project(&chain.target, &columns, &self.noise(row), n, &mut jacobian);
+            let dim = self.project(row, &chain.target, &columns, &mut jacobian);
             residual(&chain, row, &mut residuals);
-            full.push(&jacobian[..split * n], &residuals[..split]);
-            turning.push(&jacobian[split * n..dim * n], &residuals[split..dim]);
+            full.push(&jacobian[..dim * n], &residuals[..dim]);
             if count % BLOCK == BLOCK - 1 {
-                full.flush(normal, 0);
-                turning.flush(normal, self.layout.shifts());
+                full.flush(normal);
             }
         }
-        full.flush(normal, 0);
-        turning.flush(normal, self.layout.shifts());
+        full.flush(normal);
     }
 }
 
@@ -190,8 +215,8 @@ impl Block {
         self.residuals.extend_from_slice(residuals);
     }
 
-    fn flush(&mut self, normal: &mut Normal, start: usize) {
-        normal.add_rows(&self.rows, &self.residuals, start);
+    fn flush(&mut self, normal: &mut Normal) {
+        normal.add_rows(&self.rows, &self.residuals, 0);
         self.rows.clear();
         self.residuals.clear();
     }

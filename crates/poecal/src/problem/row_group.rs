@@ -1,8 +1,8 @@
-//! Groups of rows that one kernel call can take: rows of one target and one station, all with or all without orientation.
+//! Groups of rows that one kernel call can take: rows of one target and one station, all of one form.
 
 use super::Problem;
 use crate::estimate::Sight;
-use crate::measurement::{Noise, Observation};
+use crate::measurement::{Measurement, Noise, Observation, Quantity};
 use crate::threads;
 
 /// Rows that one thread groups at a time.
@@ -10,11 +10,11 @@ const CHUNK: usize = 8192;
 /// Relative difference of two ratios that differ by rounding only.
 const SAME_RATIO: f64 = 1e-14;
 
-/// Rows of one target, station and kind, in the order given.
+/// Rows of one target, station and form, in the order given.
 pub(super) struct RowGroup {
     pub(super) sight: Sight,
-    /// Whether orientation was measured.
-    pub(super) framed: bool,
+    /// What was measured.
+    pub(super) form: Form,
     /// Position over rotation noise in m/rad, if it is the same in all rows.
     pub(super) ratio: Option<f64>,
     /// The rows, or another key of each.
@@ -31,7 +31,7 @@ impl RowGroup {
             threads::map_chunks(&problem.rows, CHUNK, |_, rows| RowGroup::of(problem, rows, |_, row| row));
         let mut groups: Vec<RowGroup> = Vec::new();
         for other in parts.into_iter().flatten() {
-            match groups.iter_mut().find(|group| group.holds(other.sight, other.framed)) {
+            match groups.iter_mut().find(|group| group.holds(other.sight, other.form)) {
                 Some(group) => {
                     group.ratio = same(group.ratio, other.ratio);
                     group.rows.extend(other.rows);
@@ -42,33 +42,74 @@ impl RowGroup {
         groups
     }
 
-    /// Groups rows by target, station and kind; stores `key(position, row)` of each.
+    /// Groups rows by target, station and form; stores `key(position, row)` of each.
     pub(super) fn of(problem: &Problem<'_>, rows: &[u32], key: impl Fn(u32, u32) -> u32) -> Vec<RowGroup> {
         let mut groups: Vec<RowGroup> = Vec::new();
         let usual = Whitening::new(problem.noise);
         let mut at = 0;
         for (position, &row) in (0..).zip(rows) {
             let observation = problem.session.observation(row);
-            let framed = problem.measurement(row as usize).sees_orientation();
+            let form = Form::of(problem, row);
             let sight = Sight::from(observation);
             // Most rows are like the one before.
-            if !groups.get(at).is_some_and(|group| group.holds(sight, framed)) {
-                at = groups.iter().position(|group| group.holds(sight, framed)).unwrap_or(groups.len());
+            if !groups.get(at).is_some_and(|group| group.holds(sight, form)) {
+                at = groups.iter().position(|group| group.holds(sight, form)).unwrap_or(groups.len());
             }
-            let ratio = framed.then(|| usual.of(observation, problem.noise).ratio);
+            let ratio = (form == Form::Pose).then(|| usual.of(observation, problem.noise).ratio);
             match groups.get_mut(at) {
                 Some(group) => {
                     group.ratio = same(group.ratio, ratio);
                     group.rows.push(key(position, row));
                 }
-                None => groups.push(RowGroup { sight, framed, ratio, rows: vec![key(position, row)] }),
+                None => groups.push(RowGroup { sight, form, ratio, rows: vec![key(position, row)] }),
             }
         }
         groups
     }
 
-    fn holds(&self, sight: Sight, framed: bool) -> bool {
-        self.sight.is_like(sight) && self.framed == framed
+    fn holds(&self, sight: Sight, form: Form) -> bool {
+        self.sight.is_like(sight) && self.form == form
+    }
+}
+
+/// What the rows of a group measured, for the kernels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// The position of a point.
+    Point,
+    /// A pose, by the residual of its type.
+    Pose,
+    /// Another function of a target's pose: so many numbers, and whether they depend on its orientation.
+    Shaped(usize, bool),
+}
+
+impl Form {
+    fn of(problem: &Problem<'_>, row: u32) -> Self {
+        match (problem.measurement(row as usize), problem.session.data.pose_residual) {
+            (Measurement::Point(_), _) => Form::Point,
+            (Measurement::Pose(_), None) => Form::Pose,
+            (other @ Measurement::Pose(_), Some(_)) => {
+                Form::Shaped(other.observe().dim(), other.sees_orientation())
+            }
+        }
+    }
+
+    /// Whether the rows depend on the target's orientation.
+    pub(super) fn sees_orientation(self) -> bool {
+        match self {
+            Form::Point => false,
+            Form::Pose => true,
+            Form::Shaped(_, sees) => sees,
+        }
+    }
+
+    /// Numbers of each row.
+    pub(super) fn numbers(self) -> usize {
+        match self {
+            Form::Point => 3,
+            Form::Pose => 6,
+            Form::Shaped(numbers, _) => numbers,
+        }
     }
 }
 
@@ -88,13 +129,14 @@ pub(super) struct Whitening {
 
 impl Whitening {
     pub(super) fn new(noise: Noise) -> Self {
-        Whitening { weight: 1.0 / noise.position_m, ratio: noise.position_m / noise.rotation_rad }
+        let [position, rotation] = [noise[Quantity::Position], noise[Quantity::Rotation]];
+        Whitening { weight: 1.0 / position, ratio: position / rotation }
     }
 
     /// Whitening of a row, which may state its own noise; `self` is the whitening by the `usual` noise.
     #[inline(always)]
     pub(super) fn of(self, observation: &Observation, usual: Noise) -> Self {
-        match (observation.sigma_position_m, observation.sigma_rotation_rad) {
+        match (observation.stated[Quantity::Position], observation.stated[Quantity::Rotation]) {
             (None, None) => self,
             _ => Whitening::new(observation.noise_or(usual)),
         }

@@ -44,7 +44,7 @@ impl GramScatter {
                 }
             }
         }
-        let turns = if plan.framed { &plan.turns[..] } else { &[] };
+        let turns = if plan.is_pose() { &plan.turns[..] } else { &[] };
         let own = Tiles::new(turns.len());
         made.rotation.reserve(turns.len() * (turns.len() + 1) / 2);
         for (a, (&shift, &place)) in turns.iter().zip(arranged.turn_places()).enumerate() {

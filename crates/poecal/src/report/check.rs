@@ -10,7 +10,7 @@ use crate::error::first_few;
 use crate::forensics::Diagnosis;
 use crate::io::calibration_file::PoseEntry;
 use crate::io::measurements::{
-    ColumnUnderstanding, DecimalSign, FileUnderstanding, MeasurementFile, Quantity, Separator, Unit,
+    ColumnUnderstanding, DecimalSign, Dimension, FileUnderstanding, MeasurementFile, Separator, Unit,
     UnitSource,
 };
 use crate::io::model::{Model, ModelSource};
@@ -287,9 +287,9 @@ fn range_words(column: &ColumnUnderstanding) -> String {
     let (Some(min), Some(max)) = (column.min, column.max) else { return String::new() };
     let quantity = column.unit.and_then(|unit| Unit::parse_any(unit).ok()).map(Unit::quantity);
     let (factor, unit) = match quantity {
-        Some(Quantity::Length) => (1e3, " mm"),
-        Some(Quantity::Angle) => (1f64.to_degrees(), " deg"),
-        Some(Quantity::Number) | None => (1.0, ""),
+        Some(Dimension::Length) => (1e3, " mm"),
+        Some(Dimension::Angle) => (1f64.to_degrees(), " deg"),
+        Some(Dimension::Number) | None => (1.0, ""),
     };
     let (min, max) = (short(min * factor, 3), short(max * factor, 3));
     if min == max { format!("{min}{unit}") } else { format!("{min} to {max}{unit}") }

@@ -8,6 +8,7 @@ use super::table::{kinds_words, line, number, robot_words};
 use crate::analysis::{Cause, Foresight, JointCoverage, PlannedSession};
 use crate::io::calibration_file::IdentifiabilityEntry;
 use crate::io::model::Model;
+use crate::measurement::Quantity;
 use crate::robot::JointKind;
 use crate::text::visible;
 
@@ -67,14 +68,17 @@ impl Identify {
     #[must_use]
     pub fn new(model: &Model, files: &[String], session: &PlannedSession, found: &Foresight) -> Self {
         let sigma_rotation_deg =
-            session.kind.sees_orientation().then(|| session.noise.rotation_rad.to_degrees());
+            session.kind.sees_orientation().then(|| session.noise[Quantity::Rotation].to_degrees());
         Identify {
             model: model.path.display().to_string(),
             files: files.to_vec(),
             kind: session.kind.word(),
             frame: if session.device_free { "unknown" } else { "base" },
             configurations: found.count,
-            noise: NoiseEntry { sigma_position_mm: session.noise.position_m * 1e3, sigma_rotation_deg },
+            noise: NoiseEntry {
+                sigma_position_mm: session.noise[Quantity::Position] * 1e3,
+                sigma_rotation_deg,
+            },
             identifiability: IdentifiabilityEntry::of(&found.identifiability),
             expected_error: ExpectedEntry {
                 configurations: found.expected.configurations,

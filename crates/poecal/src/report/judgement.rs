@@ -2,6 +2,7 @@
 
 use super::table::{STATISTICS, WIDTHS, line, number, number_or_dash, row};
 use crate::calibration::{Judgement, ModelAccuracy, PartCoverage, Refitted, Statistic};
+use crate::measurement::Quantity;
 
 /// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
 /// `measurements` name the files.
@@ -12,23 +13,27 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
     line(&mut out, "measurements", &format!("{} in {measurements}", judgement.count));
     line(&mut out, "refitted", &refitted_words(judgement));
     out.push('\n');
-    block(&mut out, "position, mm", judgement, |model| Some(model.position_mm));
-    if judgement.calibrated.rotation_deg.is_some() {
-        out.push('\n');
-        block(&mut out, "rotation, deg", judgement, |model| model.rotation_deg);
+    for (k, (quantity, _)) in judgement.calibrated.iter().enumerate() {
+        if k > 0 {
+            out.push('\n');
+        }
+        let title = format!("{}, {}", quantity.name(), quantity.unit().symbol());
+        block(&mut out, &title, judgement, |model| model.get(quantity));
     }
     if let Some(check) = &judgement.promised {
         out.push('\n');
-        coverage(&mut out, "position", &check.position_mm, "mm", judgement.calibrated.position_mm.rms);
-        if let (Some(part), Some(found)) = (&check.rotation_deg, judgement.calibrated.rotation_deg) {
-            coverage(&mut out, "rotation", part, "deg", found.rms);
+        for (quantity, part) in check.parts.iter() {
+            if let Some(found) = judgement.calibrated.get(quantity) {
+                coverage(&mut out, quantity, &part, found.rms);
+            }
         }
         line(&mut out, "sampled range", &range_words(judgement));
     }
     out
 }
 
-fn coverage(out: &mut String, what: &str, check: &PartCoverage, unit: &str, found: f64) {
+fn coverage(out: &mut String, quantity: Quantity, check: &PartCoverage, found: f64) {
+    let (what, unit) = (quantity.name(), quantity.unit().symbol());
     let words = format!(
         "{what}: {:.1} % of the errors are inside their 95 % bounds; {} {unit} (RMS), expected {} with measurement noise",
         100.0 * check.inside_bound95,
@@ -45,10 +50,11 @@ fn range_words(judgement: &Judgement) -> String {
     if some.count == judgement.count {
         return "all configurations lie inside it".to_owned();
     }
-    let share = 100.0 * some.promised.position_mm.inside_bound95;
-    let rms = number(some.calibrated.position_mm.rms);
+    let share = 100.0 * some.promised.parts.lead().inside_bound95;
+    let leading = some.calibrated.leading().map_or(Quantity::Position, |(quantity, _)| quantity);
+    let (rms, what, unit) = (number(some.calibrated.lead().rms), leading.name(), leading.unit().symbol());
     format!(
-        "{} of {} configurations {} inside it: position error {rms} mm (RMS), {share:.1} % inside the bounds",
+        "{} of {} configurations {} inside it: {what} error {rms} {unit} (RMS), {share:.1} % inside the bounds",
         some.count,
         judgement.count,
         if some.count == 1 { "lies" } else { "lie" }

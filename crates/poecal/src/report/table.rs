@@ -4,6 +4,7 @@ use std::fmt::{Display, Write as _};
 
 use crate::calibration::{ModelAccuracy, SetAccuracy, Statistic};
 use crate::error::shown;
+use crate::measurement::Quantity;
 use crate::robot::{JointKind, Robot};
 use crate::text::visible;
 
@@ -34,34 +35,40 @@ pub(super) const WIDTHS: [usize; 2] = [26, 14];
 /// Position and rotation errors of the three models, training and held out apart.
 pub(super) fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccuracy>) -> String {
     let mut out = String::new();
-    block(&mut out, "position, mm", training, held_out, |model| Some(model.position_mm));
-    let turned = |set: &SetAccuracy| set.calibrated.rotation_deg.is_some();
-    if turned(training) || held_out.is_some_and(turned) {
-        out.push('\n');
-        block(&mut out, "rotation, deg", training, held_out, |model| model.rotation_deg);
+    for (k, quantity) in measured(training, held_out).enumerate() {
+        if k > 0 {
+            out.push('\n');
+        }
+        block(&mut out, quantity, training, held_out);
     }
     out
 }
 
-fn block(
-    out: &mut String,
-    title: &str,
-    training: &SetAccuracy,
-    held_out: Option<&SetAccuracy>,
-    of: fn(&ModelAccuracy) -> Option<Statistic>,
-) {
-    row(out, title, WIDTHS, MODELS.map(|(word, _)| word));
-    set_rows(out, "training", training, of);
+/// Quantities that rows of these sets measured.
+pub(super) fn measured<'a>(
+    training: &'a SetAccuracy,
+    held_out: Option<&'a SetAccuracy>,
+) -> impl Iterator<Item = Quantity> + 'a {
+    let is_in = |set: &SetAccuracy, quantity| set.calibrated.get(quantity).is_some();
+    let is_measured =
+        move |it: &Quantity| is_in(training, *it) || held_out.is_some_and(|set| is_in(set, *it));
+    Quantity::ALL.into_iter().filter(is_measured)
+}
+
+fn block(out: &mut String, quantity: Quantity, training: &SetAccuracy, held_out: Option<&SetAccuracy>) {
+    let title = format!("{}, {}", quantity.name(), quantity.unit().symbol());
+    row(out, &title, WIDTHS, MODELS.map(|(word, _)| word));
+    set_rows(out, "training", training, quantity);
     match held_out {
-        Some(set) => set_rows(out, "held out", set, of),
+        Some(set) => set_rows(out, "held out", set, quantity),
         None => out.push_str("  held out        none: every measurement was fitted\n"),
     }
 }
 
-fn set_rows(out: &mut String, name: &str, set: &SetAccuracy, of: fn(&ModelAccuracy) -> Option<Statistic>) {
+fn set_rows(out: &mut String, name: &str, set: &SetAccuracy, quantity: Quantity) {
     for (k, (label, _, value)) in STATISTICS.into_iter().enumerate() {
         let head = if k == 0 { format!("{name} ({})", set.count) } else { String::new() };
-        let cells = MODELS.map(|(_, model)| number_or_dash(of(model(set)).map(value)));
+        let cells = MODELS.map(|(_, model)| number_or_dash(model(set).get(quantity).map(value)));
         row(out, &format!("  {head:<17} {label:<6}"), WIDTHS, cells);
     }
 }

@@ -142,11 +142,12 @@ impl SampledRows {
         };
         for &row in sample {
             let observation = problem.session.observation(row);
+            let model = observation.measurement.observe();
+            let Some(position) = model.position() else { continue };
             chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
             let home = start.base_from_target[observation.target];
             seen.base_motion.push(chain.target * home.inverse());
-            let model = observation.measurement.residual_model();
-            seen.measured.push(model.position());
+            seen.measured.push(position);
             seen.turned.push(model.orientation());
             seen.target.push(observation.target);
         }

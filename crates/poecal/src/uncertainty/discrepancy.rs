@@ -4,7 +4,7 @@ use super::folds::CrossValidation;
 use super::remainder::{Attribution, Remainder};
 use super::view::View;
 use super::{clusters, neighbours, order};
-use crate::measurement::Noise;
+use crate::measurement::{ByQuantity, Noise, Quantity};
 use crate::solve::Normal;
 
 /// Model error and noise, as the residuals show them (theory.md §9 (40) and (41)).
@@ -24,10 +24,10 @@ pub struct Discrepancy {
     /// Standard deviation of each component of the instrument's noise.
     pub noise: Noise,
     /// Source of the residuals of position, and of those of rotation.
-    pub attribution: [Attribution; 2],
+    pub attribution: ByQuantity<Attribution>,
     /// Degrees of freedom of these standard deviations and of the variance of the residuals, of positions and of rotations; infinite
     /// where they are stated.
-    pub freedom: [f64; 2],
+    pub freedom: ByQuantity<f64>,
     /// Correlation of the residuals of consecutive rows, if it is significant.
     pub lag_one: Option<f64>,
 }
@@ -36,14 +36,14 @@ impl Discrepancy {
     /// No model error, and noise that is known.
     #[must_use]
     pub fn none() -> Self {
-        let zero = Noise { position_m: 0.0, rotation_rad: 0.0 };
+        let zero = Noise::new(0.0, 0.0);
         Discrepancy {
             scatter: 1.0,
             extrapolation: 1.0,
             standard_deviation: zero,
             noise: zero,
-            attribution: [Attribution::StatedNoise; 2],
-            freedom: [f64::INFINITY; 2],
+            attribution: ByQuantity::from_fn(|_| Attribution::StatedNoise),
+            freedom: ByQuantity::from_fn(|_| f64::INFINITY),
             lag_one: None,
         }
     }
@@ -61,13 +61,22 @@ pub fn discrepancy(
     let lag_one = order::correlation(view);
     let by_place = clusters::inflation(view, normal, clusters::clusters);
     let by_time = lag_one.and_then(|_| clusters::inflation(view, normal, clusters::in_order));
-    let (position_alike, rotation_alike) = neighbours::alike(view);
+    let alike = neighbours::alike(view);
     let structured = by_place.is_some() || lag_one.is_some();
-    let position = remainder.position.settled(structured || position_alike);
-    let rotation = remainder.rotation.settled(structured || rotation_alike);
+    let own =
+        ByQuantity::from_fn(|quantity| remainder.parts[quantity].settled(structured || alike[quantity]));
+    // A quantity that was not measured is predicted as well as the others of its unit.
+    let is_measured =
+        |quantity: &Quantity| remainder.parts[*quantity].stated.is_some() || view.session.data.has(*quantity);
+    let settled = ByQuantity::from_fn(|quantity| {
+        let like = |other: &Quantity| other.unit() == quantity.unit() && is_measured(other);
+        let instead = Quantity::ALL.into_iter().find(like).filter(|_| !is_measured(&quantity));
+        own[instead.unwrap_or(quantity)]
+    });
+    let leading = settled[Quantity::Position];
     let scatter = by_place.unwrap_or(1.0).max(by_time.unwrap_or(1.0));
     let blocks =
-        cross_validation.filter(|_| position.attribution == Attribution::Robot).map_or(1.0, |found| {
+        cross_validation.filter(|_| leading.attribution == Attribution::Robot).map_or(1.0, |found| {
             let squares = found.blocked.iter().map(|block| block.growth.max(0.0).powi(2)).sum::<f64>();
             // The covariance of a sample's unknowns is larger, so that the same error is a smaller multiple of it.
             (squares / found.blocked.len().max(1) as f64).sqrt() / found.sampled
@@ -75,10 +84,10 @@ pub fn discrepancy(
     Discrepancy {
         scatter,
         extrapolation: scatter.max(blocks),
-        standard_deviation: Noise { position_m: position.robot, rotation_rad: rotation.robot },
-        noise: Noise { position_m: position.instrument, rotation_rad: rotation.instrument },
-        attribution: [position.attribution, rotation.attribution],
-        freedom: [position.freedom, rotation.freedom],
+        standard_deviation: settled.map(|it| it.robot),
+        noise: settled.map(|it| it.instrument),
+        attribution: settled.map(|it| it.attribution),
+        freedom: settled.map(|it| it.freedom),
         lag_one,
     }
 }

@@ -11,6 +11,7 @@ use super::view::View;
 use super::{TOGETHER, covariance, factor, motions};
 use crate::estimate::{Estimate, Linkage, RowError, sample_rows};
 use crate::linalg;
+use crate::measurement::Quantity;
 use crate::problem::Layout;
 use crate::simulate::random;
 use crate::solve::LeastSquares;
@@ -232,14 +233,12 @@ impl<'a> Downdated<'a> {
         let expected = self.position_variance(problem.layout(), rows, &both);
         let mut sums = ErrorSums { rows: rows.len(), expected, ..ErrorSums::default() };
         for error in self.view.session.errors(rows, &without) {
-            sums.position += error.position_m.norm_squared();
-            if let Some(turn) = error.rotation_rad {
-                sums.rotation += turn.norm_squared();
-                sums.turned += 1;
-            }
+            sums.position += error.square_m2();
+            sums.rotation += error.square(Quantity::Rotation);
+            sums.turned += usize::from(!error.part(Quantity::Rotation).is_empty());
         }
         let before = self.view.session.errors(rows, &self.estimate);
-        sums.before = before.iter().map(|error| error.position_m.norm_squared()).sum();
+        sums.before = before.iter().map(RowError::square_m2).sum();
         Some(sums)
     }
 

@@ -31,6 +31,7 @@ use nalgebra::{DMatrix, Matrix3};
 use crate::analysis::ranges;
 use crate::estimate::{Estimate, Linkage, Packed, Sight};
 use crate::linalg::{self, Factor};
+use crate::measurement::{ByQuantity, Quantity};
 use crate::problem::Layout;
 use crate::robot::JointKind;
 
@@ -110,7 +111,7 @@ impl Uncertainty {
 
     /// Factors by which 95 % bounds exceed those of a known covariance, of positions and of rotations: theory.md §9, below (40).
     #[must_use]
-    pub fn quantiles(&self) -> [Quantile; 2] {
+    pub fn quantiles(&self) -> ByQuantity<Quantile> {
         self.discrepancy.freedom.map(Quantile::new)
     }
 
@@ -148,11 +149,9 @@ impl Uncertainty {
         let n = self.layout.dim();
         let inside = DMatrix::from_row_slice(n, n, &self.covariance);
         let beyond = self.covariance_outside.as_ref().map(|outside| DMatrix::from_row_slice(n, n, outside));
-        let own = [
-            self.discrepancy.standard_deviation.position_m,
-            self.discrepancy.standard_deviation.rotation_rad,
-        ]
-        .map(|sigma| Matrix3::identity() * (sigma * sigma));
+        let own = [Quantity::Position, Quantity::Rotation]
+            .map(|quantity| self.discrepancy.standard_deviation[quantity])
+            .map(|sigma| Matrix3::identity() * (sigma * sigma));
         let rows: Vec<(usize, Sight)> = rows.collect();
         let mut found = Vec::with_capacity(rows.len());
         for some in rows.chunks(TOGETHER) {

@@ -5,14 +5,15 @@ use nalgebra::Vector3;
 use super::clusters::SIGNIFICANT;
 use super::view::View;
 use crate::estimate::{sample_rows, turn_to_first};
+use crate::measurement::ByQuantity;
 
 /// Rows whose nearest neighbour is sought, and rows among which it is sought.
 const PROBES: usize = 400;
 const NEIGHBOURS: usize = 4000;
 
-/// Whether the residuals of one target in neighbouring configurations are correlated significantly, of positions and of rotations
-/// (theory.md §9, *Neighbours*).
-pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
+/// Of each quantity, whether the residuals of one target in neighbouring configurations are correlated significantly (theory.md §9,
+/// *Neighbours*).
+pub(super) fn alike(view: &View<'_>) -> ByQuantity<bool> {
     let pool = sample_rows(view.rows, NEIGHBOURS);
     let mut errors = view.session.errors(&pool, view.estimate);
     turn_to_first(view.session.data, &pool, view.estimate, &mut errors);
@@ -20,7 +21,7 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
     let targets: Vec<usize> = pool.iter().map(|&row| view.session.observation(row).target).collect();
     let step = pool.len().div_ceil(PROBES).max(1);
     let joints = scaled(view, &spans, &pool);
-    let (mut position, mut rotation) = (PairSums::default(), PairSums::default());
+    let mut sums: ByQuantity<PairSums> = ByQuantity::default();
     let mut distances = vec![0.0; pool.len()];
     for a in (0..pool.len()).step_by(step) {
         square_distances(&joints, a, &mut distances);
@@ -31,12 +32,14 @@ pub(super) fn alike(view: &View<'_>) -> (bool, bool) {
             }
         }
         let Some(b) = nearest else { continue };
-        position.add(&errors[a].position_m, &errors[b].position_m);
-        if let (Some(a), Some(b)) = (&errors[a].rotation_rad, &errors[b].rotation_rad) {
-            rotation.add(a, b);
+        for (quantity, sums) in sums.values_mut() {
+            let measured = |row: usize| errors[row].length(quantity).map(|_| errors[row].vector(quantity));
+            if let Some((a, b)) = measured(a).zip(measured(b)) {
+                sums.add(&a, &b, quantity.components());
+            }
         }
     }
-    (position.is_significant(), rotation.is_significant())
+    sums.map(|sums| sums.is_significant())
 }
 
 /// Values of each joint that moves, over its sampled range.
@@ -57,22 +60,22 @@ fn square_distances(joints: &[Vec<f64>], from: usize, distances: &mut [f64]) {
 }
 
 /// Sums of products of neighbours' residuals.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 struct PairSums {
     products: f64,
     squares: f64,
-    pairs: usize,
+    components: usize,
 }
 
 impl PairSums {
-    fn add(&mut self, a: &Vector3<f64>, b: &Vector3<f64>) {
+    fn add(&mut self, a: &Vector3<f64>, b: &Vector3<f64>, components: usize) {
         self.products += a.dot(b);
         self.squares += 0.5 * (a.norm_squared() + b.norm_squared());
-        self.pairs += 1;
+        self.components += components;
     }
 
     /// In white noise the correlation of m components has the standard deviation `1/√m`.
     fn is_significant(&self) -> bool {
-        self.products > SIGNIFICANT / (3.0 * self.pairs as f64).sqrt() * self.squares
+        self.products > SIGNIFICANT / (self.components as f64).sqrt() * self.squares
     }
 }

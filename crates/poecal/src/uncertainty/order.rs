@@ -2,6 +2,7 @@
 
 use super::clusters::SIGNIFICANT;
 use super::view::View;
+use crate::measurement::Quantity;
 
 /// Fewest pairs for a judgement.
 const PAIRS: usize = 20;
@@ -31,10 +32,13 @@ pub(super) fn correlation(view: &View<'_>) -> Option<f64> {
         if file != observation.source.file || !is_elsewhere {
             continue;
         }
-        let (a, b) = (&errors[before].position_m, &errors[at].position_m);
+        if errors[before].leading() != errors[at].leading() {
+            continue;
+        }
+        let (a, b) = (&errors[before].lead(), &errors[at].lead());
         products += a.dot(b);
         squares += 0.5 * (a.norm_squared() + b.norm_squared());
-        components += 3;
+        components += errors[at].leading().map_or(0, Quantity::components);
     }
     let correlation = products / squares;
     let is_chance = correlation * (components as f64).sqrt() < SIGNIFICANT;

@@ -4,8 +4,9 @@ use nalgebra::Vector3;
 
 use super::view::View;
 use crate::analysis::{ranges, residual_variance};
-use crate::estimate::{Chain, Linkage, position_rms_m, sample_rows};
+use crate::estimate::{Chain, Linkage, rms_m, sample_rows};
 use crate::linalg;
+use crate::measurement::NUMBERS;
 use crate::robot::JointKind;
 use crate::solve::Normal;
 
@@ -53,22 +54,30 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
         ShapeSums { gram: [0.0; SHAPES * SHAPES], gradient: [0.0; SHAPES], shapes: [0.0; SHAPES * SHAPES] };
     let mut sums = vec![empty; joints];
     let errors = view.session.errors(&rows, view.estimate);
-    let rms_m = position_rms_m(&errors);
+    let rms_m = rms_m(&errors);
     let mut squares = 0.0;
     let linkage = Linkage::new(view.estimate);
     let mut chain = Chain::default();
     for (&row, error) in rows.iter().zip(errors) {
         let observation = view.session.observation(row);
-        let sigma = observation.noise_or(view.noise).position_m;
+        let Some(quantity) = error.leading() else { continue };
+        let sigma = observation.noise_or(view.noise)[quantity];
         chain.evaluate(&linkage, view.session.packed, row as usize, observation);
-        let error = error.position_m / sigma;
+        let mut sensitivity = [[0.0; 6]; NUMBERS];
+        observation.measurement.observe().sensitivity(&chain.target, &mut sensitivity);
+        let error = error.lead() / sigma;
         squares += error.norm_squared();
         for joint in &chain.joints {
             let sign = if joint.backward { -1.0 } else { 1.0 };
-            let motion = match joint.kind {
-                JointKind::Revolute => joint.z.cross(&(chain.target.translation - joint.origin)),
-                JointKind::Prismatic => joint.z,
+            let (moved, turned) = match joint.kind {
+                JointKind::Revolute => (joint.z.cross(&(chain.target.translation - joint.origin)), joint.z),
+                JointKind::Prismatic => (joint.z, Vector3::zeros()),
             };
+            // What the first quantity shows of it.
+            let mut motion = Vector3::zeros();
+            for (shown, [a, b, c, p, q, r]) in motion.iter_mut().zip(&sensitivity[..quantity.components()]) {
+                *shown = Vector3::new(*a, *b, *c).dot(&moved) + Vector3::new(*p, *q, *r).dot(&turned);
+            }
             let shapes = shapes(joint.kind, sign * joint.value, ranges[joint.joint]);
             sums[joint.joint].add(&shapes, &(motion * sign / sigma), &error);
         }

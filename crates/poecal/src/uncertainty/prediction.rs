@@ -3,13 +3,14 @@
 use nalgebra::Matrix3;
 
 use crate::distributions::f_quantile;
+use crate::measurement::{ByQuantity, Quantity};
 
 /// Covariances of a predicted target's place (square metres) and turn (square radians), device axes (theory.md §9 (40)).
 ///
 /// ```
 /// use nalgebra::Matrix3;
 /// use poecal::uncertainty::PredictedError;
-/// let quantiles = [poecal::uncertainty::Quantile::KNOWN; 2];
+/// let quantiles = poecal::ByQuantity::from_fn(|_| poecal::uncertainty::Quantile::KNOWN);
 /// let error = PredictedError { position: Matrix3::identity() * 1e-8, rotation: Matrix3::zeros(), quantiles };
 /// assert!((error.sigma_position_m() - 3f64.sqrt() * 1e-4).abs() < 1e-15);
 /// // Of three equal components, the distance is below 2.7955 standard deviations in 95 % of all cases.
@@ -21,8 +22,8 @@ pub struct PredictedError {
     pub position: Matrix3<f64>,
     /// Of the rotation vector, square radians.
     pub rotation: Matrix3<f64>,
-    /// Factors by which the bounds exceed those of known covariances, of positions and of rotations.
-    pub quantiles: [Quantile; 2],
+    /// Factors by which the bounds exceed those of known covariances, of each quantity.
+    pub quantiles: ByQuantity<Quantile>,
 }
 
 impl PredictedError {
@@ -41,13 +42,13 @@ impl PredictedError {
     /// 95 % bound of the distance, metres: [`Quantile::bound`] of the `P_p` of theory.md §9 (40).
     #[must_use]
     pub fn bound_position_m(&self) -> f64 {
-        self.quantiles[0].bound(&self.position)
+        self.quantiles[Quantity::Position].bound(&self.position)
     }
 
     /// 95 % bound of the angle, radians: [`Quantile::bound`] of the `P_R` of theory.md §9 (40).
     #[must_use]
     pub fn bound_rotation_rad(&self) -> f64 {
-        self.quantiles[1].bound(&self.rotation)
+        self.quantiles[Quantity::Rotation].bound(&self.rotation)
     }
 }
 

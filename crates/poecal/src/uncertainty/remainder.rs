@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 use super::factor;
 use super::view::View;
 use crate::distributions::{f_quantile, is_within_band};
-use crate::estimate::sample_rows;
+use crate::estimate::{RowError, sample_rows};
 use crate::linalg;
-use crate::measurement::MANY_ROWS;
+use crate::measurement::{ByQuantity, MANY_ROWS, Noise, Quantity};
 use crate::problem::Layout;
 use crate::solve::{LeastSquares, Normal};
+use crate::unit::Unit;
 
 /// Fewest degrees of freedom of repeated measurements for the test of lack of fit.
 const REPEATED: f64 = 20.0;
@@ -127,10 +128,8 @@ impl Part {
 /// Variances of the residuals of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remainder {
-    /// Of positions.
-    pub position: Part,
-    /// Of rotations.
-    pub rotation: Part,
+    /// Of each quantity.
+    pub parts: ByQuantity<Part>,
     /// Variance of the whitened residuals, of configurations if rows are repeated; 1 where stated noise explains it.
     pub variance: f64,
     /// Effective number of unknowns that the measurements determine (theory.md §6 (34)).
@@ -139,8 +138,8 @@ pub struct Remainder {
     pub numbers: usize,
 }
 
-/// Sums over residuals of one kind.
-#[derive(Default)]
+/// Sums over residuals of one quantity.
+#[derive(Clone, Copy, Default)]
 struct ResidualSums {
     /// Sums of squares, of whitened squares, of both within configurations, and of the variances that whiten.
     squares: f64,
@@ -154,7 +153,14 @@ struct ResidualSums {
 
 impl ResidualSums {
     /// Adds the rows of one target in one configuration: errors with their standard deviations.
-    fn add(&mut self, rows: &[(Vector3<f64>, f64)]) {
+    fn add(&mut self, quantity: Quantity, rows: &[(&RowError, Noise)]) {
+        let rows = rows.iter().filter(|(error, _)| !error.part(quantity).is_empty());
+        let rows: Vec<(Vector3<f64>, f64)> =
+            rows.map(|(error, noise)| (error.vector(quantity), noise[quantity])).collect();
+        self.add_vectors(&rows, quantity.components());
+    }
+
+    fn add_vectors(&mut self, rows: &[(Vector3<f64>, f64)], components: usize) {
         if rows.is_empty() {
             return;
         }
@@ -165,10 +171,10 @@ impl ResidualSums {
             self.whitened += square / (sigma * sigma);
             self.within += apart;
             self.whitened_within += apart / (sigma * sigma);
-            self.variances += 3.0 * sigma * sigma;
-            self.components += 3;
+            self.variances += components as f64 * sigma * sigma;
+            self.components += components;
         }
-        self.groups += 3;
+        self.groups += components;
     }
 
     fn part(&self, determined: f64, stated: bool) -> Part {
@@ -204,7 +210,7 @@ impl ResidualSums {
 /// position (m²) and rotation (rad²) with the unknowns of each taken off (theory.md §6 (34)).
 #[must_use]
 pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder {
-    let (mut position, mut rotation) = (ResidualSums::default(), ResidualSums::default());
+    let mut sums: ByQuantity<ResidualSums> = ByQuantity::default();
     // A sample of so many rows gives the same variances.
     let sample = sample_rows(view.rows, MANY_ROWS);
     let share = sample.len() as f64 / view.rows.len().max(1) as f64;
@@ -219,39 +225,48 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
             let noise = |row: u32| view.session.observation(row).noise_or(view.noise);
             let of = |row: u32| place(row).map(|error| (error, noise(row)));
             let seen: Vec<_> = same.iter().filter_map(|&row| of(row)).collect();
-            position.add(
-                &seen.iter().map(|(error, noise)| (error.position_m, noise.position_m)).collect::<Vec<_>>(),
-            );
-            rotation.add(
-                &seen
-                    .iter()
-                    .filter_map(|(error, noise)| Some((error.rotation_rad?, noise.rotation_rad)))
-                    .collect::<Vec<_>>(),
-            );
+            sums.values_mut().for_each(|(quantity, sums)| sums.add(quantity, &seen));
         }
     }
-    let total = (position.groups + rotation.groups) as f64;
+    let numbers: usize = sums.iter().map(|(_, sums)| sums.groups).sum();
+    let total = numbers as f64;
     let effective_unknowns = effective_unknowns(view, normal);
+    let angles = total_of(&sums, Unit::Radian);
+    let lengths = total_of(&sums, Unit::Metre);
     let by_rotations =
-        share * determined_by_rotations(view, normal, layout, effective_unknowns, &rotation, total);
+        share * determined_by_rotations(view, normal, layout, effective_unknowns, &angles, total);
     let in_sample = share * effective_unknowns;
     let variance = {
-        let between = position.between(1.0) + rotation.between(1.0);
-        let whole = position.whitened + rotation.whitened;
-        let is_repeated = position.components > position.groups;
+        let all = || sums.iter().map(|(_, sums)| sums);
+        let between: f64 = all().map(|sums| sums.between(1.0)).sum();
+        let whole: f64 = all().map(|sums| sums.whitened).sum();
+        let is_repeated = lengths.components > lengths.groups;
         (if is_repeated { between } else { whole }) / (total - in_sample).max(1.0)
     };
-    let parts = [
-        position.part(in_sample - by_rotations, view.noise_is_stated[0]),
-        rotation.part(by_rotations, view.noise_is_stated[1]),
-    ];
-    let explained = parts
-        .iter()
-        .zip([&position, &rotation])
-        .all(|(part, sums)| sums.components == 0 || part.against_stated() == Some(std::cmp::Ordering::Equal));
-    let variance = if explained { 1.0 } else { variance };
-    let numbers = position.groups + rotation.groups;
-    Remainder { position: parts[0], rotation: parts[1], variance, effective_unknowns, numbers }
+    let parts = ByQuantity::from_fn(|quantity| {
+        let own = &sums[quantity];
+        let of_all = |all: &ResidualSums| own.groups as f64 / all.groups.max(1) as f64;
+        let determined = match quantity.unit() {
+            Unit::Metre => (in_sample - by_rotations) * of_all(&lengths),
+            Unit::Radian => by_rotations * of_all(&angles),
+        };
+        own.part(determined, view.noise_is_stated[quantity])
+    });
+    let is_explained = |(quantity, part): (Quantity, &Part)| {
+        sums[quantity].components == 0 || part.against_stated() == Some(std::cmp::Ordering::Equal)
+    };
+    let variance = if parts.iter().all(is_explained) { 1.0 } else { variance };
+    Remainder { parts, variance, effective_unknowns, numbers }
+}
+
+/// Counts of all quantities of a unit.
+fn total_of(sums: &ByQuantity<ResidualSums>, unit: Unit) -> ResidualSums {
+    let own = sums.iter().filter(|(quantity, _)| quantity.unit() == unit);
+    own.fold(ResidualSums::default(), |total, (_, sums)| ResidualSums {
+        components: total.components + sums.components,
+        groups: total.groups + sums.groups,
+        ..total
+    })
 }
 
 /// Effective number of unknowns that the measurements determine beside the prior, `n - tr((N + wΛ)⁻¹ wΛ)`: theory.md §6 (34).
@@ -286,8 +301,10 @@ fn determined_by_rotations(
     }
     let n = layout.dim();
     let mut unmeasured = *view;
-    unmeasured.noise.position_m = UNMEASURED_M;
-    let stated = view.rows.iter().any(|&row| view.session.observation(row).sigma_position_m.is_some());
+    unmeasured.noise = unmeasured.noise.without_lengths(UNMEASURED_M);
+    let states = |quantity: Quantity, row: u32| view.session.observation(row).stated[quantity].is_some();
+    let mut lengths = Quantity::ALL.into_iter().filter(|quantity| quantity.unit() == Unit::Metre);
+    let stated = lengths.any(|quantity| view.rows.iter().any(|&row| states(quantity, row)));
     let part = unmeasured.problem(view.rows.to_vec()).normal(view.estimate);
     match factor(&normal.gram, n, view.prior, if view.prior.is_fitted { 1.0 } else { 0.0 }) {
         Some(factor) if !stated => linalg::trace_of_quotient(&factor, &part.gram, n).min(determined),

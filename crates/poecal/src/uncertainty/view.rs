@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::analysis::{PLAUSIBLE, ranges};
 use crate::estimate::{Estimate, Session, Sight};
-use crate::measurement::Noise;
+use crate::measurement::{ByQuantity, Noise};
 use crate::parameters::Parameter;
 use crate::problem::{Layout, Prior, Problem};
 use crate::solve::Normal;
@@ -54,7 +54,7 @@ pub struct View<'a> {
     /// The noise by which residuals were whitened.
     pub noise: Noise,
     /// Whether that noise is stated rather than estimated, of positions and of rotations.
-    pub noise_is_stated: [bool; 2],
+    pub noise_is_stated: ByQuantity<bool>,
     /// Prior of the unknowns.
     pub prior: &'a PriorInformation,
     /// Variance of the whitened residuals.

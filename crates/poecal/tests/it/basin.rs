@@ -3,7 +3,7 @@
 use crate::trials::trials;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
 use poecal::estimate::{Packed, Session};
-use poecal::measurement::{Dataset, Noise};
+use poecal::measurement::{Dataset, Noise, Quantity};
 use poecal::problem::Problem;
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulation, elbow};
@@ -13,7 +13,7 @@ use rand_core::SeedableRng;
 use rayon::prelude::*;
 
 /// Noise of the simulated device, and configurations.
-const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 1e-4 };
+const NOISE: Noise = Noise::new(5e-5, 1e-4);
 const CONFIGURATIONS: usize = 60;
 /// Two fits that end at one optimum differ in cost by rounding, and by how exactly each has settled its noise ratio.
 const SAME_OPTIMUM: f64 = 1.001;
@@ -42,8 +42,8 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
     let simulation = Simulation {
         error_rotation_rad: deg.to_radians(),
         error_position_m: mm * 1e-3,
-        noise_position_m: NOISE.position_m,
-        noise_rotation_rad: NOISE.rotation_rad,
+        noise_position_m: NOISE[Quantity::Position],
+        noise_rotation_rad: NOISE[Quantity::Rotation],
         count: CONFIGURATIONS,
         seed,
         device_anywhere: frame == DeviceFrameKnowledge::Unknown,

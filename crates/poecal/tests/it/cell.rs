@@ -6,9 +6,7 @@ use nalgebra::Vector3;
 use poecal::analysis::{Setup, identifiability};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use poecal::lie::{Pose, Screw, rotation};
-use poecal::measurement::{
-    Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Source,
-};
+use poecal::measurement::{Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement};
 use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
 use poecal::problem::Problem;
 use poecal::robot::{Body, Joint, JointKind, Mount, Robot};
@@ -18,7 +16,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
 use std::f64::consts::PI;
 
-const NOISE: Noise = Noise { position_m: 1e-4, rotation_rad: 2e-4 };
+const NOISE: Noise = Noise::new(1e-4, 2e-4);
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,16 +168,7 @@ impl Measured {
                 Seen::Point => Measurement::Point(PointMeasurement { position: Vector3::zeros() }),
                 Seen::Pose => Measurement::Pose(PoseMeasurement { pose: Pose::identity() }),
             };
-            let observation = Observation {
-                target,
-                station,
-                from,
-                measurement,
-                sigma_position_m: None,
-                sigma_rotation_rad: None,
-                set: None,
-                source: Source::default(),
-            };
+            let observation = Observation { station, from, ..Observation::new(target, measurement) };
             data.push_observation(&readings(), observation).unwrap();
         }
         let packed = Packed::of(&robot, &data);
@@ -297,9 +286,9 @@ fn errors_of_every_way_are_measured_minus_predicted() {
         for (row, error) in errors.iter().enumerate() {
             let seen = &made.data.observations[row];
             chain.evaluate(&linkage, &made.packed, row, seen);
-            let apart = seen.measurement.pose().translation - chain.target.translation - error.position_m;
+            let apart = seen.measurement.pose().translation - chain.target.translation - error.position_m();
             assert!(apart.norm() < 1e-13, "{} {row}: {:e}", cell.name, apart.norm());
-            assert_eq!(error.rotation_rad.is_some(), seen.measurement.sees_orientation());
+            assert_eq!(error.rotation_rad().is_some(), seen.measurement.sees_orientation());
         }
     }
 }

@@ -342,7 +342,7 @@ fn what_the_data_tell_is_not_touched() {
     };
     let made = far.run(&robot, Kind::Pose).unwrap();
     let found = calibrate(&robot, &made.data, &CalibrationOptions::default()).unwrap();
-    let rms = found.accuracy.held_out.unwrap().calibrated.position_mm.rms;
+    let rms = found.accuracy.held_out.unwrap().calibrated.position_mm().rms;
     println!("errors of 17 deg and 60 mm: {rms:.4} mm");
     assert!(rms < 0.15);
 }

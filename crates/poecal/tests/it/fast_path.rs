@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, fit_screws};
 use poecal::estimate::{self, Estimate, Packed, delivered};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise};
+use poecal::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis, TargetFrame, TargetPlace};
 use poecal::problem::{Problem, Refit, SimdLevel, simd_levels};
 use poecal::robot::Robot;
@@ -16,7 +16,7 @@ use poecal::solve::{LeastSquares, Normal, Options, minimize};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 5e-4 };
+const NOISE: Noise = Noise::new(5e-5, 5e-4);
 const LENGTH_M: f64 = 0.4;
 /// Both paths sum the same products in another order: rounding, and no more.
 const TOLERANCE: f64 = 1e-12;
@@ -105,8 +105,8 @@ impl Session {
             if case.stated && !is_early {
                 let position_m = 1e-5 * (1 + row % 4) as f64;
                 let ratio = if case.any_ratio { 1.0 + (row % 3) as f64 } else { 2.0 };
-                observation.sigma_position_m = Some(position_m);
-                observation.sigma_rotation_rad = Some(position_m * ratio);
+                observation.stated[Quantity::Position] = Some(position_m);
+                observation.stated[Quantity::Rotation] = Some(position_m * ratio);
             }
             if let Measurement::Pose(seen) = &mut observation.measurement
                 && row > 20
@@ -318,7 +318,7 @@ fn refits_have_the_same_optimum() {
             let scale = if trial % 4 == 3 { 300.0 } else { 1.0 };
             let mut data = made.data.clone();
             for observation in &mut data.observations {
-                let shift = random::normal_vector(&mut generator) * (scale * NOISE.position_m);
+                let shift = random::normal_vector(&mut generator) * (scale * NOISE[Quantity::Position]);
                 match &mut observation.measurement {
                     Measurement::Point(seen) => seen.position += shift,
                     Measurement::Pose(seen) => seen.pose.translation += shift,
@@ -371,5 +371,5 @@ impl LeastSquares for Plain<'_> {
 /// Largest distance between the places that two estimates predict, metres.
 fn farthest(session: &estimate::Session<'_>, rows: &[u32], a: &Estimate, b: &Estimate) -> f64 {
     let errors = |estimate| session.errors(rows, estimate);
-    errors(a).iter().zip(errors(b)).map(|(a, b)| (a.position_m - b.position_m).norm()).fold(0.0, larger)
+    errors(a).iter().zip(errors(b)).map(|(a, b)| (a.position_m() - b.position_m()).norm()).fold(0.0, larger)
 }

@@ -45,7 +45,7 @@ fn registered_m(session: &Session, data: &Dataset) -> f64 {
     let registration = Registration {
         session: estimate::Session::new(&session.robot, data, &packed, session.device_free).with_length(0.33),
         rows: &rows,
-        noise: Noise { position_m: 1e-3, rotation_rad: 3e-3 },
+        noise: Noise::new(1e-3, 3e-3),
         targets_free: true,
     };
     let (_, cost) = register(&registration, &delivered(&session.robot, data));

@@ -129,7 +129,7 @@ fn what_the_data_leave_open_stays_nominal() {
         }
         made.data = still;
         let result = calibrated(&made);
-        let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm.max * 1e-3;
+        let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm().max * 1e-3;
         let deviation = joint_deviation(&result, joint);
         // At zero the joint's own axis is open, and nothing else: it is exactly nominal. Elsewhere the later axes go with it.
         assert!(value != 0.0 || deviation < STAYS, "{deviation:e}");

@@ -19,7 +19,7 @@ const ROUNDING: f64 = 2e-15;
 /// Metres that a radian counts.
 const LENGTH_M: f64 = 0.7;
 /// Different for position and rotation, so that a mix-up shows.
-const NOISE: Noise = Noise { position_m: 0.5, rotation_rad: 0.8 };
+const NOISE: Noise = Noise::new(0.5, 0.8);
 
 /// Makes a measurement of a target that was seen at a pose.
 type Measure = fn(Pose) -> Measurement;
@@ -110,28 +110,33 @@ impl Row {
 
     /// The whitened residual.
     fn residual(&self, estimate: &Estimate) -> Vec<f64> {
-        let measurement = self.data.observations[0].measurement.residual_model();
+        let measurement = self.data.observations[0].measurement.observe();
         let mut chain = Chain::default();
         chain.evaluate(&Linkage::new(estimate), &self.packed, 0, &self.data.observations[0]);
         let mut out = vec![0.0; measurement.dim()];
-        measurement.residual(&chain.target, &NOISE, &mut out);
-        out
+        measurement.residual(&chain.target, &mut out);
+        let whitened = out.iter().zip(measurement.channels()).map(|(e, channel)| e / NOISE[channel.quantity]);
+        whitened.collect()
     }
 
     /// The whitened sensitivity of the prediction, one column an unknown.
     fn columns(&self, estimate: &Estimate, layout: &Layout) -> Vec<Vec<f64>> {
         let mut chain = Chain::default();
         chain.evaluate(&Linkage::new(estimate), &self.packed, 0, &self.data.observations[0]);
-        let measurement = self.data.observations[0].measurement.residual_model();
+        let measurement = self.data.observations[0].measurement.observe();
         let mut columns = vec![Vec::new(); layout.dim()];
         for (parameter, places) in layout.parameters() {
             let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); places.len()];
             parameter.model().target_twists(&chain, 0, &mut twists);
-            let mut projected = vec![0.0; measurement.dim() * places.len()];
-            measurement.project(&chain.target, &twists, &NOISE, places.len(), &mut projected);
-            for (k, &(place, scale)) in places.iter().enumerate() {
-                columns[place] =
-                    projected.iter().skip(k).step_by(places.len()).map(|value| value / scale).collect();
+            let mut sensitivity = vec![[0.0; 6]; measurement.dim()];
+            measurement.sensitivity(&chain.target, &mut sensitivity);
+            for ((v, w), &(place, scale)) in twists.iter().zip(places) {
+                let rows = sensitivity.iter().zip(measurement.channels());
+                let moved = rows.map(|([a, b, c, p, q, r], channel)| {
+                    let moved = Vector3::new(*a, *b, *c).dot(v) + Vector3::new(*p, *q, *r).dot(w);
+                    moved / NOISE[channel.quantity] / scale
+                });
+                columns[place] = moved.collect();
             }
         }
         columns

@@ -8,7 +8,7 @@ use crate::files::Folder;
 use nalgebra::Vector3;
 use poecal::io::measurements::{ColumnMap, MeasurementFile, ReadOptions, UnitSource, read};
 use poecal::lie::{Pose, Screw, rotation};
-use poecal::measurement::{Dataset, Set};
+use poecal::measurement::{Dataset, Quantity, Set};
 use poecal::robot::{Joint, Limits, Robot};
 
 /// Conversions round once or twice.
@@ -61,7 +61,7 @@ fn a_mapping_names_columns_units_targets_and_sets() {
     assert_eq!(file.data.readings(0), [PI, 0.25, PI / 2.0]);
     assert_eq!(pose(&file.data, 0).translation, Vector3::new(0.1, 0.2, 0.3));
     let row = file.data.observations[0];
-    assert_eq!((row.sigma_position_m, row.set, row.source.line), (Some(5e-5), Some(Set::Fit), 4));
+    assert_eq!((row.stated[Quantity::Position], row.set, row.source.line), (Some(5e-5), Some(Set::Fit), 4));
     assert_eq!(file.data.observations[1].set, Some(Set::HeldOut));
     assert_eq!(file.data.ids, ["7", "8"]);
     assert_eq!(file.data.targets, [Some("smr1".to_owned())]);
@@ -95,7 +95,9 @@ fn a_mapping_reads_several_targets_of_a_row() {
     let rows: Vec<_> = data
         .observations
         .iter()
-        .map(|row| (row.target, row.source.line, row.measurement.sees_orientation(), row.sigma_position_m))
+        .map(|row| {
+            (row.target, row.source.line, row.measurement.sees_orientation(), row.stated[Quantity::Position])
+        })
         .collect();
     assert_eq!(
         rows,

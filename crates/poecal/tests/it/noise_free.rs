@@ -69,7 +69,7 @@ fn structural_rank(robot: &Robot, kind: Kind) -> usize {
 }
 
 fn held_out_m(calibration: &Calibration) -> f64 {
-    calibration.accuracy.held_out.unwrap().calibrated.position_mm.max * 1e-3
+    calibration.accuracy.held_out.unwrap().calibrated.position_mm().max * 1e-3
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn elbow_has_rank_25_where_a_fit_of_points_starts() {
     let mut free: Vec<Parameter> =
         screws.map(|(joint, it)| Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })).collect();
     free.push(Parameter::TargetPlace(TargetPlace { target: 0 }));
-    let noise = Noise { position_m: 1e-3, rotation_rad: 1e-3 };
+    let noise = Noise::new(1e-3, 1e-3);
     let session = Session::new(robot, &made.data, &packed, false).with_length(robot.reach_m() / 3.0);
     let problem = Problem::new(session, (0..100).collect(), free, noise);
     let estimate = delivered(robot, &made.data);

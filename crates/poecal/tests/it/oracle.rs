@@ -225,8 +225,8 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
     };
     let judgement = judge(&subject, &dataset(&rows[200..])).unwrap();
     let broken = judgement.promised.map(|kept| {
-        kept.position_mm.inside_bound95 < 0.8
-            || judgement.calibrated.position_mm.rms > 2.0 * kept.position_mm.expected_rms
+        kept.position_mm().inside_bound95 < 0.8
+            || judgement.calibrated.position_mm().rms > 2.0 * kept.position_mm().expected_rms
     });
     (words, is_stated, Some((found.verdict.level, broken)))
 }

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, Level, calibrate};
 use poecal::estimate::{Chain, Linkage, Packed};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Quantity};
 use poecal::robot::{Joint, Robot};
 use poecal::simulate::{Kind, Simulated, Simulation, elbow, random, random_configuration};
 use poecal::uncertainty::Attribution;
@@ -266,10 +266,10 @@ fn repeats_show_what_is_noise() {
         let found = found.trust.uncertainty.unwrap().discrepancy;
         println!(
             "{repeats} times each: {:?}, {:.4} mm the robot's",
-            found.attribution[0],
-            1e3 * found.standard_deviation.position_m
+            found.attribution[Quantity::Position],
+            1e3 * found.standard_deviation[Quantity::Position]
         );
-        found.attribution[0]
+        found.attribution[Quantity::Position]
     };
     assert_eq!(whose(1), Attribution::Robot);
     assert_eq!(whose(3), Attribution::Repeats);
@@ -323,7 +323,7 @@ fn absurd_noise_is_never_good() {
         let made = session(80, 1, Kind::Pose);
         let options = CalibrationOptions { sigma_position_m: Some(sigma_m), ..CalibrationOptions::default() };
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();
-        let rms = found.accuracy.held_out.unwrap().calibrated.position_mm.rms;
+        let rms = found.accuracy.held_out.unwrap().calibrated.position_mm().rms;
         println!("{sigma_m} m: {rms:.4} mm, {:?} {:?}", found.verdict, found.warnings);
         assert!(found.verdict.level < Level::Good && !found.warnings.is_empty());
         // Positions that weigh little beside rotations are fitted by these, which is what was asked for.

@@ -54,12 +54,12 @@ fn a_promise_after_a_refit_is_kept_as_often_as_it_says() {
                 let mean = |of: &dyn Fn(&Judgement) -> f64| {
                     judgements.iter().map(of).sum::<f64>() / fits.count as f64
                 };
-                let share = mean(&|it| it.promised.unwrap().position_mm.inside_bound95);
-                let squares = mean(&|it| it.calibrated.position_mm.rms.powi(2));
-                let expected = mean(&|it| it.promised.unwrap().position_mm.expected_rms.powi(2));
+                let share = mean(&|it| it.promised.unwrap().position_mm().inside_bound95);
+                let squares = mean(&|it| it.calibrated.position_mm().rms.powi(2));
+                let expected = mean(&|it| it.promised.unwrap().position_mm().expected_rms.powi(2));
                 let ratio = (squares / expected).sqrt();
                 let turns =
-                    mean(&|it| it.promised.unwrap().rotation_deg.map_or(0.95, |part| part.inside_bound95));
+                    mean(&|it| it.promised.unwrap().rotation_deg().map_or(0.95, |part| part.inside_bound95));
                 println!(
                     "{:10} {:5} tool refitted: {refit_tool:5}, {} fits: {:.1} % inside, rotations {:.1} %, error {ratio:.3} times the expected one",
                     robot.name,
@@ -87,7 +87,7 @@ fn another_robot_breaks_the_promise_after_a_refit_too() {
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let other = Simulation { seed: 2, ..simulation }.run(&elbow(), Kind::Point).unwrap();
     let judgement = file.judge(&other.data, true, true).unwrap();
-    let share = judgement.promised.unwrap().position_mm.inside_bound95;
+    let share = judgement.promised.unwrap().position_mm().inside_bound95;
     println!("{:.1} % inside", 100.0 * share);
     assert!(share < 0.2);
     assert!(

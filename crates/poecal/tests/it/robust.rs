@@ -9,7 +9,7 @@ use poecal::calibration::{
 };
 use poecal::estimate::{Estimate, Packed, Session};
 use poecal::io::calibration_file::{CalibrationFile, Inputs, OutlierSet};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, Set};
+use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, Quantity, Set};
 use poecal::parameters::screw_axes;
 use poecal::problem::Problem;
 use poecal::robot::Robot;
@@ -55,7 +55,7 @@ fn fit(robot: &Robot, data: &Dataset, robust: Robust) -> Calibration {
 fn rms_m(robot: &Robot, data: &Dataset, rows: &[u32], estimate: &Estimate) -> f64 {
     let packed = Packed::of(robot, data);
     let errors = Session::new(robot, data, &packed, true).errors(rows, estimate);
-    (errors.iter().map(|e| e.position_m.norm_squared()).sum::<f64>() / errors.len() as f64).sqrt()
+    (errors.iter().map(|e| e.position_m().norm_squared()).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
 /// Mean squared held-out error with and without gross errors, and how many rows were gross, found, clean and falsely suspected.
@@ -181,7 +181,7 @@ fn registration_survives_three_tenths_of_the_rows_wrong() {
                 let registration = Registration {
                     session: Session::new(&robot, &data, &packed, true),
                     rows: &rows,
-                    noise: Noise { position_m: 1e-3, rotation_rad: 1e-3 },
+                    noise: Noise::new(1e-3, 1e-3),
                     targets_free: true,
                 };
                 let start = delivered(&robot, &data);
@@ -207,7 +207,7 @@ fn weights_scale_the_noise_and_zero_leaves_a_row_out() {
     let mut data = made.data;
     let robot = elbow();
     let packed = Packed::new(&robot, data.all_readings(), 6);
-    let noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
+    let noise = Noise::new(5e-5, 2e-4);
     let start = delivered(&robot, &data);
     let free = || screw_axes(start.kinds());
     let weights: Vec<f64> = (0..data.len()).map(|row| f64::from(row as u32 % 4) / 4.0).collect();
@@ -215,8 +215,8 @@ fn weights_scale_the_noise_and_zero_leaves_a_row_out() {
     let weighted = Problem::new(seen, data.all_rows(), free(), noise).with_weights(&weights).normal(&start);
     let kept: Vec<u32> = data.all_rows().into_iter().filter(|row| row % 4 != 0).collect();
     for (row, weight) in data.observations.iter_mut().zip(&weights) {
-        row.sigma_position_m = Some(noise.position_m / weight.sqrt());
-        row.sigma_rotation_rad = Some(noise.rotation_rad / weight.sqrt());
+        row.stated[Quantity::Position] = Some(noise[Quantity::Position] / weight.sqrt());
+        row.stated[Quantity::Rotation] = Some(noise[Quantity::Rotation] / weight.sqrt());
     }
     let seen = Session::new(&robot, &data, &packed, true).with_length(0.5);
     let stated = Problem::new(seen, kept, free(), noise).normal(&start);
@@ -294,11 +294,11 @@ fn held_out_rows_are_judged_too_and_the_file_names_all() {
     );
     assert!(held_out > 0 && file.outliers.iter().all(|o| o.file == "session.csv" && o.weight == 0.0));
     assert!(file.outliers.is_sorted_by(|a, b| a.studentized >= b.studentized));
-    let all = file.accuracy.held_out.unwrap().calibrated.position_mm.rms;
+    let all = file.accuracy.held_out.unwrap().calibrated.position_mm().rms;
     let rest = file.robust.held_out_without_suspected.unwrap();
-    println!("held out: {all:.3} mm with them, {:.3} mm without", rest.calibrated.position_mm.rms);
+    println!("held out: {all:.3} mm with them, {:.3} mm without", rest.calibrated.position_mm().rms);
     assert!(
-        rest.count + held_out == found.held_out_rows.len() && all > 20.0 * rest.calibrated.position_mm.rms
+        rest.count + held_out == found.held_out_rows.len() && all > 20.0 * rest.calibrated.position_mm().rms
     );
     let read = CalibrationFile::parse(&file.to_text().unwrap(), "f").unwrap();
     assert_eq!((read.outliers.len(), read.robust.loss), (file.outliers.len(), Some(Loss::Tukey)));

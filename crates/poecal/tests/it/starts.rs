@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use poecal::calibration::delivered;
 use poecal::estimate::{self, Estimate, Packed};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity};
 use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
 use poecal::problem::Problem;
 use poecal::robot::Robot;
@@ -27,7 +27,7 @@ const SAME_OPTIMUM: f64 = 1.001;
 /// Largest offset of a target from the nominal tip, metres; its orientation is any.
 const OFFSET_M: f64 = 0.5;
 const ROWS: usize = 60;
-const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
+const NOISE: Noise = Noise::new(5e-5, 2e-4);
 /// Metres that a radian counts.
 const LENGTH_M: f64 = 0.4;
 
@@ -154,8 +154,8 @@ fn measure(session: &Session, robot: &Robot, generator: &mut ChaCha8Rng) -> (Dat
         let (name, is_frame) = session.targets[row % session.targets.len()];
         let tip_from_target = places[row % session.targets.len()];
         let seen = device_from_base * actual.forward_kinematics(&readings) * tip_from_target;
-        let position = seen.translation + random::normal_vector(generator) * NOISE.position_m;
-        let turn = rotation::exp(&(random::normal_vector(generator) * NOISE.rotation_rad));
+        let position = seen.translation + random::normal_vector(generator) * NOISE[Quantity::Position];
+        let turn = rotation::exp(&(random::normal_vector(generator) * NOISE[Quantity::Rotation]));
         let measurement = if is_frame {
             Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) })
         } else {
@@ -231,10 +231,10 @@ fn registration_from_the_truth_is_near_it() {
         let rows: Vec<u32> = (0..ROWS as u32).collect();
         let seen = estimate::Session::new(&robot, &data, &packed, true).with_length(LENGTH_M);
         let cost = cost_from_truth(seen, &rows, truth);
-        let rms_m = (2.0 * cost / (3.0 * ROWS as f64)).sqrt() * NOISE.position_m;
+        let rms_m = (2.0 * cost / (3.0 * ROWS as f64)).sqrt() * NOISE[Quantity::Position];
         println!("{:36} {:.1} mm a component", session.name, rms_m * 1e3);
         // Axes that are 1° and 2 mm off leave millimetres to a centimetre of position and, weighted with it, of rotation: more than noise,
         // and far less than the decimetres of another optimum.
-        assert!((2.0 * NOISE.position_m..0.02).contains(&rms_m));
+        assert!((2.0 * NOISE[Quantity::Position]..0.02).contains(&rms_m));
     }
 }

@@ -52,7 +52,7 @@ fn unseen_m(simulation: &Simulation, made: &Simulated, kind: Kind, calibration: 
     let packed = Packed::of(&made.nominal, &unseen);
     let session = Session::new(&made.nominal, &unseen, &packed, true);
     let errors = session.errors(&unseen.all_rows(), &calibration.models.calibrated);
-    (errors.iter().map(|error| error.position_m.norm_squared()).sum::<f64>() / 300.0).sqrt()
+    (errors.iter().map(|error| error.position_m().norm_squared()).sum::<f64>() / 300.0).sqrt()
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn exact_measurements_from_three_places_leave_nothing() {
             };
             let made = exact.run(&robot, kind).unwrap();
             let found = fit(&robot, &dealt(&made, 3));
-            let worst = found.accuracy.training.calibrated.position_mm.max;
+            let worst = found.accuracy.training.calibrated.position_mm().max;
             println!("{} {kind:?}: {worst:.1e} mm", robot.name);
             assert!(worst < 1e-6, "{worst}");
         }
@@ -125,7 +125,7 @@ fn each_further_place_adds_six_to_the_rank() {
             assert_eq!(found.identifiability.parameters, expected);
             assert_eq!(found.identifiability.rank, expected, "{}", robot.name);
             // The same rank, by another way: what each row means to the fit.
-            let dims = data.observations.iter().map(|row| row.measurement.residual_model().dim() as f64);
+            let dims = data.observations.iter().map(|row| row.measurement.observe().dim() as f64);
             let leverages = row_influence(&found, &data, &data.all_rows());
             let sum: f64 = leverages.iter().zip(dims).map(|(row, dim)| row.leverage * dim).sum();
             assert!((sum - expected as f64).abs() < 1e-3, "{sum}");
@@ -150,7 +150,7 @@ fn a_target_that_only_one_place_saw_is_found_too() {
     }
     let found = fit(&robot, &data);
     assert_eq!(found.identifiability.rank, 24 + 9 + 6);
-    assert!(found.accuracy.training.calibrated.position_mm.rms < 0.1);
+    assert!(found.accuracy.training.calibrated.position_mm().rms < 0.1);
 }
 
 fn refusal(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> String {

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
 use poecal::lie::rotation;
-use poecal::measurement::{Dataset, Noise};
+use poecal::measurement::{Dataset, Noise, Quantity};
 use poecal::parameters::{Parameter, ScrewAxis, TargetFrame, TargetPlace};
 use poecal::problem::{Layout, Problem};
 use poecal::robot::Robot;
@@ -19,7 +19,7 @@ const RUNS: usize = 1000;
 /// Configurations fitted, and other ones predicted.
 const FITTED: usize = 60;
 const PREDICTED: usize = 50;
-const NOISE: Noise = Noise { position_m: 5e-5, rotation_rad: 2e-4 };
+const NOISE: Noise = Noise::new(5e-5, 2e-4);
 /// Largest deviation from the bound in that many runs: chance alone makes some 1 % of it.
 const TOLERANCE: f64 = 0.05;
 /// Standard deviation of one run's mean square over the bound: 1 % times √1,000.
@@ -103,8 +103,8 @@ fn truth(made: &Simulated) -> Estimate {
 /// One calibration with default settings, and what the bound allows it.
 fn run(kind: Kind, seed: u64) -> (Squares, Squares) {
     let simulation = Simulation {
-        noise_position_m: NOISE.position_m,
-        noise_rotation_rad: NOISE.rotation_rad,
+        noise_position_m: NOISE[Quantity::Position],
+        noise_rotation_rad: NOISE[Quantity::Rotation],
         count: FITTED,
         seed,
         ..Simulation::default()

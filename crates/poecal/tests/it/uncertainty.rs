@@ -53,7 +53,7 @@ fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
     let mut chain = Chain::default();
     let mut tally = Tally {
         claimed: uncertainty.discrepancy.scatter > 1.0
-            || uncertainty.discrepancy.standard_deviation.position_m > 0.0,
+            || uncertainty.discrepancy.standard_deviation[poecal::Quantity::Position] > 0.0,
         ..Tally::default()
     };
     for (row, expected) in uncertainty.predictions(&packed, 0).into_iter().enumerate() {

@@ -85,7 +85,7 @@ fn a_few_rows_of_another_form_do_not_doubt_the_input() {
         assert_eq!(found.robustness.suspects().collect::<Vec<_>>(), [0, 16, 32, 48, 64]);
         assert_eq!(found.verdict.level, Level::Good);
         // Without them it would be another robot.
-        let error_mm = found.accuracy.training.registered.position_mm.rms;
+        let error_mm = found.accuracy.training.registered.position_mm().rms;
         assert!(error_mm > 0.15 * 1e3 * made.data.spread_m(&made.data.all_rows()), "{error_mm}");
     }
 }
@@ -239,7 +239,7 @@ fn registered_positions_are_the_best_there_are() {
         }
         let rms = |data: &Dataset| {
             let options = CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() };
-            calibrate(&made.nominal, data, &options).unwrap().accuracy.training.registered.position_mm.rms
+            calibrate(&made.nominal, data, &options).unwrap().accuracy.training.registered.position_mm().rms
         };
         let (poses, best) = (rms(&made.data), rms(&points));
         println!("{seed}: registered {poses:.4} mm, the best {best:.4} mm");

@@ -3,7 +3,7 @@
 
 use super::super::{CalibrationOptions, delivered, fit_screws};
 use super::{ChangeKind, Moved};
-use crate::estimate::{Estimate, Session, position_rms_m};
+use crate::estimate::{Estimate, Session, rms_m};
 use crate::measurement::{Dataset, Noise};
 use crate::start::{Registration, register};
 
@@ -142,7 +142,7 @@ impl FrameSearch<'_> {
     /// First row from which on the second of two estimates is better: by logarithms of errors, so that no single row decides.
     fn parted(&self, first: &Estimate, second: &Estimate) -> usize {
         let errors = [first, second].map(|it| self.session.errors(self.rows, it));
-        let log = |error: &super::RowError| error.position_m.norm().max(f64::MIN_POSITIVE).ln();
+        let log = |error: &super::RowError| error.length_m().max(f64::MIN_POSITIVE).ln();
         let gains = errors[0].iter().zip(&errors[1]).map(|(a, b)| log(a) - log(b));
         let (mut sum, mut least, mut best) = (0.0, f64::INFINITY, FEWEST_ROWS);
         for (index, gain) in gains.enumerate() {
@@ -168,7 +168,7 @@ impl FrameSearch<'_> {
         let prior = self.options.prior(&session);
         let prior = prior.as_ref().map(|prior| (prior, 1.0));
         let (estimate, ..) = fit_screws(session, self.rows, start, self.noise, prior, self.options);
-        let own_m = position_rms_m(&session.errors(self.rows, &estimate));
+        let own_m = rms_m(&session.errors(self.rows, &estimate));
         (estimate, own_m)
     }
 

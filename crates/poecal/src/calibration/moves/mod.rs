@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 
 use super::{Robustness, RowError};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, sample_rows};
+use crate::measurement::Quantity;
 use series::{Series, SeriesChange};
 
 /// Most rows of the search: with fewer a change still shows, and its place is known to a few rows.
@@ -102,11 +103,16 @@ pub(super) fn moved(search: &ChangeSearch<'_>) -> Option<Moved> {
 /// Errors of the rows of one station, in the device's axes.
 fn of_device(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError], station: usize) -> Series {
     let own = rows.iter().zip(errors);
-    let own = own.filter(|(row, _)| search.session.observation(**row).station == station);
-    let (rows, values): (Vec<u32>, Vec<Vector3<f64>>) =
-        own.map(|(&row, error)| (row, error.position_m)).unzip();
+    let own =
+        own.filter(|(row, error)| search.session.observation(**row).station == station && is_position(error));
+    let (rows, values): (Vec<u32>, Vec<Vector3<f64>>) = own.map(|(&row, error)| (row, error.lead())).unzip();
     let configurations = rows.iter().map(|&row| shapes(search.session.packed, row as usize)).collect();
     Series { rows, values, configurations }
+}
+
+/// Whether an error has a direction in space.
+fn is_position(error: &RowError) -> bool {
+    error.leading() == Some(Quantity::Position)
 }
 
 /// Functions of the joint values, so that errors of the robot are not taken for a drift.
@@ -132,9 +138,9 @@ fn of_targets(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError]) -> V
     for (&row, error) in rows.iter().zip(errors) {
         let seen = search.session.observation(row);
         chain.evaluate(&linkage, search.session.packed, row as usize, seen);
-        if let Some(own) = series.get_mut(seen.target) {
+        if let Some(own) = series.get_mut(seen.target).filter(|_| is_position(error)) {
             own.rows.push(row);
-            own.values.push(chain.target.rotation.transpose() * error.position_m);
+            own.values.push(chain.target.rotation.transpose() * error.lead());
         }
     }
     series

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::estimate::{Estimate, Session};
+use crate::estimate::{Estimate, RowError, Session};
 use crate::measurement::Dataset;
 
 /// Factor on the bound of normal noise above which a row is suspected: errors of real robots have heavier tails than noise.
@@ -52,10 +52,18 @@ impl Configurations {
         for group in &self.groups {
             let (own, others) = rest.split_at(group.len());
             rest = others;
-            let sum: Vector3<f64> = own.iter().map(|error| error.position_m).sum();
+            let leading =
+                |error: &RowError| error.leading().map(|quantity| (quantity, error.vector(quantity)));
             for (&row, error) in group.iter().zip(own) {
-                let others = (sum - error.position_m) / (group.len() - 1) as f64;
-                if (error.position_m - others).norm() < SHARE * error.position_m.norm() {
+                let Some((quantity, error)) = leading(error) else { continue };
+                let alike = own.iter().filter_map(leading).filter(|(other, _)| *other == quantity);
+                let (sum, count) =
+                    alike.fold((Vector3::zeros(), 0), |(sum, count), (_, it)| (sum + it, count + 1));
+                if count < 2 {
+                    continue;
+                }
+                let others = (sum - error) / f64::from(count - 1);
+                if (error - others).norm() < SHARE * error.norm() {
                     shares[row as usize] = TAILS / COMMON_TAILS;
                 }
             }

@@ -19,7 +19,7 @@ use super::noise::{NoiseSource, stated};
 use super::{CalibrationOptions, estimate_noise};
 use crate::error::Result;
 use crate::estimate::Estimate;
-use crate::measurement::Noise;
+use crate::measurement::{ByQuantity, Noise};
 use crate::parameters::Parameter;
 use crate::solve;
 use crate::start::{Registration, register_robustly};
@@ -92,8 +92,7 @@ impl RobustFit {
     /// Whether it predicts held-out clusters of rows better than another fit, by a bounded loss.
     fn predicts_better(&self, task: &Task<'_>, other: &RobustFit) -> bool {
         let scale = self.judged.scale();
-        let Noise { position_m, rotation_rad } = self.fitted.noise;
-        let noise = Noise { position_m: scale[0] * position_m, rotation_rad: scale[1] * rotation_rad };
+        let noise = ByQuantity::from_fn(|quantity| scale[quantity] * self.fitted.noise[quantity]);
         match (self.cross_validated_loss(task, noise), other.cross_validated_loss(task, noise)) {
             (Some(own), Some(others)) => own < others,
             _ => true,
@@ -112,18 +111,17 @@ impl RobustFit {
             rows: task.rows,
             free: &free,
             noise: *own,
-            noise_is_stated: [false; 2],
+            noise_is_stated: ByQuantity::default(),
             prior: &prior,
             variance: 1.0,
             estimate,
         };
         let bound = Bounds::new(task.rows.len(), 1.0);
         leave_clusters_out(&view, &weights, |row, error| {
-            let squares =
-                [error.position_m, error.rotation_rad.unwrap_or_default()].map(|it| it.norm_squared());
-            let [position, rotation] = task.session.observation(row).whitened(squares, noise);
-            let components = if error.rotation_rad.is_some() { 6 } else { 3 };
-            let ratio = (position + rotation) / bound.of(components).powi(2);
+            let squares = ByQuantity::from_fn(|quantity| error.square(quantity));
+            let whitened = task.session.observation(row).whitened(squares, noise);
+            let square: f64 = whitened.iter().map(|(_, square)| square).sum();
+            let ratio = square / bound.of(error.dim()).powi(2);
             1.0 - (1.0 - ratio.min(1.0)).powi(3)
         })
     }
@@ -132,7 +130,7 @@ impl RobustFit {
     fn is_suspicious(&self, task: &Task<'_>) -> bool {
         let parts = parts(&task.session, task.rows, &self.fitted.estimate, self.fitted.noise);
         let scale = Scale::of(parts.iter(), self.fitted.normal.dim() as f64);
-        task.is_suspicious(3f64.sqrt() * scale.0[0] * self.fitted.noise.position_m)
+        task.is_suspicious(3f64.sqrt() * scale.of_lengths(self.fitted.noise))
     }
 }
 
@@ -224,7 +222,7 @@ impl<'c> Reweighted<'c> {
             configurations,
             estimate: start,
             noise,
-            scale: Scale([1.0; 2]),
+            scale: Scale(Noise::new(1.0, 1.0)),
             weights,
             iterations: 0,
             trace: Vec::new(),
@@ -233,7 +231,7 @@ impl<'c> Reweighted<'c> {
 
     /// Robust standard deviation of a position component.
     fn position_m(&self) -> f64 {
-        self.scale.0[0] * self.noise.position_m
+        self.scale.of_lengths(self.noise)
     }
 
     /// Number of unknowns, times the mean number of repeats: repeated rows add no information.
@@ -243,7 +241,7 @@ impl<'c> Reweighted<'c> {
 
     /// The task with the prior weighted by the robust scale.
     fn with_prior_weight<'t>(&self, task: &Task<'t>, source: NoiseSource) -> Task<'t> {
-        let variance = if source == NoiseSource::Estimated { 1.0 } else { self.scale.0[0].powi(2) };
+        let variance = if source == NoiseSource::Estimated { 1.0 } else { self.scale.0.of_lengths().powi(2) };
         task.with_prior_weight(
             variance / task.prior.map_or(1.0, |(prior, _)| prior.looseness(&self.estimate)),
         )

@@ -7,7 +7,7 @@ use crate::calibration::SetAccuracy;
 use crate::calibration::fit::Task;
 use crate::calibration::found::Fitted;
 use crate::distributions;
-use crate::measurement::Dataset;
+use crate::measurement::{ByQuantity, Dataset};
 
 /// Probability that normal data have a row beyond the bound.
 const FAMILY: f64 = 1e-3;
@@ -44,8 +44,8 @@ pub struct Robustness {
     pub loss: Option<Loss>,
     /// One for each row of the data.
     pub rows: Vec<RowJudgement>,
-    /// Robust scale of the residuals over the calibration's noise, positions and rotations: the unit by which rows are judged.
-    pub scale: [f64; 2],
+    /// Robust scale of the residuals over the calibration's noise, of each quantity: the unit by which rows are judged.
+    pub scale: ByQuantity<f64>,
     /// Errors on the fitted rows without suspected ones; `None` if none is suspected.
     pub training_rest: Option<SetAccuracy>,
     /// The same on held-out rows; `None` if none is suspected, or none remains.
@@ -141,7 +141,7 @@ impl Bounds {
 
 /// Whether there are numbers enough for a robust scale: twice the unknowns. Residuals of fewer show the fit, not the noise.
 pub(super) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowParts>, unknowns: f64) -> bool {
-    parts.flatten().map(|part| part.components).sum::<usize>() as f64 >= 2.0 * unknowns
+    parts.flat_map(RowParts::iter).map(|(_, part)| part.components).sum::<usize>() as f64 >= 2.0 * unknowns
 }
 
 /// Judgement of every row of the data, with its scale.
@@ -151,8 +151,8 @@ pub(in crate::calibration) struct RowJudgements {
 }
 
 impl RowJudgements {
-    /// Robust scale over the noise of the fit, positions and rotations.
-    pub(super) fn scale(&self) -> [f64; 2] {
+    /// Robust scale over the noise of the fit, of each quantity.
+    pub(super) fn scale(&self) -> ByQuantity<f64> {
         self.scale.0
     }
 }
@@ -226,9 +226,9 @@ pub(super) fn judge_rows(
 }
 
 /// Scale of one component of a row's residual.
-pub(super) fn component_scale(data: &Dataset, scale: [f64; 2], row: u32, component: usize) -> f64 {
-    let turns = data.observations[row as usize].measurement.residual_model().rotation_row();
-    scale[usize::from(component >= turns)]
+pub(super) fn component_scale(data: &Dataset, scale: ByQuantity<f64>, row: u32, component: usize) -> f64 {
+    let channels = data.observations[row as usize].measurement.observe().channels();
+    channels.get(component).map_or(1.0, |channel| scale[channel.quantity])
 }
 
 /// Rows for registering device and targets: without suspected ones, unless too few remain.

@@ -4,9 +4,9 @@ use crate::calibration::CalibrationOptions;
 use crate::calibration::noise::{ROUNDING, stated};
 use crate::distributions::{chi_square_median, median};
 use crate::estimate::{Estimate, Session};
-use crate::measurement::Noise;
+use crate::measurement::{ByQuantity, Noise, Quantity};
 
-/// Squared whitened residual of one part of a row, position or rotation.
+/// Squared whitened residual of one quantity of a row.
 #[derive(Clone, Copy, Default)]
 pub(super) struct RowPart {
     pub(super) squares: f64,
@@ -15,44 +15,55 @@ pub(super) struct RowPart {
     stated: bool,
 }
 
-/// Position and rotation of a row.
-pub(super) type RowParts = [RowPart; 2];
+/// All quantities of a row.
+pub(super) type RowParts = ByQuantity<RowPart>;
 
 /// Whitened parts of some rows.
 pub(super) fn parts(session: &Session<'_>, rows: &[u32], estimate: &Estimate, noise: Noise) -> Vec<RowParts> {
     session.map_squares(rows, estimate, |observation, squares| {
         let whitened = observation.whitened(squares.map(|(squares, _)| squares), noise);
-        let stated = [observation.sigma_position_m, observation.sigma_rotation_rad];
-        [0, 1].map(|side| RowPart {
-            squares: whitened[side],
-            components: squares[side].1,
-            stated: stated[side].is_some(),
+        ByQuantity::from_fn(|quantity| RowPart {
+            squares: whitened[quantity],
+            components: squares[quantity].1,
+            stated: observation.stated[quantity].is_some(),
         })
     })
 }
 
-/// Robust scale over the noise, positions and rotations.
+/// Number of all numbers of some rows.
+fn count<'a>(rows: impl Iterator<Item = &'a RowParts>) -> usize {
+    rows.flat_map(RowParts::iter).map(|(_, part)| part.components).sum()
+}
+
+/// Robust scale over the noise, of each quantity.
 #[derive(Clone, Copy)]
-pub(super) struct Scale(pub(super) [f64; 2]);
+pub(super) struct Scale(pub(super) ByQuantity<f64>);
 
 impl Scale {
-    /// Scale of these rows, corrected for the unknowns in proportion: theory.md §6 (34a). 1 for a part that no row has.
+    /// Scale of these rows, corrected for the unknowns in proportion: theory.md §6 (34a). 1 for a quantity that no row has.
     pub(super) fn of<'a>(rows: impl Iterator<Item = &'a RowParts> + Clone, unknowns: f64) -> Self {
-        let count: usize = rows.clone().flatten().map(|part| part.components).sum();
-        let left = (1.0 - unknowns / count.max(1) as f64).max(0.05);
-        Scale([0, 1].map(|side| median_scale(rows.clone().map(|row| &row[side]), left).unwrap_or(1.0)))
+        let left = (1.0 - unknowns / count(rows.clone()).max(1) as f64).max(0.05);
+        Scale(ByQuantity::from_fn(|quantity| {
+            median_scale(rows.clone().map(|row| &row[quantity]), left).unwrap_or(1.0)
+        }))
     }
 
     /// Floor for exact data, whose rounding is no scale.
     pub(super) fn at_least_rounding(self, noise: Noise) -> Self {
-        let [position, rotation] = self.0;
-        Scale([position.max(ROUNDING / noise.position_m), rotation.max(ROUNDING / noise.rotation_rad)])
+        Scale(ByQuantity::from_fn(|quantity| self.0[quantity].max(ROUNDING / noise[quantity])))
+    }
+
+    /// Standard deviation of a component of a length, metres.
+    pub(super) fn of_lengths(self, noise: Noise) -> f64 {
+        self.0.of_lengths() * noise.of_lengths()
     }
 
     /// Length of a row's residual in units of the scaled noise, and its number of components.
     pub(super) fn length(&self, row: &RowParts) -> (f64, usize) {
-        let squares: f64 = row.iter().zip(self.0).map(|(part, scale)| part.squares / (scale * scale)).sum();
-        (squares.sqrt(), row.iter().map(|part| part.components).sum())
+        let of =
+            |(quantity, part): (Quantity, &RowPart)| part.squares / (self.0[quantity] * self.0[quantity]);
+        let squares: f64 = row.iter().map(of).sum();
+        (squares.sqrt(), row.iter().map(|(_, part)| part.components).sum())
     }
 }
 
@@ -66,19 +77,17 @@ pub(super) fn settle(
 ) -> (Noise, Scale) {
     let mut settled = noise;
     if let Some(options) = options {
-        let count: usize = parts.iter().flatten().map(|part| part.components).sum();
-        let left = (1.0 - unknowns / count.max(1) as f64).max(0.05);
-        let of = |side: usize, sigma: f64| {
-            let open = parts.iter().map(|row| &row[side]).filter(|part| !part.stated);
-            median_scale(open, left).map_or(sigma, |scale| (scale * sigma).max(ROUNDING))
-        };
-        let found = Noise { position_m: of(0, noise.position_m), rotation_rad: of(1, noise.rotation_rad) };
+        let left = (1.0 - unknowns / count(parts.iter()).max(1) as f64).max(0.05);
+        let found = ByQuantity::from_fn(|quantity| {
+            let open = parts.iter().map(|row| &row[quantity]).filter(|part| !part.stated);
+            median_scale(open, left).map_or(noise[quantity], |scale| (scale * noise[quantity]).max(ROUNDING))
+        });
         settled = stated(options, found);
-        let ratios = [noise.position_m / settled.position_m, noise.rotation_rad / settled.rotation_rad];
-        for part in parts.iter_mut().flat_map(|row| row.iter_mut().zip(ratios)) {
-            if !part.0.stated {
-                part.0.squares *= part.1 * part.1;
-            }
+        for (quantity, part) in
+            parts.iter_mut().flat_map(RowParts::values_mut).filter(|(_, part)| !part.stated)
+        {
+            let ratio = noise[quantity] / settled[quantity];
+            part.squares *= ratio * ratio;
         }
     }
     (settled, Scale::of(parts.iter(), unknowns).at_least_rounding(settled))

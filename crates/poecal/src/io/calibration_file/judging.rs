@@ -30,14 +30,14 @@ impl CalibrationFile {
                 return Err(Error::new(ErrorKind::Model, message));
             }
         }
-        Ok(Noise { position_m: self.noise.sigma_position_mm / 1e3, rotation_rad: rotation_deg.to_radians() })
+        Ok(Noise::new(self.noise.sigma_position_mm / 1e3, rotation_deg.to_radians()))
     }
 
     /// Root mean square position error on held-out rows, otherwise on training rows, millimetres.
     #[must_use]
     pub fn own_position_rms_mm(&self) -> f64 {
         let accuracy = &self.accuracy;
-        accuracy.held_out.as_ref().unwrap_or(&accuracy.training).calibrated.position_mm.rms
+        accuracy.held_out.as_ref().unwrap_or(&accuracy.training).calibrated.lead().rms
     }
 
     /// `base_from_device` of each station of some measurements, by the names of the instruments.

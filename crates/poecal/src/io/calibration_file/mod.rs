@@ -20,7 +20,7 @@ use crate::calibration::{CalibratedStation, Calibration};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Quantity};
 use crate::robot::{Joint, JointKind, Limits, Robot};
 use nalgebra::Vector3;
 use refusal::refusal;
@@ -75,11 +75,11 @@ impl CalibrationFile {
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             noise: NoiseEntry {
-                sigma_position_mm: calibration.noise.position_m * 1e3,
+                sigma_position_mm: calibration.noise[Quantity::Position] * 1e3,
                 sigma_rotation_deg: data
                     .frames(&calibration.fit_rows)
                     .contains(&true)
-                    .then(|| calibration.noise.rotation_rad.to_degrees()),
+                    .then(|| calibration.noise[Quantity::Rotation].to_degrees()),
                 source: calibration.noise_source,
             },
             robot: RobotEntry::new(robot, &calibration.nominal),

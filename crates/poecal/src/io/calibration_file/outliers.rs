@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::{Calibration, Loss, RowError, SetAccuracy, row_influence};
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Quantity};
 
 /// Most suspected rows in a file; `robust` has their number.
 const LISTED: usize = 1000;
@@ -93,8 +93,8 @@ impl OutlierEntry {
                 file: file.map_or_else(String::new, |path| path.display().to_string()),
                 row: source.line,
                 set: if held_out { OutlierSet::HeldOut } else { OutlierSet::Fit },
-                residual_mm: error.position_m.norm() * 1e3,
-                residual_deg: error.rotation_rad.map(|turn| turn.norm().to_degrees()),
+                residual_mm: error.length_m() * 1e3,
+                residual_deg: error.length(Quantity::Rotation).map(f64::to_degrees),
                 studentized: *studentized,
                 weight: robustness.rows.get(*row as usize).map_or(1.0, |judged| judged.weight),
             }

@@ -8,10 +8,12 @@ use crate::analysis::JointCoverage;
 use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Estimate;
-use crate::measurement::Noise;
+use crate::measurement::Quantity::{Position, Rotation};
+use crate::measurement::{ByQuantity, Measured, Noise};
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::Layout;
 use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
+use crate::unit::Unit;
 
 /// Errors of the rows of a fold or block, predicted by a fit of the others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -66,23 +68,15 @@ pub struct KeptEntry {
     pub inside_bound95: f64,
 }
 
-/// Errors of held-out rows compared with their predicted uncertainty.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct HeldOutEntry {
-    /// Of positions, millimetres.
-    pub position_mm: KeptEntry,
-    /// Of rotations, degrees, if orientation was measured.
-    pub rotation_deg: Option<KeptEntry>,
-}
+/// Errors of held-out rows compared with their predicted uncertainty: of each quantity that was measured, millimetres or degrees.
+pub type HeldOutEntry = Measured<KeptEntry>;
 
-impl HeldOutEntry {
-    fn of(kept: &CoverageCheck) -> Self {
-        let entry = |part: PartCoverage| KeptEntry {
-            expected_rms: part.expected_rms,
-            inside_bound95: part.inside_bound95,
-        };
-        HeldOutEntry { position_mm: entry(kept.position_mm), rotation_deg: kept.rotation_deg.map(entry) }
-    }
+fn held_out(kept: &CoverageCheck) -> HeldOutEntry {
+    let entry = |part: PartCoverage| KeptEntry {
+        expected_rms: part.expected_rms,
+        inside_bound95: part.inside_bound95,
+    };
+    Measured::of(|quantity| kept.parts.get(quantity).map(entry))
 }
 
 /// A part of a joint's range with the expected error there.
@@ -263,18 +257,18 @@ impl UncertaintyEntry {
         Some(UncertaintyEntry {
             inflation: scatter,
             extrapolation: Some(extrapolation).filter(|it| *it > scatter),
-            discrepancy_position_mm: standard_deviation.position_m * 1e3,
-            discrepancy_rotation_deg: standard_deviation.rotation_rad.to_degrees(),
-            noise_position_mm: noise.position_m * 1e3,
-            noise_rotation_deg: noise.rotation_rad.to_degrees(),
-            residuals_position: attribution[0],
-            residuals_rotation: attribution[1],
-            freedom_position: freedom[0],
-            freedom_rotation: freedom[1],
+            discrepancy_position_mm: standard_deviation[Position] * 1e3,
+            discrepancy_rotation_deg: standard_deviation[Rotation].to_degrees(),
+            noise_position_mm: noise[Position] * 1e3,
+            noise_rotation_deg: noise[Rotation].to_degrees(),
+            residuals_position: attribution[Position],
+            residuals_rotation: attribution[Rotation],
+            freedom_position: freedom[Position],
+            freedom_rotation: freedom[Rotation],
             lag_one_correlation: lag_one,
             measured: ExpectedEntry::of(trust.measured.as_ref()?),
             range: ExpectedEntry::of(trust.range.as_ref()?),
-            held_out: trust.held_out.as_ref().map(HeldOutEntry::of),
+            held_out: trust.held_out.as_ref().map(held_out),
             bootstrap: trust.bootstrap.as_ref().map(BootstrapEntry::of),
             parts: trust
                 .parts
@@ -352,17 +346,15 @@ impl CalibrationFile {
             return Err(bad("a covariance of another size than the unknowns make"));
         }
         let known = |freedom: Option<f64>| freedom.unwrap_or(f64::INFINITY);
-        let noise = |position_mm: f64, rotation_deg: f64| Noise {
-            position_m: position_mm * 1e-3,
-            rotation_rad: rotation_deg.to_radians(),
-        };
+        let noise =
+            |position_mm: f64, rotation_deg: f64| Noise::new(position_mm * 1e-3, rotation_deg.to_radians());
         let discrepancy = Discrepancy {
             scatter: entry.inflation,
             extrapolation: entry.extrapolation.unwrap_or(entry.inflation),
             standard_deviation: noise(entry.discrepancy_position_mm, entry.discrepancy_rotation_deg),
             noise: noise(entry.noise_position_mm, entry.noise_rotation_deg),
-            attribution: [entry.residuals_position, entry.residuals_rotation],
-            freedom: [known(entry.freedom_position), known(entry.freedom_rotation)],
+            attribution: by_unit(entry.residuals_position, entry.residuals_rotation),
+            freedom: by_unit(known(entry.freedom_position), known(entry.freedom_rotation)),
             lag_one: entry.lag_one_correlation,
         };
         let uncertainty = Uncertainty {
@@ -387,4 +379,12 @@ fn symmetric(upper: &[f64], n: usize) -> Vec<f64> {
         matrix[j * n + i] = value;
     }
     matrix
+}
+
+/// One value for all lengths, one for all angles.
+fn by_unit<T: Copy>(of_lengths: T, of_angles: T) -> ByQuantity<T> {
+    ByQuantity::from_fn(|quantity| match quantity.unit() {
+        Unit::Metre => of_lengths,
+        Unit::Radian => of_angles,
+    })
 }

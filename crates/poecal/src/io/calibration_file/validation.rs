@@ -57,15 +57,15 @@ impl CalibrationFile {
     #[must_use]
     pub fn doubt(&self, judgement: &Judgement) -> Option<String> {
         let own_mm = self.own_position_rms_mm().max(ROUNDING_MM);
-        let rms_mm = judgement.calibrated.position_mm.rms;
+        let rms_mm = judgement.calibrated.lead().rms;
         let check = judgement.promised.filter(|_| rms_mm > ROUNDING_MM);
         // Where most errors are inside their bounds, single rows are wrong, not the device.
-        let mostly = check.is_some_and(|it| it.position_mm.inside_bound95 > 0.5);
+        let mostly = check.is_some_and(|it| it.parts.lead().inside_bound95 > 0.5);
         let is_far = rms_mm > MOVED_DEVICE * own_mm;
         if mostly && is_far {
             return Some(format!(
                 "most errors are inside their 95 % bounds, the largest is {:.2} mm: some measurements are gross errors",
-                judgement.calibrated.position_mm.max
+                judgement.calibrated.lead().max
             ));
         }
         let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
@@ -104,8 +104,11 @@ impl CalibrationFile {
 /// Shares of errors beyond their bounds.
 fn exceeding(check: &CoverageCheck) -> String {
     let share = |part: PartCoverage| 100.0 * (1.0 - part.inside_bound95);
-    let rotation = check.rotation_deg.map(|part| format!(" and {:.0} % of the rotation errors", share(part)));
-    format!("{:.0} % of the position errors{}", share(check.position_mm), rotation.unwrap_or_default())
+    let words = check
+        .parts
+        .iter()
+        .map(|(quantity, part)| format!("{:.0} % of the {} errors", share(part), quantity.name()));
+    words.collect::<Vec<_>>().join(" and ")
 }
 
 fn moved_words(times: f64, rms_mm: f64, own_mm: f64) -> String {

@@ -6,7 +6,7 @@ use super::header::{Header, unit_in_name};
 use super::inputs::{Input, InputSource, Term};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
-use super::units::{Quantity, Unit, UnitSource};
+use super::units::{Dimension, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
 use crate::robot::{JointKind, Robot};
@@ -84,7 +84,7 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         spec: &ColumnSpec,
-        quantity: Quantity,
+        quantity: Dimension,
         purpose: &str,
     ) -> Result<usize> {
         if let Some(unit) = spec.unit.filter(|unit| unit.quantity() != quantity) {
@@ -118,7 +118,7 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         column: &str,
-        quantity: Quantity,
+        quantity: Dimension,
         mapped: Option<Unit>,
         purpose: &str,
     ) -> Result<usize> {
@@ -131,7 +131,7 @@ impl<'a> Builder<'a> {
         let (unit, unit_from) = match (stated.or(default), self.header.units_line) {
             (Some(known), _) => known,
             // With a line of units, an empty cell in it may have been forgotten or merged.
-            (None, Some(line)) if quantity != Quantity::Number => {
+            (None, Some(line)) if quantity != Dimension::Number => {
                 return Err(self.header.no_unit(index, line, quantity, purpose));
             }
             (None, _) => (quantity.si_unit(), UnitSource::Si),
@@ -146,7 +146,7 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         columns: &BTreeMap<String, f64>,
-        quantity: Quantity,
+        quantity: Dimension,
         unit: Option<Unit>,
         purpose: &str,
     ) -> Result<usize> {
@@ -256,8 +256,8 @@ impl<'a> Builder<'a> {
         let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
             self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only)
         };
-        let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Quantity::Length)?;
-        let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Quantity::Angle)?;
+        let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Dimension::Length)?;
+        let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Dimension::Angle)?;
         let name = Some(target.name.clone());
         Ok(TargetLayout { name, position, orientation, sigma_position, sigma_rotation })
     }
@@ -268,8 +268,13 @@ impl<'a> Builder<'a> {
             let column =
                 spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(axis, String::as_str);
             let purpose = format!("for the position {prefix}{axis}");
-            *index =
-                self.column_input(&format!("{prefix}{axis}"), column, Quantity::Length, spec.unit, &purpose)?;
+            *index = self.column_input(
+                &format!("{prefix}{axis}"),
+                column,
+                Dimension::Length,
+                spec.unit,
+                &purpose,
+            )?;
         }
         Ok(indices)
     }
@@ -318,7 +323,7 @@ impl<'a> Builder<'a> {
         &mut self,
         name: &str,
         spec: Option<&ColumnSpec>,
-        quantity: Quantity,
+        quantity: Dimension,
         by_our_name: bool,
     ) -> Result<Option<usize>> {
         let default = ColumnSpec::default();
@@ -381,9 +386,9 @@ fn clash(name: &str) -> String {
     )
 }
 
-fn reading_quantity(robot: &Robot, reading: &str) -> Quantity {
+fn reading_quantity(robot: &Robot, reading: &str) -> Dimension {
     match robot.reading_kind(reading) {
-        JointKind::Prismatic => Quantity::Length,
-        JointKind::Revolute => Quantity::Angle,
+        JointKind::Prismatic => Dimension::Length,
+        JointKind::Revolute => Dimension::Angle,
     }
 }

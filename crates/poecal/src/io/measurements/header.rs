@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::cells::{Cell, Separator, character_column, split, split_line};
-use super::units::{Quantity, Unit, UnitSource};
+use super::units::{Dimension, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 
 /// A column of the header: `name[unit]` or `name (unit)`.
@@ -130,7 +130,7 @@ impl<'a> Header<'a> {
     pub(super) fn unit(
         &self,
         index: usize,
-        quantity: Quantity,
+        quantity: Dimension,
         purpose: &str,
     ) -> Result<Option<(Unit, UnitSource)>> {
         let Some(cell) = self.cells.get(index) else { return Ok(None) };
@@ -159,7 +159,7 @@ impl<'a> Header<'a> {
     }
 
     /// The error for a column without a unit in the line of units or elsewhere.
-    pub(super) fn no_unit(&self, index: usize, line: usize, quantity: Quantity, purpose: &str) -> Error {
+    pub(super) fn no_unit(&self, index: usize, line: usize, quantity: Dimension, purpose: &str) -> Error {
         let name = self.cells.get(index).map_or("", |cell| cell.text.as_str());
         let si = quantity.si_unit().symbol();
         let message = format!(

@@ -2,7 +2,7 @@
 
 use super::number::Numbers;
 use super::table::Row;
-use super::units::{Quantity, Unit, UnitSource};
+use super::units::{Dimension, Unit, UnitSource};
 use crate::error::{Error, Result};
 use crate::io::numbers::LARGEST_NUMBER;
 
@@ -206,8 +206,8 @@ fn check_size(value: f64, row: &Row<'_>, input: &Input) -> Result<()> {
     }
     let text = row.cells.get(column).map_or("", |cell| cell.raw);
     let si = match input.unit.quantity() {
-        Quantity::Number => String::new(),
-        quantity @ (Quantity::Length | Quantity::Angle) => format!(" {}", quantity.si_unit().symbol()),
+        Dimension::Number => String::new(),
+        quantity @ (Dimension::Length | Dimension::Angle) => format!(" {}", quantity.si_unit().symbol()),
     };
     let message = format!(
         "found `{text}` in column `{}`, expected at most {LARGEST_NUMBER:e}{si}: correct the number or the column's unit, \

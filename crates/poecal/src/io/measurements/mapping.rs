@@ -12,7 +12,7 @@ use super::FitWhere;
 use super::cells::Separator;
 use super::number::DecimalSign;
 use super::orientation::OrientationForm;
-use super::units::{Quantity, Unit};
+use super::units::{Dimension, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::source_text;
 
@@ -70,11 +70,11 @@ pub(super) struct UnitDefaults {
 }
 
 impl UnitDefaults {
-    pub(super) fn of(self, quantity: Quantity) -> Option<Unit> {
+    pub(super) fn of(self, quantity: Dimension) -> Option<Unit> {
         match quantity {
-            Quantity::Length => self.length,
-            Quantity::Angle => self.angle,
-            Quantity::Number => None,
+            Dimension::Length => self.length,
+            Dimension::Angle => self.angle,
+            Dimension::Number => None,
         }
     }
 }
@@ -209,7 +209,7 @@ impl TryFrom<OrientationFields> for OrientationSpec {
         if columns.len() != form.len() {
             return error(format!("found {} `columns`, expected {} ({form})", columns.len(), form.len()));
         }
-        if fields.unit.is_some() && form.quantity() == Quantity::Number {
+        if fields.unit.is_some() && form.quantity() == Dimension::Number {
             return error("found a unit for a quaternion, expected none".to_owned());
         }
         Ok(OrientationSpec { form, columns, unit: fields.unit })
@@ -282,11 +282,11 @@ fn parsed<'de, D: Deserializer<'de>, T>(
 }
 
 fn length_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {
-    parsed(deserializer, |text| Unit::parse(text, Quantity::Length))
+    parsed(deserializer, |text| Unit::parse(text, Dimension::Length))
 }
 
 fn angle_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {
-    parsed(deserializer, |text| Unit::parse(text, Quantity::Angle))
+    parsed(deserializer, |text| Unit::parse(text, Dimension::Angle))
 }
 
 fn any_unit<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Unit>, D::Error> {

@@ -39,7 +39,7 @@ pub use number::DecimalSign;
 pub use read::{parse, read};
 pub(in crate::io) use template::{plan, template};
 pub use understanding::{ColumnUnderstanding, FileUnderstanding};
-pub use units::{Quantity, Unit, UnitSource};
+pub use units::{Dimension, Unit, UnitSource};
 pub(in crate::io) use write::text;
 
 use std::collections::BTreeMap;

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 
-use super::units::Quantity;
+use super::units::Dimension;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::rotation;
 
@@ -36,9 +36,9 @@ impl OrientationForm {
         self.part_names().len()
     }
 
-    /// Quantity of its columns.
-    pub(super) fn quantity(self) -> Quantity {
-        if self.len() == 4 { Quantity::Number } else { Quantity::Angle }
+    /// Dimension of its columns.
+    pub(super) fn quantity(self) -> Dimension {
+        if self.len() == 4 { Dimension::Number } else { Dimension::Angle }
     }
 
     /// Column names in our own files, in order; empty for Euler angles, which these do not have.

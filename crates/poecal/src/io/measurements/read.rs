@@ -19,7 +19,7 @@ use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
-use crate::measurement::{Dataset, Observation, Set, Source};
+use crate::measurement::{ByQuantity, Dataset, Observation, Quantity, Set, Source};
 use crate::robot::{Robot, check_name};
 use crate::text::visible;
 
@@ -200,13 +200,15 @@ impl<'a> Reader<'a> {
             let Some(measurement) = measurement(row, target, layout.pose, inputs, may_be_missing)? else {
                 continue;
             };
+            let mut stated: ByQuantity<Option<f64>> = ByQuantity::default();
+            stated[Quantity::Position] = sigma(row, target.sigma_position, inputs)?;
+            stated[Quantity::Rotation] = sigma(row, target.sigma_rotation, inputs)?;
             let observation = Observation {
                 target: self.target(row, layout, target)?,
                 station: self.station(row, layout)?,
                 from: None,
                 measurement,
-                sigma_position_m: sigma(row, target.sigma_position, inputs)?,
-                sigma_rotation_rad: sigma(row, target.sigma_rotation, inputs)?,
+                stated,
                 set,
                 source: Source {
                     file: u32::try_from(self.found.understood.len()).unwrap_or(u32::MAX),

@@ -8,7 +8,7 @@ use super::inputs::{Input, InputReader, Range};
 use super::layout::ColumnLayout;
 use super::lost::{NAMED_LINES, named_lines};
 use super::table::Row;
-use super::units::{Quantity, Unit, UnitSource};
+use super::units::{Dimension, Unit, UnitSource};
 use crate::distributions::median_point;
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Observation;
@@ -149,14 +149,14 @@ impl OneJoint<'_> {
     }
 
     /// Whether a reading is so far outside that the joint cannot have been there.
-    fn is_far_outside(&self, quantity: Quantity, extremes: [f64; 2], unit_from: UnitSource) -> bool {
+    fn is_far_outside(&self, quantity: Dimension, extremes: [f64; 2], unit_from: UnitSource) -> bool {
         match self.joint.limits {
             Some(limits) => {
                 let span = limits.upper - limits.lower;
                 // Limits may be narrow or wrong: only large readings count.
                 let (large, spans) = match quantity {
-                    Quantity::Length => (5.0, 5.0),
-                    Quantity::Angle | Quantity::Number => (std::f64::consts::TAU, 0.5),
+                    Dimension::Length => (5.0, 5.0),
+                    Dimension::Angle | Dimension::Number => (std::f64::consts::TAU, 0.5),
                 };
                 extremes
                     .into_iter()
@@ -223,8 +223,7 @@ pub(super) fn check_positions(
     };
     // The reach does not contain prismatic joints without limits.
     let reach = robot.reach_m() + slides_m;
-    let positions: Vec<Vector3<f64>> =
-        rows.iter().map(|row| row.measurement.residual_model().position()).collect();
+    let positions: Vec<Vector3<f64>> = rows.iter().map(|row| row.measurement.pose().translation).collect();
     let middle = median_point(&positions);
     let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();
     let furthest = positions

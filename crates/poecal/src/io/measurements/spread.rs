@@ -8,7 +8,7 @@ use super::header::Header;
 use super::inputs::{Input, InputSource};
 use super::layout::ColumnLayout;
 use super::scale::short;
-use super::units::{Quantity, Unit};
+use super::units::{Dimension, Unit};
 use crate::distributions::{median, median_point};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Dataset;
@@ -44,7 +44,7 @@ pub(super) fn check(
     let position = layout.targets.first().and_then(|target| layout.inputs.get(target.position[0]));
     let (Some(input), true) = (position, rows.len() >= FEWEST_ROWS) else { return Ok(()) };
     let measured = rows.iter().filter_map(|&row| data.observations.get(row));
-    let measured = spread(measured.map(|row| row.measurement.residual_model().position()).collect());
+    let measured = spread(measured.filter_map(|row| row.measurement.observe().position()).collect());
     let modelled = |angle_factor: f64| {
         let tip = |&row: &usize| {
             let readings = data.readings(row).iter().zip(&layout.inputs);
@@ -92,7 +92,7 @@ fn is_about(ratio: f64, expected: f64) -> bool {
 }
 
 fn is_angle(input: &Input) -> bool {
-    input.unit.quantity() == Quantity::Angle
+    input.unit.quantity() == Dimension::Angle
 }
 
 /// The first joint angle, if all are in degrees and as small as radians.
@@ -128,7 +128,7 @@ fn position_message(input: &Input, measured: f64, modelled: f64, power: i32) -> 
         if power > 0 { "small" } else { "large" }
     );
     let likely = ["m", "mm", "um", "nm"].into_iter().find(|symbol| {
-        Unit::parse(symbol, Quantity::Length)
+        Unit::parse(symbol, Dimension::Length)
             .is_ok_and(|unit| (unit.to_si(1.0) * 10f64.powi(power) / stated.to_si(1.0) - 1.0).abs() < 1e-9)
     });
     let advice = match likely {

@@ -20,9 +20,9 @@ pub enum UnitSource {
     Si,
 }
 
-/// Quantity of a number.
+/// Dimension of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum Dimension {
     /// SI unit metre.
     Length,
     /// SI unit radian.
@@ -31,22 +31,22 @@ pub enum Quantity {
     Number,
 }
 
-impl Quantity {
+impl Dimension {
     /// The SI unit: `m`, `rad` or `1`.
     #[must_use]
     pub fn si_unit(self) -> Unit {
         match self {
-            Quantity::Length => METRE,
-            Quantity::Angle => RADIAN,
-            Quantity::Number => ONE,
+            Dimension::Length => METRE,
+            Dimension::Angle => RADIAN,
+            Dimension::Number => ONE,
         }
     }
 
     fn words(self) -> &'static str {
         match self {
-            Quantity::Length => "a length",
-            Quantity::Angle => "an angle",
-            Quantity::Number => "a number without unit",
+            Dimension::Length => "a length",
+            Dimension::Angle => "an angle",
+            Dimension::Number => "a number without unit",
         }
     }
 
@@ -58,16 +58,16 @@ impl Quantity {
 /// A unit: symbol, quantity, and conversion to SI.
 ///
 /// ```
-/// use poecal::io::measurements::{Quantity, Unit};
-/// assert_eq!(Unit::parse("mm", Quantity::Length)?.to_si(250.0), 0.25);
-/// let error = Unit::parse("mm", Quantity::Angle).unwrap_err();
+/// use poecal::io::measurements::{Dimension, Unit};
+/// assert_eq!(Unit::parse("mm", Dimension::Length)?.to_si(250.0), 0.25);
+/// let error = Unit::parse("mm", Dimension::Angle).unwrap_err();
 /// assert_eq!(error.message(), "found the unit `mm`, expected an angle (rad, mrad, deg, arcmin, arcsec)");
 /// # Ok::<(), poecal::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     symbol: &'static str,
-    quantity: Quantity,
+    quantity: Dimension,
     // Lengths are divided by a power of ten, which is exact; 0.001 is not.
     factor: f64,
     divisor: f64,
@@ -77,30 +77,30 @@ pub struct Unit {
 
 const fn unit(
     symbol: &'static str,
-    quantity: Quantity,
+    quantity: Dimension,
     (factor, divisor): (f64, f64),
     names: &'static str,
 ) -> Unit {
     Unit { symbol, quantity, factor, divisor, names }
 }
 
-const METRE: Unit = unit("m", Quantity::Length, (1.0, 1.0), "metre metres meter meters");
-const RADIAN: Unit = unit("rad", Quantity::Angle, (1.0, 1.0), "radian radians");
-const ONE: Unit = unit("1", Quantity::Number, (1.0, 1.0), "");
+const METRE: Unit = unit("m", Dimension::Length, (1.0, 1.0), "metre metres meter meters");
+const RADIAN: Unit = unit("rad", Dimension::Angle, (1.0, 1.0), "radian radians");
+const ONE: Unit = unit("1", Dimension::Number, (1.0, 1.0), "");
 
 const UNITS: [Unit; 12] = [
     METRE,
-    unit("cm", Quantity::Length, (1.0, 1e2), "centimetre centimetres centimeter centimeters"),
-    unit("mm", Quantity::Length, (1.0, 1e3), "millimetre millimetres millimeter millimeters"),
-    unit("um", Quantity::Length, (1.0, 1e6), "micrometre micrometres micrometer micrometers micron microns"),
-    unit("nm", Quantity::Length, (1.0, 1e9), ""),
+    unit("cm", Dimension::Length, (1.0, 1e2), "centimetre centimetres centimeter centimeters"),
+    unit("mm", Dimension::Length, (1.0, 1e3), "millimetre millimetres millimeter millimeters"),
+    unit("um", Dimension::Length, (1.0, 1e6), "micrometre micrometres micrometer micrometers micron microns"),
+    unit("nm", Dimension::Length, (1.0, 1e9), ""),
     // 25.4 mm exactly.
-    unit("in", Quantity::Length, (254.0, 1e4), "inch inches"),
+    unit("in", Dimension::Length, (254.0, 1e4), "inch inches"),
     RADIAN,
-    unit("mrad", Quantity::Angle, (1.0, 1e3), "milliradian milliradians"),
-    unit("deg", Quantity::Angle, (PI / 180.0, 1.0), "degree degrees"),
-    unit("arcmin", Quantity::Angle, (PI / 10_800.0, 1.0), "arcminute arcminutes"),
-    unit("arcsec", Quantity::Angle, (PI / 648_000.0, 1.0), "arcsecond arcseconds"),
+    unit("mrad", Dimension::Angle, (1.0, 1e3), "milliradian milliradians"),
+    unit("deg", Dimension::Angle, (PI / 180.0, 1.0), "degree degrees"),
+    unit("arcmin", Dimension::Angle, (PI / 10_800.0, 1.0), "arcminute arcminutes"),
+    unit("arcsec", Dimension::Angle, (PI / 648_000.0, 1.0), "arcsecond arcseconds"),
     ONE,
 ];
 
@@ -109,12 +109,12 @@ impl Unit {
     ///
     /// # Errors
     /// [`ErrorKind::Unit`] if it is unknown or measures something else.
-    pub fn parse(symbol: &str, quantity: Quantity) -> Result<Unit> {
+    pub fn parse(symbol: &str, quantity: Dimension) -> Result<Unit> {
         Unit::parse_for(symbol, quantity, "")
     }
 
     /// As [`Unit::parse`]; `purpose` (` for …`) describes the unit's use in the message.
-    pub(super) fn parse_for(symbol: &str, quantity: Quantity, purpose: &str) -> Result<Unit> {
+    pub(super) fn parse_for(symbol: &str, quantity: Dimension, purpose: &str) -> Result<Unit> {
         let plain = plain(symbol);
         if let Some(unit) = quantity.known_units().find(|unit| unit.symbol == plain) {
             return Ok(*unit);
@@ -137,7 +137,7 @@ impl Unit {
     /// # Errors
     /// [`ErrorKind::Unit`] if it is unknown.
     pub fn parse_any(symbol: &str) -> Result<Unit> {
-        let unit = Unit::parse(symbol, Quantity::Length).or_else(|_| Unit::parse(symbol, Quantity::Angle));
+        let unit = Unit::parse(symbol, Dimension::Length).or_else(|_| Unit::parse(symbol, Dimension::Angle));
         unit.map_err(|_| {
             let symbols = UNITS.iter().filter(|unit| **unit != ONE).map(|unit| unit.symbol);
             let symbols = symbols.collect::<Vec<_>>().join(", ");
@@ -165,7 +165,7 @@ impl Unit {
 
     /// Its quantity.
     #[must_use]
-    pub fn quantity(self) -> Quantity {
+    pub fn quantity(self) -> Dimension {
         self.quantity
     }
 }
@@ -191,8 +191,8 @@ mod tests {
             assert_eq!(Unit::parse(unit.symbol, unit.quantity).unwrap(), unit);
             assert!((unit.from_si(unit.to_si(0.7)) - 0.7).abs() < 1e-15, "{}", unit.symbol);
         }
-        assert_eq!(Unit::parse("µm", Quantity::Length).unwrap().to_si(3.0), 3e-6);
-        assert_eq!(Unit::parse("deg", Quantity::Angle).unwrap().to_si(180.0), PI);
+        assert_eq!(Unit::parse("µm", Dimension::Length).unwrap().to_si(3.0), 3e-6);
+        assert_eq!(Unit::parse("deg", Dimension::Angle).unwrap().to_si(180.0), PI);
     }
 
     #[test]
@@ -202,18 +202,18 @@ mod tests {
                 assert_eq!(Unit::parse_any(name).unwrap(), unit);
             }
         }
-        assert_eq!(Unit::parse("Inches", Quantity::Length).unwrap().to_si(1.0), 0.0254);
-        assert_eq!(Unit::parse("in", Quantity::Length).unwrap().to_si(10.0), 0.254);
-        assert!(Unit::parse("Degrees", Quantity::Length).is_err());
+        assert_eq!(Unit::parse("Inches", Dimension::Length).unwrap().to_si(1.0), 0.0254);
+        assert_eq!(Unit::parse("in", Dimension::Length).unwrap().to_si(10.0), 0.254);
+        assert!(Unit::parse("Degrees", Dimension::Length).is_err());
     }
 
     #[test]
     fn unknown_units_name_what_is_known() {
         let message = |symbol, quantity| Unit::parse(symbol, quantity).unwrap_err().to_string();
         assert_eq!(
-            message("MM", Quantity::Length),
+            message("MM", Dimension::Length),
             "found the unit `MM`, expected a length (m, cm, mm, um, nm, in); did you mean `mm`?"
         );
-        assert_eq!(message("m", Quantity::Number), "found the unit `m`, expected a number without unit (1)");
+        assert_eq!(message("m", Dimension::Number), "found the unit `m`, expected a number without unit (1)");
     }
 }

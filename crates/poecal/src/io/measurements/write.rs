@@ -2,23 +2,23 @@
 
 use std::fmt::Write as _;
 
-use super::units::{Quantity, Unit};
+use super::units::{Dimension, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::csv_text;
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{Dataset, Noise, Quantity};
 use crate::robot::{JointKind, Robot};
 
 /// Rows of the unnamed target as a file with a leading comment: degrees and millimetres, orientations as quaternions. Readings are exact;
 /// measured numbers are rounded to less than a thousandth of their noise.
 pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
-    let mm = Unit::parse("mm", Quantity::Length)?;
-    let number = Quantity::Number.si_unit();
+    let mm = Unit::parse("mm", Dimension::Length)?;
+    let number = Dimension::Number.si_unit();
     let orientations = data.observations.iter().any(|row| row.measurement.sees_orientation());
     let units = reading_units(data.reading_names(), robot)?;
     let mut out = format!("# {comment}\n{}\n", header(data.reading_names(), &units, orientations)?);
-    let position_decimals = decimals(mm.from_si(noise.position_m));
+    let position_decimals = decimals(mm.from_si(noise[Quantity::Position]));
     // A rotation turns the quaternion by half its angle.
-    let quaternion_decimals = decimals(noise.rotation_rad / 2.0);
+    let quaternion_decimals = decimals(noise[Quantity::Rotation] / 2.0);
     for (row, observation) in data.observations.iter().enumerate() {
         for (&reading, &unit) in data.readings(row).iter().zip(&units) {
             let _ = write!(out, "{},", decimal(reading, unit, None));
@@ -38,7 +38,7 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
 
 /// Units of the readings: degrees and millimetres.
 pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>> {
-    let (deg, mm) = (Unit::parse("deg", Quantity::Angle)?, Unit::parse("mm", Quantity::Length)?);
+    let (deg, mm) = (Unit::parse("deg", Dimension::Angle)?, Unit::parse("mm", Dimension::Length)?);
     let unit = |name: &String| match robot.reading_kind(name) {
         JointKind::Prismatic => mm,
         JointKind::Revolute => deg,
@@ -99,8 +99,8 @@ mod tests {
 
     #[test]
     fn readings_read_back_the_same() {
-        let deg = Unit::parse("deg", Quantity::Angle).unwrap();
-        let mm = Unit::parse("mm", Quantity::Length).unwrap();
+        let deg = Unit::parse("deg", Dimension::Angle).unwrap();
+        let mm = Unit::parse("mm", Dimension::Length).unwrap();
         assert_eq!(decimal(deg.to_si(-12.3456), deg, None), "-12.3456");
         assert_eq!(decimal(mm.to_si(250.001), mm, None), "250.001");
         for si in [0.1 + 0.2, -1e-3, 3.0, 0.123_456_789_012_345_6] {
@@ -113,7 +113,7 @@ mod tests {
         let joint =
             crate::robot::Joint::prismatic("y", crate::lie::Screw::prismatic(&nalgebra::Vector3::y()));
         let robot = Robot::new("slide", vec![joint], crate::lie::Pose::identity()).unwrap();
-        let noise = Noise { position_m: 0.0, rotation_rad: 0.0 };
+        let noise = Noise::new(0.0, 0.0);
         let error = text(&Dataset::new(robot.reading_names()), &robot, &noise, "").unwrap_err();
         assert_eq!(
             error.to_string(),
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn measured_numbers_are_as_long_as_their_noise_deserves() {
-        let mm = Unit::parse("mm", Quantity::Length).unwrap();
+        let mm = Unit::parse("mm", Dimension::Length).unwrap();
         assert_eq!(decimal(0.812_310_012_345, mm, decimals(0.05)), "812.31001");
         assert_eq!(decimals(0.0), None);
     }

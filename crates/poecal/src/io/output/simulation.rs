@@ -97,9 +97,8 @@ impl TruthFile {
 /// read back differs by more than 1e-9 m or rad. Nothing is left behind then.
 pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSession) -> Result<Written> {
     let SimulatedSession { simulation, made, command, .. } = session;
-    let noise =
-        Noise { position_m: simulation.noise_position_m, rotation_rad: simulation.noise_rotation_rad };
-    let exact = Noise { position_m: 0.0, rotation_rad: 0.0 };
+    let noise = Noise::new(simulation.noise_position_m, simulation.noise_rotation_rad);
+    let exact = Noise::new(0.0, 0.0);
     let mut notes = Vec::new();
     let mut files = robot_files("nominal", model, &made.nominal, &mut notes)?;
     files.extend(robot_files("actual", model, &made.actual, &mut notes)?);

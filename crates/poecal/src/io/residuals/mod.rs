@@ -37,6 +37,11 @@ pub struct ModelErrors {
     pub residual: [f64; 3],
 }
 
+impl ModelErrors {
+    /// Of nothing measured.
+    pub(crate) const NONE: ModelErrors = ModelErrors { models: [f64::NAN; 3], residual: [f64::NAN; 3] };
+}
+
 /// Diagnostics of a row.
 ///
 /// ```

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{ModelErrors, ResidualRow, Residuals, RowDiagnostics};
 use crate::calibration::{Calibration, RowError, RowInfluence};
 use crate::estimate::Estimate;
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Quantity};
 use crate::robot::JointKind;
 
 /// Input for computing any row.
@@ -55,8 +55,8 @@ impl<'a> RowSource<'a> {
                 held_out: self.held_out[row],
                 target: observation.target,
                 station: observation.station,
-                position_mm: position_errors(errors),
-                rotation_deg: rotation_errors(errors),
+                position_mm: errors_of(errors, Quantity::Position).unwrap_or(ModelErrors::NONE),
+                rotation_deg: errors_of(errors, Quantity::Rotation),
                 judged: robustness.rows.get(row).map(|found| RowDiagnostics {
                     weight: found.weight,
                     leverage: influences[at].leverage,
@@ -89,15 +89,11 @@ fn shown(kind: JointKind, value: f64) -> f64 {
     }
 }
 
-fn position_errors(errors: [&RowError; 3]) -> ModelErrors {
-    ModelErrors {
-        models: errors.map(|error| error.position_m.norm() * 1e3),
-        residual: (errors[2].position_m * 1e3).into(),
-    }
-}
-
-fn rotation_errors(errors: [&RowError; 3]) -> Option<ModelErrors> {
-    let residual = errors[2].rotation_rad?;
-    let turn = |error: &RowError| error.rotation_rad.map_or(f64::NAN, |w| w.norm().to_degrees());
-    Some(ModelErrors { models: errors.map(turn), residual: residual.map(f64::to_degrees).into() })
+/// Errors of one quantity of the three models, in the unit in which people read it, if it was measured.
+fn errors_of(errors: [&RowError; 3], quantity: Quantity) -> Option<ModelErrors> {
+    let unit = quantity.unit();
+    errors[2].length(quantity)?;
+    let length = |error: &RowError| error.length(quantity).map_or(f64::NAN, |length| unit.shown(length));
+    let residual = errors[2].vector(quantity).map(|value| unit.shown(value));
+    Some(ModelErrors { models: errors.map(length), residual: residual.into() })
 }

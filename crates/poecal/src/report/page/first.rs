@@ -6,18 +6,25 @@ use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
 use super::trust::direction_words;
 use crate::analysis::Direction;
-use crate::calibration::{Level, ModelAccuracy, NoiseSource, SetAccuracy, Statistic};
+use crate::calibration::{Level, NoiseSource, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
+use crate::measurement::Quantity;
 use crate::report::summary::{ModelRow, Place, Point, expected, leading, look_at};
 use crate::report::table::{MODELS, STATISTICS, joints_words};
+use crate::unit::Unit;
 
-/// A kind of error: its name in the file, and how to take it from a model's.
-type Quantity = (&'static str, fn(&ModelAccuracy) -> Option<Statistic>);
-
-pub(super) const POSITION: Quantity = ("position_mm", |model| Some(model.position_mm));
-/// None where no orientation was measured.
-pub(super) const ROTATION: Quantity = ("rotation_deg", |model| model.rotation_deg);
+/// A quantity's errors as a caption: `Position error on …, mm`.
+pub(super) fn error_words(quantity: Quantity, of: &str) -> String {
+    let name = quantity.name();
+    let (first, rest) = name.split_at(name.len().min(1));
+    let unit = match quantity.unit() {
+        Unit::Metre => "mm",
+        Unit::Radian => "degrees",
+    };
+    let of = if of.is_empty() { String::new() } else { format!(" {of}") };
+    format!("{}{rest} error{of}, {unit}", first.to_uppercase())
+}
 
 pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let held_out = file.accuracy.held_out.as_ref();
@@ -26,8 +33,10 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         None => ("the fitted rows, since none was held out", "accuracy.training.count"),
     };
     let (set, rows) = leading(file);
-    let position = lead_table(&format!("Position error on {of}, mm"), &rows, POSITION);
-    let rotation = || lead_table(&format!("Rotation error on {of}, degrees"), &rows, ROTATION);
+    let on = format!("on {of}");
+    let tables =
+        set.calibrated.iter().map(|(quantity, _)| lead_table(&error_words(quantity, &on), &rows, quantity));
+    let tables: Vec<HtmlTable> = tables.collect();
     let caption = html! { (count(set.count, key)) " " (of) ". Nominal: the model before calibration. Registered: tool and device fitted to it." };
     html! {
         header {
@@ -38,8 +47,7 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         (verdict(file))
         div.first {
             div {
-                (position)
-                @if set.calibrated.rotation_deg.is_some() { (rotation()) }
+                @for table in &tables { (table) }
                 @if let (None, Some(found)) = (held_out, &file.cross_validation) {
                     p.note {
                         "Cross-validation: "
@@ -60,11 +68,15 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
 }
 
 /// Errors before and after, of the rows held out or, if there are none, of those fitted.
-fn lead_table(caption: &str, rows: &[ModelRow<'_>], (quantity, of): Quantity) -> HtmlTable {
+fn lead_table(caption: &str, rows: &[ModelRow<'_>], quantity: Quantity) -> HtmlTable {
     let mut table = HtmlTable::new(caption, 1, &["", "mean", "RMS", "95 %", "max"]);
     for (name, model, key) in rows {
         let cells = STATISTICS.map(|(_, statistic, value)| {
-            figure_or(of(model).map(value), format_args!("{key}.{quantity}.{statistic}"), "")
+            figure_or(
+                model.get(quantity).map(value),
+                format_args!("{key}.{}.{statistic}", quantity.key()),
+                "",
+            )
         });
         table.cells(std::iter::once(name.render()).chain(cells));
     }
@@ -135,16 +147,15 @@ fn verdict_words(level: Level) -> &'static str {
 }
 
 /// Errors of the three models.
-pub(super) fn error_table(
-    caption: &str,
-    set: &SetAccuracy,
-    key: &str,
-    (quantity, of): Quantity,
-) -> HtmlTable {
+pub(super) fn error_table(caption: &str, set: &SetAccuracy, key: &str, quantity: Quantity) -> HtmlTable {
     let mut table = HtmlTable::new(caption, 1, &["", "nominal", "registered", "calibrated"]);
     for (label, statistic, value) in STATISTICS {
         let cells = MODELS.map(|(name, model)| {
-            figure_or(of(model(set)).map(value), format_args!("{key}.{name}.{quantity}.{statistic}"), "")
+            figure_or(
+                model(set).get(quantity).map(value),
+                format_args!("{key}.{name}.{}.{statistic}", quantity.key()),
+                "",
+            )
         });
         table.cells(std::iter::once(label.render()).chain(cells));
     }

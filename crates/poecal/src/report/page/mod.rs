@@ -109,7 +109,7 @@ fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
     }
     let fitted = residuals.rows.iter().filter(|row| !row.held_out);
     let found = Statistic::of(fitted.map(|row| row.position_mm.models[2]).collect()).map_or(0.0, |it| it.rms);
-    let expected = accuracy.training.calibrated.position_mm.rms;
+    let expected = accuracy.training.calibrated.position_mm().rms;
     if (found - expected).abs() > SAME * expected {
         return refused(format!(
             "of {found:.6} mm (RMS) on the fitted rows, expected {expected:.6} mm as in the calibration"

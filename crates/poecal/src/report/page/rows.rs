@@ -3,7 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place, short};
-use super::first::{POSITION, ROTATION, error_table};
+use super::first::{error_table, error_words};
 use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, plots, section};
 use super::{figures, readings_of};
 use crate::calibration::Statistic;
@@ -84,9 +84,8 @@ fn set_tables(file: &CalibrationFile) -> Markup {
     html! {
         div.tables {
             @for (words, key, set) in sets.into_iter().filter_map(|(words, key, set)| Some((words, key, set?))) {
-                (error_table(&format!("Position error, mm: {} {words}", set.count), set, key, POSITION))
-                @if set.calibrated.rotation_deg.is_some() {
-                    (error_table(&format!("Rotation error, degrees: {} {words}", set.count), set, key, ROTATION))
+                @for (quantity, _) in set.calibrated.iter() {
+                    (error_table(&format!("{}: {} {words}", error_words(quantity, ""), set.count), set, key, quantity))
                 }
             }
         }

@@ -82,7 +82,7 @@ fn solver_words(file: &CalibrationFile) -> String {
 /// How the problem was written, where not as usual, and what follows from that.
 fn formulation_words(file: &CalibrationFile) -> Option<String> {
     let solver = &file.solver;
-    let poses = file.accuracy.training.calibrated.rotation_deg.is_some();
+    let poses = file.accuracy.training.calibrated.rotation_deg().is_some();
     let usual = FormulationWords::default();
     let usual_residual = !poses || solver.pose_residual == usual.pose_residual;
     if usual_residual && (&*solver.formulation, &*solver.method) == (usual.formulation, usual.method) {

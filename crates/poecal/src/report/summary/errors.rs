@@ -1,7 +1,7 @@
 //! The errors that count: of rows that were not fitted, before and after.
 
 use super::super::table::{STATISTICS, line, number, number_or_dash, row};
-use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy, Statistic};
+use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 
 /// Widths of the label and of each figure.
@@ -37,17 +37,13 @@ pub(super) fn table(out: &mut String, file: &CalibrationFile) {
     let (set, rows) = leading(file);
     let held_out = file.accuracy.held_out.is_some();
     let name = if held_out { "held out" } else { "fitted" };
-    let mut block = |title: &str, of: fn(&ModelAccuracy) -> Option<Statistic>| {
-        let title = format!("{name} ({}), {title}", set.count);
+    for (quantity, _) in set.calibrated.iter() {
+        let title = format!("{name} ({}), {} in {}", set.count, quantity.name(), quantity.unit().symbol());
         row(out, &title, WIDTHS, STATISTICS.map(|(label, ..)| label));
         for (label, model, _) in &rows {
-            let cells = STATISTICS.map(|(.., value)| number_or_dash(of(model).map(value)));
+            let cells = STATISTICS.map(|(.., value)| number_or_dash(model.get(quantity).map(value)));
             row(out, &format!("  {label}"), WIDTHS, cells);
         }
-    };
-    block("position in mm", |model| Some(model.position_mm));
-    if set.calibrated.rotation_deg.is_some() {
-        block("rotation in deg", |model| model.rotation_deg);
     }
     if !held_out {
         line(out, "", "no row was held out: these errors are of fitted rows");

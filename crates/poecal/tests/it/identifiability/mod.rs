@@ -7,7 +7,7 @@ use cases::{CASES, Case};
 use poecal::analysis::{Cause, Identifiability, PlannedSession, identify};
 use poecal::calibration::{CalibrationOptions, Formulation, FormulationWords, calibrate};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Quantity};
 use poecal::parameters::{JointOffset, Parameter, screw_axes};
 use poecal::robot::{JointKind, Robot};
 use poecal::simulate::{Kind, Simulation, elbow, random, random_chain, random_configuration};
@@ -68,8 +68,9 @@ fn measured(case: &Case, noise: f64) -> (Robot, Dataset) {
     let mut data = Dataset::new(nominal.reading_names());
     for readings in case.readings(7) {
         let mut pose = device_from_base * actual.forward_kinematics(&readings);
-        pose.translation += random::normal_vector(&mut generator) * noise * usual.position_m;
-        let turn = rotation::exp(&(random::normal_vector(&mut generator) * noise * usual.rotation_rad));
+        pose.translation += random::normal_vector(&mut generator) * noise * usual[Quantity::Position];
+        let turn =
+            rotation::exp(&(random::normal_vector(&mut generator) * noise * usual[Quantity::Rotation]));
         pose.rotation = turn * pose.rotation;
         let measurement = match case.kind {
             Kind::Point => Measurement::Point(PointMeasurement { position: pose.translation }),
@@ -93,7 +94,7 @@ fn what_is_left_open_changes_no_prediction() {
             // Without a belief, which data without noise do not need.
             let options = CalibrationOptions { tolerance: None, ..CalibrationOptions::default() };
             let result = calibrate(&nominal, &data, &options).unwrap();
-            let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm.max * 1e-3;
+            let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm().max * 1e-3;
             (held_out_m, case.name)
         })
         .collect();

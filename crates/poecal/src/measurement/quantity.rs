@@ -1,0 +1,254 @@
+//! What is measured: quantities, and values of each of them.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::ops::{Index, IndexMut};
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::unit::Unit;
+
+/// A measured quantity. Noise, scales and accuracies are of each quantity apart; a measurement type has one or two of them.
+///
+/// ```
+/// use poecal::{Quantity, Unit};
+/// assert_eq!((Quantity::Rotation.name(), Quantity::Rotation.unit()), ("rotation", Unit::Radian));
+/// assert_eq!(Quantity::Position.key(), "position_mm");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Place of a target.
+    Position,
+    /// Orientation of a target.
+    Rotation,
+}
+
+impl Quantity {
+    /// All quantities, in the order of every table.
+    pub const ALL: [Quantity; 2] = [Quantity::Position, Quantity::Rotation];
+
+    /// Name of it, its key in files, and its unit.
+    const fn entry(self) -> (&'static str, &'static str, Unit) {
+        match self {
+            Quantity::Position => ("position", "position_mm", Unit::Metre),
+            Quantity::Rotation => ("rotation", "rotation_deg", Unit::Radian),
+        }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    /// Its name with the unit of files: a key of `calibration.json`.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        self.entry().1
+    }
+
+    /// Number of components that a measurement of it has.
+    #[must_use]
+    pub fn components(self) -> usize {
+        match self {
+            Quantity::Position | Quantity::Rotation => 3,
+        }
+    }
+
+    /// Its unit.
+    #[must_use]
+    pub fn unit(self) -> Unit {
+        self.entry().2
+    }
+}
+
+/// A value for each quantity.
+///
+/// ```
+/// use poecal::{ByQuantity, Quantity};
+/// let mut counts: ByQuantity<usize> = ByQuantity::default();
+/// counts[Quantity::Rotation] += 3;
+/// assert_eq!(counts.map(|count| 2 * count)[Quantity::Rotation], 6);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ByQuantity<T>([T; Quantity::ALL.len()]);
+
+impl<T> ByQuantity<T> {
+    /// The value that `of` gives for each quantity.
+    pub fn from_fn(of: impl FnMut(Quantity) -> T) -> Self {
+        ByQuantity(Quantity::ALL.map(of))
+    }
+
+    /// What `to` gives for each value.
+    pub fn map<U>(self, to: impl FnMut(T) -> U) -> ByQuantity<U> {
+        ByQuantity(self.0.map(to))
+    }
+
+    /// The quantities with their values.
+    pub fn iter(&self) -> impl Iterator<Item = (Quantity, &T)> + Clone {
+        Quantity::ALL.into_iter().zip(&self.0)
+    }
+
+    /// The values, to change them.
+    pub fn values_mut(&mut self) -> impl Iterator<Item = (Quantity, &mut T)> {
+        Quantity::ALL.into_iter().zip(&mut self.0)
+    }
+}
+
+impl<T> Index<Quantity> for ByQuantity<T> {
+    type Output = T;
+
+    fn index(&self, quantity: Quantity) -> &T {
+        &self.0[quantity as usize]
+    }
+}
+
+impl<T> IndexMut<Quantity> for ByQuantity<T> {
+    fn index_mut(&mut self, quantity: Quantity) -> &mut T {
+        &mut self.0[quantity as usize]
+    }
+}
+
+/// Standard deviation of each component of each quantity, metres or radians, by which residuals are whitened: theory.md §4 (17).
+///
+/// ```
+/// use poecal::{Noise, Quantity};
+/// let noise = Noise::new(5e-5, 1e-4);
+/// assert_eq!((noise[Quantity::Position], noise[Quantity::Rotation]), (5e-5, 1e-4));
+/// ```
+pub type Noise = ByQuantity<f64>;
+
+impl Noise {
+    /// One standard deviation for all lengths (metres), one for all angles (radians).
+    #[must_use]
+    pub const fn new(length_m: f64, angle_rad: f64) -> Self {
+        let mut values = [0.0; Quantity::ALL.len()];
+        let mut k = 0;
+        while k < values.len() {
+            values[k] = match Quantity::ALL[k].entry().2 {
+                Unit::Metre => length_m,
+                Unit::Radian => angle_rad,
+            };
+            k += 1;
+        }
+        ByQuantity(values)
+    }
+
+    /// The first of all lengths', metres: that of a position.
+    pub(crate) fn of_lengths(self) -> f64 {
+        self[Quantity::Position]
+    }
+
+    /// The same with another value for all lengths.
+    pub(crate) fn without_lengths(self, length_m: f64) -> Self {
+        ByQuantity::from_fn(|quantity| match quantity.unit() {
+            Unit::Metre => length_m,
+            Unit::Radian => self[quantity],
+        })
+    }
+}
+
+/// A value for each quantity that was measured. In files it is an object with the keys of [`Quantity::key`]; a rotation that was not
+/// measured is null.
+///
+/// ```
+/// use poecal::{Measured, Quantity};
+/// let largest = Measured::of(|quantity| (quantity == Quantity::Position).then_some(0.25));
+/// assert_eq!((largest.position_mm(), largest.rotation_deg()), (0.25, None));
+/// assert_eq!(serde_json::to_string(&largest).unwrap(), r#"{"position_mm":0.25,"rotation_deg":null}"#);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured<T>(ByQuantity<Option<T>>);
+
+impl<T: Copy> Measured<T> {
+    /// What `of` gives for each quantity.
+    pub fn of(of: impl FnMut(Quantity) -> Option<T>) -> Self {
+        Measured(ByQuantity::from_fn(of))
+    }
+
+    /// The value of a quantity, if it was measured.
+    #[must_use]
+    pub fn get(&self, quantity: Quantity) -> Option<T> {
+        self.0[quantity]
+    }
+
+    /// The measured quantities with their values.
+    pub fn iter(&self) -> impl Iterator<Item = (Quantity, T)> {
+        self.0.iter().filter_map(|(quantity, value)| Some((quantity, (*value)?)))
+    }
+
+    /// The first measured quantity, lengths before angles: that by which a model is judged.
+    #[must_use]
+    pub fn leading(&self) -> Option<(Quantity, T)> {
+        self.iter().find(|(quantity, _)| quantity.unit() == Unit::Metre).or_else(|| self.iter().next())
+    }
+
+    /// The value of the rotation, degrees, if orientation was measured.
+    #[must_use]
+    pub fn rotation_deg(&self) -> Option<T> {
+        self.get(Quantity::Rotation)
+    }
+}
+
+impl<T: Copy + Default> Measured<T> {
+    /// The value of the position, millimetres; the default if no position was measured.
+    #[must_use]
+    pub fn position_mm(&self) -> T {
+        self.get(Quantity::Position).unwrap_or_default()
+    }
+
+    /// The value of the leading quantity; the default if nothing was measured.
+    #[must_use]
+    pub fn lead(&self) -> T {
+        self.leading().map(|(_, value)| value).unwrap_or_default()
+    }
+}
+
+impl<T: Serialize> Serialize for Measured<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let is_written = |quantity, value: &Option<T>| value.is_some() || quantity == Quantity::Rotation;
+        serializer.collect_map(
+            self.0
+                .iter()
+                .filter(|(quantity, value)| is_written(*quantity, value))
+                .map(|(it, value)| (it.key(), value)),
+        )
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Measured<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut values: BTreeMap<String, Option<T>> = BTreeMap::deserialize(deserializer)?;
+        let found = Measured(ByQuantity::from_fn(|quantity| values.remove(quantity.key()).flatten()));
+        if found.0.iter().all(|(_, value)| value.is_none()) {
+            return Err(D::Error::custom("missing field `position_mm`"));
+        }
+        Ok(found)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Measured<T> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("MeasuredOf{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut properties = serde_json::Map::new();
+        for quantity in Quantity::ALL {
+            let of = if quantity == Quantity::Rotation {
+                generator.subschema_for::<Option<T>>()
+            } else {
+                generator.subschema_for::<T>()
+            };
+            properties.insert(quantity.key().to_owned(), of.to_value());
+        }
+        schemars::json_schema!({
+            "type": "object",
+            "description": "Of each quantity that was measured; null of a rotation that was not.",
+            "properties": properties,
+        })
+    }
+}

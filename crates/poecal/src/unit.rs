@@ -1,0 +1,54 @@
+//! Units of unknowns and of measured numbers.
+
+/// SI unit of a number, with the one in which people read it.
+///
+/// ```
+/// use poecal::Unit;
+/// assert_eq!((Unit::Metre.shown(0.002), Unit::Metre.symbol()), (2.0, "mm"));
+/// assert_eq!(Unit::Radian.shown(std::f64::consts::PI), 180.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Metres; shown in millimetres.
+    Metre,
+    /// Radians; shown in degrees.
+    Radian,
+}
+
+impl Unit {
+    /// A number in the unit in which people read it.
+    #[must_use]
+    pub fn shown(self, si: f64) -> f64 {
+        match self {
+            Unit::Metre => si * 1e3,
+            Unit::Radian => si.to_degrees(),
+        }
+    }
+
+    /// The SI number of one in the unit in which people read it.
+    #[must_use]
+    pub fn from_shown(self, shown: f64) -> f64 {
+        match self {
+            Unit::Metre => shown * 1e-3,
+            Unit::Radian => shown.to_radians(),
+        }
+    }
+
+    /// Symbol of the unit in which people read it: `mm` or `deg`.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Unit::Metre => "mm",
+            Unit::Radian => "deg",
+        }
+    }
+
+    /// Metres of a number, where a radian counts `length_m` metres.
+    #[must_use]
+    pub fn metres(self, length_m: f64) -> f64 {
+        match self {
+            Unit::Metre => 1.0,
+            Unit::Radian => length_m,
+        }
+    }
+}
