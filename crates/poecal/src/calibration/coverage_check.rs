@@ -134,7 +134,7 @@ impl PredictedUncertainty<'_> {
         let mut observed =
             Observed { session, estimate, linkage: Linkage::new(estimate), chain: Chain::default() };
         for ((predicted, error), &row) in predicted.into_iter().zip(errors).zip(rows) {
-            let own = session.observation(row).noise_or(noise);
+            let own = session.noise_of(session.observation(row), noise);
             for (quantity, sums) in sums.values_mut() {
                 let Some(length) = error.length(quantity) else { continue };
                 let of_robot = observed.covariance(&predicted, row, quantity);

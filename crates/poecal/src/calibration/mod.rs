@@ -7,6 +7,7 @@ mod doubts;
 mod fit;
 mod formulation;
 mod found;
+mod instrument_noise;
 mod judge;
 mod moves;
 mod noise;
@@ -105,8 +106,10 @@ pub fn calibrate_with_progress(
     let (registered, noise, source) = threads::in_pool(rows, || prepared.register());
     progress(Stage::Fit);
     let fit = threads::in_pool(rows, || prepared.fit(&registered, noise, source))?;
-    progress(Stage::Analysis);
-    Ok(threads::in_pool(rows, || prepared.assess(Arc::clone(&packed), registered, fit)))
+    prepared.with_instruments(&registered, fit, source, &mut |prepared, fit| {
+        progress(Stage::Analysis);
+        threads::in_pool(rows, || prepared.assess(Arc::clone(&packed), registered.clone(), fit))
+    })
 }
 
 /// The data with the residual of measured frames replaced.

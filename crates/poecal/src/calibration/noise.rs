@@ -24,6 +24,9 @@ pub enum NoiseSource {
 /// Below this (1 nm, 1 nrad) residuals are rounding, and their ratio means nothing.
 pub(super) const ROUNDING: f64 = 1e-9;
 
+/// Noise by which nothing is whitened.
+const ONE: Noise = Noise::new(1.0, 1.0);
+
 /// Least number of residuals, beyond a part's own unknowns, for an estimate of its noise.
 const REDUNDANT: f64 = 6.0;
 
@@ -87,10 +90,12 @@ pub fn estimate_noise(
     for (&row, squares) in rows.iter().zip(squares) {
         for (quantity, share) in shares.values_mut() {
             let (squares, count) = squares[quantity];
-            if session.observation(row).stated[quantity].is_some() {
+            let observation = session.observation(row);
+            if observation.stated[quantity].is_some() {
                 stated += count;
             } else {
-                share.squares += squares;
+                let ratio = session.usual_noise(observation.station, ONE)[quantity];
+                share.squares += squares / (ratio * ratio);
                 share.count += count;
             }
         }

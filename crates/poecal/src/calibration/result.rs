@@ -43,6 +43,8 @@ pub struct CalibratedStation {
     pub name: Option<String>,
     /// `base_from_device` there.
     pub base_from_device: Pose,
+    /// Noise of its rows that state none.
+    pub noise: Noise,
 }
 
 /// A finished calibration.
@@ -85,8 +87,10 @@ pub struct Calibration {
     pub trust: Trust,
     /// Verdict with its reasons.
     pub verdict: Verdict,
-    /// Noise by which residuals were whitened where a row stated none.
+    /// Noise by which residuals were whitened where a row stated none; of the first of several instruments.
     pub noise: Noise,
+    /// Noise of each instrument in units of the first one's; empty if all are alike.
+    pub noise_ratios: Vec<Noise>,
     /// Source of that noise.
     pub noise_source: NoiseSource,
     /// Outliers, and the judgement of each row.
@@ -146,8 +150,10 @@ impl Calibration {
 }
 
 /// The stations of the device.
-pub(super) fn stations(data: &Dataset, estimate: &Estimate) -> Vec<CalibratedStation> {
+pub(super) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise) -> Vec<CalibratedStation> {
+    let data = session.data;
     let of = |station| CalibratedStation {
+        noise: session.usual_noise(station, noise),
         name: data.stations.get(station).cloned().flatten(),
         base_from_device: estimate.device(station).inverse(),
     };

@@ -6,6 +6,7 @@ use super::count::check_count;
 use super::doubts::doubts;
 use super::fit::{self, Task};
 use super::found::Fitted;
+use super::instrument_noise::{ROUNDS, noise_ratios};
 use super::moves::{ChangeSearch, FrameSearch, FramesApart, Moved, frames_apart, moved};
 use super::noise_doubts::noise_doubts;
 use super::result::{place_tip, stations};
@@ -26,6 +27,7 @@ use crate::measurement::{ByQuantity, Dataset, Noise};
 use crate::parameters::Parameter;
 use crate::problem::Prior;
 use crate::start::{Registration, register, register_again};
+use crate::threads;
 use crate::uncertainty::{PriorInformation, Remainder, View, remainder};
 use crate::unit::Unit;
 
@@ -83,6 +85,34 @@ impl<'a> Prepared<'a> {
             options: self.options,
         };
         robust::fit(&task, &self.registration(&self.fit_rows, noise, true), registered, source)
+    }
+
+    /// Ends with the fit whose instruments have noises of their own, where these differ: fitted again until they do not change.
+    pub(super) fn with_instruments(
+        self,
+        registered: &Estimate,
+        fit: RobustFit,
+        source: NoiseSource,
+        end: &mut dyn FnMut(Prepared<'_>, RobustFit) -> Calibration,
+    ) -> Result<Calibration> {
+        self.after(registered, fit, source, end, ROUNDS)
+    }
+
+    fn after(
+        self,
+        registered: &Estimate,
+        fit: RobustFit,
+        source: NoiseSource,
+        end: &mut dyn FnMut(Prepared<'_>, RobustFit) -> Calibration,
+        rounds: usize,
+    ) -> Result<Calibration> {
+        let is_open = source == NoiseSource::Estimated && self.session.data.station_count() > 1 && rounds > 0;
+        let ratios = is_open.then(|| noise_ratios(&self.session, &self.fit_rows, &fit)).flatten();
+        let Some(ratios) = ratios else { return Ok(end(self, fit)) };
+        let again = Prepared { session: self.session.with_noise_ratios(&ratios), ..self };
+        let rows = self.session.data.len();
+        let fit = threads::in_pool(rows, || again.fit(registered, fit.fitted.noise, source))?;
+        again.after(registered, fit, source, end, rounds - 1)
     }
 
     /// Judges a fit. The calibration keeps the packed joint values of the session.
@@ -153,7 +183,7 @@ impl<'a> Prepared<'a> {
             frame: self.options.frame,
             formulation: self.options.formulation,
             base_from_device: models.calibrated.device_from_base.inverse(),
-            stations: stations(data, &models.calibrated),
+            stations: stations(&self.session, &models.calibrated, fitted.noise),
             models,
             accuracy,
             solver: fitted.report,
@@ -161,6 +191,7 @@ impl<'a> Prepared<'a> {
             trust,
             verdict,
             noise: fitted.noise,
+            noise_ratios: self.session.noise_ratios.to_vec(),
             noise_source: fitted.noise_source,
             robustness,
             warnings,

@@ -1,7 +1,7 @@
 //! The measurements of one robot, as every step of a calibration reads them.
 
 use super::{Packed, radian_m};
-use crate::measurement::{Dataset, Observation};
+use crate::measurement::{ByQuantity, Dataset, Noise, Observation};
 use crate::robot::Robot;
 
 /// A robot and its measurements: what every fit of them, and every judgement of a fit, begins with.
@@ -30,19 +30,51 @@ pub struct Session<'a> {
     pub length_m: f64,
     /// Whether the device frame is unknown; otherwise it stays as given.
     pub device_free: bool,
+    /// Noise of each instrument in units of the first one's; empty if all are alike.
+    pub noise_ratios: &'a [Noise],
 }
 
 impl<'a> Session<'a> {
     /// A radian counts a third of the reach ([`radian_m`]).
     #[must_use]
     pub fn new(robot: &'a Robot, data: &'a Dataset, packed: &'a Packed, device_free: bool) -> Self {
-        Session { robot, data, packed, length_m: radian_m(robot, packed), device_free }
+        Session { robot, data, packed, length_m: radian_m(robot, packed), device_free, noise_ratios: &[] }
     }
 
     /// The same with another length that a radian counts, metres.
     #[must_use]
     pub fn with_length(self, length_m: f64) -> Self {
         Session { length_m, ..self }
+    }
+
+    /// The same with these noises of the instruments, in units of the first one's.
+    #[must_use]
+    pub fn with_noise_ratios(self, noise_ratios: &'a [Noise]) -> Self {
+        Session { noise_ratios, ..self }
+    }
+
+    /// Noise of an instrument's rows that state none, where `usual` is that of the first instrument.
+    pub(crate) fn usual_noise(&self, station: usize, usual: Noise) -> Noise {
+        match self.noise_ratios.get(station) {
+            Some(ratio) => ByQuantity::from_fn(|quantity| usual[quantity] * ratio[quantity]),
+            None => usual,
+        }
+    }
+
+    /// Noise of a row: what it states, else that of its instrument.
+    pub(crate) fn noise_of(&self, observation: &Observation, usual: Noise) -> Noise {
+        observation.noise_or(self.usual_noise(observation.station, usual))
+    }
+
+    /// Squares of a row's residual (m², rad²) in units of its variances.
+    pub(crate) fn whitened(
+        &self,
+        observation: &Observation,
+        squares: ByQuantity<f64>,
+        usual: Noise,
+    ) -> ByQuantity<f64> {
+        let noise = self.noise_of(observation, usual);
+        ByQuantity::from_fn(|quantity| squares[quantity] / (noise[quantity] * noise[quantity]))
     }
 
     /// The observation of a row.

@@ -83,7 +83,8 @@ impl<'a> Fitter<'a> {
     }
 
     pub(super) fn session<'b>(&'b self, data: &'b Dataset, packed: &'b Packed) -> Session<'b> {
-        Session { robot: self.robot, data, packed, length_m: self.length_m, device_free: self.device_free }
+        let Fitter { robot, device_free, length_m, .. } = *self;
+        Session { robot, data, packed, length_m, device_free, noise_ratios: &[] }
     }
 
     /// Registers the nominal robot.

@@ -86,12 +86,6 @@ impl Observation {
     pub fn noise_or(&self, usual: Noise) -> Noise {
         ByQuantity::from_fn(|quantity| self.stated[quantity].unwrap_or(usual[quantity]))
     }
-
-    /// Squares of a residual (m², rad²) in units of the row's variances, of `usual` noise if it states none.
-    pub(crate) fn whitened(&self, squares: ByQuantity<f64>, usual: Noise) -> ByQuantity<f64> {
-        let noise = self.noise_or(usual);
-        ByQuantity::from_fn(|quantity| squares[quantity] / (noise[quantity] * noise[quantity]))
-    }
 }
 
 /// Measurements with the configurations they were taken in. Readings are stored flat, one after the other.

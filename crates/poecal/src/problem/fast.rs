@@ -12,7 +12,7 @@ use crate::lanes::{
     self, Arm, FixedMotion, PackedRows, Plan, RowData, Shape, ShapedRow, SimdLevel, Totals, WIDTH,
 };
 use crate::lie::Pose;
-use crate::measurement::{Measurement, PoseMeasurement};
+use crate::measurement::{Measurement, Noise, PoseMeasurement};
 use crate::solve::Normal;
 use crate::threads;
 use std::cell::RefCell;
@@ -193,14 +193,21 @@ fn chunk_size(rows: usize) -> usize {
 
 /// Packs rows side by side.
 pub(super) fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut PackedRows) {
-    let usual = Whitening::new(problem.noise);
+    let station = rows.first().map_or(0, |&row| problem.session.observation(row).station);
+    let noise = problem.session.usual_noise(station, problem.noise);
+    let usual = (noise, Whitening::new(noise));
     packed.pack(plan, rows.len(), |at| row_data(problem, usual, rows[at] as usize, plan.is_pose()));
 }
 
 #[inline(always)]
-fn row_data<'a>(problem: &'a Problem<'_>, usual: Whitening, row: usize, is_pose: bool) -> RowData<'a> {
+fn row_data<'a>(
+    problem: &'a Problem<'_>,
+    (noise, usual): (Noise, Whitening),
+    row: usize,
+    is_pose: bool,
+) -> RowData<'a> {
     let observation = &problem.session.data.observations[row];
-    let Whitening { weight, ratio } = usual.of(observation, problem.noise);
+    let Whitening { weight, ratio } = usual.of(observation, noise);
     let weight = match problem.weights.and_then(|weights| weights.get(row)) {
         Some(own) => own.sqrt() * weight,
         None => weight,

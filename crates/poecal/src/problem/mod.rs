@@ -150,7 +150,7 @@ impl<'a> Problem<'a> {
     /// Noise that whitens a row: the W of theory.md §4 (17), divided by the root of the row's weight (theory.md §6 (34b)).
     #[must_use]
     pub fn noise(&self, row: usize) -> Noise {
-        let noise = self.session.data.observations[row].noise_or(self.noise);
+        let noise = self.session.noise_of(&self.session.data.observations[row], self.noise);
         let Some(weight) = self.weights.and_then(|weights| weights.get(row)) else { return noise };
         let root = weight.sqrt();
         noise.map(|sigma| sigma / root)

@@ -45,7 +45,8 @@ impl RowGroup {
     /// Groups rows by target, station and form; stores `key(position, row)` of each.
     pub(super) fn of(problem: &Problem<'_>, rows: &[u32], key: impl Fn(u32, u32) -> u32) -> Vec<RowGroup> {
         let mut groups: Vec<RowGroup> = Vec::new();
-        let usual = Whitening::new(problem.noise);
+        let usual =
+            |observation: &Observation| problem.session.usual_noise(observation.station, problem.noise);
         let mut at = 0;
         for (position, &row) in (0..).zip(rows) {
             let observation = problem.session.observation(row);
@@ -55,7 +56,8 @@ impl RowGroup {
             if !groups.get(at).is_some_and(|group| group.holds(sight, form)) {
                 at = groups.iter().position(|group| group.holds(sight, form)).unwrap_or(groups.len());
             }
-            let ratio = (form == Form::Pose).then(|| usual.of(observation, problem.noise).ratio);
+            let ratio =
+                (form == Form::Pose).then(|| Whitening::new(observation.noise_or(usual(observation))).ratio);
             match groups.get_mut(at) {
                 Some(group) => {
                     group.ratio = same(group.ratio, ratio);

@@ -61,7 +61,7 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
     for (&row, error) in rows.iter().zip(errors) {
         let observation = view.session.observation(row);
         let Some(quantity) = error.leading() else { continue };
-        let sigma = observation.noise_or(view.noise)[quantity];
+        let sigma = view.session.noise_of(observation, view.noise)[quantity];
         chain.evaluate(&linkage, view.session.packed, row as usize, observation);
         let mut sensitivity = [[0.0; 6]; NUMBERS];
         observation.measurement.observe().sensitivity(&chain.target, &mut sensitivity);

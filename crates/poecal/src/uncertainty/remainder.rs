@@ -222,7 +222,7 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
         rows.sort_by_key(|&row| (view.session.observation(row).target, row));
         let target = |row: &u32| view.session.observation(*row).target;
         for same in rows.chunk_by(|a, b| target(a) == target(b)) {
-            let noise = |row: u32| view.session.observation(row).noise_or(view.noise);
+            let noise = |row: u32| view.session.noise_of(view.session.observation(row), view.noise);
             let of = |row: u32| place(row).map(|error| (error, noise(row)));
             let seen: Vec<_> = same.iter().filter_map(|&row| of(row)).collect();
             sums.values_mut().for_each(|(quantity, sums)| sums.add(quantity, &seen));

@@ -4,9 +4,11 @@ use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, row_influence};
 use poecal::estimate::{Packed, Session};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Set};
+use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Quantity, Set};
 use poecal::robot::Robot;
-use poecal::simulate::{Kind, Simulated, Simulation, elbow, gantry, scara, seven_axis};
+use poecal::simulate::{Kind, Simulated, Simulation, elbow, gantry, random, scara, seven_axis};
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng as _;
 
 /// Another place of the device, in the first one's frame.
 fn moved(station: usize) -> Pose {
@@ -204,4 +206,40 @@ fn mistakes_are_named_whatever_place_they_were_seen_from() {
     let found = fit(&robot, &data);
     assert_eq!(found.diagnosis.len(), 1, "{:?}", found.diagnosis);
     assert!(found.diagnosis[0].statement.contains("joint3"), "{}", found.diagnosis[0].statement);
+}
+
+/// Two instruments that see the same target: the noise of each is estimated apart, and the better one counts more.
+#[test]
+fn the_noise_of_each_instrument_is_found() {
+    let robot = elbow();
+    let (simulation, made) = session(&robot, Kind::Pose, 240, 5);
+    let mut data = dealt(&made, 2);
+    let mut generator = ChaCha8Rng::seed_from_u64(3);
+    // The second one is ten times noisier in position, three times in rotation.
+    let [position_m, rotation_rad] =
+        [10.0 * simulation.noise_position_m, 3.0 * simulation.noise_rotation_rad];
+    for observation in data.observations.iter_mut().filter(|it| it.station == 1) {
+        let seen = observation.measurement.pose();
+        let turn = rotation::exp(&(random::normal_vector(&mut generator) * rotation_rad));
+        let position = seen.translation + random::normal_vector(&mut generator) * position_m;
+        observation.measurement =
+            Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) });
+    }
+    let found = fit(&made.nominal, &data);
+    let [first, second] = [0, 1].map(|station| found.stations[station].noise);
+    let ratios = [Quantity::Position, Quantity::Rotation].map(|quantity| second[quantity] / first[quantity]);
+    let expected = [101f64.sqrt(), 10f64.sqrt()];
+    println!("ratios {ratios:.2?}, expected {expected:.2?}, first {:.1e} m", first[Quantity::Position]);
+    for (ratio, expected) in ratios.into_iter().zip(expected) {
+        // 360 numbers of each: 3.7 % standard deviation of either noise.
+        assert!((ratio / expected).ln().abs() < 0.15, "{ratio} instead of {expected}");
+    }
+    assert!((first[Quantity::Position] / simulation.noise_position_m).ln().abs() < 0.15);
+    // With one noise for both the better instrument is hardly heard.
+    let unseen = unseen_m(&simulation, &made, Kind::Pose, &found);
+    let mut stated = data.clone();
+    stated.observations.iter_mut().for_each(|row| row.stated[Quantity::Position] = Some(0.36e-3));
+    let together = unseen_m(&simulation, &made, Kind::Pose, &fit(&made.nominal, &stated));
+    println!("unseen {:.4} mm, with one noise for both {:.4} mm", 1e3 * unseen, 1e3 * together);
+    assert!(unseen < 0.5 * together);
 }

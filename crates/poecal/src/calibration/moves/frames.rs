@@ -155,7 +155,7 @@ impl FrameSearch<'_> {
     }
 
     fn registered(&self, data: &Dataset, rows: &[u32]) -> Estimate {
-        let session = Session { data, ..self.session };
+        let session = Session { data, noise_ratios: &[], ..self.session };
         let registration = Registration { session, rows, noise: self.noise, targets_free: true };
         register(&registration, &delivered(session.robot, data)).0
     }
@@ -163,7 +163,7 @@ impl FrameSearch<'_> {
     /// A fit, and its root mean square position error, metres.
     fn fitted(&self, data: &Dataset) -> (Estimate, f64) {
         let mut start = self.registered(data, self.rows);
-        let session = Session { data, ..self.session };
+        let session = Session { data, noise_ratios: &[], ..self.session };
         start.recentre(&session, self.rows);
         let prior = self.options.prior(&session);
         let prior = prior.as_ref().map(|prior| (prior, 1.0));

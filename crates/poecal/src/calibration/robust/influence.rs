@@ -71,6 +71,7 @@ impl<'a> RowInfluence<'a> {
             packed: &self.packed,
             length_m: self.length_m,
             device_free: self.calibration.frame == DeviceFrameKnowledge::Unknown,
+            noise_ratios: &self.calibration.noise_ratios,
         }
     }
 

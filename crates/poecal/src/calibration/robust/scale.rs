@@ -21,7 +21,7 @@ pub(super) type RowParts = ByQuantity<RowPart>;
 /// Whitened parts of some rows.
 pub(super) fn parts(session: &Session<'_>, rows: &[u32], estimate: &Estimate, noise: Noise) -> Vec<RowParts> {
     session.map_squares(rows, estimate, |observation, squares| {
-        let whitened = observation.whitened(squares.map(|(squares, _)| squares), noise);
+        let whitened = session.whitened(observation, squares.map(|(squares, _)| squares), noise);
         ByQuantity::from_fn(|quantity| RowPart {
             squares: whitened[quantity],
             components: squares[quantity].1,

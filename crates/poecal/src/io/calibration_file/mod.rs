@@ -20,7 +20,7 @@ use crate::calibration::{CalibratedStation, Calibration};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
-use crate::measurement::{Dataset, Quantity};
+use crate::measurement::{Dataset, Measured, Quantity};
 use crate::robot::{Joint, JointKind, Limits, Robot};
 use nalgebra::Vector3;
 use refusal::refusal;
@@ -194,6 +194,11 @@ impl StationEntry {
         let entry = |it: &CalibratedStation| StationEntry {
             instrument: it.name.clone(),
             base_from_device: (&it.base_from_device).into(),
+            sigma: (it.noise != calibration.noise).then(|| {
+                let is_own =
+                    |quantity: Quantity| calibration.accuracy.training.calibrated.get(quantity).is_some();
+                Measured::of(|quantity| is_own(quantity).then(|| quantity.unit().shown(it.noise[quantity])))
+            }),
         };
         if is_plain { Vec::new() } else { stations.map(entry).collect() }
     }

@@ -13,6 +13,7 @@ use crate::calibration::{Accuracy, DeviceFrameKnowledge, FormulationWords, Noise
 use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
+use crate::measurement::Measured;
 use crate::robot::{JointKind, Reading};
 use crate::solve::Termination;
 
@@ -303,7 +304,7 @@ pub struct FrameEntry {
 /// ```
 /// use poecal::io::calibration_file::{PoseEntry, StationEntry};
 /// let base_from_device = PoseEntry { position_m: [1.0, 0.0, 0.5], quaternion_xyzw: [0.0, 0.0, 0.0, 1.0] };
-/// let station = StationEntry { instrument: Some("left".into()), base_from_device };
+/// let station = StationEntry { instrument: Some("left".into()), base_from_device, sigma: None };
 /// assert!(station.base_from_device.pose().is_ok());
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -312,6 +313,9 @@ pub struct StationEntry {
     pub instrument: Option<String>,
     /// Pose of the device in the base.
     pub base_from_device: PoseEntry,
+    /// Standard deviation of each component of its measurements that state none, if it differs from that of the first instrument.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma: Option<Measured<f64>>,
 }
 
 /// A pose.
