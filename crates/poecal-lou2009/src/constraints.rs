@@ -86,7 +86,7 @@ impl LeastSquares for Watched<'_> {
                         miss = miss.or_larger(Miss::of(&screws[axis.joint]));
                     }
                 }
-                Parameter::JointOffset(_)
+                Parameter::ValueTerm(_)
                 | Parameter::TargetPlace(_)
                 | Parameter::TargetFrame(_)
                 | Parameter::DeviceFrame(_) => {}

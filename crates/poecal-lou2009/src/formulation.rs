@@ -2,8 +2,9 @@
 
 use poecal::calibration;
 use poecal::measurement::PoseResidual;
-use poecal::parameters::{JointOffset, Parameter, ScrewAxis};
+use poecal::parameters::{Parameter, ScrewAxis, ValueTerm};
 use poecal::robot::JointKind;
+use poecal::robot::Term;
 use poecal::solve::minimize;
 use serde::Serialize;
 
@@ -58,7 +59,7 @@ impl Formulation {
                 Parameter::ScrewAxis(ScrewAxis { joint, kind })
             });
             if self.has_offsets() {
-                parameters.push(Parameter::JointOffset(JointOffset { joint, kind }));
+                parameters.push(Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Offset }));
             }
         }
         parameters

@@ -36,6 +36,7 @@ use runs::Ended;
 use poecal::error::{Error, ErrorKind, Result};
 use poecal::lie::Screw;
 use poecal::measurement::{Noise, Quantity};
+use poecal::robot::Term;
 
 /// Metres that a radian counts in ranks and steps: some third of the elbow's reach.
 const LENGTH_M: f64 = 0.5;
@@ -154,7 +155,7 @@ fn point(ended: &[Ended]) -> PointRow {
 fn offsets(ended: &[Ended]) -> Vec<OffsetRow> {
     let identified = |formulation, joint: usize| {
         exact(ended, formulation, MeasurementKind::Poses, true)
-            .map_or(f64::NAN, |run| run.estimate.joint_offset[joint].to_degrees())
+            .map_or(f64::NAN, |run| run.estimate.coefficient(joint, Term::Offset).to_degrees())
     };
     tables::nominal()
         .joints

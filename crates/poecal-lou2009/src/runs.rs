@@ -46,7 +46,7 @@ pub(super) fn truth(offsets: bool) -> Estimate {
     let robot = tables::prescribed();
     let mut truth = Estimate::new(&robot, vec![robot.home], poecal::lie::Pose::identity());
     if offsets {
-        truth.joint_offset = tables::PRESCRIBED_OFFSETS_DEG.map(f64::to_radians).to_vec();
+        truth = truth.with_offsets(&tables::PRESCRIBED_OFFSETS_DEG.map(f64::to_radians));
     }
     truth
 }
@@ -179,7 +179,8 @@ impl ScrewError {
 
 /// Largest difference of a joint offset, degrees, whole turns left out.
 fn offset_error_deg(found: &Estimate, truth: &Estimate) -> f64 {
-    let pairs = found.joint_offset.iter().zip(&truth.joint_offset);
+    let offsets = [found.offsets(), truth.offsets()];
+    let pairs = offsets[0].iter().zip(&offsets[1]);
     pairs.map(|(a, b)| (a - b).sin().atan2((a - b).cos()).abs().to_degrees()).fold(0.0, f64::max)
 }
 
@@ -194,7 +195,7 @@ pub(super) fn matrix(
     robot.home = estimate.base_from_target[0];
     let values = |row| {
         let nominal = session.packed.joint_values(row);
-        nominal.iter().zip(&estimate.joint_offset).map(|(value, offset)| value + offset).collect()
+        nominal.iter().zip(&estimate.offsets()).map(|(value, offset)| value + offset).collect()
     };
     let values: Vec<Vec<f64>> = (0..session.packed.rows()).map(values).collect();
     literal::stacked(&robot, &values, formulation, session.seen, LENGTH_M)

@@ -33,7 +33,7 @@ fn words(parameter: &Parameter) -> &'static [&'static str] {
         Parameter::TargetPlace(_) => &["shift_x", "shift_y", "shift_z"],
         Parameter::TargetFrame(_) => &["shift_x", "shift_y", "shift_z", "turn_x", "turn_y", "turn_z"],
         // Not among those of a calibration that is written.
-        Parameter::OtherScrew(_) | Parameter::JointOffset(_) | Parameter::DeviceFrame(_) => &[],
+        Parameter::OtherScrew(_) | Parameter::ValueTerm(_) | Parameter::DeviceFrame(_) => &[],
     }
 }
 
@@ -51,7 +51,7 @@ impl Covariance {
                 Parameter::ScrewAxis(axis) => joint(axis.joint),
                 Parameter::TargetPlace(place) => target(place.target),
                 Parameter::TargetFrame(frame) => target(frame.target),
-                Parameter::OtherScrew(_) | Parameter::JointOffset(_) | Parameter::DeviceFrame(_) => "",
+                Parameter::OtherScrew(_) | Parameter::ValueTerm(_) | Parameter::DeviceFrame(_) => "",
             };
             let columns = parameter.model().columns();
             for ((word, column), &place) in words(parameter).iter().zip(columns).zip(own) {

@@ -6,11 +6,12 @@ use nalgebra::Vector3;
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session};
 use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
-use poecal::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis, TargetFrame};
+use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, ValueTerm};
 use poecal::problem::Problem;
+use poecal::robot::Term;
 use poecal::robot::{Joint, Robot};
 use poecal::solve::LeastSquares as _;
-use poecal_lou2009::{FreeScrew, Residual};
+use poecal_lou2009::{Formulation, FreeScrew, Residual};
 
 /// What the differences can tell: their truncation error is some (0.2 rad)¹⁰ / 2772, far less.
 const RELATIVE: f64 = 1e-6;
@@ -89,7 +90,8 @@ fn jacobians_agree_with_differences() {
     for (joint, it) in robot.joints.iter().enumerate() {
         parameters.push(("free screw", FreeScrew::of(joint, it.kind)));
         parameters.push(("screw axis", Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
-        parameters.push(("offset", Parameter::JointOffset(JointOffset { joint, kind: it.kind })));
+        parameters
+            .push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::Offset })));
     }
     let mut compared = 0;
     for (seen, residual) in
@@ -140,38 +142,50 @@ fn problem_keeps(problem: &Problem<'_>, kept: &[f64], place: usize) -> bool {
     own.zip(kept).any(|(&(other, _), &kept)| other == place && kept != 0.0)
 }
 
-/// The kernels take the paper's residual as any function of the target's pose.
+/// The kernels take the paper's residual as any function of the target's pose, and its screws as columns that rows give.
 #[test]
-fn the_kernels_sum_it_as_its_formulas_do() {
+fn the_kernels_sum_them_as_their_formulas_do() {
     let simulation = poecal::Simulation { count: 60, ..poecal::Simulation::default() };
-    for robot in [poecal::simulate::elbow(), poecal::simulate::gantry()] {
-        let mut made = simulation.run(&robot, poecal::Kind::Pose).unwrap();
-        made.data.write_poses_by(Some(&poecal_lou2009::Spatial));
-        let packed = poecal::estimate::Packed::of(&robot, &made.data);
-        let seen = poecal::estimate::Session::new(&robot, &made.data, &packed, true);
-        let mut free =
-            vec![Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::new(0.3, 0.1, 0.2) })];
-        free.extend(poecal::parameters::screw_axes(
-            &robot.joints.iter().map(|it| it.kind).collect::<Vec<_>>(),
-        ));
-        free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
-        let noise = Noise::new(5e-5, 2e-4);
-        let problem = Problem::new(seen, made.data.all_rows(), free, noise);
-        let estimate = Estimate::new(&robot, vec![robot.home], made.device_from_base);
-        assert!(problem.is_served(&estimate));
-        let (fast, rows) = (problem.normal(&estimate), problem.normal_row_by_row(&estimate));
-        let n = problem.dim();
-        let size = |k: usize| rows.gram[k * n + k].sqrt();
-        let mut worst = (fast.cost - rows.cost).abs() / rows.cost;
-        for a in 0..n {
-            let length = (2.0 * rows.cost).sqrt();
-            worst = worst.max((fast.gradient[a] - rows.gradient[a]).abs() / (size(a) * length));
-            for b in a..n {
-                worst = worst.max((fast.gram[a * n + b] - rows.gram[a * n + b]).abs() / (size(a) * size(b)));
+    for (robot, kind) in [
+        (poecal::simulate::elbow(), poecal::Kind::Pose),
+        (poecal::simulate::gantry(), poecal::Kind::Mixed),
+        (poecal::simulate::scara(), poecal::Kind::Point),
+    ] {
+        for (formulation, residual) in [
+            (Formulation::Adjoint, Residual::Spatial),
+            (Formulation::ScrewOffsets, Residual::Tool),
+            (Formulation::Screw, Residual::Spatial),
+        ] {
+            let mut made = simulation.run(&robot, kind).unwrap();
+            made.data.write_poses_by(residual.model());
+            let packed = poecal::estimate::Packed::of(&robot, &made.data);
+            let seen = poecal::estimate::Session::new(&robot, &made.data, &packed, true);
+            let about = Vector3::new(0.3, 0.1, 0.2);
+            let mut free = vec![Parameter::DeviceFrame(DeviceFrame { station: 0, about })];
+            free.extend(
+                formulation.joint_parameters(&robot.joints.iter().map(|it| it.kind).collect::<Vec<_>>()),
+            );
+            free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
+            let noise = Noise::new(5e-5, 2e-4);
+            let problem = Problem::new(seen, made.data.all_rows(), free, noise);
+            let estimate = Estimate::new(&robot, vec![robot.home], made.device_from_base);
+            assert!(problem.is_served());
+            let (fast, rows) = (problem.normal(&estimate), problem.normal_row_by_row(&estimate));
+            let n = problem.dim();
+            // Of an unknown without effect there is rounding only.
+            let size = |k: usize| rows.gram[k * n + k].sqrt().max(1e-3);
+            let mut worst = (fast.cost - rows.cost).abs() / rows.cost;
+            for a in 0..n {
+                let length = (2.0 * rows.cost).sqrt();
+                worst = worst.max((fast.gradient[a] - rows.gradient[a]).abs() / (size(a) * length));
+                for b in a..n {
+                    let apart = (fast.gram[a * n + b] - rows.gram[a * n + b]).abs();
+                    worst = worst.max(apart / (size(a) * size(b)));
+                }
             }
+            println!("{} {formulation:?} {residual:?}: {worst:.1e}", robot.name);
+            // Rounding of sums of sixty rows of six numbers, in units of their own size.
+            assert!(worst < 1e-11);
         }
-        println!("{}: {worst:.1e}", robot.name);
-        // Rounding of sums of sixty rows of six numbers, in units of their own size.
-        assert!(worst < 1e-11);
     }
 }

@@ -5,7 +5,8 @@ use crate::largest::larger;
 use nalgebra::{DMatrix, Matrix3, Matrix6, Vector3, Vector6};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
 use poecal::lie::{Pose, Twist, hat};
-use poecal::parameters::{Columns, JointOffset, Parameter, ScrewAxis, TargetPlace};
+use poecal::parameters::{Columns, Parameter, ScrewAxis, TargetPlace, ValueTerm};
+use poecal::robot::Term;
 use poecal::robot::{Limits, Robot};
 use poecal::simulate::{random, random_chain};
 use poecal_lou2009::MeasurementKind;
@@ -232,7 +233,7 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
     for robot in robots() {
         for offset in [0.0, 0.3] {
             let mut estimate = Estimate::new(&robot, vec![robot.home], device());
-            estimate.joint_offset = vec![offset; robot.joints.len()];
+            estimate = estimate.with_offsets(&vec![offset; robot.joints.len()]);
             for readings in configurations(&robot) {
                 let values: Vec<f64> = readings.iter().map(|reading| reading + offset).collect();
                 let literal = Literal::new(&robot, &values);
@@ -245,7 +246,8 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
                 for (i, joint) in robot.joints.iter().enumerate() {
                     let screw = seen * literal.screw_blocks[i] * estimate.base_from_axis[i].adjoint();
                     let free = FreeScrew::of(i, joint.kind);
-                    let shift = Parameter::JointOffset(JointOffset { joint: i, kind: joint.kind });
+                    let shift =
+                        Parameter::ValueTerm(ValueTerm { joint: i, kind: joint.kind, term: Term::Offset });
                     let mut twists = [(Vector3::zeros(), Vector3::zeros()); 6];
                     let dim = free.model().columns().len();
                     free.model().target_twists(&chain, 0, &mut twists[..dim]);

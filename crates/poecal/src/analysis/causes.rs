@@ -45,7 +45,7 @@ pub(super) fn explain(
     let space = spectrum.vectors.columns(first, count).into_owned();
     let mut rules = Rules { setup, excitation, spectrum, degree, unexplained: space, found: Vec::new() };
     // Offsets beside screws are a structural kernel, reported as such.
-    let offsets = rules.places(|parameter| matches!(parameter, Parameter::JointOffset(_)));
+    let offsets = rules.places(|parameter| matches!(parameter, Parameter::ValueTerm(_)));
     rules.take(&offsets);
     rules.stood_still();
     rules.too_few();
@@ -291,7 +291,7 @@ impl Rules<'_> {
                     (estimate.base_from_target[*target].rotation, tool)
                 }
                 Parameter::ScrewAxis(axis) => (estimate.base_from_axis[axis.joint].rotation, -seen),
-                Parameter::OtherScrew(_) | Parameter::JointOffset(_) | Parameter::DeviceFrame(_) => continue,
+                Parameter::OtherScrew(_) | Parameter::ValueTerm(_) | Parameter::DeviceFrame(_) => continue,
             };
             let columns = parameter.model().columns().iter().zip(places);
             let shifting = columns.filter(|(column, _)| column.unit == Unit::Metre);
@@ -361,7 +361,7 @@ pub(super) fn joint_of(parameter: &Parameter) -> Option<usize> {
     match parameter {
         Parameter::ScrewAxis(axis) => Some(axis.joint),
         Parameter::OtherScrew(screw) => Some(screw.joint),
-        Parameter::JointOffset(offset) => Some(offset.joint),
+        Parameter::ValueTerm(offset) => Some(offset.joint),
         Parameter::TargetPlace(_) | Parameter::TargetFrame(_) | Parameter::DeviceFrame(_) => None,
     }
 }

@@ -170,7 +170,7 @@ impl Excitation {
                 Parameter::TargetFrame(it) => (it.target, "its frame fits that one measurement"),
                 Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
-                | Parameter::JointOffset(_)
+                | Parameter::ValueTerm(_)
                 | Parameter::DeviceFrame(_) => continue,
             };
             if self.seen.get(target) == Some(&1) {

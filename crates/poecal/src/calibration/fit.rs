@@ -255,8 +255,8 @@ impl Task<'_> {
             (estimate, normal) = self.settle_null_directions(estimate, normal, noise, &mut report);
         }
         let layout = self.problem(&estimate, noise).layout().clone();
-        let offsets = |(parameter, _): (&Parameter, _)| matches!(parameter, Parameter::JointOffset(_));
-        report.joint_offsets = layout.parameters().any(offsets).then(|| estimate.joint_offset.clone());
+        let offsets = |(parameter, _): (&Parameter, _)| matches!(parameter, Parameter::ValueTerm(_));
+        report.joint_offsets = layout.parameters().any(offsets).then(|| estimate.offsets());
         Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
     }
 

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Estimate, Packed, Passed, Sight, Tree};
 use crate::lanes::FixedMotion;
 use crate::lie::Pose;
-use crate::robot::JointKind;
+use crate::robot::{JointKind, JointTerm};
 
 /// An estimate as frames relative to the frame before. A row's prediction `X T_n M Z` of theory.md §4 (13) is then a product of one fixed
 /// pose and one elementary motion for each joint.
@@ -34,8 +34,8 @@ pub struct Linkage {
     /// Of each sight, its first step, or the device frame if no joint moves between the two; and the target after the last step.
     ends: Vec<(Pose, Pose)>,
     first_device: Pose,
-    /// Joint offsets, if there are any: `(δ, cos δ, sin δ)`.
-    offsets: Vec<(f64, f64, f64)>,
+    /// Terms of the joints' values, if there are any.
+    terms: Vec<JointTerm>,
 }
 
 impl Linkage {
@@ -45,7 +45,7 @@ impl Linkage {
         let Estimate {
             tree,
             base_from_axis,
-            joint_offset,
+            terms,
             base_from_target,
             device_from_base: _,
             further_devices: _,
@@ -80,12 +80,8 @@ impl Linkage {
         let ends = ends.collect();
         let base_from_first = first.inverse();
         let further_from_first = devices.iter().skip(1).map(|&device| device * base_from_first).collect();
-        let offsets = if estimate.has_offsets() {
-            joint_offset.iter().map(|&offset| (offset, offset.cos(), offset.sin())).collect()
-        } else {
-            Vec::new()
-        };
-        Linkage { tree: Arc::clone(tree), steps, further_from_first, ends, first_device: first, offsets }
+        let terms = if estimate.has_terms() { terms.clone() } else { Vec::new() };
+        Linkage { tree: Arc::clone(tree), steps, further_from_first, ends, first_device: first, terms }
     }
 
     /// `device_from_axis` of the first joint on the way from an instrument to a target, then each axis in the one before, at zero joint
@@ -117,13 +113,13 @@ impl Linkage {
     pub(super) fn is_plain(&self, route: usize) -> bool {
         let route = &self.tree.routes()[route];
         let in_order = |(index, passed): (usize, &Passed)| passed.joint == index && !passed.backward;
-        self.offsets.is_empty()
+        self.terms.is_empty()
             && route.len() == self.tree.kinds().len()
             && route.iter().enumerate().all(in_order)
     }
 
     /// The tree whose frames these are.
-    pub(super) fn tree(&self) -> &Tree {
+    pub(crate) fn tree(&self) -> &Tree {
         &self.tree
     }
 
@@ -135,9 +131,9 @@ impl Linkage {
             .map(|(kind, pose)| (kind == JointKind::Revolute, FixedMotion::from(pose)))
     }
 
-    /// `(θ, cos θ or θ, sin θ or 0)` of a joint passed on a route, offset included: `θ ← θ + δ` of theory.md §5 (26), and `-θ` of one that
+    /// `(θ, cos θ or θ, sin θ or 0)` of a joint passed on a route, terms included: `θ ← θ + δ` of theory.md §5 (26), and `-θ` of one that
     /// is passed backward.
-    pub(super) fn joint_value(
+    pub(crate) fn joint_value(
         &self,
         passed: Passed,
         packed: &Packed,
@@ -145,14 +141,20 @@ impl Linkage {
         from: Option<u32>,
     ) -> (f64, f64, f64) {
         let joint = passed.joint;
-        let (value, (c, s)) = packed.at(row, from.filter(|_| passed.backward), joint);
+        let from = from.filter(|_| passed.backward);
+        let (value, (c, s)) = packed.at(row, from, joint);
         let kind = self.tree.kinds()[joint];
-        let (value, c, s) = match (self.offsets.get(joint), kind) {
-            (None, _) => (value, c, s),
-            (Some(&(offset, cosine, sine)), JointKind::Revolute) => {
-                (value + offset, c * cosine - s * sine, s * cosine + c * sine)
+        let (value, c, s) = if self.terms.is_empty() {
+            (value, c, s)
+        } else {
+            let more = JointTerm::sum(&self.terms, joint, packed.values_at(row, from));
+            match kind {
+                JointKind::Revolute => {
+                    let (sine, cosine) = more.sin_cos();
+                    (value + more, c * cosine - s * sine, s * cosine + c * sine)
+                }
+                JointKind::Prismatic => (value + more, c + more, 0.0),
             }
-            (Some(&(offset, ..)), JointKind::Prismatic) => (value + offset, c + offset, 0.0),
         };
         match (passed.backward, kind) {
             (false, _) => (value, c, s),
@@ -202,6 +204,8 @@ pub struct Chain {
     pub station: usize,
     /// The target whose frame is the device's frame, if there is one.
     pub shared: Option<usize>,
+    /// Joint values without terms, of the row and of the instrument's own configuration.
+    values: [Vec<f64>; 2],
 }
 
 impl Default for Chain {
@@ -212,6 +216,7 @@ impl Default for Chain {
             target: Pose::identity(),
             station: 0,
             shared: None,
+            values: Default::default(),
         }
     }
 }
@@ -225,6 +230,10 @@ impl Chain {
         self.joints.clear();
         self.station = sight.station;
         self.shared = tree.shared(sight.station);
+        for (values, from) in self.values.iter_mut().zip([None, sight.from]) {
+            values.clear();
+            values.extend_from_slice(packed.values_at(row, from));
+        }
         let mut moved = linkage.still(sight).copied().unwrap_or_else(Pose::identity);
         let (steps, end) = linkage.frames(sight);
         for (&passed, step) in tree.route(sight).iter().zip(steps) {
@@ -262,6 +271,12 @@ impl Chain {
         }
         self.last = moved;
         self.target = moved * *end;
+    }
+
+    /// Values of all joints, without terms, in the configuration in which a joint is seen.
+    #[must_use]
+    pub fn values(&self, view: &JointView) -> &[f64] {
+        &self.values[usize::from(view.backward)]
     }
 
     /// The views of one joint: none if the target's motion does not depend on it, two if it moved between two configurations of a row.

@@ -26,7 +26,7 @@ use nalgebra::Vector3;
 
 use crate::lie::{Pose, Screw, rotation};
 use crate::measurement::Dataset;
-use crate::robot::{Body, JointKind, Robot};
+use crate::robot::{Body, JointKind, JointTerm, Robot, Term};
 
 /// The current estimate of everything that may be unknown.
 ///
@@ -46,8 +46,8 @@ pub struct Estimate {
     pub tree: Arc<Tree>,
     /// `base_from_axis` of each joint at zero configuration: z along the screw, origin on the axis.
     pub base_from_axis: Vec<Pose>,
-    /// Joint offsets: joint value minus reading, radians or metres; zero but where they are unknowns (lou2009: Δθ).
-    pub joint_offset: Vec<f64>,
+    /// Terms of the joints' values, among them the offsets (lou2009: Δθ).
+    pub terms: Vec<JointTerm>,
     /// `base_from_target` of each target with all joint values zero (lou2009: M, or the point P_c0).
     pub base_from_target: Vec<Pose>,
     /// The base in the device frame; in that of the first of several stations.
@@ -77,7 +77,7 @@ impl Estimate {
                 .iter()
                 .map(|joint| axis_frame(&joint.screw, &joint.frame.translation))
                 .collect(),
-            joint_offset: vec![0.0; robot.joints.len()],
+            terms: robot.terms.clone(),
             base_from_target,
             device_from_base,
             further_devices: vec![device_from_base; further],
@@ -170,52 +170,80 @@ impl Estimate {
         Estimate {
             tree: Arc::clone(&self.tree),
             base_from_axis: self.base_from_axis.iter().map(|&frame| *motion * frame).collect(),
-            joint_offset: self.joint_offset.clone(),
+            terms: self.terms.clone(),
             base_from_target: self.base_from_target.iter().map(|&pose| *motion * pose).collect(),
             device_from_base: self.device_from_base * motion.inverse(),
             further_devices: self.further_devices.iter().map(|&device| device * motion.inverse()).collect(),
         }
     }
 
-    /// Whether any joint has an offset.
+    /// Whether any joint has a term.
     #[must_use]
-    pub fn has_offsets(&self) -> bool {
-        self.joint_offset.iter().any(|&offset| offset != 0.0)
+    pub fn has_terms(&self) -> bool {
+        self.terms.iter().any(|it| it.coefficient != 0.0)
     }
 
-    /// Whether the kernels serve this state: they have no joint offsets.
-    pub(crate) fn is_for_kernels(&self) -> bool {
-        // A new field does not compile here until it is decided whether the kernels serve it.
-        let Estimate {
-            tree: _,
-            base_from_axis: _,
-            joint_offset: _,
-            base_from_target: _,
-            device_from_base: _,
-            further_devices: _,
-        } = self;
-        !self.has_offsets()
+    /// Coefficient of a joint's term, 0 if it has none.
+    #[must_use]
+    pub fn coefficient(&self, joint: usize, term: Term) -> f64 {
+        let found = self.terms.iter().find(|it| it.joint == joint && it.term == term);
+        found.map_or(0.0, |it| it.coefficient)
+    }
+
+    /// Coefficient of a joint's term, added if the joint has none.
+    pub fn coefficient_mut(&mut self, joint: usize, term: Term) -> &mut f64 {
+        let at = self.terms.iter().position(|it| it.joint == joint && it.term == term);
+        let at = at.unwrap_or(self.terms.len());
+        if at == self.terms.len() {
+            self.terms.push(JointTerm { joint, term, coefficient: 0.0 });
+        }
+        &mut self.terms[at].coefficient
+    }
+
+    /// Joint offsets: joint value minus reading at zero, radians or metres (lou2009: Δθ).
+    #[must_use]
+    pub fn offsets(&self) -> Vec<f64> {
+        (0..self.kinds().len()).map(|joint| self.coefficient(joint, Term::Offset)).collect()
+    }
+
+    /// The same estimate with other joint offsets.
+    #[must_use]
+    pub fn with_offsets(&self, offsets: &[f64]) -> Self {
+        let mut estimate = self.clone();
+        for (joint, &offset) in offsets.iter().enumerate() {
+            *estimate.coefficient_mut(joint, Term::Offset) = offset;
+        }
+        estimate
     }
 
     /// The same robot without joint offsets: the offset of joint i moves all later screws, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for j > i, and the
     /// targets. Exact; no prediction changes (lou2009 equations 11 to 15, theory.md §3 (9a)).
     #[must_use]
     pub fn without_offsets(&self) -> Self {
-        if !self.has_offsets() {
+        if self.offsets().iter().all(|&offset| offset == 0.0) {
             return self.clone();
         }
-        let screws = self.screws();
+        let (screws, offsets) = (self.screws(), self.offsets());
         let mut moved = self.clone();
-        let mut motion = Pose::identity();
-        for ((frame, offset), screw) in
-            moved.base_from_axis.iter_mut().zip(&mut moved.joint_offset).zip(&screws)
-        {
-            *frame = (motion * *frame).orthonormalized();
-            motion = motion * screw.exp(*offset);
-            *offset = 0.0;
+        moved.terms.retain(|it| it.term != Term::Offset);
+        // How the link of each joint moves, and all that stands on it.
+        let mut motions: Vec<Pose> = Vec::with_capacity(screws.len());
+        let of = |motions: &[Pose], body: Option<usize>| {
+            body.and_then(|joint| motions.get(joint)).copied().unwrap_or_else(Pose::identity)
+        };
+        for (joint, frame) in moved.base_from_axis.iter_mut().enumerate() {
+            let before = of(&motions, self.tree.joint_before(joint));
+            *frame = (before * *frame).orthonormalized();
+            motions.push(before * screws[joint].exp(offsets[joint]));
         }
-        for target in &mut moved.base_from_target {
-            *target = (motion * *target).orthonormalized();
+        for (target, body) in moved.base_from_target.iter_mut().zip(self.tree.targets()) {
+            *target = (of(&motions, body.joint()) * *target).orthonormalized();
+        }
+        for (station, stand) in self.tree.instruments().iter().enumerate() {
+            if let Stand::On(Body::Link(joint)) = *stand {
+                let device = moved.device_mut(station);
+                *device = (*device * of(&motions, Some(joint)).inverse()).orthonormalized();
+            }
         }
         moved
     }

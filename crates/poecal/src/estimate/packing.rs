@@ -118,11 +118,11 @@ impl Packed {
         (packed.angles[at], packed.values[at])
     }
 
-    /// All joints of a further configuration, as [`Packed::row`]; those of the row itself if it has none.
-    pub(crate) fn further_row(&self, row: usize, further: Option<u32>) -> &[(f64, f64)] {
+    /// Joint values of a row, or of a further configuration in place of it, radians or metres.
+    pub(crate) fn values_at(&self, row: usize, further: Option<u32>) -> &[f64] {
         match (&self.further, further) {
-            (Some(packed), Some(further)) => packed.row(further as usize),
-            _ => self.row(row),
+            (Some(packed), Some(further)) => packed.joint_values(further as usize),
+            _ => self.joint_values(row),
         }
     }
 

@@ -297,8 +297,8 @@ mod tests {
             let packed = Packed::of(&robot, &data);
             let session = Session::new(&robot, &data, &packed, false);
             for offsets in [[0.0; 4], [0.3, -0.2, 0.6, 0.1]] {
-                let mut estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
-                estimate.joint_offset = offsets.to_vec();
+                let estimate =
+                    Estimate::new(&robot, vec![robot.home], Pose::identity()).with_offsets(&offsets);
                 let linkage = Linkage::new(&estimate);
                 let mut chain = Chain::default();
                 for level in lanes::simd_levels() {

@@ -84,7 +84,7 @@ impl<'a, 'd> FewTargets<'a, 'd> {
         let Some(kept) = &self.kept else { return found.clone() };
         let mut estimate = fitter.start.clone();
         estimate.base_from_axis.clone_from(&found.base_from_axis);
-        estimate.joint_offset.clone_from(&found.joint_offset);
+        estimate.terms.clone_from(&found.terms);
         estimate.device_from_base = found.device_from_base;
         place(fitter, all, &mut estimate);
         for (&target, pose) in kept.iter().zip(&found.base_from_target) {

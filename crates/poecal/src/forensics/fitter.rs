@@ -5,8 +5,9 @@ use crate::estimate::{Estimate, Packed, RowError, Session, delivered, sample_row
 use crate::gauge;
 use crate::lie::{Pose, Screw};
 use crate::measurement::{ByQuantity, Dataset, Noise, Observation, Quantity};
-use crate::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis};
+use crate::parameters::{DeviceFrame, Parameter, ScrewAxis, ValueTerm};
 use crate::problem::Problem;
+use crate::robot::Term;
 use crate::robot::{Joint, JointKind, Robot};
 use crate::solve::{Options, minimize};
 use crate::start::{Registration, register, register_roughly, target_parameters};
@@ -128,14 +129,17 @@ impl<'a> Fitter<'a> {
     pub(super) fn offset(&self, data: &Dataset, registered: &Estimate, joint: usize) -> (f64, Misfit) {
         let mut free: Vec<Parameter> = Vec::new();
         free.extend(
-            registered.kinds().get(joint).map(|&kind| Parameter::JointOffset(JointOffset { joint, kind })),
+            registered
+                .kinds()
+                .get(joint)
+                .map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Offset })),
         );
         if self.device_free {
             let about = data.mean_position(&data.all_rows());
             free.push(Parameter::DeviceFrame(DeviceFrame { station: 0, about }));
         }
         let (estimate, misfit) = self.fit(data, registered, free, 30);
-        (estimate.joint_offset.get(joint).copied().unwrap_or(0.0), misfit)
+        (estimate.coefficient(joint, Term::Offset), misfit)
     }
 
     fn fit(

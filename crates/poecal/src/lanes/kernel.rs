@@ -11,7 +11,7 @@ use super::shape::ShapedRows;
 use super::totals::Totals;
 use super::turn::Turn;
 use super::vector::{Lanes, Vectors, WIDTH, Wide, parts};
-use super::work::{Axis, WORK, Work};
+use super::work::{Axis, ValueColumn, WORK, Work};
 
 /// Sums over all rows of `blocks`.
 #[inline(always)]
@@ -56,7 +56,13 @@ fn sum<S: Simd, const FULL: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> To
             work.turn_gradient[tilt..tilt + 2].copy_from_slice(&[c, d]);
         }
     }
-    let gradient = work.shift_gradient.iter().chain(&work.turn_gradient);
+    for (term, found) in plan.terms.iter().zip(&work.terms) {
+        match term.turn {
+            Some(turn) => work.turn_gradient[turn] = found.gradient,
+            None => work.shift_gradient[term.shift] = found.gradient,
+        }
+    }
+    let gradient = work.shift_gradient.iter().chain(&work.turn_gradient).chain(&work.given_gradient);
     let totals = Totals {
         products: add_up(simd, &work.products),
         turned: add_up(simd, &work.turned_products),
@@ -107,6 +113,7 @@ struct Batch<'a> {
     columns: &'a mut [[Wide; 3]],
     stride: usize,
     axes: &'a mut [Axis],
+    terms: &'a mut [ValueColumn],
     shift_gradient: &'a mut [Wide],
     turn_gradient: &'a mut [Wide],
 }
@@ -135,8 +142,18 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
 ) -> [Vectors<S>; 2] {
     let none = [Vectors([Lanes::splat(simd, 0.0); 3]); 2];
     let Arm { plan, steps, end, .. } = *arm;
-    let Work { jacobian, turned, axes, shift_gradient, turn_gradient, square: square_sum, waiting, .. } =
-        work;
+    let Work {
+        jacobian,
+        turned,
+        axes,
+        terms,
+        shift_gradient,
+        turn_gradient,
+        given_gradient,
+        square: square_sum,
+        waiting,
+        ..
+    } = work;
     let rows = work.turned_rows;
     let Some((noise, rest)) = block.split_first_chunk::<2>() else { return none };
     let Some((position, rest)) = rest.split_first_chunk::<3>() else { return none };
@@ -149,13 +166,14 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
     // Empty without unknowns.
     let columns = jacobian.get_mut(filled..).unwrap_or_default();
     let stride = *waiting;
-    let mut batch = Batch { plan, part, columns, stride, axes, shift_gradient, turn_gradient };
+    let (joints, factors) = joints.split_at(2 * plan.joints.len());
+    let mut batch = Batch { plan, part, columns, stride, axes, terms, shift_gradient, turn_gradient };
 
     if let Some(shape) = arm.shape {
         let whole = Lanes::splat(simd, 1.0);
-        let last = batch.chain(simd, steps, joints.as_chunks::<2>().0, whole, per_length);
+        let last = batch.chain(simd, steps, (joints.as_chunks::<2>().0, factors), whole, per_length);
         let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
-        let rows = ShapedRows::new(shape, first + part * S::F64_LANES, &target, weight);
+        let rows = ShapedRows::new((shape, plan.given), first + part * S::F64_LANES, &target, weight);
         let residuals = rows.residual(simd);
         let [force, torque] = rows.wrench(simd);
         let square = residuals[0].dot(residuals[0]) + residuals[1].dot(residuals[1]);
@@ -167,9 +185,10 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
         if FULL {
             rows.project(simd, plan, batch.columns, stride, part);
         }
+        rows.add_given::<S, FULL>(simd, plan, (batch.columns, stride), given_gradient, part);
         return residuals;
     }
-    let last = batch.chain(simd, steps, joints.as_chunks::<2>().0, weight, per_length);
+    let last = batch.chain(simd, steps, (joints.as_chunks::<2>().0, factors), weight, per_length);
     let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
     let force = (Vectors::load(simd, position, part) - target.origin()).scale(weight);
     let mut squares = force.dot(force);
@@ -204,7 +223,7 @@ impl Batch<'_> {
         &mut self,
         simd: S,
         steps: &[FixedMotion],
-        values: &[[Wide; 2]],
+        (values, factors): (&[[Wide; 2]], &[Wide]),
         weight: Lanes<S>,
         per_length: Lanes<S>,
     ) -> Frame<S> {
@@ -220,7 +239,11 @@ impl Batch<'_> {
             let versine = weight - weight * cosine;
             for (k, row) in link.0.iter_mut().enumerate() {
                 let still = if index == 0 { *row } else { turned(simd, *row, step) };
-                let [x, y, _, origin] = still;
+                let [x, y, z, origin] = still;
+                for term in joint.terms.0..joint.terms.0 + joint.terms.1 {
+                    let factor = Lanes::load(simd, &factors[term], part);
+                    (z * factor * weight).store(&mut self.terms[term].direction[k], part);
+                }
                 *row = moved(still, joint.turns, cosine, sine);
                 let (a, b) = if joint.turns {
                     (y.times_from(own_sine, x * versine), x.times_plus(own_sine, y * versine))
@@ -262,6 +285,22 @@ impl Batch<'_> {
     #[inline(always)]
     fn add_axes<S: Simd, const FULL: bool>(&mut self, simd: S, target: &Frame<S>, wrench: &RowWrench<S>) {
         let (part, stride) = (self.part, self.stride);
+        for (joint, axis) in self.plan.joints.iter().zip(&*self.axes).filter(|(joint, _)| joint.terms.1 > 0) {
+            let arm = (target.origin() - Vectors::load(simd, &axis.origin, part)).scale(wrench.per_length);
+            let moment = arm.cross(wrench.force) + wrench.torque;
+            for term in joint.terms.0..joint.terms.0 + joint.terms.1 {
+                let (plan, found) = (&self.plan.terms[term], &mut self.terms[term]);
+                let along = Vectors::load(simd, &found.direction, part);
+                let pull = if joint.turns { along.dot(moment) } else { along.dot(wrench.force) };
+                pull.add_to(&mut found.gradient, part);
+                if FULL {
+                    along.store(&mut self.columns[plan.shift * stride], part);
+                    if let Some(turn) = plan.turn {
+                        along.cross(arm).store(&mut self.columns[(self.plan.shifts + turn) * stride], part);
+                    }
+                }
+            }
+        }
         for (joint, axis) in self.plan.joints.iter().zip(&mut *self.axes) {
             let Some((shift, tilt)) = joint.columns else { continue };
             let (a, b) =

@@ -20,14 +20,20 @@ impl From<&Pose> for FixedMotion {
 /// A joint on the way to the target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointPlan {
-    /// Its place among a row's joint values.
-    pub(crate) joint: usize,
-    /// Whether it is passed backward, by minus its value: that of the instrument's configuration if there are two.
-    pub(crate) backward: bool,
     /// Whether it is revolute.
     pub(crate) turns: bool,
     /// Its first translation and rotation column, if its axis is unknown.
     pub(crate) columns: Option<(usize, usize)>,
+    /// Its first unknown term among all, and how many it has.
+    pub(crate) terms: (usize, usize),
+}
+
+/// An unknown term of a joint's value: its translation column and, of a revolute joint, its rotation column. The translation column of a
+/// revolute joint is the direction of that rotation only, and no unknown.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TermPlan {
+    pub(crate) shift: usize,
+    pub(crate) turn: Option<usize>,
 }
 
 /// An unknown device frame: the first three translation columns, and the first three rotation columns if it `turns`.
@@ -43,8 +49,10 @@ pub(crate) struct DevicePlan {
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub(crate) joints: Vec<JointPlan>,
-    /// Whether these are all joints of a row in their order, none backward.
+    /// Whether these are all joints of a row in their order, none backward, and their values do not depend on the estimate.
     pub(crate) in_order: bool,
+    /// Unknown terms, joint after joint.
+    pub(crate) terms: Vec<TermPlan>,
     /// The device frame, if it is unknown.
     pub(crate) device: Option<DevicePlan>,
     /// First translation column of the target's place, if that is unknown.
@@ -59,6 +67,8 @@ pub(crate) struct Plan {
     pub(crate) length_m: f64,
     /// Whether the rows depend on the target's orientation.
     pub(crate) framed: bool,
+    /// Columns that the rows themselves give, after all others.
+    pub(crate) given: usize,
     /// Numbers of each row, if they are another function of the target's pose than its position and orientation ([`Arm::shape`]); else 0.
     pub(crate) shaped: usize,
     /// Position over rotation noise in m/rad, if it is the same in all rows: rotation products then follow from those of the translation
@@ -69,7 +79,7 @@ pub(crate) struct Plan {
 impl Plan {
     /// Columns of position rows; all columns of shaped rows.
     pub(crate) fn columns(&self) -> usize {
-        self.shifts + if self.shaped > 0 { self.turns.len() } else { self.tilts }
+        self.shifts + if self.shaped > 0 { self.turns.len() + self.given } else { self.tilts }
     }
 
     /// Groups of three numbers of a row whose products are summed at once.
@@ -99,10 +109,10 @@ impl Plan {
     }
 
     /// Wide numbers of a block of [`WIDTH`] rows: the weight `1/σ` and the ratio of noises, the measured position, the columns of a
-    /// measured orientation, and `(cos θ, sin θ)` or `(θ, 0)` of each joint.
+    /// measured orientation, `(cos θ, sin θ)` or `(θ, 0)` of each joint, and the factor of each unknown term.
     pub(crate) fn block_len(&self) -> usize {
         let seen = if self.is_pose() { 12 } else { 3 };
-        2 + seen + 2 * self.joints.len()
+        2 + seen + 2 * self.joints.len() + self.terms.len()
     }
 }
 
@@ -116,8 +126,6 @@ pub(crate) struct PackedRows {
 pub(crate) struct RowData<'a> {
     /// `(cos θ, sin θ)` or `(θ, 0)` of each joint.
     pub(crate) joints: &'a [(f64, f64)],
-    /// The same in the instrument's configuration.
-    pub(crate) instrument_joints: &'a [(f64, f64)],
     pub(crate) position: &'a [f64; 3],
     /// Columns of the measured orientation, and position over rotation noise.
     pub(crate) orientation: Option<(&'a [[f64; 3]; 3], f64)>,
@@ -128,17 +136,38 @@ pub(crate) struct RowData<'a> {
 impl PackedRows {
     pub(crate) const EMPTY: PackedRows = PackedRows { blocks: Vec::new() };
 
-    /// Packs rows in place of those packed before.
+    /// Packs rows in place of those packed before. Where joints do not lie in order, `joint` gives the values of each on the way, by minus
+    /// the value where it is passed backward; `term` gives the factor of each unknown term.
     #[inline(always)]
-    pub(crate) fn pack<'a>(&mut self, plan: &Plan, count: usize, row: impl Fn(usize) -> RowData<'a>) {
+    pub(crate) fn pack<'a>(
+        &mut self,
+        plan: &Plan,
+        count: usize,
+        row: impl Fn(usize) -> RowData<'a>,
+        joint: impl Fn(usize, usize) -> (f64, f64),
+        term: impl Fn(usize, usize) -> f64,
+    ) {
         let len = plan.block_len();
         let blocks = count.div_ceil(WIDTH);
         self.blocks.resize(blocks * len, Wide::ZERO);
         for (index, block) in self.blocks.chunks_exact_mut(len).enumerate() {
             let first = index * WIDTH;
             // The last block is padded with its last row, at weight zero.
-            let rows: [RowData<'a>; WIDTH] = std::array::from_fn(|lane| row((first + lane).min(count - 1)));
+            let at = |lane: usize| (first + lane).min(count - 1);
+            let rows: [RowData<'a>; WIDTH] = std::array::from_fn(|lane| row(at(lane)));
             put(plan, block, &rows);
+            if !plan.in_order {
+                let (_, joints) = block.split_at_mut(len - plan.terms.len() - 2 * plan.joints.len());
+                let (joints, terms) = joints.split_at_mut(2 * plan.joints.len());
+                for (k, pair) in joints.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+                    for lane in 0..WIDTH {
+                        (pair[0].0[lane], pair[1].0[lane]) = joint(at(lane), k);
+                    }
+                }
+                for (k, wide) in terms.iter_mut().enumerate() {
+                    *wide = Wide(std::array::from_fn(|lane| term(at(lane), k)));
+                }
+            }
             if let Some(weights) = block.first_mut() {
                 weights.0[(count - first).min(WIDTH)..].fill(0.0);
             }
@@ -166,7 +195,7 @@ fn put(plan: &Plan, block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
         }
     }
     if !plan.in_order {
-        return put_route(plan, joints, rows);
+        return;
     }
     let values = rows.each_ref().map(|row| row.joints);
     for (joint, pair) in joints.as_chunks_mut::<2>().0.iter_mut().enumerate() {
@@ -174,21 +203,6 @@ fn put(plan: &Plan, block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
             let (cosine, sine) = values[joint];
             pair[0].0[lane] = cosine;
             pair[1].0[lane] = sine;
-        }
-    }
-}
-
-/// Writes the joint values of a route: by minus the value, `(cos θ, -sin θ)` or `(-θ, 0)`, where it passes a joint backward.
-fn put_route(plan: &Plan, joints: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
-    for (pair, joint) in joints.as_chunks_mut::<2>().0.iter_mut().zip(&plan.joints) {
-        for (lane, row) in rows.iter().enumerate() {
-            let values = if joint.backward { row.instrument_joints } else { row.joints };
-            let (first, second) = values[joint.joint];
-            (pair[0].0[lane], pair[1].0[lane]) = match (joint.backward, joint.turns) {
-                (false, _) => (first, second),
-                (true, true) => (first, -second),
-                (true, false) => (-first, 0.0),
-            };
         }
     }
 }

@@ -20,6 +20,6 @@ impl ShapedRow {
 
 /// The functions of the rows of a pass.
 pub(crate) trait Shape: Sync {
-    /// Of the row at this place among the packed ones, for its predicted target.
-    fn row(&self, place: usize, predicted: &Pose) -> ShapedRow;
+    /// Of the row at this place among the packed ones, for its predicted target. Writes the columns of unknowns that the kernels do not have.
+    fn row(&self, place: usize, predicted: &Pose, given: &mut [[f64; NUMBERS]]) -> ShapedRow;
 }

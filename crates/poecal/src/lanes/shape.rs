@@ -14,27 +14,41 @@ use crate::lie::Pose;
 pub(super) struct ShapedRows {
     residual: [Wide; NUMBERS],
     sensitivity: [[Wide; 2 * HALF]; NUMBERS],
+    /// Whitened columns of unknowns that the kernels do not have.
+    given: Vec<[Wide; NUMBERS]>,
 }
 
 impl ShapedRows {
     /// Of the rows of one vector, the first of them at `first`; rows of weight zero are padding.
     #[inline(never)]
-    pub(super) fn new<S: Simd>(shape: &dyn Shape, first: usize, target: &Frame<S>, weight: Lanes<S>) -> Self {
+    pub(super) fn new<S: Simd>(
+        (shape, given): (&dyn Shape, usize),
+        first: usize,
+        target: &Frame<S>,
+        weight: Lanes<S>,
+    ) -> Self {
         let mut frames = [[Wide::ZERO; 4]; 3];
         for (wide, row) in frames.iter_mut().zip(&target.0) {
             wide.iter_mut().zip(row).for_each(|(wide, number)| number.store(wide, 0));
         }
         let mut weights = Wide::ZERO;
         weight.store(&mut weights, 0);
-        let mut rows =
-            ShapedRows { residual: [Wide::ZERO; NUMBERS], sensitivity: [[Wide::ZERO; 2 * HALF]; NUMBERS] };
+        let mut rows = ShapedRows {
+            residual: [Wide::ZERO; NUMBERS],
+            sensitivity: [[Wide::ZERO; 2 * HALF]; NUMBERS],
+            given: vec![[Wide::ZERO; NUMBERS]; given],
+        };
+        let mut columns = vec![[0.0; NUMBERS]; given];
         for lane in (0..S::F64_LANES).filter(|&lane| weights.0[lane] != 0.0) {
-            let one = shape.row(first + lane, &Pose::from_rows(|i, j| frames[i][j].0[lane]));
+            let one = shape.row(first + lane, &Pose::from_rows(|i, j| frames[i][j].0[lane]), &mut columns);
             for (wide, value) in rows.residual.iter_mut().zip(one.residual) {
                 wide.0[lane] = value;
             }
             let numbers = rows.sensitivity.iter_mut().flatten().zip(one.sensitivity.as_flattened());
             numbers.for_each(|(wide, value)| wide.0[lane] = *value);
+            for (wide, column) in rows.given.iter_mut().zip(&columns) {
+                wide.iter_mut().zip(column).for_each(|(wide, value)| wide.0[lane] = *value);
+            }
         }
         rows
     }
@@ -59,6 +73,30 @@ impl ShapedRows {
             }
         }
         sum.map(Vectors)
+    }
+
+    /// Adds the gradient of the given columns, and writes them after the others where columns are wanted.
+    #[inline(always)]
+    pub(super) fn add_given<S: Simd, const FULL: bool>(
+        &self,
+        simd: S,
+        plan: &Plan,
+        (columns, stride): (&mut [[Wide; HALF]], usize),
+        gradient: &mut [Wide],
+        part: usize,
+    ) {
+        let first = plan.shifts + plan.turns.len();
+        for (k, (given, gradient)) in self.given.iter().zip(gradient).enumerate() {
+            for (number, (wide, e)) in given.iter().zip(&self.residual).enumerate().take(plan.slots() * HALF)
+            {
+                let value = Lanes::load(simd, wide, 0);
+                (value * Lanes::load(simd, e, 0)).add_to(gradient, part);
+                if FULL {
+                    let column = &mut columns[(first + k) * stride + number / HALF];
+                    value.store(&mut column[number % HALF], part);
+                }
+            }
+        }
     }
 
     /// Replaces the columns of one vector of rows, motions of the target, by the changes of their numbers: of `slots` groups of three

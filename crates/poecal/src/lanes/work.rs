@@ -25,6 +25,17 @@ impl Axis {
         Axis { shifts: [[Wide::ZERO; 3]; 2], origin: [Wide::ZERO; 3], gradient: [Wide::ZERO; 4] };
 }
 
+/// Direction of an unknown term in the current rows, times its factor, and its gradient.
+#[derive(Clone, Copy)]
+pub(super) struct ValueColumn {
+    pub(super) direction: [Wide; 3],
+    pub(super) gradient: Wide,
+}
+
+impl ValueColumn {
+    const ZERO: ValueColumn = ValueColumn { direction: [Wide::ZERO; 3], gradient: Wide::ZERO };
+}
+
 /// Columns and sums of the current pass.
 pub(super) struct Work {
     /// Position rows of each column, block after block.
@@ -32,10 +43,12 @@ pub(super) struct Work {
     /// Rows that rotation adds for each rotation column, likewise: two or three for each block.
     pub(super) turned: Vec<Wide>,
     pub(super) axes: Vec<Axis>,
+    pub(super) terms: Vec<ValueColumn>,
     pub(super) products: Vec<Wide>,
     pub(super) turned_products: Vec<Wide>,
     pub(super) shift_gradient: Vec<Wide>,
     pub(super) turn_gradient: Vec<Wide>,
+    pub(super) given_gradient: Vec<Wide>,
     pub(super) square: Wide,
     /// Blocks that wait at a time.
     pub(super) waiting: usize,
@@ -54,10 +67,12 @@ impl Work {
         jacobian: Vec::new(),
         turned: Vec::new(),
         axes: Vec::new(),
+        terms: Vec::new(),
         products: Vec::new(),
         turned_products: Vec::new(),
         shift_gradient: Vec::new(),
         turn_gradient: Vec::new(),
+        given_gradient: Vec::new(),
         square: Wide::ZERO,
         waiting: 1,
         turned_rows: 0,
@@ -68,9 +83,12 @@ impl Work {
         let plan = arm.plan;
         restart(&mut self.shift_gradient, plan.shifts);
         restart(&mut self.turn_gradient, plan.turns.len());
+        restart(&mut self.given_gradient, plan.given);
         self.square = Wide::ZERO;
         self.axes.clear();
         self.axes.resize(plan.joints.len(), Axis::ZERO);
+        self.terms.clear();
+        self.terms.resize(plan.terms.len(), ValueColumn::ZERO);
         self.turned_rows = plan.turned_rows(arm.nearly);
         self.products.clear();
         self.turned_products.clear();

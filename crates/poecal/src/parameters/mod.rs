@@ -3,20 +3,20 @@
 
 mod columns;
 mod device_frame;
-mod joint_offset;
 mod other_screw;
 mod screw_axis;
 mod target_frame;
 mod target_place;
+mod value_term;
 
 pub use crate::unit::Unit;
 pub use columns::{Column, Columns, Subject, Wrench};
 pub use device_frame::DeviceFrame;
-pub use joint_offset::JointOffset;
 pub use other_screw::{OtherScrew, ScrewModel};
 pub use screw_axis::ScrewAxis;
 pub use target_frame::TargetFrame;
 pub use target_place::TargetPlace;
+pub use value_term::ValueTerm;
 
 use crate::robot::JointKind;
 
@@ -33,8 +33,8 @@ pub enum Parameter {
     ScrewAxis(ScrewAxis),
     /// A joint's screw in a parameterisation that is given from outside.
     OtherScrew(OtherScrew),
-    /// Joint offset: joint value minus reading (1).
-    JointOffset(JointOffset),
+    /// Coefficient of a term of a joint's value, such as its offset (1).
+    ValueTerm(ValueTerm),
     /// Place of a target point on the last link (3).
     TargetPlace(TargetPlace),
     /// Place and orientation of a target frame on the last link (6).
@@ -67,7 +67,7 @@ impl Parameter {
         match self {
             Parameter::ScrewAxis(axis) => axis,
             Parameter::OtherScrew(screw) => screw,
-            Parameter::JointOffset(offset) => offset,
+            Parameter::ValueTerm(term) => term,
             Parameter::TargetPlace(place) => place,
             Parameter::TargetFrame(frame) => frame,
             Parameter::DeviceFrame(frame) => frame,
@@ -79,7 +79,7 @@ impl Parameter {
         match self {
             Parameter::ScrewAxis(axis) => Some(axis),
             Parameter::OtherScrew(_)
-            | Parameter::JointOffset(_)
+            | Parameter::ValueTerm(_)
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
             | Parameter::DeviceFrame(_) => None,

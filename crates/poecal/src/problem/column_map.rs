@@ -3,9 +3,9 @@
 use super::row_group::Form;
 use super::{Layout, Problem};
 use crate::estimate::{Estimate, Passed, Sight};
-use crate::lanes::{DevicePlan, JointPlan, Plan};
-use crate::parameters::{Parameter, ScrewAxis, Subject};
-use crate::robot::JointKind;
+use crate::lanes::{DevicePlan, JointPlan, Plan, TermPlan};
+use crate::parameters::{OtherScrew, Parameter, Subject, ValueTerm};
+use crate::robot::{JointKind, Term};
 
 /// Columns of one group of rows: their order in the kernels, and their places in a step.
 #[derive(Clone, Debug)]
@@ -16,6 +16,11 @@ pub(super) struct ColumnMap {
     /// Places of the plan's translation and rotation columns in a step.
     shift_places: Vec<Place>,
     turn_places: Vec<Place>,
+    given_places: Vec<Place>,
+    /// Screws in another parameterisation, with the scale of each of their unknowns.
+    pub(super) screws: Vec<(OtherScrew, Vec<f64>)>,
+    /// Joint and term of each of the plan's terms.
+    pub(super) terms: Vec<(Passed, Term)>,
 }
 
 /// Place of a column in a step, and its sign: the same unknown may move a target twice, and against its own direction.
@@ -23,6 +28,16 @@ pub(super) struct ColumnMap {
 pub(super) struct Place {
     pub(super) at: usize,
     pub(super) sign: f64,
+}
+
+impl Place {
+    /// Of a column that is no unknown.
+    const NONE: Place = Place { at: usize::MAX, sign: 1.0 };
+
+    /// Whether the column is an unknown.
+    pub(super) fn is_unknown(self) -> bool {
+        self.at != usize::MAX
+    }
 }
 
 impl ColumnMap {
@@ -34,6 +49,9 @@ impl ColumnMap {
             plan: plan_without_unknowns(problem, state, sight, form),
             shift_places: Vec::new(),
             turn_places: Vec::new(),
+            given_places: Vec::new(),
+            screws: Vec::new(),
+            terms: Vec::new(),
         };
         // The kernels' order: device frame, joints, target.
         made.add_device(&problem.layout, state.tree.shared(sight.station))?;
@@ -44,9 +62,9 @@ impl ColumnMap {
         Some(made)
     }
 
-    /// Places of the plan's columns in a step: translation columns, then rotation columns.
+    /// Places of the plan's columns in a step: translation columns, rotation columns, given ones.
     pub(super) fn places(&self) -> impl Iterator<Item = Place> {
-        self.shift_places.iter().chain(&self.turn_places).copied()
+        self.shift_places.iter().chain(&self.turn_places).chain(&self.given_places).copied()
     }
 
     /// Places of the rotation columns.
@@ -83,7 +101,7 @@ impl ColumnMap {
             let (about, sign) = match parameter {
                 Parameter::DeviceFrame(device) => (device.about.into(), 1.0),
                 Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => ([0.0; 3], -1.0),
-                Parameter::ScrewAxis(_) | Parameter::OtherScrew(_) | Parameter::JointOffset(_) => continue,
+                Parameter::ScrewAxis(_) | Parameter::OtherScrew(_) | Parameter::ValueTerm(_) => continue,
             };
             self.plan.device = Some(DevicePlan { about, turns: places.len() > 3 });
             self.shift(&places[..3], sign);
@@ -93,32 +111,61 @@ impl ColumnMap {
     }
 
     fn add_joints(&mut self, layout: &Layout, route: &[Passed]) -> Option<()> {
-        let mut axes: Vec<Option<(&ScrewAxis, &[(usize, f64)])>> = Vec::new();
+        let mut of_joints: Vec<Vec<(&Parameter, &[(usize, f64)])>> = Vec::new();
         for (parameter, places) in layout.parameters() {
-            let axis = match parameter {
-                Parameter::ScrewAxis(axis) => axis,
-                Parameter::OtherScrew(_) | Parameter::JointOffset(_) => {
-                    return contradiction("kernels do not have these unknowns");
-                }
-                Parameter::DeviceFrame(_) | Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => continue,
-            };
-            axes.resize(axes.len().max(axis.joint + 1), None);
-            if axes[axis.joint].replace((axis, places)).is_some() {
-                return contradiction("a joint is unknown twice");
-            }
+            let Subject::Joint(joint) = parameter.model().subject() else { continue };
+            of_joints.resize(of_joints.len().max(joint + 1), Vec::new());
+            of_joints[joint].push((parameter, places));
         }
         for (index, passed) in route.iter().enumerate() {
-            let Some((_, places)) = axes.get(passed.joint).copied().flatten() else { continue };
-            let first = self.shift_places.len();
-            let joint = &mut self.plan.joints[index];
-            if joint.turns != (places.len() == 4) {
-                return contradiction("a joint is unknown as another kind than its screw");
+            self.plan.joints[index].terms.0 = self.plan.terms.len();
+            for &(parameter, places) in of_joints.get(passed.joint).into_iter().flatten() {
+                match parameter {
+                    Parameter::ScrewAxis(_) => self.add_axis(index, places)?,
+                    Parameter::ValueTerm(term) => self.add_term(index, *passed, term, places),
+                    Parameter::OtherScrew(screw) => self.add_given(screw, places),
+                    Parameter::DeviceFrame(_) | Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => {}
+                }
             }
-            joint.columns = Some((first, self.turn_places.len()));
-            self.shift(&places[..2], 1.0);
-            self.turn(&places[2..], first, 1.0);
         }
         Some(())
+    }
+
+    fn add_axis(&mut self, index: usize, places: &[(usize, f64)]) -> Option<()> {
+        let first = self.shift_places.len();
+        let joint = &mut self.plan.joints[index];
+        if joint.columns.is_some() || joint.turns != (places.len() == 4) {
+            return contradiction("a joint is unknown twice, or of another kind than its screw");
+        }
+        joint.columns = Some((first, self.turn_places.len()));
+        self.shift(&places[..2], 1.0);
+        self.turn(&places[2..], first, 1.0);
+        Some(())
+    }
+
+    /// Columns of a screw in another parameterisation, once whether its joint is passed once or twice.
+    fn add_given(&mut self, screw: &OtherScrew, places: &[(usize, f64)]) {
+        if !self.screws.iter().any(|(known, _)| known == screw) {
+            self.given_places.extend(places.iter().map(|&(at, _)| Place { at, sign: 1.0 }));
+            self.plan.given += places.len();
+            self.screws.push((*screw, places.iter().map(|&(_, scale)| scale).collect()));
+        }
+    }
+
+    fn add_term(&mut self, index: usize, passed: Passed, term: &ValueTerm, places: &[(usize, f64)]) {
+        let shift = self.shift_places.len();
+        let joint = &mut self.plan.joints[index];
+        joint.terms.1 += 1;
+        let turn = joint.turns.then_some(self.turn_places.len());
+        self.plan.terms.push(TermPlan { shift, turn });
+        self.terms.push((passed, term.term));
+        if turn.is_some() {
+            // The direction of the rotation, which no unknown moves along.
+            self.shift_places.push(Place::NONE);
+            self.turn(places, shift, 1.0);
+        } else {
+            self.shift(places, 1.0);
+        }
     }
 
     fn add_target(&mut self, layout: &Layout) -> Option<()> {
@@ -150,14 +197,16 @@ fn contradiction(what: &str) -> Option<()> {
 fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Plan {
     let route = state.tree.route(sight);
     let joints = route.iter().map(|passed| JointPlan {
-        joint: passed.joint,
-        backward: passed.backward,
+        terms: (0, 0),
         turns: state.kinds()[passed.joint] == JointKind::Revolute,
         columns: None,
     });
     Plan {
         joints: joints.collect(),
-        in_order: route.len() == state.kinds().len()
+        terms: Vec::new(),
+        in_order: !state.has_terms()
+            && !problem.layout.has_terms()
+            && route.len() == state.kinds().len()
             && route.iter().enumerate().all(|(index, passed)| passed.joint == index && !passed.backward),
         device: None,
         place: None,
@@ -166,6 +215,7 @@ fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, 
         tilts: 0,
         turns: Vec::new(),
         length_m: problem.layout.length_m(),
+        given: 0,
         framed: form.sees_orientation(),
         shaped: match form {
             Form::Point | Form::Pose => 0,

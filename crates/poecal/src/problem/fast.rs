@@ -7,14 +7,14 @@ use super::Problem;
 use super::column_map::ColumnMap;
 use super::row_group::{RowGroup, Whitening};
 use super::scatter::GramScatter;
-use crate::estimate::{Estimate, Linkage, Sight};
-use crate::lanes::{
-    self, Arm, FixedMotion, PackedRows, Plan, RowData, Shape, ShapedRow, SimdLevel, Totals, WIDTH,
-};
+use crate::estimate::{Chain, Estimate, Linkage, Sight};
+use crate::lanes::{self, Arm, FixedMotion, PackedRows, RowData, Shape, ShapedRow, SimdLevel, Totals, WIDTH};
 use crate::lie::Pose;
-use crate::measurement::{Measurement, Noise, PoseMeasurement};
+use crate::measurement::{Measurement, NUMBERS, Noise, PoseMeasurement};
+use crate::parameters::Columns as _;
 use crate::solve::Normal;
 use crate::threads;
+use nalgebra::Vector3;
 use std::cell::RefCell;
 
 /// Most rows of one partial sum.
@@ -45,12 +45,16 @@ pub(super) enum Accumulate {
 pub(super) struct Fast {
     groups: Vec<(Group, GramScatter)>,
     level: SimdLevel,
+    /// Of the state at which it was built: its joints are those of every other.
+    linkage: Linkage,
 }
 
 #[derive(Clone, Debug)]
 struct Group {
     arranged: ColumnMap,
     rows: Vec<u32>,
+    /// Whether its rows stay packed.
+    keeps: bool,
     /// Chunks of packed rows, if they stay packed.
     packed: Vec<PackedRows>,
 }
@@ -62,24 +66,23 @@ impl Fast {
         for group in RowGroup::of_problem(problem) {
             let mut arranged = ColumnMap::new(problem, state, group.sight, group.form)?;
             arranged.plan.ratio = group.ratio;
+            let keeps = problem.rows.len() <= KEPT && !(state.has_terms() || problem.layout.has_terms());
             let scatter = GramScatter::new(&arranged, problem.layout.dim());
-            groups.push((Group { arranged, rows: group.rows, packed: Vec::new() }, scatter));
+            groups.push((Group { arranged, rows: group.rows, keeps, packed: Vec::new() }, scatter));
         }
-        let mut fast = Fast { groups, level };
+        let mut fast = Fast { groups, level, linkage: Linkage::new(state) };
         fast.pack(problem);
         Some(fast)
     }
 
-    /// Packs the rows of small problems.
+    /// Packs the rows of small problems, unless joint values depend on the state.
     pub(super) fn pack(&mut self, problem: &Problem<'_>) {
-        if problem.rows.len() > KEPT {
-            return;
-        }
-        for (Group { arranged, rows, packed }, _) in &mut self.groups {
+        let Fast { groups, linkage, .. } = self;
+        for (Group { arranged, rows, packed, .. }, _) in groups.iter_mut().filter(|(group, _)| group.keeps) {
             let size = chunk_size(rows.len());
             packed.resize_with(rows.len().div_ceil(size), PackedRows::default);
             for (rows, packed) in rows.chunks(size).zip(packed) {
-                pack(problem, &arranged.plan, rows, packed);
+                pack(problem, linkage, arranged, rows, packed);
             }
         }
     }
@@ -97,7 +100,7 @@ impl Fast {
             let (steps, end) = fixed_motions(&linkage, *sight);
             let nearly = sums == Accumulate::GaussNewton;
             let arm = Arm { plan, steps: &steps, end: &end, shape: None, nearly };
-            let totals = group.sum(problem, self.level, &arm, sums);
+            let totals = group.sum(problem, &linkage, self.level, &arm, sums);
             group.put(&totals, &mut normal);
             if sums != Accumulate::Gradient {
                 scatter.add(&totals, &mut normal.gram);
@@ -109,19 +112,26 @@ impl Fast {
 
 impl Group {
     /// Sums over all rows of the group, in the order of its chunks whatever the number of threads.
-    fn sum(&self, problem: &Problem<'_>, level: SimdLevel, arm: &Arm<'_>, sums: Accumulate) -> Totals {
+    fn sum(
+        &self,
+        problem: &Problem<'_>,
+        linkage: &Linkage,
+        level: SimdLevel,
+        arm: &Arm<'_>,
+        sums: Accumulate,
+    ) -> Totals {
         let sum = if sums == Accumulate::Gradient { lanes::sum_gradient } else { lanes::sum_products };
         let size = chunk_size(self.rows.len());
         let chunk = |index: usize| {
             let last = self.rows.len().min((index + 1) * size);
             let rows = &self.rows[index * size..last];
-            let shapes = RowShapes { problem, rows };
-            let arm = &Arm { shape: shapes.of(&self.arranged.plan), ..*arm };
+            let shapes = RowShapes { problem, linkage, arranged: &self.arranged, rows };
+            let arm = &Arm { shape: shapes.of(), ..*arm };
             match self.packed.get(index) {
                 Some(rows) => sum(level, arm, &rows.blocks),
                 None => {
                     let mut packed = ROWS.take();
-                    pack(problem, &self.arranged.plan, rows, &mut packed);
+                    pack(problem, linkage, &self.arranged, rows, &mut packed);
                     let totals = sum(level, arm, &packed.blocks);
                     ROWS.set(packed);
                     totals
@@ -148,7 +158,8 @@ impl Group {
 
     /// Adds cost and gradient of the group to the problem's normal information.
     fn put(&self, totals: &Totals, normal: &mut Normal) {
-        for (value, place) in totals.gradient.iter().zip(self.arranged.places()) {
+        let places = self.arranged.places();
+        for (value, place) in totals.gradient.iter().zip(places).filter(|(_, place)| place.is_unknown()) {
             normal.gradient[place.at] += place.sign * value;
         }
         normal.cost += totals.cost;
@@ -156,25 +167,46 @@ impl Group {
     }
 }
 
-/// Rows whose functions of their targets' poses are their own.
+/// Rows whose functions of their targets' poses, or whose unknowns, are their own.
 pub(super) struct RowShapes<'a> {
     pub(super) problem: &'a Problem<'a>,
+    pub(super) linkage: &'a Linkage,
+    pub(super) arranged: &'a ColumnMap,
     pub(super) rows: &'a [u32],
 }
 
 impl RowShapes<'_> {
     /// These, if the plan needs them.
-    pub(super) fn of(&self, plan: &Plan) -> Option<&dyn Shape> {
-        (plan.shaped > 0).then_some(self)
+    pub(super) fn of(&self) -> Option<&dyn Shape> {
+        (self.arranged.plan.shaped > 0).then_some(self)
+    }
+
+    /// Whitened columns of screws in another parameterisation, by their own formulas.
+    fn give(&self, row: usize, shaped: &ShapedRow, given: &mut [[f64; NUMBERS]]) {
+        let session = self.problem.session;
+        let mut chain = Chain::default();
+        chain.evaluate(self.linkage, session.packed, row, &session.data.observations[row]);
+        let mut rest = given.iter_mut();
+        for (screw, scales) in &self.arranged.screws {
+            let mut twists = [(Vector3::zeros(), Vector3::zeros()); 6];
+            screw.target_twists(&chain, self.arranged.sight.target, &mut twists[..scales.len()]);
+            for (((v, w), scale), out) in twists.iter().zip(scales).zip(&mut rest) {
+                *out = shaped.sensitivity.map(|[a, b, c, p, q, r]| {
+                    (a * v.x + b * v.y + c * v.z + p * w.x + q * w.y + r * w.z) / scale
+                });
+            }
+        }
     }
 }
 
 impl Shape for RowShapes<'_> {
-    fn row(&self, place: usize, predicted: &Pose) -> ShapedRow {
-        match self.rows.get(place) {
-            Some(&row) => self.problem.shaped(row as usize, predicted),
-            None => ShapedRow::NONE,
+    fn row(&self, place: usize, predicted: &Pose, given: &mut [[f64; NUMBERS]]) -> ShapedRow {
+        let Some(&row) = self.rows.get(place) else { return ShapedRow::NONE };
+        let shaped = self.problem.shaped(row as usize, predicted);
+        if !given.is_empty() {
+            self.give(row as usize, &shaped, given);
         }
+        shaped
     }
 }
 
@@ -191,12 +223,37 @@ fn chunk_size(rows: usize) -> usize {
     rows.div_ceil(rows.div_ceil(CHUNK).max(1)).next_multiple_of(WIDTH).max(WIDTH)
 }
 
-/// Packs rows side by side.
-pub(super) fn pack(problem: &Problem<'_>, plan: &Plan, rows: &[u32], packed: &mut PackedRows) {
-    let station = rows.first().map_or(0, |&row| problem.session.observation(row).station);
-    let noise = problem.session.usual_noise(station, problem.noise);
+/// Packs rows side by side, with the joint values of a state.
+pub(super) fn pack(
+    problem: &Problem<'_>,
+    linkage: &Linkage,
+    arranged: &ColumnMap,
+    rows: &[u32],
+    packed: &mut PackedRows,
+) {
+    let ColumnMap { sight, plan, terms, .. } = arranged;
+    let session = problem.session;
+    let station = rows.first().map_or(0, |&row| session.observation(row).station);
+    let noise = session.usual_noise(station, problem.noise);
     let usual = (noise, Whitening::new(noise));
-    packed.pack(plan, rows.len(), |at| row_data(problem, usual, rows[at] as usize, plan.is_pose()));
+    let route = linkage.tree().route(*sight);
+    packed.pack(
+        plan,
+        rows.len(),
+        |at| row_data(problem, usual, rows[at] as usize, plan.is_pose()),
+        |at, joint| {
+            let from = session.observation(rows[at]).from;
+            let (_, first, second) =
+                linkage.joint_value(route[joint], session.packed, rows[at] as usize, from);
+            (first, second)
+        },
+        |at, term| {
+            let (passed, term) = terms[term];
+            let from = session.observation(rows[at]).from.filter(|_| passed.backward);
+            let basis = term.basis(passed.joint, session.packed.values_at(rows[at] as usize, from));
+            if passed.backward { -basis } else { basis }
+        },
+    );
 }
 
 #[inline(always)]
@@ -218,7 +275,5 @@ fn row_data<'a>(
             (&pose.translation, is_pose.then_some((&pose.rotation.data.0, ratio)))
         }
     };
-    let packed = problem.session.packed;
-    let instrument_joints = packed.further_row(row, observation.from);
-    RowData { joints: packed.row(row), instrument_joints, position: &position.data.0[0], orientation, weight }
+    RowData { joints: problem.session.packed.row(row), position: &position.data.0[0], orientation, weight }
 }

@@ -71,12 +71,22 @@ impl Layout {
     #[must_use]
     pub(crate) fn is_minimal(&self) -> bool {
         self.parameters.iter().all(|parameter| match parameter {
-            Parameter::OtherScrew(_) | Parameter::JointOffset(_) => false,
+            Parameter::OtherScrew(_) | Parameter::ValueTerm(_) => false,
             Parameter::ScrewAxis(_)
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
             | Parameter::DeviceFrame(_) => true,
         })
+    }
+
+    /// Whether a term of a joint's value is unknown.
+    pub(crate) fn has_terms(&self) -> bool {
+        self.parameters.iter().any(|parameter| matches!(parameter, Parameter::ValueTerm(_)))
+    }
+
+    /// Whether the screws are unknown in another parameterisation than the minimal basis.
+    pub(crate) fn has_other_screws(&self) -> bool {
+        self.parameters.iter().any(|parameter| matches!(parameter, Parameter::OtherScrew(_)))
     }
 
     /// Whether every parameter provides its curvature.

@@ -202,17 +202,16 @@ impl Problem<'_> {
         shaped
     }
 
-    /// Whether the kernels serve this problem in this state: points and poses with the residuals of their types; screws in the minimal
-    /// basis, targets and device frames; no joint offsets. All other problems take the row-by-row path.
+    /// Whether the kernels serve this problem: all but the caller's own parameterisation of screws.
     #[doc(hidden)]
     #[must_use]
-    pub fn is_served(&self, state: &Estimate) -> bool {
-        self.layout.is_minimal() && state.is_for_kernels()
+    pub fn is_served(&self) -> bool {
+        true
     }
 
     /// The hot path, if it applies to this problem in this state.
     fn fast(&self, state: &Estimate) -> Option<&Fast> {
-        if !self.is_served(state) {
+        if !self.is_served() {
             return None;
         }
         let fast = match self.fast.get() {

@@ -53,7 +53,7 @@ impl Problem<'_> {
 
     /// Column maps and positions of the groups of `rows`, if the kernels serve them.
     fn arranged(&self, state: &Estimate, rows: &[u32]) -> Option<Vec<(ColumnMap, Vec<u32>)>> {
-        if !self.is_served(state) {
+        if !self.is_served() {
             return None;
         }
         let groups = RowGroup::of(self, rows, |position, _| position).into_iter();
@@ -73,10 +73,10 @@ impl Problem<'_> {
         let plan = &arranged.plan;
         let columns: Vec<(usize, f64)> = arranged.places().map(|place| (place.at, place.sign)).collect();
         let own: Vec<u32> = places.iter().map(|&place| rows[place as usize]).collect();
-        let shapes = RowShapes { problem: self, rows: &own };
-        let arm = Arm { plan, steps: &steps, end: &end, shape: shapes.of(plan), nearly: false };
+        let shapes = RowShapes { problem: self, linkage: &linkage, arranged, rows: &own };
+        let arm = Arm { plan, steps: &steps, end: &end, shape: shapes.of(), nearly: false };
         let mut packed = ROWS.take();
-        pack(self, plan, &own, &mut packed);
+        pack(self, &linkage, arranged, &own, &mut packed);
         let blocks = packed.blocks.chunks_exact(plan.block_len());
         for ((places, packed), first) in places.chunks(WIDTH).zip(blocks).zip((0..).step_by(WIDTH)) {
             block.clear();

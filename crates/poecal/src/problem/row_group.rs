@@ -87,10 +87,11 @@ pub(super) enum Form {
 
 impl Form {
     fn of(problem: &Problem<'_>, row: u32) -> Self {
+        let is_other = problem.layout.has_other_screws();
         match (problem.measurement(row as usize), problem.session.data.pose_residual) {
-            (Measurement::Point(_), _) => Form::Point,
-            (Measurement::Pose(_), None) => Form::Pose,
-            (other @ Measurement::Pose(_), Some(_)) => {
+            (Measurement::Point(_), _) if !is_other => Form::Point,
+            (Measurement::Pose(_), None) if !is_other => Form::Pose,
+            (other @ (Measurement::Point(_) | Measurement::Pose(_)), _) => {
                 Form::Shaped(other.observe().dim(), other.sees_orientation())
             }
         }

@@ -37,6 +37,9 @@ impl GramScatter {
         };
         for (a, (&place, left)) in places.iter().zip(&tiles.left).enumerate() {
             for (b, (&other, right)) in places.iter().zip(&tiles.right).enumerate().skip(a) {
+                if !(place.is_unknown() && other.is_unknown()) {
+                    continue;
+                }
                 let (from, to) = (left + right, upper(place.at, other.at));
                 match factor((a, place), (b, other)) {
                     1.0 => made.position.push((from, to)),

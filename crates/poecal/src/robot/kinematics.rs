@@ -2,21 +2,34 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Body, Joint, Robot};
+use super::{Body, Joint, JointTerm, Robot};
 use crate::lanes::{self, Exponential, SimdLevel, WIDTH, Wide};
 use crate::lie::{Pose, Screw, hat};
 
 impl Robot {
-    /// Joint values of a configuration given as readings (order of [`Robot::reading_names`]); mimic joints follow their leader:
-    /// theory.md §2 (7).
+    /// Joint values of a configuration given as readings (order of [`Robot::reading_names`]); mimic joints follow their leader,
+    /// and terms are added: theory.md §2 (7).
     #[must_use]
     pub fn joint_values(&self, readings: &[f64]) -> Vec<f64> {
         let indices = self.reading_indices();
-        self.joints
+        let mut values: Vec<f64> = self
+            .joints
             .iter()
             .zip(indices)
             .map(|(joint, index)| joint.reading.value(readings.get(index).copied().unwrap_or(0.0)))
-            .collect()
+            .collect();
+        self.add_terms(&mut values);
+        values
+    }
+
+    /// Adds the terms of the joints' values.
+    fn add_terms(&self, values: &mut [f64]) {
+        if self.terms.is_empty() {
+            return;
+        }
+        let more: Vec<f64> =
+            (0..values.len()).map(|joint| JointTerm::sum(&self.terms, joint, values)).collect();
+        values.iter_mut().zip(more).for_each(|(value, more)| *value += more);
     }
 
     /// `base_from_tip`, theory.md §2 (6), at a configuration given as readings (radians, metres; order of [`Robot::reading_names`]).
@@ -27,7 +40,8 @@ impl Robot {
 
     /// [`Robot::forward_kinematics`] of several configurations, their readings one after the other.
     pub fn forward_kinematics_of(&self, readings: &[f64]) -> impl Iterator<Item = Pose> {
-        let (joints, indices) = self.path(&self.joints_to(self.tip_body()), &self.reading_indices());
+        let path = self.joints_to(self.tip_body());
+        let (joints, indices) = self.path(&path, &self.reading_indices());
         let width = self.reading_names().len().max(1);
         let exponentials: Vec<Exponential> = joints.iter().map(|joint| exponential(&joint.screw)).collect();
         let mut values = vec![0.0; joints.len() * WIDTH];
@@ -39,6 +53,17 @@ impl Robot {
             for ((joint, &index), values) in joints.iter().zip(&indices).zip(values.chunks_exact_mut(WIDTH)) {
                 for (value, readings) in values.iter_mut().zip(some.clone()) {
                     *value = joint.reading.value(readings.get(index).copied().unwrap_or(0.0));
+                }
+            }
+            if !self.terms.is_empty() {
+                for (lane, readings) in some.clone().enumerate() {
+                    let (_, all) = self.path(&path, &self.joint_values(readings));
+                    values
+                        .iter_mut()
+                        .skip(lane)
+                        .step_by(WIDTH)
+                        .zip(all)
+                        .for_each(|(value, all)| *value = all);
                 }
             }
             lanes::cosines_and_sines(SimdLevel::best(), &values, &mut found);

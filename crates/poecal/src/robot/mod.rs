@@ -4,10 +4,12 @@ mod body;
 mod dh;
 mod joint;
 mod kinematics;
+mod term;
 
 pub use body::{Body, Mount};
 pub use dh::{DhConvention, DhRow};
 pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
+pub use term::{JointTerm, Term};
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -56,6 +58,9 @@ pub struct Robot {
     /// Targets on other bodies, or with other frames than the tip's.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mounted: Vec<Mount>,
+    /// Terms of the joints' values beyond their readings.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub terms: Vec<JointTerm>,
     /// Instruments on the robot; all others stand beside it, on its base.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub instruments: Vec<Mount>,
@@ -100,6 +105,7 @@ impl Robot {
             home,
             targets: Vec::new(),
             mounted: Vec::new(),
+            terms: Vec::new(),
             instruments: Vec::new(),
         })
     }

@@ -19,6 +19,7 @@ fn robot(name: &str, joints: Vec<Joint>, home: Pose) -> Robot {
         home,
         targets: Vec::new(),
         mounted: Vec::new(),
+        terms: Vec::new(),
         instruments: Vec::new(),
     }
 }

@@ -103,7 +103,7 @@ impl Uncertainty {
                 }),
                 other @ (Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
-                | Parameter::JointOffset(_)
+                | Parameter::ValueTerm(_)
                 | Parameter::DeviceFrame(_)) => Some(other),
             };
             if let Some(parameter) = renumbered {

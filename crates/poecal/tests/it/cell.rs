@@ -7,9 +7,9 @@ use poecal::analysis::{Setup, identifiability};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement};
-use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
+use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
 use poecal::problem::Problem;
-use poecal::robot::{Body, Joint, JointKind, Mount, Robot};
+use poecal::robot::{Body, Joint, JointKind, Mount, Robot, Term};
 use poecal::simulate::random;
 use poecal::solve::LeastSquares as _;
 use rand_chacha::ChaCha8Rng;
@@ -218,6 +218,14 @@ fn sensitivities_of_every_way_are_those_of_differences() {
     for cell in cells() {
         let made = Measured::new(&cell, 24, 0.05);
         let mut free = made.free.clone();
+        // Terms of every joint's value, at coefficients that are not zero.
+        let mut estimate = made.estimate.clone();
+        for (joint, it) in made.robot.joints.iter().enumerate() {
+            for (k, term) in Term::ALL.into_iter().enumerate() {
+                free.push(Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term }));
+                *estimate.coefficient_mut(joint, term) = 0.02 * (1 + joint + k) as f64;
+            }
+        }
         // The first device as well.
         if made.estimate.tree.shared(0).is_none() {
             free.insert(
@@ -226,8 +234,8 @@ fn sensitivities_of_every_way_are_those_of_differences() {
             );
         }
         let problem = made.problem(free);
-        assert!(problem.is_served(&made.estimate), "{}", cell.name);
-        let normal = problem.normal(&made.estimate);
+        assert!(problem.is_served(), "{}", cell.name);
+        let normal = problem.normal(&estimate);
         let n = problem.dim();
         let (mut worst, mut size) = (0.0, 0.0);
         for unknown in 0..n {
@@ -236,7 +244,7 @@ fn sensitivities_of_every_way_are_those_of_differences() {
             let cost = |by: f64| {
                 let mut step = vec![0.0; n];
                 step[unknown] = by * STEP;
-                problem.normal(&problem.retract(&made.estimate, &step)).cost
+                problem.normal(&problem.retract(&estimate, &step)).cost
             };
             let difference = (8.0 * (cost(1.0) - cost(-1.0)) - (cost(2.0) - cost(-2.0))) / (12.0 * STEP);
             // The gradient is that of the residuals' sign: `Jᵀe` with J of the prediction.
@@ -246,7 +254,7 @@ fn sensitivities_of_every_way_are_those_of_differences() {
         println!("{:22} {n:3} unknowns: {:.1e} of the gradient", cell.name, worst / size);
         assert!(worst < 1e-8 * size, "{}: {:e}", cell.name, worst / size);
 
-        let by_rows = problem.normal_row_by_row(&made.estimate);
+        let by_rows = problem.normal_row_by_row(&estimate);
         let scale = |k: usize| by_rows.gram[k * n + k].sqrt().max(1e-9);
         for (a, b) in (0..n).flat_map(|a| (a..n).map(move |b| (a, b))) {
             let apart = (normal.gram[a * n + b] - by_rows.gram[a * n + b]).abs();
@@ -261,7 +269,7 @@ fn ranks_are_those_of_the_closed_form() {
     for cell in cells() {
         let made = Measured::new(&cell, 60 * cell.sees.len(), 0.0);
         let problem = made.problem(made.free.clone());
-        assert!(problem.is_served(&made.estimate), "{}", cell.name);
+        assert!(problem.is_served(), "{}", cell.name);
         let rows = made.data.all_rows();
         let session = Session::new(&made.robot, &made.data, &made.packed, false).with_length(0.5);
         let setup =

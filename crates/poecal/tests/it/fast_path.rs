@@ -8,9 +8,10 @@ use poecal::calibration::{CalibrationOptions, fit_screws};
 use poecal::estimate::{self, Estimate, Packed, delivered};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, Quantity};
-use poecal::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis, TargetFrame, TargetPlace};
+use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
 use poecal::problem::{Problem, Refit, SimdLevel, simd_levels};
 use poecal::robot::Robot;
+use poecal::robot::Term;
 use poecal::simulate::{Kind, Simulation, elbow, gantry, random, random_chain, scara, seven_axis};
 use poecal::solve::{LeastSquares, Normal, Options, minimize};
 use rand_chacha::ChaCha8Rng;
@@ -264,7 +265,7 @@ fn few_passes_have_the_same_optimum() {
     }
 }
 
-/// Which unknowns the kernels serve, kind by kind: a new kind has to be decided here, and in the kernels.
+/// The kernels serve every kind of unknown.
 #[test]
 fn kernels_serve_the_kinds_that_they_know() {
     let robot = elbow();
@@ -273,23 +274,15 @@ fn kernels_serve_the_kinds_that_they_know() {
         let mut session = Session::new(&robot, seen, &Case { rows: 5, targets: 1, ..Case::default() });
         for parameter in [
             Parameter::ScrewAxis(ScrewAxis { joint: 0, kind }),
-            Parameter::JointOffset(JointOffset { joint: 0, kind }),
+            Parameter::ValueTerm(ValueTerm { joint: 0, kind, term: Term::Offset }),
             Parameter::TargetPlace(TargetPlace { target: 0 }),
             Parameter::TargetFrame(TargetFrame { target: 0 }),
             Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::zeros() }),
         ] {
-            let served = match parameter {
-                Parameter::ScrewAxis(_)
-                | Parameter::TargetPlace(_)
-                | Parameter::TargetFrame(_)
-                | Parameter::DeviceFrame(_) => true,
-                // Written outside, or looked at only in search of a mistake.
-                Parameter::OtherScrew(_) | Parameter::JointOffset(_) => false,
-            };
             session.free = vec![parameter];
             let problem = session.problem(&Case::default(), SimdLevel::BASELINE);
-            println!("{seen:?} by {parameter:?}: {served}");
-            assert_eq!(problem.is_served(&session.estimate), served);
+            println!("{seen:?} by {parameter:?}");
+            assert!(problem.is_served());
             // What is served is not handed on to the general path: that would be a failed assertion within the library.
             problem.normal(&session.estimate);
         }

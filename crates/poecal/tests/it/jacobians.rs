@@ -6,8 +6,9 @@ use nalgebra::{Matrix6, Vector3};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, Sight};
 use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
-use poecal::parameters::{DeviceFrame, JointOffset, Parameter, ScrewAxis, TargetFrame, TargetPlace};
+use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
 use poecal::problem::{Layout, Problem};
+use poecal::robot::Term;
 use poecal::robot::{Joint, Robot};
 use poecal::solve::LeastSquares;
 use std::f64::consts::PI;
@@ -38,7 +39,7 @@ fn parameters(robot: &Robot) -> Vec<(&'static str, Parameter)> {
     ];
     for (joint, it) in robot.joints.iter().enumerate() {
         all.push((it.kind.word(), Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
-        all.push(("offset", Parameter::JointOffset(JointOffset { joint, kind: it.kind })));
+        all.push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::Offset })));
     }
     all.push(("target place", Parameter::TargetPlace(TargetPlace { target: 0 })));
     all.push(("target frame", Parameter::TargetFrame(TargetFrame { target: 0 })));
@@ -204,7 +205,9 @@ fn normal_information_is_made_of_the_same_columns() {
     let estimate = estimate(&robot);
     for (name, make) in MEASUREMENTS {
         let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], (make, 1), 0.3);
-        let problem = row.problem(parameters(&robot).into_iter().map(|(_, parameter)| parameter).collect());
+        // A target is unknown as a place or as a frame.
+        let all = parameters(&robot).into_iter().map(|(_, parameter)| parameter);
+        let problem = row.problem(all.filter(|it| !matches!(it, Parameter::TargetPlace(_))).collect());
         let columns = row.columns(&estimate, problem.layout());
         let residual = row.residual(&estimate);
         let normal = problem.normal(&estimate);

@@ -8,7 +8,8 @@ use poecal::analysis::{Cause, Identifiability, PlannedSession, identify};
 use poecal::calibration::{CalibrationOptions, Formulation, FormulationWords, calibrate};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Quantity};
-use poecal::parameters::{JointOffset, Parameter, screw_axes};
+use poecal::parameters::{Parameter, ValueTerm, screw_axes};
+use poecal::robot::Term;
 use poecal::robot::{JointKind, Robot};
 use poecal::simulate::{Kind, Simulation, elbow, random, random_chain, random_configuration};
 use rand_chacha::ChaCha8Rng;
@@ -158,7 +159,7 @@ fn offsets_beside_screws_are_structure_and_not_a_defect_of_the_data() {
     let made = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
     let with_offsets = Formulation {
         joint_parameters: |kinds| {
-            let offset = |(joint, &kind)| Parameter::JointOffset(JointOffset { joint, kind });
+            let offset = |(joint, &kind)| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Offset });
             screw_axes(kinds).into_iter().chain(kinds.iter().enumerate().map(offset)).collect()
         },
         words: FormulationWords { formulation: "offsets too", ..FormulationWords::default() },

@@ -1,0 +1,66 @@
+//! Coefficient of a term of a joint's value.
+
+use nalgebra::Vector3;
+
+use super::columns::{Column, Columns, Subject};
+use crate::estimate::{Chain, Estimate};
+use crate::lie::TargetTwist;
+use crate::robot::{JointKind, Term};
+use crate::unit::Unit;
+
+/// A term of joint `joint`, `θ ← θ + c b(θ)`: the column is b times that of the joint's value, `r = Ad_T ξ` of lou2009 (8d), at the target
+/// `(z × d; z) b`, or `(z; 0) b` of a prismatic joint (theory.md §5 (26)). An offset, b = 1, adds no rank beside free screws (lou2009
+/// Proposition 1, theory.md §3 (9)).
+///
+/// ```
+/// use poecal::parameters::{Columns, ValueTerm};
+/// use poecal::robot::{JointKind, Term};
+/// let offset = ValueTerm { joint: 2, kind: JointKind::Revolute, term: Term::Offset };
+/// assert_eq!(offset.columns().len(), 1);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValueTerm {
+    /// Index of the joint.
+    pub joint: usize,
+    /// Its kind.
+    pub kind: JointKind,
+    /// The term.
+    pub term: Term,
+}
+
+impl Columns for ValueTerm {
+    fn subject(&self) -> Subject {
+        Subject::Joint(self.joint)
+    }
+
+    fn columns(&self) -> &'static [Column] {
+        match (self.term.unit(self.kind), self.kind) {
+            (Unit::Radian, JointKind::Revolute) => &[Column { unit: Unit::Radian, shifts_only: false }],
+            (Unit::Metre, JointKind::Revolute) => &[Column { unit: Unit::Metre, shifts_only: false }],
+            (Unit::Radian, JointKind::Prismatic) => &[Column { unit: Unit::Radian, shifts_only: true }],
+            (Unit::Metre, JointKind::Prismatic) => &[Column { unit: Unit::Metre, shifts_only: true }],
+        }
+    }
+
+    fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
+        out[0] = (Vector3::zeros(), Vector3::zeros());
+        for view in chain.of_joint(self.joint) {
+            let basis = self.term.basis(self.joint, chain.values(view));
+            let z = view.z * if view.backward { -basis } else { basis };
+            let (moved, turned) = match self.kind {
+                JointKind::Revolute => (z.cross(&(chain.target.translation - view.origin)), z),
+                JointKind::Prismatic => (z, Vector3::zeros()),
+            };
+            out[0].0 += moved;
+            out[0].1 += turned;
+        }
+    }
+
+    fn has_curvature(&self) -> bool {
+        false
+    }
+
+    fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
+        *estimate.coefficient_mut(self.joint, self.term) += step[0];
+    }
+}
