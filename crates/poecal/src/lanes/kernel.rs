@@ -240,9 +240,10 @@ impl Batch<'_> {
             for (k, row) in link.0.iter_mut().enumerate() {
                 let still = if index == 0 { *row } else { turned(simd, *row, step) };
                 let [x, y, z, origin] = still;
-                for term in joint.terms.0..joint.terms.0 + joint.terms.1 {
-                    let factor = Lanes::load(simd, &factors[term], part);
-                    (z * factor * weight).store(&mut self.terms[term].direction[k], part);
+                let (first, end) = (joint.terms.0, joint.terms.0 + joint.terms.1);
+                for (term, factor) in self.terms[first..end].iter_mut().zip(&factors[first..end]) {
+                    let factor = Lanes::load(simd, factor, part);
+                    (z * factor * weight).store(&mut term.direction[k], part);
                 }
                 *row = moved(still, joint.turns, cosine, sine);
                 let (a, b) = if joint.turns {
@@ -288,8 +289,8 @@ impl Batch<'_> {
         for (joint, axis) in self.plan.joints.iter().zip(&*self.axes).filter(|(joint, _)| joint.terms.1 > 0) {
             let arm = (target.origin() - Vectors::load(simd, &axis.origin, part)).scale(wrench.per_length);
             let moment = arm.cross(wrench.force) + wrench.torque;
-            for term in joint.terms.0..joint.terms.0 + joint.terms.1 {
-                let (plan, found) = (&self.plan.terms[term], &mut self.terms[term]);
+            let (first, end) = (joint.terms.0, joint.terms.0 + joint.terms.1);
+            for (plan, found) in self.plan.terms[first..end].iter().zip(&mut self.terms[first..end]) {
                 let along = Vectors::load(simd, &found.direction, part);
                 let pull = if joint.turns { along.dot(moment) } else { along.dot(wrench.force) };
                 pull.add_to(&mut found.gradient, part);

@@ -63,8 +63,10 @@ impl Measurement {
     /// The measured `device_from_target`, with the identity for what was not measured.
     #[must_use]
     pub fn pose(&self) -> Pose {
-        let seen = self.observe();
-        let none = Pose::identity();
+        if let Measurement::Pose(PoseMeasurement { pose }) = self {
+            return *pose;
+        }
+        let (seen, none) = (self.observe(), Pose::identity());
         Pose::new(seen.orientation().unwrap_or(none.rotation), seen.position().unwrap_or(none.translation))
     }
 }

@@ -71,6 +71,10 @@ impl Observe for PoseMeasurement {
         Some(self.pose.rotation)
     }
 
+    fn sees_orientation(&self) -> bool {
+        true
+    }
+
     fn is_finite(&self) -> bool {
         let Pose { translation, rotation } = &self.pose;
         translation.iter().chain(rotation.iter()).all(|number| number.is_finite())

@@ -111,7 +111,7 @@ impl ColumnMap {
     }
 
     fn add_joints(&mut self, layout: &Layout, route: &[Passed]) -> Option<()> {
-        let mut of_joints: Vec<Vec<(&Parameter, &[(usize, f64)])>> = Vec::new();
+        let mut of_joints: Vec<Vec<Unknown<'_>>> = Vec::new();
         for (parameter, places) in layout.parameters() {
             let Subject::Joint(joint) = parameter.model().subject() else { continue };
             of_joints.resize(of_joints.len().max(joint + 1), Vec::new());
@@ -187,6 +187,9 @@ impl ColumnMap {
         Some(())
     }
 }
+
+/// A parameter with the places of its unknowns.
+type Unknown<'a> = (&'a Parameter, &'a [(usize, f64)]);
 
 /// Contradictory unknowns are a mistake of the caller. Tests stop there; a release takes the row-by-row path.
 fn contradiction(what: &str) -> Option<()> {

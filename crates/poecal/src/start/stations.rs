@@ -36,7 +36,7 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         let rows = if by_known { of_known } else { rows };
         let session = Session { data: &alone, noise_ratios: &[], ..problem.session };
         let noise = problem.session.usual_noise(station, problem.noise);
-        let one = Registration { noise, session, rows: &rows, targets_free: !by_known, ..*problem };
+        let one = Registration { noise, session, rows: &rows, targets_free: !by_known };
         let (seen, _) = at_one_station(&one, &found.seen_from(station));
         *found.device_mut(station) = seen.device_from_base;
         if !by_known {
