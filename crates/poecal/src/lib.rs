@@ -19,8 +19,8 @@
 //!
 //! // 30 % of the points were held out: their error is the noise of 0.05 mm in each of three coordinates.
 //! let held_out = calibration.accuracy.held_out.ok_or("no rows were held out")?;
-//! assert!(held_out.registered.position_mm.rms > 10.0);
-//! assert!(held_out.calibrated.position_mm.rms < 0.15);
+//! assert!(held_out.registered.position_mm().rms > 10.0);
+//! assert!(held_out.calibrated.position_mm().rms < 0.15);
 //!
 //! // The calibrated robot is a robot like any other.
 //! let tip = calibration.robot.forward_kinematics(&[0.0, -0.5, 0.5, 0.0, 1.0, 0.0]);

@@ -41,7 +41,7 @@ const TIMES: f64 = 2.0;
 ///     uncertainty: None,
 /// };
 /// let judgement = judge(&subject, &made.data)?;
-/// assert!(judgement.calibrated.position_mm.max < 1e-6);
+/// assert!(judgement.calibrated.position_mm().max < 1e-6);
 /// assert!(judgement.nominal.is_none());
 /// # Ok::<(), poecal::Error>(())
 /// ```
@@ -80,11 +80,11 @@ pub enum Refitted {
 /// Errors of a calibration on other measurements.
 ///
 /// ```
-/// use poecal::calibration::{Judgement, ModelAccuracy, Statistic};
-/// let position_mm = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
-/// let calibrated = ModelAccuracy { position_mm, rotation_deg: None };
+/// use poecal::{Measured, Quantity, calibration::{Judgement, Statistic}};
+/// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
+/// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated, nominal: None, promised: None, in_sampled_range: None };
-/// assert_eq!(judgement.calibrated.position_mm.max, 0.25);
+/// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judgement {

@@ -56,7 +56,7 @@ pub struct CalibratedStation {
 /// let made = simulation.run(&elbow(), Kind::Pose)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let held_out = calibration.accuracy.held_out.expect("30 % are held out");
-/// assert!(held_out.calibrated.position_mm.max < 1e-6);
+/// assert!(held_out.calibrated.position_mm().max < 1e-6);
 /// # Ok::<(), poecal::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

@@ -11,7 +11,7 @@ use crate::solve::Normal;
 ///
 /// ```
 /// let none = poecal::uncertainty::Discrepancy::none();
-/// assert_eq!((none.scatter, none.standard_deviation.position_m), (1.0, 0.0));
+/// assert_eq!((none.scatter, none.standard_deviation[poecal::Quantity::Position]), (1.0, 0.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discrepancy {
