@@ -53,6 +53,14 @@
 
 #![forbid(unsafe_code)]
 
+// The reference of the kernels is one file for the tests of this crate and of others.
+#[cfg(test)]
+extern crate self as poecal;
+#[cfg(test)]
+#[allow(dead_code)]
+#[path = "../tests/reference/mod.rs"]
+mod reference;
+
 // Hidden from readers only: for lints they are as public as they are.
 #[cfg_attr(doc, doc(hidden))]
 pub mod analysis;

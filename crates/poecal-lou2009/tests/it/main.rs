@@ -10,6 +10,8 @@ mod findings;
 mod formula;
 mod formulations;
 mod jacobians;
+#[path = "../../../poecal/tests/reference/mod.rs"]
+mod reference;
 #[path = "../../../poecal/tests/largest/mod.rs"]
 mod largest;
 mod paper;

@@ -79,6 +79,7 @@ mod tests {
     use crate::estimate::{Packed, Session};
     use crate::lanes::simd_levels;
     use crate::lie::{Pose, rotation};
+    use crate::reference;
     use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, Quantity};
     use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
     use crate::robot::Robot;
@@ -132,7 +133,7 @@ mod tests {
         let largest = (0..n).map(|i| normal.gram[i * n + i]).fold(0.0, f64::max);
         let factor = linalg::cholesky(&normal.gram, n, ROUNDING * largest).unwrap();
         let mut expected = Vec::new();
-        problem.for_rows(&estimate, &rows, |row, jacobian, residual| {
+        reference::for_rows(&problem, &estimate, &rows, |row, jacobian, residual| {
             let scaled: Vec<f64> = residual.iter().enumerate().map(|(k, e)| e / scale(row, k)).collect();
             expected.push(by_the_book(&factor, jacobian, &scaled, weights[row as usize]));
         });
@@ -183,7 +184,7 @@ mod tests {
             let session = Session::new(robot, &data, &packed, true).with_length(0.5);
             let problem = Problem::new(session, rows.clone(), free, noise);
             let mut expected = Vec::new();
-            problem.for_rows(&estimate, &rows, |_, jacobian, residual| {
+            reference::for_rows(&problem, &estimate, &rows, |_, jacobian, residual| {
                 expected.push((jacobian.to_vec(), residual.to_vec()));
             });
             for level in simd_levels() {

@@ -41,8 +41,8 @@ impl Place {
 }
 
 impl ColumnMap {
-    /// For a problem of the kinds that kernels serve ([`Problem::is_served`]); `None` if its unknowns contradict each other.
-    pub(super) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Option<Self> {
+    /// Of rows of one sight and form. Of two parameters of one frame, axis or target the first counts.
+    pub(super) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Self {
         let mut made = ColumnMap {
             sight,
             form,
@@ -54,12 +54,12 @@ impl ColumnMap {
             terms: Vec::new(),
         };
         // The kernels' order: device frame, joints, target.
-        made.add_device(&problem.layout, state.tree.shared(sight.station))?;
-        made.add_joints(&problem.layout, state.tree.route(sight))?;
+        made.add_device(&problem.layout, state.tree.shared(sight.station));
+        made.add_joints(&problem.layout, state.tree.route(sight));
         made.plan.tilts = made.turn_places.len();
-        made.add_target(&problem.layout)?;
+        made.add_target(&problem.layout);
         made.plan.shifts = made.shift_places.len();
-        Some(made)
+        made
     }
 
     /// Places of the plan's columns in a step: translation columns, rotation columns, given ones.
@@ -88,15 +88,12 @@ impl ColumnMap {
     }
 
     /// Columns of the device's frame, or of the target whose frame it is: a step of that moves the base the other way.
-    fn add_device(&mut self, layout: &Layout, shared: Option<usize>) -> Option<()> {
+    fn add_device(&mut self, layout: &Layout, shared: Option<usize>) {
         let subject = shared.map_or(Subject::Instrument(self.sight.station), Subject::Target);
         for (parameter, places) in layout.parameters() {
             let model = parameter.model();
-            if model.subject() != subject {
+            if model.subject() != subject || self.plan.device.is_some() {
                 continue;
-            }
-            if self.plan.device.is_some() {
-                return contradiction("one frame of the device is unknown twice");
             }
             let (about, sign) = match parameter {
                 Parameter::DeviceFrame(device) => (device.about.into(), 1.0),
@@ -107,10 +104,9 @@ impl ColumnMap {
             self.shift(&places[..3], sign);
             self.turn(&places[3..], 0, sign);
         }
-        Some(())
     }
 
-    fn add_joints(&mut self, layout: &Layout, route: &[Passed]) -> Option<()> {
+    fn add_joints(&mut self, layout: &Layout, route: &[Passed]) {
         let mut of_joints: Vec<Vec<Unknown<'_>>> = Vec::new();
         for (parameter, places) in layout.parameters() {
             let Subject::Joint(joint) = parameter.model().subject() else { continue };
@@ -121,26 +117,24 @@ impl ColumnMap {
             self.plan.joints[index].terms.0 = self.plan.terms.len();
             for &(parameter, places) in of_joints.get(passed.joint).into_iter().flatten() {
                 match parameter {
-                    Parameter::ScrewAxis(_) => self.add_axis(index, places)?,
+                    Parameter::ScrewAxis(_) => self.add_axis(index, places),
                     Parameter::ValueTerm(term) => self.add_term(index, *passed, term, places),
                     Parameter::OtherScrew(screw) => self.add_given(screw, places),
                     Parameter::DeviceFrame(_) | Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => {}
                 }
             }
         }
-        Some(())
     }
 
-    fn add_axis(&mut self, index: usize, places: &[(usize, f64)]) -> Option<()> {
+    fn add_axis(&mut self, index: usize, places: &[(usize, f64)]) {
         let first = self.shift_places.len();
         let joint = &mut self.plan.joints[index];
         if joint.columns.is_some() || joint.turns != (places.len() == 4) {
-            return contradiction("a joint is unknown twice, or of another kind than its screw");
+            return;
         }
         joint.columns = Some((first, self.turn_places.len()));
         self.shift(&places[..2], 1.0);
         self.turn(&places[2..], first, 1.0);
-        Some(())
     }
 
     /// Columns of a screw in another parameterisation, once whether its joint is passed once or twice.
@@ -168,13 +162,10 @@ impl ColumnMap {
         }
     }
 
-    fn add_target(&mut self, layout: &Layout) -> Option<()> {
+    fn add_target(&mut self, layout: &Layout) {
         for (parameter, places) in layout.parameters() {
-            if parameter.model().subject() != Subject::Target(self.sight.target) {
+            if parameter.model().subject() != Subject::Target(self.sight.target) || self.plan.place.is_some() {
                 continue;
-            }
-            if self.plan.place.is_some() {
-                return contradiction("a target is unknown twice");
             }
             let first = self.shift_places.len();
             self.plan.place = Some(first);
@@ -184,18 +175,11 @@ impl ColumnMap {
                 self.turn(&places[3..], first, 1.0);
             }
         }
-        Some(())
     }
 }
 
 /// A parameter with the places of its unknowns.
 type Unknown<'a> = (&'a Parameter, &'a [(usize, f64)]);
-
-/// Contradictory unknowns are a mistake of the caller. Tests stop there; a release takes the row-by-row path.
-fn contradiction(what: &str) -> Option<()> {
-    debug_assert!(false, "{what}");
-    None
-}
 
 fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Plan {
     let route = state.tree.route(sight);

@@ -1,7 +1,4 @@
-//! The hot path: rows grouped by station, target and kind, packed side by side, and summed by [`crate::lanes`].
-//!
-//! [`Problem::is_served`] decides whether it applies; other problems take the row-by-row path (`row_by_row.rs`), against which this one
-//! is tested.
+//! The hot path: rows grouped by instrument, target and form, packed side by side, and summed by [`crate::lanes`].
 
 use super::Problem;
 use super::column_map::ColumnMap;
@@ -47,6 +44,17 @@ pub(super) struct Fast {
     level: SimdLevel,
     /// Of the state at which it was built: its joints are those of every other.
     linkage: Linkage,
+    /// A step along which residuals are replaced by their second derivative.
+    second: Option<SecondDifference>,
+}
+
+/// A step, by the frames ahead of a state and behind it.
+#[derive(Clone, Debug)]
+pub(super) struct SecondDifference {
+    pub(super) ahead: Linkage,
+    pub(super) behind: Linkage,
+    /// Share of the step that they are away.
+    pub(super) fraction: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -60,19 +68,39 @@ struct Group {
 }
 
 impl Fast {
-    /// Groups the rows of a problem; `None` if a [`ColumnMap`] does not exist.
-    pub(super) fn new(problem: &Problem<'_>, state: &Estimate, level: SimdLevel) -> Option<Self> {
+    /// Groups the rows of a problem.
+    pub(super) fn new(problem: &Problem<'_>, state: &Estimate, level: SimdLevel) -> Self {
+        Fast::of(problem, state, level, RowGroup::of_problem(problem), None)
+    }
+
+    /// The same for the second derivative of the residuals along a step, which takes the place of the residuals.
+    pub(super) fn shaped(problem: &Problem<'_>, state: &Estimate, second: SecondDifference) -> Self {
+        let mut groups = RowGroup::of_problem(problem);
+        groups.iter_mut().for_each(|group| {
+            group.form = group.form.shaped();
+            group.ratio = None;
+        });
+        Fast::of(problem, state, problem.level, groups, Some(second))
+    }
+
+    fn of(
+        problem: &Problem<'_>,
+        state: &Estimate,
+        level: SimdLevel,
+        of_rows: Vec<RowGroup>,
+        second: Option<SecondDifference>,
+    ) -> Self {
         let mut groups = Vec::new();
-        for group in RowGroup::of_problem(problem) {
-            let mut arranged = ColumnMap::new(problem, state, group.sight, group.form)?;
+        for group in of_rows {
+            let mut arranged = ColumnMap::new(problem, state, group.sight, group.form);
             arranged.plan.ratio = group.ratio;
             let keeps = problem.rows.len() <= KEPT && !(state.has_terms() || problem.layout.has_terms());
             let scatter = GramScatter::new(&arranged, problem.layout.dim());
             groups.push((Group { arranged, rows: group.rows, keeps, packed: Vec::new() }, scatter));
         }
-        let mut fast = Fast { groups, level, linkage: Linkage::new(state) };
+        let mut fast = Fast { groups, level, linkage: Linkage::new(state), second };
         fast.pack(problem);
-        Some(fast)
+        fast
     }
 
     /// Packs the rows of small problems, unless joint values depend on the state.
@@ -100,7 +128,7 @@ impl Fast {
             let (steps, end) = fixed_motions(&linkage, *sight);
             let nearly = sums == Accumulate::GaussNewton;
             let arm = Arm { plan, steps: &steps, end: &end, shape: None, nearly };
-            let totals = group.sum(problem, &linkage, self.level, &arm, sums);
+            let totals = group.sum(problem, (&linkage, self.second.as_ref()), self.level, &arm, sums);
             group.put(&totals, &mut normal);
             if sums != Accumulate::Gradient {
                 scatter.add(&totals, &mut normal.gram);
@@ -115,7 +143,7 @@ impl Group {
     fn sum(
         &self,
         problem: &Problem<'_>,
-        linkage: &Linkage,
+        (linkage, second): (&Linkage, Option<&SecondDifference>),
         level: SimdLevel,
         arm: &Arm<'_>,
         sums: Accumulate,
@@ -125,7 +153,7 @@ impl Group {
         let chunk = |index: usize| {
             let last = self.rows.len().min((index + 1) * size);
             let rows = &self.rows[index * size..last];
-            let shapes = RowShapes { problem, linkage, arranged: &self.arranged, rows };
+            let shapes = RowShapes { problem, linkage, second, arranged: &self.arranged, rows };
             let arm = &Arm { shape: shapes.of(), ..*arm };
             match self.packed.get(index) {
                 Some(rows) => sum(level, arm, &rows.blocks),
@@ -171,6 +199,7 @@ impl Group {
 pub(super) struct RowShapes<'a> {
     pub(super) problem: &'a Problem<'a>,
     pub(super) linkage: &'a Linkage,
+    pub(super) second: Option<&'a SecondDifference>,
     pub(super) arranged: &'a ColumnMap,
     pub(super) rows: &'a [u32],
 }
@@ -202,9 +231,12 @@ impl RowShapes<'_> {
 impl Shape for RowShapes<'_> {
     fn row(&self, place: usize, predicted: &Pose, given: &mut [[f64; NUMBERS]]) -> ShapedRow {
         let Some(&row) = self.rows.get(place) else { return ShapedRow::NONE };
-        let shaped = self.problem.shaped(row as usize, predicted);
+        let mut shaped = self.problem.shaped(row as usize, predicted);
         if !given.is_empty() {
             self.give(row as usize, &shaped, given);
+        }
+        if let Some(second) = self.second {
+            self.problem.second_difference(row as usize, second, &mut shaped);
         }
         shaped
     }

@@ -1,12 +1,12 @@
 //! Rows × columns: the only place where measurements and parameters meet. Assembly of the normal equations, no algorithms.
 
 mod column_map;
+mod curvature;
 mod fast;
 mod layout;
 mod prior;
 mod refit;
 mod row_block;
-mod row_by_row;
 mod row_group;
 mod scatter;
 
@@ -69,8 +69,8 @@ pub struct Problem<'a> {
     rounding_m: f64,
     /// Instruction set of the hot path.
     level: SimdLevel,
-    /// The hot path, once it is built; `None` inside where it does not apply.
-    fast: OnceLock<Option<Fast>>,
+    /// The groups of rows, once they are built.
+    fast: OnceLock<Fast>,
 }
 
 impl<'a> Problem<'a> {
@@ -135,6 +135,12 @@ impl<'a> Problem<'a> {
         normal
     }
 
+    /// Robot and measurements.
+    #[must_use]
+    pub fn session(&self) -> &Session<'a> {
+        &self.session
+    }
+
     /// Order and scale of the unknowns.
     #[must_use]
     pub fn layout(&self) -> &Layout {
@@ -176,11 +182,11 @@ impl<'a> Problem<'a> {
         let own = self.measured.get_or_insert_default();
         own.clear();
         own.extend_from_slice(measured);
-        if let Some(Some(mut fast)) = self.fast.take()
+        if let Some(mut fast) = self.fast.take()
             && is_alike
         {
             fast.pack(self);
-            self.fast = OnceLock::from(Some(fast));
+            self.fast = OnceLock::from(fast);
         }
     }
 }
@@ -202,27 +208,16 @@ impl Problem<'_> {
         shaped
     }
 
-    /// Whether the kernels serve this problem: all but the caller's own parameterisation of screws.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn is_served(&self) -> bool {
-        true
-    }
-
-    /// The hot path, if it applies to this problem in this state.
-    fn fast(&self, state: &Estimate) -> Option<&Fast> {
-        if !self.is_served() {
-            return None;
-        }
-        let fast = match self.fast.get() {
+    /// The groups of rows, in the form of the kernels.
+    fn fast(&self, state: &Estimate) -> &Fast {
+        match self.fast.get() {
             Some(fast) => fast,
             None => {
                 // Built outside `get_or_init`: a rayon thread that waits may re-enter this function.
                 let made = Fast::new(self, state, self.level);
                 self.fast.get_or_init(|| made)
             }
-        };
-        fast.as_ref()
+        }
     }
 }
 
@@ -234,29 +229,23 @@ impl LeastSquares for Problem<'_> {
     }
 
     fn normal(&self, state: &Estimate) -> Normal {
-        match self.fast(state) {
-            Some(fast) => self.add_prior(state, fast.normal(self, state, Accumulate::All)),
-            None => self.normal_row_by_row(state),
-        }
+        self.add_prior(state, self.fast(state).normal(self, state, Accumulate::All))
     }
 
     fn nearly_normal(&self, state: &Estimate) -> Normal {
-        match self.fast(state) {
-            Some(fast) => self.add_prior(state, fast.normal(self, state, Accumulate::GaussNewton)),
-            None => self.normal_row_by_row(state),
-        }
+        self.add_prior(state, self.fast(state).normal(self, state, Accumulate::GaussNewton))
     }
 
     fn gradient(&self, state: &Estimate) -> Option<Normal> {
-        self.fast(state).map(|fast| self.add_prior(state, fast.normal(self, state, Accumulate::Gradient)))
+        Some(self.add_prior(state, self.fast(state).normal(self, state, Accumulate::Gradient)))
     }
 
     fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {
-        self.second_order_by_rows(state, step)
+        self.second_order_of(state, step)
     }
 
     fn curvature(&self, state: &Estimate) -> Option<Vec<f64>> {
-        self.curvature_by_rows(state)
+        self.curvature_of(state)
     }
 
     fn project_constraints(&self, step: &mut [f64]) {

@@ -43,21 +43,10 @@ impl Problem<'_> {
         mut each: impl FnMut(&[u32], &mut RowBlock),
     ) {
         let mut block = RowBlock::new(self.layout().dim());
-        match self.arranged(state, rows) {
-            Some(groups) => {
-                groups.iter().for_each(|group| self.by_kernel(state, rows, group, &mut block, &mut each));
-            }
-            None => self.one_by_one(state, rows, &mut block, &mut each),
+        for group in RowGroup::of(self, rows, |position, _| position) {
+            let arranged = ColumnMap::new(self, state, group.sight, group.form);
+            self.by_kernel(state, rows, &(arranged, group.rows), &mut block, &mut each);
         }
-    }
-
-    /// Column maps and positions of the groups of `rows`, if the kernels serve them.
-    fn arranged(&self, state: &Estimate, rows: &[u32]) -> Option<Vec<(ColumnMap, Vec<u32>)>> {
-        if !self.is_served() {
-            return None;
-        }
-        let groups = RowGroup::of(self, rows, |position, _| position).into_iter();
-        groups.map(|it| Some((ColumnMap::new(self, state, it.sight, it.form)?, it.rows))).collect()
     }
 
     fn by_kernel(
@@ -73,7 +62,7 @@ impl Problem<'_> {
         let plan = &arranged.plan;
         let columns: Vec<(usize, f64)> = arranged.places().map(|place| (place.at, place.sign)).collect();
         let own: Vec<u32> = places.iter().map(|&place| rows[place as usize]).collect();
-        let shapes = RowShapes { problem: self, linkage: &linkage, arranged, rows: &own };
+        let shapes = RowShapes { problem: self, linkage: &linkage, second: None, arranged, rows: &own };
         let arm = Arm { plan, steps: &steps, end: &end, shape: shapes.of(), nearly: false };
         let mut packed = ROWS.take();
         pack(self, &linkage, arranged, &own, &mut packed);
@@ -86,36 +75,5 @@ impl Problem<'_> {
             each(places, block);
         }
         ROWS.set(packed);
-    }
-
-    fn one_by_one(
-        &self,
-        state: &Estimate,
-        rows: &[u32],
-        block: &mut RowBlock,
-        each: &mut impl FnMut(&[u32], &mut RowBlock),
-    ) {
-        let n = self.layout().dim();
-        let mut places: Vec<u32> = Vec::with_capacity(WIDTH);
-        let mut positions = 0..;
-        self.for_rows(state, rows, |_, jacobian, residual| {
-            let lane = places.len();
-            for (k, value) in residual.iter().enumerate() {
-                block.residual[k].0[lane] = *value;
-                for (column, value) in block.jacobian.iter_mut().zip(&jacobian[k * n..]) {
-                    column[k].0[lane] = *value;
-                }
-            }
-            block.numbers[lane] = residual.len();
-            places.extend(positions.next());
-            if places.len() == WIDTH {
-                each(&places, block);
-                block.clear();
-                places.clear();
-            }
-        });
-        if !places.is_empty() {
-            each(&places, block);
-        }
     }
 }

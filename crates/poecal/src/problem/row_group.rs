@@ -97,6 +97,11 @@ impl Form {
         }
     }
 
+    /// The same rows, as any function of the target's pose.
+    pub(super) fn shaped(self) -> Self {
+        Form::Shaped(self.numbers(), self.sees_orientation())
+    }
+
     /// Whether the rows depend on the target's orientation.
     pub(super) fn sees_orientation(self) -> bool {
         match self {

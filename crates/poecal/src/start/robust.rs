@@ -4,7 +4,6 @@ use super::registration::{Registration, free_parameters};
 use super::stations::register;
 use crate::distributions::median;
 use crate::estimate::Estimate;
-use crate::problem::Problem;
 use crate::solve::{Options, minimize};
 
 /// Most reweightings of a robust registration.
@@ -35,7 +34,7 @@ fn least_distances(problem: &Registration<'_>, start: Estimate) -> (Estimate, f6
     let mut weights = vec![0.0; problem.session.data.len()];
     let mut median = f64::INFINITY;
     for _ in 0..REWEIGHTINGS {
-        let (distances, found) = distances(&unweighted(&[]), &estimate, problem.rows);
+        let (distances, found) = distances(problem, &estimate);
         if found >= median * (1.0 - 1e-3) {
             break;
         }
@@ -46,14 +45,17 @@ fn least_distances(problem: &Registration<'_>, start: Estimate) -> (Estimate, f6
         let weighted = unweighted(problem.rows).with_weights(&weights);
         estimate = minimize(&weighted, estimate, &options).0;
     }
-    let (distances, median) = distances(&unweighted(&[]), &estimate, problem.rows);
+    let (distances, median) = distances(problem, &estimate);
     (estimate, median, distances)
 }
 
 /// Whitened distance of each row, and the median of them all.
-fn distances(problem: &Problem<'_>, estimate: &Estimate, rows: &[u32]) -> (Vec<f64>, f64) {
-    let mut distances = Vec::with_capacity(rows.len());
-    problem.for_rows(estimate, rows, |_, _, e| distances.push(e.iter().map(|e| e * e).sum::<f64>().sqrt()));
+fn distances(problem: &Registration<'_>, estimate: &Estimate) -> (Vec<f64>, f64) {
+    let Registration { session, rows, noise, .. } = problem;
+    let distances = session.map_squares(rows, estimate, |observation, squares| {
+        let whitened = session.whitened(observation, squares.map(|(squares, _)| squares), *noise);
+        whitened.iter().map(|(_, square)| square).sum::<f64>().sqrt()
+    });
     let median = median(distances.iter().copied()).unwrap_or(0.0);
     (distances, median)
 }

@@ -38,6 +38,8 @@ mod noise_free;
 mod offsets;
 mod oracle;
 mod promises;
+#[path = "../reference/mod.rs"]
+mod reference;
 mod refit_promise;
 mod report_page;
 mod robust;

@@ -1,0 +1,53 @@
+//! The reference of the kernels: every measurement and parameter by its own formulas, row after row.
+
+use nalgebra::Vector3;
+use poecal::estimate::{Chain, Estimate, Linkage};
+use poecal::measurement::{Measurement, NUMBERS, PoseMeasurement};
+use poecal::problem::Problem;
+use poecal::solve::{LeastSquares as _, Normal};
+
+/// Calls `each` with the whitened Jacobian of the prediction (row-major) and residual of each row in turn (theory.md §4 (17)).
+pub(crate) fn for_rows(
+    problem: &Problem<'_>,
+    state: &Estimate,
+    rows: &[u32],
+    mut each: impl FnMut(u32, &[f64], &[f64]),
+) {
+    let (n, session) = (problem.dim(), problem.session());
+    let (linkage, mut chain) = (Linkage::new(state), Chain::default());
+    let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); n];
+    for &row in rows {
+        let observation = &session.data.observations[row as usize];
+        chain.evaluate(&linkage, session.packed, row as usize, observation);
+        problem.layout().target_twists(&chain, observation.target, &mut twists);
+        let (mut residual, mut sensitivity) = ([0.0; NUMBERS], [[0.0; 6]; NUMBERS]);
+        let seen = observation.measurement.observe();
+        match (&observation.measurement, session.data.pose_residual) {
+            (Measurement::Pose(PoseMeasurement { pose }), Some(other)) => {
+                other.residual(pose, &chain.target, &mut residual);
+                other.sensitivity(pose, &chain.target, &mut sensitivity);
+            }
+            _ => {
+                seen.residual(&chain.target, &mut residual);
+                seen.sensitivity(&chain.target, &mut sensitivity);
+            }
+        }
+        let noise = problem.noise(row as usize);
+        let mut jacobian = Vec::with_capacity(seen.dim() * n);
+        for ((e, [a, b, c, p, q, r]), channel) in residual.iter_mut().zip(sensitivity).zip(seen.channels()) {
+            let sigma = noise[channel.quantity];
+            *e /= sigma;
+            jacobian.extend(twists.iter().map(|(v, w)| {
+                (Vector3::new(a, b, c).dot(v) + Vector3::new(p, q, r).dot(w)) / sigma
+            }));
+        }
+        each(row, &jacobian, &residual[..seen.dim()]);
+    }
+}
+
+/// Normal information of a problem without a prior, theory.md §6 (28).
+pub(crate) fn normal(problem: &Problem<'_>, state: &Estimate) -> Normal {
+    let mut normal = Normal::new(problem.dim());
+    for_rows(problem, state, problem.rows(), |_, jacobian, e| normal.add_rows(jacobian, e, 0));
+    normal
+}
