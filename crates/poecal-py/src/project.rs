@@ -56,7 +56,7 @@ pub(crate) fn init(
     if !(1..=MOST).contains(&count) {
         return Err(argument("count", format!("found {count}, expected a number from 1 to {MOST}")));
     }
-    let chain = ChainSelection { base_link, tip_link };
+    let chain = ChainSelection { base_link, tip_link, ..ChainSelection::default() };
     let model = py.detach(|| Model::read(&model, &chain)).map_err(raise)?;
     let place = reserved_folder(py, &out, Contents::Project, Existing::Kept, &[])?;
     let project = Project { model: &model, chain: &chain, kind, count, seed };

@@ -59,7 +59,7 @@ impl Robot {
         #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
     ) -> PyResult<Self> {
-        let selection = ChainSelection { base_link, tip_link };
+        let selection = ChainSelection { base_link, tip_link, ..ChainSelection::default() };
         Robot::of_file(py.detach(|| Model::read(&path, &selection)).map_err(raise)?)
     }
 
@@ -84,7 +84,7 @@ impl Robot {
         #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
     ) -> PyResult<Self> {
-        let selection = ChainSelection { base_link, tip_link };
+        let selection = ChainSelection { base_link, tip_link, ..ChainSelection::default() };
         let document = py.detach(|| UrdfDocument::read(&path, &selection)).map_err(raise)?;
         let (robot, source) = (document.robot().clone(), ModelSource::Urdf(Box::new(document)));
         Robot::of_file(Model { robot, source, path })
@@ -132,7 +132,7 @@ impl Robot {
             let expected = "the text of a model; poecal.Robot.read reads a file";
             return Err(argument("text", format!("found `{}`, expected {expected}", shortened(text))));
         }
-        let selection = ChainSelection { base_link, tip_link };
+        let selection = ChainSelection { base_link, tip_link, ..ChainSelection::default() };
         py.detach(|| Model::parse(text, TEXT, &selection)).map(Robot::new).map_err(raise)
     }
 

@@ -197,8 +197,8 @@ impl Estimate {
         !self.has_offsets()
     }
 
-    /// The same robot without joint offsets: the offset of joint i moves all later screws, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for j > i, and the
-    /// targets. Exact; no prediction changes (lou2009 equations 11 to 15, theory.md §3 (9a)).
+    /// The same robot without joint offsets: the offset of joint i moves all screws beyond it, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for j > i, and the
+    /// targets and instruments there. Exact; no prediction changes (lou2009 equations 11 to 15, theory.md §3 (9a)).
     #[must_use]
     pub fn without_offsets(&self) -> Self {
         if !self.has_offsets() {
@@ -206,16 +206,26 @@ impl Estimate {
         }
         let screws = self.screws();
         let mut moved = self.clone();
-        let mut motion = Pose::identity();
-        for ((frame, offset), screw) in
-            moved.base_from_axis.iter_mut().zip(&mut moved.joint_offset).zip(&screws)
+        let mut motions: Vec<Pose> = Vec::with_capacity(screws.len());
+        let of = |motions: &[Pose], joint: Option<usize>| {
+            joint.and_then(|joint| motions.get(joint)).copied().unwrap_or_else(Pose::identity)
+        };
+        for (joint, ((frame, offset), screw)) in
+            moved.base_from_axis.iter_mut().zip(&mut moved.joint_offset).zip(&screws).enumerate()
         {
+            let motion = of(&motions, self.tree.joint_before(joint));
             *frame = (motion * *frame).orthonormalized();
-            motion = motion * screw.exp(*offset);
+            motions.push(motion * screw.exp(*offset));
             *offset = 0.0;
         }
-        for target in &mut moved.base_from_target {
-            *target = (motion * *target).orthonormalized();
+        for (target, body) in moved.base_from_target.iter_mut().zip(self.tree.targets()) {
+            *target = (of(&motions, body.joint()) * *target).orthonormalized();
+        }
+        for (station, stand) in self.tree.instruments().iter().enumerate() {
+            if let Stand::On(Body::Link(joint)) = *stand {
+                let device = moved.device_mut(station);
+                *device = (*device * of(&motions, Some(joint)).inverse()).orthonormalized();
+            }
         }
         moved
     }

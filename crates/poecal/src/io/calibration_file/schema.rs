@@ -81,8 +81,11 @@ pub struct CalibrationFile {
     pub stations: Vec<StationEntry>,
     /// Pose of the tip in the last joint's frame.
     pub tool: PoseEntry,
-    /// Named targets in the tip frame.
+    /// Named targets: in the tip frame, or on a body of their own (`on`).
     pub targets: BTreeMap<String, TargetEntry>,
+    /// Instruments on the robot.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub instruments: BTreeMap<String, InstrumentEntry>,
 }
 
 /// Inputs.
@@ -259,6 +262,45 @@ pub struct RobotEntry {
     pub base_from_tip_at_zero: PoseEntry,
     /// The same of the nominal model.
     pub nominal_base_from_tip_at_zero: PoseEntry,
+    /// Body of the tip, if it is not the last joint's link.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tip_on: Option<BodyEntry>,
+}
+
+/// A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves.
+///
+/// ```
+/// use poecal::io::calibration_file::BodyEntry;
+/// let entry: BodyEntry = serde_json::from_str(r#"{"link_of": "torso2"}"#)?;
+/// assert_eq!(entry, BodyEntry::LinkOf("torso2".into()));
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyEntry {
+    /// The base.
+    Base,
+    /// The link that this joint moves.
+    LinkOf(String),
+}
+
+/// An instrument on the robot.
+///
+/// ```
+/// use poecal::io::calibration_file::{BodyEntry, InstrumentEntry};
+/// let (on, quaternion_xyzw) = (BodyEntry::Base, [0.0, 0.0, 0.0, 1.0]);
+/// let entry = InstrumentEntry { on, position_m: [0.5, 0.0, 0.1], quaternion_xyzw };
+/// assert_eq!(serde_json::to_value(&entry)?["on"], "base");
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct InstrumentEntry {
+    /// Body on which it stands. Its pose is in the frame of the joint that moves the body, or in the base.
+    pub on: BodyEntry,
+    /// Position, metres.
+    pub position_m: [f64; 3],
+    /// Unit quaternion x, y, z, w.
+    pub quaternion_xyzw: [f64; 4],
 }
 
 /// A calibrated joint.
@@ -278,6 +320,9 @@ pub struct JointEntry {
     pub limits: Option<[f64; 2]>,
     /// The joint's value as a function of a reading.
     pub reading: Reading,
+    /// Body on which the joint stands, if that is not the link of the joint before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<BodyEntry>,
 }
 
 /// A screw, linear part first.
@@ -310,7 +355,7 @@ pub struct FrameEntry {
 pub struct StationEntry {
     /// Name of the instrument: from the column `instrument`, or the file with `--frames per-file`.
     pub instrument: Option<String>,
-    /// Pose of the device in the base.
+    /// Pose of the device in the base; of an instrument on the robot, at zero joint values.
     pub base_from_device: PoseEntry,
 }
 
@@ -323,12 +368,40 @@ pub struct PoseEntry {
     pub quaternion_xyzw: [f64; 4],
 }
 
-/// A target in the tip frame; a point has no orientation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// A target; a point has no orientation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TargetEntry {
     /// Position, metres.
     pub position_m: [f64; 3],
-    /// Unit quaternion x, y, z, w, where orientation was measured.
+    /// Unit quaternion x, y, z, w, where orientation was measured; of a target on a body of its own, always.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub quaternion_xyzw: Option<[f64; 4]>,
+    /// Body of a target that is not in the tip frame: its pose is in the frame of the joint that moves the body, or in the base.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<BodyEntry>,
+    /// What was measured of such a target; the rest of its pose is the model's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measured: Option<MeasuredEntry>,
+}
+
+/// What was measured of a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MeasuredEntry {
+    /// Position and orientation.
+    Pose,
+    /// Position alone.
+    Position,
+    /// Nothing: no row names it.
+    Nothing,
+}
+
+impl TargetEntry {
+    /// What was measured of it.
+    #[must_use]
+    pub fn measured(&self) -> MeasuredEntry {
+        let by_quaternion =
+            if self.quaternion_xyzw.is_some() { MeasuredEntry::Pose } else { MeasuredEntry::Position };
+        self.measured.unwrap_or(by_quaternion)
+    }
 }

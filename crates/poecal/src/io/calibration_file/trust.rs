@@ -320,7 +320,7 @@ impl CalibrationFile {
         let mut estimate = Estimate::new(&robot, Vec::new(), self.base_from_device()?.inverse());
         estimate.base_from_axis = axes;
         let mut free = screw_axes(estimate.kinds());
-        let is_known = |name: &str| robot.targets.iter().any(|(known, _)| known == name);
+        let is_known = |name: &str| self.targets.contains_key(name);
         let place = robot.places_of_targets();
         for (index, (name, is_frame)) in entry.targets.iter().enumerate() {
             if !name.is_empty() && !is_known(name) {
