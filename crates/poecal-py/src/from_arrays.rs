@@ -73,6 +73,7 @@ pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult
                 Some(name) => *places.entry(name).or_insert_with(|| data.station_index(Some(name))),
                 None => 0,
             },
+            from: None,
             measurement,
             sigma_position_m: at(&sigma_position_m, row),
             sigma_rotation_rad: at(&sigma_rotation_rad, row),

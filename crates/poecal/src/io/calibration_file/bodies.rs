@@ -2,14 +2,72 @@
 
 use std::collections::BTreeMap;
 
-use super::{
-    BodyEntry, CalibrationFile, InstrumentEntry, JointEntry, MeasuredEntry, PoseEntry, ScrewEntry,
-    TargetEntry,
-};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{CalibrationFile, JointEntry, PoseEntry, ScrewEntry, TargetEntry};
 use crate::calibration::{CalibratedTarget, Calibration};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
 use crate::robot::{Body, Mount, Robot};
+
+/// A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves.
+///
+/// ```
+/// use poecal::io::calibration_file::BodyEntry;
+/// let entry: BodyEntry = serde_json::from_str(r#"{"link_of": "torso2"}"#)?;
+/// assert_eq!(entry, BodyEntry::LinkOf("torso2".into()));
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyEntry {
+    /// The base.
+    Base,
+    /// The link that this joint moves.
+    LinkOf(String),
+}
+
+/// An instrument on the robot.
+///
+/// ```
+/// use poecal::io::calibration_file::{BodyEntry, InstrumentEntry};
+/// let (on, quaternion_xyzw) = (BodyEntry::Base, [0.0, 0.0, 0.0, 1.0]);
+/// let entry = InstrumentEntry { on, position_m: [0.5, 0.0, 0.1], quaternion_xyzw };
+/// assert_eq!(serde_json::to_value(&entry)?["on"], "base");
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct InstrumentEntry {
+    /// Body on which it stands. Its pose is in the frame of the joint that moves the body, or in the base.
+    pub on: BodyEntry,
+    /// Position, metres.
+    pub position_m: [f64; 3],
+    /// Unit quaternion x, y, z, w.
+    pub quaternion_xyzw: [f64; 4],
+}
+
+/// What was measured of a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MeasuredEntry {
+    /// Position and orientation.
+    Pose,
+    /// Position alone.
+    Position,
+    /// Nothing: no row names it.
+    Nothing,
+}
+
+impl TargetEntry {
+    /// What was measured of it.
+    #[must_use]
+    pub fn measured(&self) -> MeasuredEntry {
+        let by_quaternion =
+            if self.quaternion_xyzw.is_some() { MeasuredEntry::Pose } else { MeasuredEntry::Position };
+        self.measured.unwrap_or(by_quaternion)
+    }
+}
 
 impl CalibrationFile {
     /// The calibrated robot, with its named targets.

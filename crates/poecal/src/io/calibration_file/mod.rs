@@ -9,6 +9,7 @@ mod schema;
 mod trust;
 mod validation;
 
+pub use bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;

@@ -7,10 +7,11 @@ use super::{CalibrationFile, PoseEntry};
 use crate::analysis::JointCoverage;
 use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Stand, Tree};
 use crate::measurement::Noise;
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::Layout;
+use crate::robot::{Body, Robot};
 use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
 
 /// Errors of the rows of a fold or block, predicted by a fit of the others.
@@ -301,6 +302,16 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Model`] if the calibration holds no valid uncertainty.
     pub fn uncertainty(&self, targets: &[Option<&str>]) -> Result<(Uncertainty, Vec<usize>)> {
+        self.uncertainty_from(targets, &self.robot()?, Body::Base)
+    }
+
+    /// The same of predictions from a body of the robot.
+    pub(super) fn uncertainty_from(
+        &self,
+        targets: &[Option<&str>],
+        robot: &Robot,
+        body: Body,
+    ) -> Result<(Uncertainty, Vec<usize>)> {
         let bad = |what: &str| {
             let message = format!(
                 "found {what}, expected the uncertainty that `poecal calibrate` writes: calibrate again with this version"
@@ -312,12 +323,12 @@ impl CalibrationFile {
                            calibrate with more configurations, or hold out fewer";
             Error::new(ErrorKind::Model, message)
         })?;
-        let robot = self.robot()?;
         let axes = entry.axes.iter().map(PoseEntry::pose).collect::<Result<Vec<_>>>()?;
         if axes.len() != robot.joints.len() {
             return Err(bad("another number of axes than of joints"));
         }
-        let mut estimate = Estimate::new(&robot, Vec::new(), self.base_from_device()?.inverse());
+        let tree = Tree::new(robot, vec![Stand::On(body)], Vec::new());
+        let mut estimate = Estimate::on(robot, tree, Vec::new(), self.base_from_device()?.inverse());
         estimate.base_from_axis = axes;
         let mut free = screw_axes(estimate.kinds());
         let is_known = |name: &str| self.targets.contains_key(name);
