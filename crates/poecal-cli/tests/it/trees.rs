@@ -148,3 +148,21 @@ fn wrong_links_get_one_sentence() {
     );
     assert!(run.err.contains("`head_camera`"), "{}", run.err);
 }
+
+#[test]
+fn a_camera_in_the_hand_sees_a_board_beside_the_robot() {
+    let folder = Folder::new();
+    folder.write("torso.urdf", TORSO);
+    let named = "--instrument camera=right_hand --target board=base_link";
+    folder.done(&format!("simulate torso.urdf {named} --count 120 --out sim"));
+    folder.done(&format!("calibrate torso.urdf sim/measurements.csv {named} --out out"));
+    let file = calibration(&folder, "out");
+    let held_out = file.accuracy.held_out.as_ref().unwrap().calibrated.position_mm.rms;
+    println!("held out: {held_out:.4} mm");
+    assert!(held_out < 1.3 * 0.05 * 3f64.sqrt(), "{held_out}");
+    // The camera is where the tip is, whose fixed joint holds both.
+    let robot = file.robot().unwrap();
+    assert_eq!(robot.tip_name, "right_hand");
+    assert!((robot.base_from(&robot.instruments[0]).translation - robot.home.translation).norm() < 1e-12);
+    assert!(!folder.read("out/calibrated.urdf").contains("right_hand_calibrated"));
+}

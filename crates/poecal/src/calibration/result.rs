@@ -160,7 +160,7 @@ pub(super) fn stations(data: &Dataset, estimate: &Estimate) -> Vec<CalibratedSta
 }
 
 /// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (measured as points, with its
-/// nominal orientation to the last joint), and so does a target of the model at its very place; otherwise the tip keeps its nominal pose on
+/// nominal orientation to the last joint), and so does a target, or an instrument, of the model at its very place; otherwise the tip keeps its nominal pose on
 /// the last joint. Targets and instruments of the model with bodies of their own stay on these.
 pub(super) fn place_tip(
     robot: &Robot,
@@ -199,17 +199,11 @@ pub(super) fn place_tip(
     (calibrated, targets)
 }
 
-/// Puts the measured targets and the instruments of the model to their calibrated places. A target at the tip moves it too.
+/// Puts the measured targets and the instruments of the model to their calibrated places. A target at the tip moves it too, or else an
+/// instrument there.
 fn place_mounts(robot: &Robot, calibrated: &mut Robot, data: &Dataset, frames: &[bool], estimate: &Estimate) {
-    for (station, name) in data.stations.iter().enumerate() {
-        let known = calibrated.instruments.iter().position(|mount| Some(&mount.name) == name.as_ref());
-        if let Some(index) = known {
-            let Mount { name, body, .. } = calibrated.instruments[index].clone();
-            let pose = estimate.device_at_zero(station).inverse();
-            calibrated.instruments[index] = calibrated.mount(&name, body, &pose);
-        }
-    }
-    let mut is_placed = false;
+    // The unnamed target is the tip.
+    let mut is_placed = data.targets.iter().any(Option::is_none);
     for (target, name) in data.targets.iter().enumerate() {
         let known = calibrated.mounted.iter().position(|mount| Some(&mount.name) == name.as_ref());
         if let Some(index) = known {
@@ -223,6 +217,18 @@ fn place_mounts(robot: &Robot, calibrated: &mut Robot, data: &Dataset, frames: &
                 calibrated.home = pose;
             }
             calibrated.mounted[index] = calibrated.mount(&name, body, &pose);
+        }
+    }
+    for (station, name) in data.stations.iter().enumerate() {
+        let known = calibrated.instruments.iter().position(|mount| Some(&mount.name) == name.as_ref());
+        if let Some(index) = known {
+            let Mount { name, body, .. } = calibrated.instruments[index].clone();
+            let pose = estimate.device_at_zero(station).inverse();
+            if !is_placed && robot.is_at_tip(&robot.instruments[index]) {
+                is_placed = true;
+                calibrated.home = pose;
+            }
+            calibrated.instruments[index] = calibrated.mount(&name, body, &pose);
         }
     }
 }

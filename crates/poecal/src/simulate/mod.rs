@@ -242,9 +242,12 @@ impl Simulation {
         let mounted: Vec<Mount> = actual.mounted.iter().map(&mut moved).collect();
         let instruments: Vec<Mount> = actual.instruments.iter().map(&mut moved).collect();
         (actual.mounted, actual.instruments) = (mounted, instruments);
-        // A target at the tip is the tip.
-        if let Some(at) = nominal.mounted.iter().position(|mount| nominal.is_at_tip(mount)) {
+        // A target at the tip is the tip, or else an instrument there.
+        let at_tip = |mounts: &[Mount]| mounts.iter().position(|mount| nominal.is_at_tip(mount));
+        if let Some(at) = at_tip(&nominal.mounted) {
             actual.home = actual.base_from(&actual.mounted[at]);
+        } else if let Some(at) = at_tip(&nominal.instruments) {
+            actual.home = actual.base_from(&actual.instruments[at]);
         }
         actual.name = format!("{}_actual", nominal.name);
         actual
