@@ -16,7 +16,7 @@ pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
 pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
-pub(crate) use shared::ChainArgs;
+pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
 
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 
 use crate::quantity::threads;
-use shared::{ColumnArgs, Meaning, OutFile, Reading};
+use shared::{ChainArgs, ColumnArgs, Meaning, OutFile, Reading};
 use words::{FORM, FRAME, PREDICT_IN, REQUIRED_LEVEL, one_of};
 
 /// What the program ends with.
@@ -140,8 +140,8 @@ pub(crate) struct Predict {
     /// Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json)
     #[arg(long)]
     pub(crate) with_uncertainty: bool,
-    /// Predict this target of the model instead of the tip
-    #[arg(long, value_name = "NAME")]
+    /// Predict this target of the model instead of the tip; of a URDF, with its link
+    #[arg(long, value_name = "NAME|NAME=LINK")]
     pub(crate) target: Option<String>,
     #[command(flatten)]
     pub(crate) place: OutFile,
@@ -155,7 +155,7 @@ pub(crate) struct Check {
     /// Measurement files (CSV)
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) chain: ChainArgs,
+    pub(crate) chain: TreeArgs,
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// The measuring device's frame: `base` looks for mistakes in it too
@@ -172,7 +172,7 @@ pub(crate) struct Convert {
     /// Robot model: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: ChainArgs,
+    pub(crate) chain: TreeArgs,
     /// The form to write [default: as the extension of --out says]
     #[arg(long, value_parser = one_of(FORM))]
     pub(crate) to: Option<ModelFormat>,

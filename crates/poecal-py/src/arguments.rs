@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::PathBuf;
 
+use poecal::io::urdf::ChainSelection;
 use poecal::text::visible;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
@@ -164,6 +165,33 @@ impl<'a, 'py> Argument<'a, 'py> for BTreeMap<String, f64> {
         };
         entries.iter().map(entry).collect()
     }
+}
+
+/// Names with their links, in their order.
+pub(crate) struct Links(pub(crate) Vec<(String, String)>);
+
+impl<'a, 'py> Argument<'a, 'py> for Links {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let entries =
+            value.cast::<PyDict>().map_err(|_| unexpected(name, value, "a dict of names and links"))?;
+        let entry = |(key, link): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
+            let key = String::of(&key, &format!("{name}, a key"))?;
+            let link = String::of(&link, &format!("{name}[\"{key}\"]"))?;
+            Ok((key, link))
+        };
+        entries.iter().map(entry).collect::<PyResult<_>>().map(Links)
+    }
+}
+
+/// The links of a URDF that are read.
+pub(crate) fn selection(
+    base_link: Option<String>,
+    tip_link: Option<String>,
+    instruments: Option<Links>,
+    targets: Option<Links>,
+) -> ChainSelection {
+    let links = |links: Option<Links>| links.map_or_else(Vec::new, |links| links.0);
+    ChainSelection { base_link, tip_link, instruments: links(instruments), targets: links(targets) }
 }
 
 /// A path, or several.

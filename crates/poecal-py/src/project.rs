@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use poecal::io::model::Model;
 use poecal::io::output::{Contents, Existing, Project, write_project};
-use poecal::io::urdf::ChainSelection;
 use poecal::simulate::Kind;
 use pyo3::prelude::*;
 
-use crate::arguments as arg;
+use crate::arguments::{self as arg, Links};
 use crate::errors::{argument, raise};
 use crate::places::reserved_folder;
 use crate::words::chosen;
@@ -34,13 +33,15 @@ const MOST: usize = 100_000;
 ///     Seed of their choice.
 /// base_link, tip_link
 ///     The chain of a URDF that has several.
+/// instruments, targets
+///     Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
 ///
 /// Returns
 /// -------
 /// list of str
 ///     Names of the files.
 #[pyfunction]
-#[pyo3(signature = (model, out, *, measure="points", count=60, seed=1, base_link=None, tip_link=None))]
+#[pyo3(signature = (model, out, *, measure="points", count=60, seed=1, base_link=None, tip_link=None, instruments=None, targets=None))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn init(
     py: Python<'_>,
@@ -51,12 +52,14 @@ pub(crate) fn init(
     #[pyo3(from_py_with = arg::seed)] seed: u64,
     #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
     #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
+    #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
+    #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
 ) -> PyResult<Vec<String>> {
     let kind = chosen("measure", measure, &[("points", Kind::Point), ("poses", Kind::Pose)])?;
     if !(1..=MOST).contains(&count) {
         return Err(argument("count", format!("found {count}, expected a number from 1 to {MOST}")));
     }
-    let chain = ChainSelection { base_link, tip_link };
+    let chain = arg::selection(base_link, tip_link, instruments, targets);
     let model = py.detach(|| Model::read(&model, &chain)).map_err(raise)?;
     let place = reserved_folder(py, &out, Contents::Project, Existing::Kept, &[])?;
     let project = Project { model: &model, chain: &chain, kind, count, seed };

@@ -11,12 +11,12 @@ use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::Existing;
 use poecal::io::predictions::{PredictionFrame, predicted};
 use poecal::io::robot_toml;
-use poecal::io::urdf::{ChainSelection, UrdfDocument};
+use poecal::io::urdf::UrdfDocument;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-use crate::arguments::{self as arg, is_content, shortened};
+use crate::arguments::{self as arg, Links, is_content, shortened};
 use crate::arrays::{Joints, pose_array, pose_arrays, table};
 use crate::build::{DhTable, Naming, from_dh, from_screws};
 use crate::errors::{argument, raise};
@@ -37,6 +37,8 @@ impl Robot {
     ///     The file; its extension gives the form, or else the beginning of its text.
     /// base_link, tip_link
     ///     The chain of a URDF that has several.
+    /// instruments, targets
+    ///     Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
     ///
     /// Returns
     /// -------
@@ -52,14 +54,16 @@ impl Robot {
     /// ModelError
     ///     It holds no robot that can be used.
     #[staticmethod]
-    #[pyo3(signature = (path, *, base_link=None, tip_link=None))]
+    #[pyo3(signature = (path, *, base_link=None, tip_link=None, instruments=None, targets=None))]
     fn read(
         py: Python<'_>,
         #[pyo3(from_py_with = arg::path)] path: PathBuf,
         #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
+        #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
+        #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
     ) -> PyResult<Self> {
-        let selection = ChainSelection { base_link, tip_link };
+        let selection = arg::selection(base_link, tip_link, instruments, targets);
         Robot::of_file(py.detach(|| Model::read(&path, &selection)).map_err(raise)?)
     }
 
@@ -71,20 +75,24 @@ impl Robot {
     ///     The file.
     /// base_link, tip_link
     ///     First and last link of the chain, where there are several.
+    /// instruments, targets
+    ///     Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
     ///
     /// Returns
     /// -------
     /// Robot
     ///     The robot.
     #[staticmethod]
-    #[pyo3(signature = (path, *, base_link=None, tip_link=None))]
+    #[pyo3(signature = (path, *, base_link=None, tip_link=None, instruments=None, targets=None))]
     fn from_urdf(
         py: Python<'_>,
         #[pyo3(from_py_with = arg::path)] path: PathBuf,
         #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
+        #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
+        #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
     ) -> PyResult<Self> {
-        let selection = ChainSelection { base_link, tip_link };
+        let selection = arg::selection(base_link, tip_link, instruments, targets);
         let document = py.detach(|| UrdfDocument::read(&path, &selection)).map_err(raise)?;
         let (robot, source) = (document.robot().clone(), ModelSource::Urdf(Box::new(document)));
         Robot::of_file(Model { robot, source, path })
@@ -115,24 +123,28 @@ impl Robot {
     ///     Text of a URDF, TOML model or calibration.json.
     /// base_link, tip_link
     ///     The chain of a URDF that has several.
+    /// instruments, targets
+    ///     Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
     ///
     /// Returns
     /// -------
     /// Robot
     ///     The robot; its `path` is "text", by which errors name places too.
     #[staticmethod]
-    #[pyo3(signature = (text, *, base_link=None, tip_link=None))]
+    #[pyo3(signature = (text, *, base_link=None, tip_link=None, instruments=None, targets=None))]
     fn from_text(
         py: Python<'_>,
         #[pyo3(from_py_with = arg::text)] text: &str,
         #[pyo3(from_py_with = arg::base_link)] base_link: Option<String>,
         #[pyo3(from_py_with = arg::tip_link)] tip_link: Option<String>,
+        #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
+        #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
     ) -> PyResult<Self> {
         if !is_content(text) {
             let expected = "the text of a model; poecal.Robot.read reads a file";
             return Err(argument("text", format!("found `{}`, expected {expected}", shortened(text))));
         }
-        let selection = ChainSelection { base_link, tip_link };
+        let selection = arg::selection(base_link, tip_link, instruments, targets);
         py.detach(|| Model::parse(text, TEXT, &selection)).map(Robot::new).map_err(raise)
     }
 

@@ -8,7 +8,7 @@ use poecal::io::output::Existing;
 use poecal_lou2009::{Formulation, Method, Residual};
 
 use super::report::ReportPlace;
-use super::shared::{ChainArgs, Reading};
+use super::shared::{Reading, TreeArgs};
 use super::words::{FORMULATION, FRAME, METHOD, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 
@@ -23,7 +23,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "FILE")]
     pub(crate) settings: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) chain: ChainArgs,
+    pub(crate) chain: TreeArgs,
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// The measuring device's frame

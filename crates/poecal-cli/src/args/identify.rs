@@ -6,7 +6,7 @@ use clap::Args;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::simulate::Kind;
 
-use super::shared::{ChainArgs, ColumnArgs};
+use super::shared::{ColumnArgs, TreeArgs};
 use super::words::{FRAME, SIMULATED_KIND, one_of};
 use crate::quantity::{sigma_m, sigma_rad};
 
@@ -19,7 +19,7 @@ pub(crate) struct Identify {
     #[arg(required = true)]
     pub(crate) joints: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) chain: ChainArgs,
+    pub(crate) chain: TreeArgs,
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
     /// Kind of the measurements of the tip

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use poecal::simulate::Kind;
 
-use super::shared::ChainArgs;
+use super::shared::TreeArgs;
 use super::words::{MEASURED, one_of};
 use crate::quantity::whole;
 
@@ -15,7 +15,7 @@ pub(crate) struct Init {
     /// Robot model: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: ChainArgs,
+    pub(crate) chain: TreeArgs,
     /// Kind of the measurements
     #[arg(long, value_parser = one_of(MEASURED), default_value = "points")]
     pub(crate) measure: Kind,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use poecal::io::measurements::{ColumnMap, Frames, ReadOptions};
 use poecal::io::output::{Existing, FilePlace};
-use poecal::io::urdf::ChainSelection;
+use poecal::io::urdf::{ChainSelection, named_link};
 
 use super::words::{FRAMES, one_of};
 use crate::console::Console;
@@ -23,7 +23,40 @@ pub(crate) struct ChainArgs {
 
 impl ChainArgs {
     pub(crate) fn selection(&self) -> ChainSelection {
-        ChainSelection { base_link: self.base_link.clone(), tip_link: self.tip_link.clone() }
+        let (base_link, tip_link) = (self.base_link.clone(), self.tip_link.clone());
+        ChainSelection { base_link, tip_link, ..ChainSelection::default() }
+    }
+}
+
+/// Which chain or tree of a URDF.
+#[derive(Args, Debug)]
+pub(crate) struct TreeArgs {
+    #[command(flatten)]
+    pub(crate) chain: ChainArgs,
+    /// Instrument on the robot, as rows name it, and its link in a URDF (repeatable). The robot is then the tree of all joints between the
+    /// base and the named links
+    #[arg(long, value_name = "NAME=LINK", value_parser = named_link)]
+    pub(crate) instrument: Vec<(String, String)>,
+    /// Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip
+    #[arg(long, value_name = "NAME=LINK", value_parser = named_link)]
+    pub(crate) target: Vec<(String, String)>,
+}
+
+impl TreeArgs {
+    /// The selection; with the links of a mapping, if it could be read.
+    pub(crate) fn selection(&self, options: Option<&ReadOptions>) -> poecal::Result<ChainSelection> {
+        with_mapping(self.chain.selection().joined(&self.instrument, &self.target)?, options)
+    }
+}
+
+/// A selection with the links of a mapping, if it could be read.
+pub(crate) fn with_mapping(
+    selection: ChainSelection,
+    options: Option<&ReadOptions>,
+) -> poecal::Result<ChainSelection> {
+    match options.and_then(|options| options.mapping.as_ref()) {
+        Some(mapping) => mapping.mounts(selection),
+        None => Ok(selection),
     }
 }
 

@@ -6,7 +6,7 @@ use clap::Args;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::simulate::Kind;
 
-use super::shared::ChainArgs;
+use super::shared::TreeArgs;
 use super::words::{FRAME, SIMULATED_KIND, one_of};
 use crate::quantity::LengthAndAngle;
 
@@ -16,7 +16,7 @@ pub(crate) struct Simulate {
     /// Robot model to deviate from: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
     #[command(flatten)]
-    pub(crate) chain: ChainArgs,
+    pub(crate) chain: TreeArgs,
     /// Angle and distance by which every axis, and the tip, is off
     #[arg(long, value_name = "ANGLE,LENGTH", default_value = "1deg,2mm", allow_hyphen_values = true)]
     pub(crate) errors: LengthAndAngle,

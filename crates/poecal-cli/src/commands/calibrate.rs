@@ -28,8 +28,9 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let mut timings = Timings::start();
     let model_path = stated_model(arguments)?;
     let places = Places::reserve(arguments, console)?;
-    let model = Model::read(model_path, &arguments.chain.selection())?;
-    let (data, inputs) = read_measurements(arguments, &model, console)?;
+    let reading = arguments.reading.options();
+    let model = Model::read(model_path, &arguments.chain.selection(reading.as_ref().ok())?)?;
+    let (data, inputs) = read_measurements(arguments, &model, reading, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments);
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
@@ -111,13 +112,18 @@ fn stated_model(arguments: &Calibrate) -> Result<&Path> {
 }
 
 /// Reads and joins the files; with `--validate`, those rows are held out and all others fitted. Reports what was read.
-fn read_measurements(arguments: &Calibrate, model: &Model, console: &Console) -> Result<(Dataset, Inputs)> {
+fn read_measurements(
+    arguments: &Calibrate,
+    model: &Model,
+    reading: Result<ReadOptions>,
+    console: &Console,
+) -> Result<(Dataset, Inputs)> {
     refuse_repeats(&arguments.measurements)?;
     refuse_repeats(&arguments.validate)?;
     refuse_fitted(&arguments.validate, &arguments.measurements)?;
     // With --validate the sets are given by the files' roles.
     let ignore_sets = !arguments.validate.is_empty();
-    let options = ReadOptions { ignore_sets, ..arguments.reading.options()? };
+    let options = ReadOptions { ignore_sets, ..reading? };
     let mapping = arguments.reading.meaning.columns.columns.iter();
     let mut inputs = Inputs {
         model: model.path.display().to_string(),

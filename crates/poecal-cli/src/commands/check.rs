@@ -11,8 +11,9 @@ use crate::args::Check;
 use crate::console::Console;
 
 pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
-    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
-    let options = arguments.reading.options()?;
+    let options = arguments.reading.options();
+    let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
+    let options = options?;
     let measurements = if arguments.measurements.is_empty() {
         None
     } else {

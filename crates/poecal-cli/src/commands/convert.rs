@@ -14,7 +14,7 @@ use crate::quantity::signed;
 pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
     let form = form(arguments)?;
     let place = arguments.place.reserve(&[&arguments.model], console)?;
-    let mut model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    let mut model = Model::read(&arguments.model, &arguments.chain.selection(None)?)?;
     if !arguments.offset.is_empty() {
         let offsets = offsets(&arguments.offset, &model.robot)?;
         for (joint, _) in model.robot.joints.iter().zip(&offsets).filter(|(_, offset)| **offset != 0.0) {

@@ -14,8 +14,9 @@ use crate::console::Console;
 
 pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.joints)?;
-    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
-    let options = arguments.columns.options()?;
+    let options = arguments.columns.options();
+    let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
+    let options = options?;
     let mut readings = Vec::new();
     for path in &arguments.joints {
         let joints = measurements::read_joints(path, &model.robot, &options)?;

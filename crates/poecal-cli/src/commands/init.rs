@@ -9,7 +9,7 @@ use crate::console::Console;
 use crate::style::{self, labelled, shown};
 
 pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
-    let chain = arguments.chain.selection();
+    let chain = arguments.chain.selection(None)?;
     let model = Model::read(&arguments.model, &chain)?;
     let project = Project {
         model: &model,

@@ -1,13 +1,15 @@
 //! `poecal predict`: poses from joint readings.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use poecal::Result;
 use poecal::io::model::Model;
+use poecal::io::urdf::named_link;
 use poecal::io::{measurements, predictions};
 
 use crate::DONE;
-use crate::args::Predict;
+use crate::args::{Predict, with_mapping};
 use crate::console::Console;
 
 pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
@@ -15,10 +17,17 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     let inputs: Vec<&Path> =
         [&arguments.model, &arguments.joints].into_iter().chain(mapping).map(PathBuf::as_path).collect();
     let place = arguments.place.reserve(&inputs, console)?;
-    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
-    let joints = measurements::read_joints(&arguments.joints, &model.robot, &arguments.columns.options()?)?;
+    let options = arguments.columns.options();
+    let target = arguments.target.as_deref();
+    // Only a URDF has links.
+    let has_links =
+        !["toml", "json"].map(OsStr::new).contains(&arguments.model.extension().unwrap_or_default());
+    let mounted = target.filter(|target| has_links && target.contains('=')).map(named_link).transpose()?;
+    let selection = arguments.chain.selection().joined(&[], mounted.as_slice())?;
+    let model = Model::read(&arguments.model, &with_mapping(selection, options.as_ref().ok())?)?;
+    let joints = measurements::read_joints(&arguments.joints, &model.robot, &options?)?;
     console.warnings(&joints.warnings);
-    let (frame, target) = (arguments.frame, arguments.target.as_deref());
+    let (frame, target) = (arguments.frame, mounted.as_ref().map(|(name, _)| name.as_str()).or(target));
     let text = predictions::predict(&model, &joints, frame, target, arguments.with_uncertainty)?;
     console.deliver(text, place)?;
     Ok(DONE)

@@ -7,7 +7,7 @@ use poecal::io::output::{self, Contents, Existing, FolderPlace, SimulatedSession
 use poecal::simulate::Simulation;
 use poecal::text::visible;
 
-use crate::args::{ChainArgs, Simulate};
+use crate::args::{Simulate, TreeArgs};
 use crate::console::Console;
 use crate::style;
 
@@ -20,7 +20,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         &[&arguments.model],
         &mut console.warner(),
     )?;
-    let model = Model::read(&arguments.model, &arguments.chain.selection())?;
+    let model = Model::read(&arguments.model, &arguments.chain.selection(None)?)?;
     let simulation = Simulation {
         error_rotation_rad: arguments.errors.angle_rad,
         error_position_m: arguments.errors.length_m,
@@ -51,10 +51,13 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
 
 /// The command that reproduces the files: all options that they depend on, and no output folder.
 fn command(arguments: &Simulate) -> String {
-    let ChainArgs { base_link, tip_link } = &arguments.chain;
+    let TreeArgs { chain, instrument, target } = &arguments.chain;
     let mut words = vec!["poecal simulate".to_owned(), arguments.model.display().to_string()];
-    for (option, link) in [("--base-link", base_link), ("--tip-link", tip_link)] {
+    for (option, link) in [("--base-link", &chain.base_link), ("--tip-link", &chain.tip_link)] {
         words.extend(link.as_ref().map(|link| format!("{option} {link}")));
+    }
+    for (option, named) in [("--instrument", instrument), ("--target", target)] {
+        words.extend(named.iter().map(|(name, link)| format!("{option} {name}={link}")));
     }
     let (kind, count, seed) = (arguments.kind.word(), arguments.count, arguments.seed);
     words.push(format!("--kind {kind} --count {count} --seed {seed}"));

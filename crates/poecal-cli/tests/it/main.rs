@@ -29,6 +29,7 @@ mod stations;
 mod table;
 mod targets_and_validation;
 // Each crate uses what it needs of it.
+mod trees;
 #[allow(dead_code)]
 #[path = "../../../poecal/tests/trials/mod.rs"]
 mod trials;

@@ -35,8 +35,7 @@ pub fn urdf(data: &[u8]) -> bool {
 pub(crate) fn patched(document: &UrdfDocument, robot: &Robot) {
     let patched = certain(document.patched(robot), "patched");
     patched.notes.iter().for_each(|note| one_line(note));
-    let selection =
-        ChainSelection { base_link: Some(robot.base_name.clone()), tip_link: Some(patched.tip_link) };
+    let selection = patched.selection;
     let again = certain(UrdfDocument::parse(&patched.text, PATH, &selection), &patched.text);
     alike(robot, again.robot(), ROUNDING, "patched");
     let limits = |robot: &Robot| robot.joints.iter().map(|joint| joint.limits).collect::<Vec<_>>();

@@ -10,10 +10,10 @@ mod findings;
 mod formula;
 mod formulations;
 mod jacobians;
-#[path = "../../../poecal/tests/reference/mod.rs"]
-mod reference;
 #[path = "../../../poecal/tests/largest/mod.rs"]
 mod largest;
 mod paper;
+#[path = "../../../poecal/tests/reference/mod.rs"]
+mod reference;
 mod reproduce;
 mod reproduction_report;

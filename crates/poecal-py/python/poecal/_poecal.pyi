@@ -66,7 +66,14 @@ class Robot:
     radians. Robots compare by value, and can be copied and pickled.
     """
     @staticmethod
-    def read(path: _Path, *, base_link: str | None = None, tip_link: str | None = None) -> Robot:
+    def read(
+        path: _Path,
+        *,
+        base_link: str | None = None,
+        tip_link: str | None = None,
+        instruments: Mapping[str, str] | None = None,
+        targets: Mapping[str, str] | None = None,
+    ) -> Robot:
         """Reads a robot model of any form: URDF, TOML or calibration.json, of which it is the calibrated robot.
 
         Parameters
@@ -75,6 +82,8 @@ class Robot:
             The file; its extension gives the form, or else the beginning of its text.
         base_link, tip_link
             The chain of a URDF that has several.
+        instruments, targets
+            Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
 
         Returns
         -------
@@ -91,7 +100,14 @@ class Robot:
             It holds no robot that can be used.
         """
     @staticmethod
-    def from_urdf(path: _Path, *, base_link: str | None = None, tip_link: str | None = None) -> Robot:
+    def from_urdf(
+        path: _Path,
+        *,
+        base_link: str | None = None,
+        tip_link: str | None = None,
+        instruments: Mapping[str, str] | None = None,
+        targets: Mapping[str, str] | None = None,
+    ) -> Robot:
         """Reads a chain of a URDF file.
 
         Parameters
@@ -100,6 +116,8 @@ class Robot:
             The file.
         base_link, tip_link
             First and last link of the chain, where there are several.
+        instruments, targets
+            Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
 
         Returns
         -------
@@ -121,7 +139,14 @@ class Robot:
             The robot.
         """
     @staticmethod
-    def from_text(text: str, *, base_link: str | None = None, tip_link: str | None = None) -> Robot:
+    def from_text(
+        text: str,
+        *,
+        base_link: str | None = None,
+        tip_link: str | None = None,
+        instruments: Mapping[str, str] | None = None,
+        targets: Mapping[str, str] | None = None,
+    ) -> Robot:
         """A robot model of any form from its text, as of the parameter `robot_description` of ROS.
 
         Parameters
@@ -130,6 +155,8 @@ class Robot:
             Text of a URDF, TOML model or calibration.json.
         base_link, tip_link
             The chain of a URDF that has several.
+        instruments, targets
+            Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
 
         Returns
         -------
@@ -1187,6 +1214,8 @@ def init(
     seed: int = 1,
     base_link: str | None = None,
     tip_link: str | None = None,
+    instruments: Mapping[str, str] | None = None,
+    targets: Mapping[str, str] | None = None,
 ) -> list[str]:
     """Writes a project folder to start from.
 
@@ -1206,6 +1235,8 @@ def init(
         Seed of their choice.
     base_link, tip_link
         The chain of a URDF that has several.
+    instruments, targets
+        Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
 
     Returns
     -------

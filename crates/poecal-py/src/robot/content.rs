@@ -50,6 +50,8 @@ impl Robot {
                 text: document.text().to_owned(),
                 base: document.robot().base_name.clone(),
                 tip: document.robot().tip_name.clone(),
+                instruments: document.selection().instruments,
+                targets: document.selection().targets,
             },
             ModelSource::Toml => SourceState::Toml,
             ModelSource::Calibration(file) => {
@@ -68,8 +70,9 @@ impl Robot {
     pub(crate) fn of_state(state: RobotState) -> PyResult<Self> {
         let RobotState { robot, path, source, sha256 } = state;
         let source = match source {
-            SourceState::Urdf { text, base, tip } => {
-                let selection = ChainSelection { base_link: Some(base), tip_link: Some(tip) };
+            SourceState::Urdf { text, base, tip, instruments, targets } => {
+                let (base_link, tip_link) = (Some(base), Some(tip));
+                let selection = ChainSelection { base_link, tip_link, instruments, targets };
                 ModelSource::Urdf(Box::new(UrdfDocument::parse(&text, &path, &selection).map_err(raise)?))
             }
             SourceState::Toml => ModelSource::Toml,
@@ -92,9 +95,19 @@ pub(crate) struct RobotState {
 
 #[derive(Serialize, Deserialize)]
 enum SourceState {
-    Urdf { text: String, base: String, tip: String },
+    Urdf {
+        text: String,
+        base: String,
+        tip: String,
+        #[serde(default)]
+        instruments: Vec<(String, String)>,
+        #[serde(default)]
+        targets: Vec<(String, String)>,
+    },
     Toml,
-    Calibration { text: String },
+    Calibration {
+        text: String,
+    },
 }
 
 impl Robot {

@@ -47,6 +47,7 @@ pub(super) fn explain(
     // Offsets beside screws are a structural kernel, reported as such.
     let offsets = rules.places(|parameter| matches!(parameter, Parameter::ValueTerm(_)));
     rules.take(&offsets);
+    rules.unseen();
     rules.stood_still();
     rules.too_few();
     rules.point_on_axis();
@@ -280,7 +281,8 @@ impl Rules<'_> {
     /// link: without effect if the link never turns that direction.
     fn shift(&self, direction: &Vector3<f64>) -> Vec<f64> {
         let estimate = self.setup.estimate;
-        let turn = estimate.base_from_axis.last().map_or_else(Matrix3::identity, |last| last.rotation);
+        let last = self.excitation.last_joint.and_then(|joint| estimate.base_from_axis.get(joint));
+        let turn = last.map_or_else(Matrix3::identity, |last| last.rotation);
         let seen = estimate.device_from_base.rotation.transpose() * self.excitation.mean_turn * direction;
         let tool = turn * direction - seen;
         let mut shift = vec![0.0; self.setup.layout.dim()];

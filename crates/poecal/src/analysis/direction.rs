@@ -14,6 +14,8 @@ pub enum Cause {
     JointOffsets,
     /// Structure: only positions were measured.
     NoOrientation,
+    /// No way from an instrument to its target passes the joint.
+    Unseen,
     /// A joint did not move, or its reading only jittered.
     StoodStill,
     /// Fewer measured numbers than unknowns.
@@ -49,6 +51,7 @@ impl Cause {
             | Cause::BaseFrame
             | Cause::JointOffsets
             | Cause::NoOrientation
+            | Cause::Unseen
             | Cause::StoodStill
             | Cause::TooFew
             | Cause::PointOnAxis

@@ -1,6 +1,6 @@
 //! Excitation by the configurations: ranges of joints, joints that moved together, turning of the tool, points on an axis.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,7 +8,7 @@ use super::coverage::ranges;
 use super::direction::{Cause, Direction};
 use super::setup::Setup;
 use super::subspace;
-use crate::estimate::{Chain, Linkage, sample_rows};
+use crate::estimate::{Chain, Linkage, Sight, sample_rows};
 use crate::linalg;
 use crate::parameters::Parameter;
 use crate::robot::JointKind;
@@ -40,6 +40,10 @@ pub(super) enum Turning {
 
 /// Excitation by the configurations.
 pub(super) struct Excitation {
+    /// Whether some row's way from its instrument to its target passes the joint.
+    pub(super) seen_joints: Vec<bool>,
+    /// The joint that every way passes last; none if there are different ways.
+    pub(super) last_joint: Option<usize>,
     /// Range of each joint's value, radians or metres.
     pub(super) ranges: Vec<f64>,
     /// Which joints stood still.
@@ -75,7 +79,10 @@ impl Excitation {
                 JointKind::Prismatic => range <= STILL_M,
             })
             .collect();
+        let (seen_joints, last_joint) = passed(setup);
         let mut found = Excitation {
+            seen_joints,
+            last_joint,
             together: together(setup, &still),
             parallel: vec![true; joints.len() * joints.len()],
             on_axis_m: vec![None; joints.len()],
@@ -131,7 +138,9 @@ impl Excitation {
             let away = away_m.iter().zip(&is_seen);
             self.on_axis_m = away.map(|(&away, &seen)| (seen && away < near).then_some(away)).collect();
         }
-        self.turning = turning(&self.mean_turn);
+        // Of different ways, the last links turn each in its own way.
+        let one_way = self.last_joint.is_some();
+        self.turning = if one_way { turning(&self.mean_turn) } else { Turning::Freely };
     }
 
     /// Counts the numbers measured in distinct configurations, until there are enough. Rows within the jitter of encoders are repeats.
@@ -150,7 +159,8 @@ impl Excitation {
             let values = setup.session.packed.joint_values(row as usize).iter().enumerate();
             let place: Vec<i64> = values.map(|(joint, value)| (value / step(joint)).round() as i64).collect();
             all.insert(place.clone());
-            if of_targets.insert((observation.target, place)) {
+            let way = setup.estimate.tree.route_index(observation.into());
+            if of_targets.insert((observation.target, way, place)) {
                 self.numbers += observation.measurement.observe().dim();
                 self.seen[observation.target] += 1;
             }
@@ -187,6 +197,24 @@ impl Excitation {
         }
         found
     }
+}
+
+/// Which joints the ways of the rows pass, and the last of a single way.
+fn passed(setup: &Setup<'_>) -> (Vec<bool>, Option<usize>) {
+    let tree = &setup.estimate.tree;
+    let mut seen = vec![false; tree.kinds().len()];
+    let mut ways = BTreeMap::new();
+    for &row in setup.rows {
+        let sight = Sight::from(setup.session.observation(row));
+        ways.entry(tree.route_index(sight)).or_insert(sight);
+    }
+    let mut lasts = ways.values().map(|&sight| tree.route(sight)).map(|way| {
+        way.iter().for_each(|passed| seen[passed.joint] = true);
+        way.last().map(|passed| passed.joint)
+    });
+    let last = lasts.next().flatten();
+    let others = lasts.count();
+    (seen, last.filter(|_| others == 0))
 }
 
 /// A target by name.

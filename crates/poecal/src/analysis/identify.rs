@@ -11,11 +11,13 @@ use super::spectrum::PLAUSIBLE;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Chain, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
-use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement};
-use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
+use crate::measurement::{
+    ByQuantity, Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Source,
+};
+use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::{MOST_UNKNOWNS, Problem};
 use crate::robot::Robot;
-use crate::simulate::{Kind, random_configuration};
+use crate::simulate::{Kind, pairs, random_configuration, seen};
 use crate::solve::LeastSquares;
 
 /// Number of random configurations for the expected error, and their seed.
@@ -34,7 +36,7 @@ const UNDETERMINED_EFFECT: f64 = 1.0;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedSession {
-    /// Kind of the measurements of the tip.
+    /// Kind of the measurements of the tip, or of the targets.
     pub kind: Kind,
     /// Noise of each component.
     pub noise: Noise,
@@ -87,7 +89,7 @@ pub struct Foresight {
     pub length_m: f64,
 }
 
-/// Judges configurations (readings one after the other, in the order of [`Robot::reading_names`]; radians, metres) before they are
+/// Judges configurations, in which every instrument on the robot measures every target of the model, or a device beside it the tip (readings one after the other, in the order of [`Robot::reading_names`]; radians, metres) before they are
 /// measured: theory.md §7 (36), (36c), with the nominal model and the stated noise.
 ///
 /// # Errors
@@ -104,7 +106,8 @@ pub struct Foresight {
 /// # Ok::<(), poecal::Error>(())
 /// ```
 pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<Foresight> {
-    let unknowns = 4 * robot.joints.len() + 6;
+    let frames = robot.instruments.len().saturating_sub(1) + robot.mounted.len().max(1);
+    let unknowns = 4 * robot.joints.len() + 6 * frames;
     if unknowns > MOST_UNKNOWNS {
         let message = format!(
             "found about {unknowns} unknowns of {} joints, expected at most {MOST_UNKNOWNS} in one fit: identify a \
@@ -120,10 +123,15 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     let mut estimate = delivered(robot, &data);
     estimate.recentre(&session, &rows);
     let mut free = screw_axes(estimate.kinds());
-    free.push(match planned.kind {
-        Kind::Point => Parameter::TargetPlace(TargetPlace { target: 0 }),
-        Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame { target: 0 }),
-    });
+    free.extend((0..data.targets.len()).map(|target| match planned.kind {
+        Kind::Point => Parameter::TargetPlace(TargetPlace { target }),
+        Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame { target }),
+    }));
+    // The first instrument's frame is a choice of the base.
+    free.extend((1..data.station_count()).map(|station| {
+        let about = data.mean_position(&data.seen_from(station, &rows));
+        Parameter::DeviceFrame(DeviceFrame { station, about })
+    }));
     let problem = Problem::new(session, rows.clone(), free, planned.noise);
     let setup =
         Setup { session, rows: &rows, estimate: &estimate, layout: problem.layout(), noise: planned.noise };
@@ -135,7 +143,7 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     let identifiability = identifiability(&setup, &gram, 1.0);
     let expected = expected(&setup, &identifiability);
     Ok(Foresight {
-        count: data.len(),
+        count: readings.len() / robot.reading_names().len().max(1),
         coverage: coverage(&session, &rows),
         identifiability,
         expected,
@@ -155,8 +163,20 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
         );
         return Err(Error::new(ErrorKind::Measurement, message));
     }
-    for (row, readings) in readings.chunks_exact(width).enumerate() {
-        let pose = robot.forward_kinematics(readings);
+    let pairs = pairs(robot);
+    if pairs.is_empty() {
+        let message =
+            "found instruments and targets on the same links only, expected joints between them: name others";
+        return Err(Error::new(ErrorKind::Problem, message));
+    }
+    let planned_rows = readings.chunks_exact(width).enumerate();
+    let planned_rows =
+        planned_rows.flat_map(|(row, readings)| pairs.iter().map(move |&pair| (row, readings, pair)));
+    for (row, readings, (instrument, target)) in planned_rows {
+        let pose = match (instrument, target) {
+            (None, None) => robot.forward_kinematics(readings),
+            pair => seen(robot, &Pose::identity(), pair, readings),
+        };
         let as_pose = match planned.kind {
             Kind::Pose => true,
             Kind::Point => false,
@@ -167,7 +187,18 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
         } else {
             Measurement::Point(PointMeasurement { position: pose.translation })
         };
-        data.push(readings, None, measurement)?;
+        let station = instrument.map_or(0, |mount| data.station_index(Some(&mount.name)));
+        let target = data.target_index(target.map(|mount| mount.name.as_str()));
+        let observation = Observation {
+            target,
+            station,
+            from: None,
+            measurement,
+            stated: ByQuantity::default(),
+            set: None,
+            source: Source::default(),
+        };
+        data.push_observation(readings, observation)?;
     }
     Ok(data)
 }

@@ -79,9 +79,9 @@ mod tests {
     use crate::estimate::{Packed, Session};
     use crate::lanes::simd_levels;
     use crate::lie::{Pose, rotation};
-    use crate::reference;
     use crate::measurement::{Dataset, Measurement, Noise, PointMeasurement, Quantity};
     use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
+    use crate::reference;
     use crate::robot::Robot;
     use crate::simulate::{Kind, Simulation, elbow, gantry, scara};
     use crate::solve::LeastSquares;

@@ -12,6 +12,8 @@ mod other_causes;
 mod setup;
 mod spectrum;
 mod subspace;
+mod unseen;
+mod ways;
 
 pub use coverage::{JointCoverage, coverage};
 pub(crate) use coverage::{inside, ranges};
@@ -23,3 +25,4 @@ pub use observability::Observability;
 pub use setup::Setup;
 pub(crate) use spectrum::PLAUSIBLE;
 pub use spectrum::Spectrum;
+pub use ways::{Way, ways};

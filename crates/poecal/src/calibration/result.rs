@@ -12,7 +12,7 @@ use crate::forensics::Diagnosis;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
 use crate::problem::Prior;
-use crate::robot::Robot;
+use crate::robot::{Mount, Robot};
 use crate::solve;
 use crate::threads;
 
@@ -32,7 +32,7 @@ pub struct CalibratedTarget {
     pub name: Option<String>,
     /// Whether its orientation was measured; otherwise only the position means something.
     pub is_frame: bool,
-    /// `tip_from_target` in the calibrated robot.
+    /// `tip_from_target` in the calibrated robot; of a target of its `mounted`, which is on a body of its own, at zero joint values.
     pub tip_from_target: Pose,
 }
 
@@ -41,7 +41,7 @@ pub struct CalibratedTarget {
 pub struct CalibratedStation {
     /// Its name, if the measurements name it.
     pub name: Option<String>,
-    /// `base_from_device` there.
+    /// `base_from_device` there; of an instrument on the robot, at zero joint values.
     pub base_from_device: Pose,
     /// Noise of its rows that state none.
     pub noise: Noise,
@@ -63,7 +63,8 @@ pub struct CalibratedStation {
 pub struct Calibration {
     /// The nominal robot.
     pub nominal: Robot,
-    /// The calibrated robot. The single unnamed target is its tip.
+    /// The calibrated robot. The single unnamed target is its tip; targets and instruments of the model that were used are at their
+    /// calibrated places.
     pub robot: Robot,
     /// The targets.
     pub targets: Vec<CalibratedTarget>,
@@ -124,7 +125,11 @@ impl Calibration {
     /// The calibrated robot with the named targets in its tip frame, as written to model files.
     #[must_use]
     pub fn robot_with_targets(&self) -> Robot {
-        let named = |target: &CalibratedTarget| Some((target.name.clone()?, target.tip_from_target));
+        let is_mounted = |name: &str| self.robot.mounted.iter().any(|mount| mount.name == name);
+        let named = |target: &CalibratedTarget| {
+            let name = target.name.clone().filter(|name| !is_mounted(name))?;
+            Some((name, target.tip_from_target))
+        };
         Robot { targets: self.targets.iter().filter_map(named).collect(), ..self.robot.clone() }
     }
 
@@ -155,13 +160,14 @@ pub(super) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise)
     let of = |station| CalibratedStation {
         noise: session.usual_noise(station, noise),
         name: data.stations.get(station).cloned().flatten(),
-        base_from_device: estimate.device(station).inverse(),
+        base_from_device: estimate.device_at_zero(station).inverse(),
     };
     (0..data.station_count()).map(of).collect()
 }
 
 /// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (measured as points, with its
-/// nominal orientation to the last joint); otherwise the tip keeps its nominal pose on the last joint.
+/// nominal orientation to the last joint), and so does a target, or an instrument, of the model at its very place; otherwise the tip keeps its nominal pose on
+/// the last joint. Targets and instruments of the model with bodies of their own stay on these.
 pub(super) fn place_tip(
     robot: &Robot,
     data: &Dataset,
@@ -169,8 +175,10 @@ pub(super) fn place_tip(
     estimate: &Estimate,
 ) -> (Robot, Vec<CalibratedTarget>) {
     let mut calibrated = robot.with_screws(&estimate.screws());
-    let last_joint = calibrated.joints.last().map_or_else(Pose::identity, |joint| joint.frame);
-    calibrated.home = last_joint * robot.last_joint_from_tip();
+    let last_joint = calibrated.tip_body().joint().and_then(|joint| calibrated.joints.get(joint));
+    calibrated.home =
+        last_joint.map_or_else(Pose::identity, |joint| joint.frame) * robot.last_joint_from_tip();
+    place_mounts(robot, &mut calibrated, data, frames, estimate);
     for (target, name) in data.targets.iter().enumerate() {
         if name.is_none() {
             let seen = estimate.base_from_target[target];
@@ -195,4 +203,38 @@ pub(super) fn place_tip(
         })
         .collect();
     (calibrated, targets)
+}
+
+/// Puts the measured targets and the instruments of the model to their calibrated places. A target at the tip moves it too, or else an
+/// instrument there.
+fn place_mounts(robot: &Robot, calibrated: &mut Robot, data: &Dataset, frames: &[bool], estimate: &Estimate) {
+    // The unnamed target is the tip.
+    let mut is_placed = data.targets.iter().any(Option::is_none);
+    for (target, name) in data.targets.iter().enumerate() {
+        let known = calibrated.mounted.iter().position(|mount| Some(&mount.name) == name.as_ref());
+        if let Some(index) = known {
+            let Mount { name, body, .. } = calibrated.mounted[index].clone();
+            let seen = estimate.base_from_target[target];
+            let nominal = calibrated.base_from(&calibrated.mounted[index]);
+            let rotation = if frames[target] { seen.rotation } else { nominal.rotation };
+            let pose = Pose::new(rotation, seen.translation);
+            if !is_placed && robot.is_at_tip(&robot.mounted[index]) {
+                is_placed = true;
+                calibrated.home = pose;
+            }
+            calibrated.mounted[index] = calibrated.mount(&name, body, &pose);
+        }
+    }
+    for (station, name) in data.stations.iter().enumerate() {
+        let known = calibrated.instruments.iter().position(|mount| Some(&mount.name) == name.as_ref());
+        if let Some(index) = known {
+            let Mount { name, body, .. } = calibrated.instruments[index].clone();
+            let pose = estimate.device_at_zero(station).inverse();
+            if !is_placed && robot.is_at_tip(&robot.instruments[index]) {
+                is_placed = true;
+                calibrated.home = pose;
+            }
+            calibrated.instruments[index] = calibrated.mount(&name, body, &pose);
+        }
+    }
 }

@@ -216,8 +216,8 @@ impl Estimate {
         estimate
     }
 
-    /// The same robot without joint offsets: the offset of joint i moves all later screws, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for j > i, and the
-    /// targets. Exact; no prediction changes (lou2009 equations 11 to 15, theory.md §3 (9a)).
+    /// The same robot without joint offsets: the offset of joint i moves all screws beyond it, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for j > i, and the
+    /// targets and instruments there. Exact; no prediction changes (lou2009 equations 11 to 15, theory.md §3 (9a)).
     #[must_use]
     pub fn without_offsets(&self) -> Self {
         if self.offsets().iter().all(|&offset| offset == 0.0) {

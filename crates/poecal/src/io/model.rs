@@ -1,12 +1,13 @@
 //! Robot models of any form: choice of the reader, and conversion.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::calibration_file::CalibrationFile;
 use super::proof::Difference;
 use super::urdf::{self, ChainSelection, UrdfDocument};
 use super::{looks_like, robot_toml, source_text};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::robot::Robot;
 
 /// Source of a model.
@@ -83,7 +84,7 @@ impl Model {
     /// Reads a robot model, with the form by the file's extension, else by the beginning of the text. `selection` is for URDF.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] if the file cannot be read; [`ErrorKind::Option`] if a chain is selected in a model that has only one;
+    /// [`ErrorKind::File`] if the file cannot be read; [`ErrorKind::Option`] if a chain is selected in a model that has only one, or an instrument or a target that it does not have;
     /// otherwise as the reader of its form.
     pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
@@ -109,9 +110,10 @@ impl Model {
     pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
         if looks_like_json(path, text) {
-            refuse_selection(path, selection)?;
+            refuse_chain(path, selection)?;
             let file = CalibrationFile::parse(text, path)?;
             let robot = file.robot().map_err(|error| error.in_file(path))?;
+            check_mounts(path, selection, &robot)?;
             let source = ModelSource::Calibration(Box::new(file));
             return Ok(Model { robot, source, path: path.to_path_buf() });
         }
@@ -124,8 +126,10 @@ impl Model {
                 (urdf.robot().clone(), ModelSource::Urdf(Box::new(urdf)))
             }
             ModelFormat::Toml => {
-                refuse_selection(path, selection)?;
-                (robot_toml::parse(text, path)?, ModelSource::Toml)
+                refuse_chain(path, selection)?;
+                let robot = robot_toml::parse(text, path)?;
+                check_mounts(path, selection, &robot)?;
+                (robot, ModelSource::Toml)
             }
         };
         Ok(Model { robot, source, path: path.to_path_buf() })
@@ -137,12 +141,36 @@ fn looks_like_json(path: &Path, text: &str) -> bool {
     named || text.trim_start_matches('\u{feff}').trim_start().starts_with('{')
 }
 
-fn refuse_selection(path: &Path, selection: &ChainSelection) -> Result<()> {
-    if *selection == ChainSelection::default() {
+fn refuse_chain(path: &Path, selection: &ChainSelection) -> Result<()> {
+    if selection.base_link.is_none() && selection.tip_link.is_none() {
         return Ok(());
     }
     let message = "found --base-link or --tip-link, expected neither: this model has one chain only";
     Err(Error::new(ErrorKind::Option, message).in_file(path))
+}
+
+/// Refuses instruments and targets that a model without links does not have itself.
+fn check_mounts(path: &Path, selection: &ChainSelection, robot: &Robot) -> Result<()> {
+    let instruments: Vec<&str> = robot.instruments.iter().map(|mount| mount.name.as_str()).collect();
+    let mounted = robot.mounted.iter().map(|mount| mount.name.as_str());
+    let targets: Vec<&str> = robot.targets.iter().map(|(name, _)| name.as_str()).chain(mounted).collect();
+    for (what, named, known) in
+        [("instrument", &selection.instruments, &instruments), ("target", &selection.targets, &targets)]
+    {
+        let Some((name, link)) = named.iter().find(|(name, _)| !known.contains(&name.as_str())) else {
+            continue;
+        };
+        let known = if known.is_empty() {
+            format!("it names no {what}")
+        } else {
+            format!("it has {}", first_few(known))
+        };
+        let message = format!(
+            "found {what} `{name}` on link `{link}`, expected {what}s that the model names itself, since links are those of a URDF: {known}"
+        );
+        return Err(Error::new(ErrorKind::Option, message).in_file(path));
+    }
+    Ok(())
 }
 
 /// A model in another form.
@@ -180,11 +208,7 @@ pub fn convert(model: &Model, to: ModelFormat) -> Result<Converted> {
     let robot = &model.robot;
     let (converted, again) = match to {
         ModelFormat::Urdf => {
-            let urdf = urdf::write_new(robot)?;
-            let selection = ChainSelection {
-                base_link: Some(robot.base_name.clone()),
-                tip_link: Some(robot.tip_name.clone()),
-            };
+            let (urdf, selection) = urdf::written_new(robot)?;
             let again = UrdfDocument::parse(&urdf.text, &model.path, &selection);
             (urdf, again.map(|document| document.robot().clone()))
         }
@@ -216,7 +240,13 @@ fn export(model: &Model, message: String) -> Error {
 
 /// Compares the forward kinematics of a model and of its text read back.
 fn verify(model: &Model, again: &Robot) -> Result<()> {
-    if again.reading_names() != model.robot.reading_names() {
+    let names = |robot: &Robot| robot.reading_names().into_iter().collect::<BTreeSet<_>>();
+    let is_same = if model.robot.is_serial() {
+        again.reading_names() == model.robot.reading_names()
+    } else {
+        names(again) == names(&model.robot)
+    };
+    if !is_same {
         return Err(export(model, "the converted model has other joints, expected the same".to_owned()));
     }
     let Difference { position_m, rotation_rad } = Difference::of(&model.robot, again, 1000);

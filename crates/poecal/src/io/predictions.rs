@@ -1,5 +1,8 @@
 //! Predicted poses as CSV.
 
+use std::borrow::Cow;
+
+use super::calibration_file::BodyEntry;
 use super::csv_text::cell;
 use super::measurements::JointsTable;
 use super::model::{Model, ModelSource};
@@ -8,6 +11,7 @@ use crate::analysis::inside;
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::estimate::Packed;
 use crate::lie::Pose;
+use crate::robot::Robot;
 use crate::uncertainty::PredictedError;
 
 /// Frame of predicted poses.
@@ -112,13 +116,16 @@ pub fn predicted(
     target: Option<&str>,
     with_uncertainty: bool,
 ) -> Result<Predicted> {
-    let tip_from_target = target.map_or(Ok(Pose::identity()), |name| tip_from_target(model, name))?;
+    let (robot, tip_from_target) = match target {
+        None => (Cow::Borrowed(&model.robot), Pose::identity()),
+        Some(name) => robot_with_target(model, name)?,
+    };
     let frame_from_base = match frame {
         PredictionFrame::Base => Pose::identity(),
         PredictionFrame::Device => device_from_base(model)?,
     };
     let doubts = if with_uncertainty { Some(doubts(model, readings, target)?) } else { None };
-    let poses = model.robot.forward_kinematics_of(readings);
+    let poses = robot.forward_kinematics_of(readings);
     let poses = poses.map(|base_from_tip| frame_from_base * base_from_tip * tip_from_target).collect();
     Ok(Predicted { poses, doubts })
 }
@@ -142,12 +149,17 @@ fn doubts(model: &Model, readings: &[f64], target: Option<&str>) -> Result<Vec<(
     Ok(errors.into_iter().zip(readings.chunks_exact(width.max(1)).map(sampled)).collect())
 }
 
-fn tip_from_target(model: &Model, name: &str) -> Result<Pose> {
-    let targets = &model.robot.targets;
-    if let Some((_, pose)) = targets.iter().find(|(known, _)| known == name) {
-        return Ok(*pose);
+/// The robot with its tip on the body of a target, and the target in that tip.
+fn robot_with_target<'a>(model: &'a Model, name: &str) -> Result<(Cow<'a, Robot>, Pose)> {
+    let robot = &model.robot;
+    if let Some((_, pose)) = robot.targets.iter().find(|(known, _)| known == name) {
+        return Ok((Cow::Borrowed(robot), *pose));
     }
-    let names: Vec<&str> = targets.iter().map(|(known, _)| known.as_str()).collect();
+    if let Some(mount) = robot.mounted.iter().find(|mount| mount.name == name) {
+        return Ok((Cow::Owned(robot.with_tip_at(mount)), Pose::identity()));
+    }
+    let mounted = robot.mounted.iter().map(|mount| mount.name.as_str());
+    let names: Vec<&str> = robot.targets.iter().map(|(known, _)| known.as_str()).chain(mounted).collect();
     let expected = match nearest(name, names.iter().copied()) {
         Some(near) => format!("expected one of {}; did you mean `{near}`?", first_few(&names)),
         None if !names.is_empty() => format!("expected one of {}", first_few(&names)),
@@ -160,6 +172,16 @@ fn tip_from_target(model: &Model, name: &str) -> Result<Pose> {
 fn device_from_base(model: &Model) -> Result<Pose> {
     match &model.source {
         ModelSource::Calibration(file) => {
+            let first = file.stations.first().and_then(|station| station.instrument.as_ref());
+            let is_moved = |name: &&String| {
+                file.instruments.get(*name).is_some_and(|instrument| instrument.on != BodyEntry::Base)
+            };
+            if let Some(name) = first.filter(is_moved) {
+                let message = format!(
+                    "found the instrument `{name}` on the robot, expected one beside it for --frame device: use --frame base"
+                );
+                return Err(Error::new(ErrorKind::Option, message).in_file(&model.path));
+            }
             let base_from_device = file.base_from_device().map_err(|error| error.in_file(&model.path))?;
             Ok(base_from_device.inverse())
         }

@@ -1,5 +1,7 @@
 //! Comparison of two robots' forward kinematics on random configurations.
 
+use std::borrow::Cow;
+
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
@@ -7,7 +9,7 @@ use crate::lie::{Pose, rotation};
 use crate::robot::Robot;
 use crate::simulate::Configurations;
 
-/// Largest difference of two robots' tip poses.
+/// Largest difference of two robots' poses: of the tip, and of instruments and targets with a body of their own.
 ///
 /// ```
 /// let none = poecal::io::Difference { position_m: 0.0, rotation_rad: 0.0 };
@@ -15,14 +17,14 @@ use crate::simulate::Configurations;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Of the tip's position, metres.
+    /// Of the position, metres.
     pub position_m: f64,
-    /// Of the tip's orientation, radians.
+    /// Of the orientation, radians.
     pub rotation_rad: f64,
 }
 
 impl Difference {
-    /// Compares forward kinematics on `count` random configurations within the first robot's limits.
+    /// Compares forward kinematics, of instruments and targets by their names, on `count` random configurations within the first robot's limits.
     #[must_use]
     pub fn of(robot: &Robot, other: &Robot, count: usize) -> Self {
         Reference::new(robot, count).difference(other)
@@ -35,12 +37,13 @@ impl Difference {
     }
 }
 
-/// A robot's tip poses on random configurations, for comparison with any number of robots.
+/// A robot's poses on random configurations, for comparison with any number of robots.
 pub(super) struct Reference<'a> {
     robot: &'a Robot,
     /// Readings of all configurations.
     readings: Vec<f64>,
-    poses: Vec<Pose>,
+    /// Of the tip, then of instruments and targets.
+    poses: Vec<Vec<Pose>>,
 }
 
 impl<'a> Reference<'a> {
@@ -50,7 +53,10 @@ impl<'a> Reference<'a> {
         let random = Configurations::new(robot);
         let mut readings = Vec::new();
         (0..count).for_each(|_| readings.extend(random.random(&mut generator)));
-        let poses = robot.forward_kinematics_of(&readings).collect();
+        let mounts = robot.instruments.iter().chain(&robot.mounted);
+        let tip = robot.forward_kinematics_of(&readings).collect();
+        let further = mounts.map(|mount| robot.with_tip_at(mount).forward_kinematics_of(&readings).collect());
+        let poses = std::iter::once(tip).chain(further).collect();
         Reference { robot, readings, poses }
     }
 
@@ -59,16 +65,49 @@ impl<'a> Reference<'a> {
         std::ptr::eq(self.robot, robot)
     }
 
-    /// Largest difference of the other robot's tip poses from these.
+    /// Largest difference of the other robot's poses from these; not a number if it lacks a joint, an instrument or a target.
     pub(super) fn difference(&self, other: &Robot) -> Difference {
+        let none = Difference { position_m: f64::NAN, rotation_rad: f64::NAN };
+        let Some(readings) = self.readings_of(other) else { return none };
         let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
-        let poses = other.forward_kinematics_of(&self.readings);
-        for (a, b) in self.poses.iter().zip(poses) {
-            largest.position_m = larger(largest.position_m, (a.translation - b.translation).norm());
-            let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
-            largest.rotation_rad = larger(largest.rotation_rad, turn);
+        let mut compare = |poses: &[Pose], other: &Robot| {
+            for (a, b) in poses.iter().zip(other.forward_kinematics_of(&readings)) {
+                largest.position_m = larger(largest.position_m, (a.translation - b.translation).norm());
+                let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
+                largest.rotation_rad = larger(largest.rotation_rad, turn);
+            }
+        };
+        let mut poses = self.poses.iter();
+        if let Some(tip) = poses.next() {
+            compare(tip, other);
+        }
+        for (mounts, others) in
+            [(&self.robot.instruments, &other.instruments), (&self.robot.mounted, &other.mounted)]
+        {
+            for mount in mounts {
+                let Some(found) = others.iter().find(|other| other.name == mount.name) else { return none };
+                if let Some(poses) = poses.next() {
+                    compare(poses, &other.with_tip_at(found));
+                }
+            }
         }
         largest
+    }
+
+    /// The readings in the other robot's order, by their names; none if it has others.
+    fn readings_of(&self, other: &Robot) -> Option<Cow<'_, [f64]>> {
+        let (ours, theirs) = (self.robot.reading_names(), other.reading_names());
+        if ours == theirs || self.robot.is_serial() {
+            return Some(Cow::Borrowed(&self.readings));
+        }
+        let at = |name: &String| ours.iter().position(|own| own == name);
+        let places = theirs.iter().map(at).collect::<Option<Vec<usize>>>()?;
+        if places.len() != ours.len() {
+            return None;
+        }
+        let rows = self.readings.chunks_exact(ours.len().max(1));
+        let sorted = rows.flat_map(|row| places.iter().filter_map(|&place| row.get(place).copied()));
+        Some(Cow::Owned(sorted.collect()))
     }
 }
 

@@ -9,7 +9,7 @@ pub use prediction::TipError;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
-use crate::robot::{JointKind, Robot};
+use crate::robot::{Body, JointKind, Robot};
 use fit::{Comparison, OffsetState};
 use prediction::Predictions;
 
@@ -43,19 +43,25 @@ pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
         return Err(Error::new(ErrorKind::Option, message));
     }
     let mut equivalent = robot.clone();
-    let mut motion = Pose::identity();
-    for (joint, &offset) in equivalent.joints.iter_mut().zip(offsets) {
+    // Of each joint's link, from its place without offsets.
+    let mut motions: Vec<Pose> = Vec::with_capacity(offsets.len());
+    let of = |motions: &[Pose], body: Body| {
+        body.joint().and_then(|joint| motions.get(joint)).copied().unwrap_or_else(Pose::identity)
+    };
+    for (index, (joint, &offset)) in equivalent.joints.iter_mut().zip(offsets).enumerate() {
         if !offset.is_finite() {
             let message =
                 format!("found the offset {offset} of joint `{}`, expected a finite one", joint.name);
             return Err(Error::new(ErrorKind::Option, message));
         }
         let screw = joint.screw;
-        joint.screw = screw.transformed(&motion);
-        motion = (motion * screw.exp(offset)).orthonormalized();
+        let before = of(&motions, robot.body_before(index));
+        joint.screw = screw.transformed(&before);
+        let motion = (before * screw.exp(offset)).orthonormalized();
         joint.frame = (motion * joint.frame).orthonormalized();
+        motions.push(motion);
     }
-    equivalent.home = (motion * robot.home).orthonormalized();
+    equivalent.home = (of(&motions, robot.tip_body()) * robot.home).orthonormalized();
     Ok(equivalent)
 }
 
@@ -177,7 +183,7 @@ pub struct Explanation {
 /// (theory.md §8 (38b)). Offsets may be of any size.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] if the robots do not have the same joints: number, names in order, kinds and readings.
+/// [`ErrorKind::Option`] if the robots do not have the same joints (number, names in order, kinds and readings), or have branches.
 pub fn explain(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Result<Explanation> {
     check_same_joints(nominal, actual)?;
     let comparison = Comparison::new(nominal, actual, options);
@@ -223,6 +229,14 @@ fn remainder(
 
 fn check_same_joints(nominal: &Robot, actual: &Robot) -> Result<()> {
     let differ = |message: String| Err(Error::new(ErrorKind::Option, message));
+    for (robot, which) in [(nominal, "nominal"), (actual, "actual")] {
+        if !robot.is_serial() {
+            return differ(format!(
+                "found branches or joints beyond the tip in the {which} robot, expected a serial chain: offsets are explained from base to \
+                 tip, choose one chain with --base-link and --tip-link"
+            ));
+        }
+    }
     if nominal.joints.len() != actual.joints.len() {
         return differ(format!(
             "found an actual robot of {} joints, expected the {} of the nominal one: compare two models of one robot",

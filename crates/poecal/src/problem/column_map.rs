@@ -164,7 +164,8 @@ impl ColumnMap {
 
     fn add_target(&mut self, layout: &Layout) {
         for (parameter, places) in layout.parameters() {
-            if parameter.model().subject() != Subject::Target(self.sight.target) || self.plan.place.is_some() {
+            if parameter.model().subject() != Subject::Target(self.sight.target) || self.plan.place.is_some()
+            {
                 continue;
             }
             let first = self.shift_places.len();

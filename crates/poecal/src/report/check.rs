@@ -5,17 +5,18 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use super::sight::SightCheck;
 use super::table::{kinds_words, line, lines, robot_words};
 use crate::error::first_few;
 use crate::forensics::Diagnosis;
-use crate::io::calibration_file::PoseEntry;
+use crate::io::calibration_file::{BodyEntry, PoseEntry};
 use crate::io::measurements::{
     ColumnUnderstanding, DecimalSign, Dimension, FileUnderstanding, MeasurementFile, Separator, Unit,
     UnitSource,
 };
 use crate::io::model::{Model, ModelSource};
 use crate::measurement::Set;
-use crate::robot::{Joint, JointKind};
+use crate::robot::{Joint, JointKind, Mount, Robot};
 use crate::text::visible;
 
 /// Widest name of ours, and of a column, that the table of columns keeps on one line.
@@ -36,6 +37,9 @@ pub struct Check {
     files: Vec<FileUnderstanding>,
     sets: Option<SetCounts>,
     warnings: Vec<String>,
+    /// What sees what, of a robot with branches or with instruments and targets on named bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sight: Option<SightCheck>,
     /// Mistakes that the measurements show.
     diagnosis: Vec<Diagnosis>,
     #[serde(skip)]
@@ -52,6 +56,11 @@ struct ModelCheck {
     joints: Vec<JointCheck>,
     base_from_tip_at_zero: PoseEntry,
     targets: Vec<TargetCheck>,
+    /// Targets with bodies of their own, and instruments on the robot.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    mounted: Vec<MountCheck>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    instruments: Vec<MountCheck>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,6 +74,9 @@ struct JointCheck {
     reading: String,
     multiplier: f64,
     offset: f64,
+    /// The body on which it stands, if that is not the link of the joint before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    on: Option<BodyEntry>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -105,16 +117,19 @@ impl Check {
                 name: robot.name.clone(),
                 base: robot.base_name.clone(),
                 tip: robot.tip_name.clone(),
-                joints: robot.joints.iter().map(JointCheck::of).collect(),
+                joints: robot.joints.iter().map(|joint| JointCheck::of(robot, joint)).collect(),
                 base_from_tip_at_zero: (&robot.home).into(),
                 targets: robot
                     .targets
                     .iter()
                     .map(|(name, pose)| TargetCheck { name: name.clone(), tip_from_target: pose.into() })
                     .collect(),
+                mounted: MountCheck::of(robot, &robot.mounted),
+                instruments: MountCheck::of(robot, &robot.instruments),
             },
             files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
             sets: measurements.map(SetCounts::of),
+            sight: SightCheck::of(robot, measurements.map(|file| &file.data)),
             warnings: measurements.map_or_else(Vec::new, |file| file.warnings.clone()),
             diagnosis: diagnosis.to_vec(),
             robot_words: robot_words(robot),
@@ -132,7 +147,13 @@ impl Check {
         line(&mut out, "tip at zero", &pose_words(&model.base_from_tip_at_zero));
         let words =
             |it: &TargetCheck| format!("{}: {} in the tip frame", it.name, pose_words(&it.tip_from_target));
-        lines(&mut out, "targets", model.targets.iter().map(words));
+        let targets = model.targets.iter().map(words);
+        lines(&mut out, "targets", targets.chain(model.mounted.iter().map(MountCheck::words)));
+        lines(&mut out, "instruments", model.instruments.iter().map(MountCheck::words));
+        if let Some(sight) = &self.sight {
+            lines(&mut out, "ways", sight.words());
+            lines(&mut out, "unseen", sight.unseen_words());
+        }
         for file in &self.files {
             out.push('\n');
             file_text(&mut out, file);
@@ -147,8 +168,44 @@ impl Check {
     }
 }
 
+/// An instrument or a target on a body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct MountCheck {
+    name: String,
+    on: BodyEntry,
+    base_from_frame_at_zero: PoseEntry,
+}
+
+impl MountCheck {
+    fn of(robot: &Robot, mounts: &[Mount]) -> Vec<Self> {
+        let of = |mount: &Mount| MountCheck {
+            name: mount.name.clone(),
+            on: BodyEntry::of(robot, mount.body),
+            base_from_frame_at_zero: (&robot.base_from(mount)).into(),
+        };
+        mounts.iter().map(of).collect()
+    }
+
+    fn words(&self) -> String {
+        format!(
+            "{}: on {}, at zero {} in the base",
+            self.name,
+            body_words(&self.on),
+            pose_words(&self.base_from_frame_at_zero)
+        )
+    }
+}
+
+/// A body in words.
+fn body_words(body: &BodyEntry) -> String {
+    match body {
+        BodyEntry::Base => "the base".to_owned(),
+        BodyEntry::LinkOf(joint) => format!("the link of {joint}"),
+    }
+}
+
 impl JointCheck {
-    fn of(joint: &Joint) -> Self {
+    fn of(robot: &Robot, joint: &Joint) -> Self {
         let point = match joint.kind {
             JointKind::Revolute => Some(joint.screw.nearest_point(&joint.frame.translation).into()),
             JointKind::Prismatic => None,
@@ -162,6 +219,7 @@ impl JointCheck {
             reading: joint.reading.name.clone(),
             multiplier: joint.reading.multiplier,
             offset: joint.reading.offset,
+            on: joint.stands_on.map(|body| BodyEntry::of(robot, body)),
         }
     }
 
@@ -187,6 +245,9 @@ impl JointCheck {
                 "; value = {} * reading of {} + {offset} {unit}",
                 self.multiplier, self.reading
             );
+        }
+        if let Some(on) = &self.on {
+            let _ = write!(words, "; on {}", body_words(on));
         }
         words
     }

@@ -8,6 +8,7 @@ mod outliers;
 mod page;
 #[doc(hidden)]
 pub mod plot;
+mod sight;
 mod summary;
 #[doc(hidden)]
 pub mod table;

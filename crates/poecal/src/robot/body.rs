@@ -8,6 +8,9 @@ use super::Robot;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
 
+/// Frames that differ by less (metres, or of rotation matrices) are one.
+const SAME: f64 = 1e-12;
+
 /// A body: the base, or the link that a joint moves.
 ///
 /// ```
@@ -92,6 +95,44 @@ impl Robot {
             Some(joint) => joint.frame * mount.pose,
             None => mount.pose,
         }
+    }
+
+    /// A frame on a body, from its pose in the base at zero joint values.
+    ///
+    /// ```
+    /// use poecal::{lie::Pose, robot::Body};
+    /// let robot = poecal::simulate::elbow();
+    /// let mount = robot.mount("tool", robot.tip_body(), &robot.home);
+    /// assert!((robot.base_from(&mount).translation - robot.home.translation).norm() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn mount(&self, name: &str, body: Body, base_from_mount: &Pose) -> Mount {
+        let pose = match body.joint().and_then(|joint| self.joints.get(joint)) {
+            Some(joint) => joint.frame.inverse() * *base_from_mount,
+            None => *base_from_mount,
+        };
+        Mount { name: name.to_owned(), body, pose }
+    }
+
+    /// The same robot with its tip at an instrument or a target.
+    ///
+    /// ```
+    /// use poecal::{lie::Pose, robot::Body};
+    /// let robot = poecal::simulate::elbow();
+    /// let on_the_forearm = robot.with_tip_at(&robot.mount("marker", Body::Link(2), &Pose::identity()));
+    /// assert_eq!(on_the_forearm.joints_to(on_the_forearm.tip_body()), [0, 1, 2]);
+    /// ```
+    #[must_use]
+    pub fn with_tip_at(&self, mount: &Mount) -> Self {
+        Robot { tip: Some(mount.body), home: self.base_from(mount), ..self.clone() }
+    }
+
+    /// Whether a target stands where the tip is.
+    pub(crate) fn is_at_tip(&self, mount: &Mount) -> bool {
+        let place = self.base_from(mount);
+        let apart = (place.translation - self.home.translation).amax();
+        let turned = (place.rotation - self.home.rotation).amax();
+        mount.body == self.tip_body() && apart < SAME && turned < SAME
     }
 
     /// Where a target stands, by its name: its body, and `base_from_target` at zero joint values. A target that the model does not name is at

@@ -13,10 +13,12 @@ use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
-use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
-use crate::robot::Robot;
+use crate::measurement::{
+    ByQuantity, Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Source,
+};
+use crate::robot::{Body, Mount, Robot};
 
 /// Kind of the simulated measurements.
 ///
@@ -120,10 +122,11 @@ pub struct Simulated {
 
 impl Simulation {
     /// Simulates a robot that deviates from `nominal`, measured in random configurations within its limits (±π and ±0.5 m where
-    /// there are none).
+    /// there are none). Each instrument on the robot sees each target with a body of its own in turn; without instruments a device beside
+    /// the robot does, and without such targets they see the tip.
     ///
     /// # Errors
-    /// Does not fail for a finite robot.
+    /// [`ErrorKind::Problem`] if instruments and targets are on the same links only; otherwise does not fail for a finite robot.
     pub fn run(&self, nominal: &Robot, kind: Kind) -> Result<Simulated> {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         let actual = self.perturbed(nominal, &mut generator);
@@ -133,7 +136,7 @@ impl Simulation {
     /// Measures a given actual robot.
     ///
     /// # Errors
-    /// Does not fail for a finite robot.
+    /// [`ErrorKind::Problem`] if instruments and targets are on the same links only; otherwise does not fail for a finite robot.
     pub fn measure(
         &self,
         nominal: &Robot,
@@ -154,7 +157,7 @@ impl Simulation {
     /// Further configurations of a simulated session, free of noise, to judge the predictions of a calibration.
     ///
     /// # Errors
-    /// Does not fail for a finite robot.
+    /// [`ErrorKind::Problem`] if instruments and targets are on the same links only; otherwise does not fail for a finite robot.
     pub fn held_out(&self, made: &Simulated, kind: Kind, count: usize) -> Result<Dataset> {
         // Another stream of the same seed, so that these rows do not depend on how many were measured.
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
@@ -173,9 +176,18 @@ impl Simulation {
     ) -> Result<Dataset> {
         let mut data = Dataset::new(nominal.reading_names());
         let configurations = Configurations::new(nominal);
+        let pairs = pairs(actual);
+        if pairs.is_empty() {
+            let message = "found instruments and targets on the same links only, expected joints between them: name others";
+            return Err(Error::new(ErrorKind::Problem, message));
+        }
         for row in 0..self.count {
             let readings = configurations.random(generator);
-            let seen = *device_from_base * actual.forward_kinematics(&readings);
+            let (instrument, target) = pairs.get(row % pairs.len().max(1)).copied().unwrap_or_default();
+            let seen = match (instrument, target) {
+                (None, None) => *device_from_base * actual.forward_kinematics(&readings),
+                _ => seen(actual, device_from_base, (instrument, target), &readings),
+            };
             let noise = random::normal_vector(generator) * self.noise_position_m;
             let turn = random::normal_vector(generator) * self.noise_rotation_rad;
             let position = seen.translation + noise;
@@ -190,12 +202,25 @@ impl Simulation {
             } else {
                 Measurement::Point(PointMeasurement { position })
             };
-            data.push(&readings, None, measurement)?;
+            let (target, station) = (
+                data.target_index(target.map(|mount| mount.name.as_str())),
+                instrument.map_or(0, |mount| data.station_index(Some(&mount.name))),
+            );
+            let observation = Observation {
+                target,
+                station,
+                from: None,
+                measurement,
+                stated: ByQuantity::default(),
+                set: None,
+                source: Source::default(),
+            };
+            data.push_observation(&readings, observation)?;
         }
         Ok(data)
     }
 
-    /// A robot whose every axis, and tip, is turned and shifted by the stated amounts in random directions, about the joint's own
+    /// A robot whose every axis, tip, instrument and target is turned and shifted by the stated amounts in random directions, about its own
     /// origin.
     pub fn perturbed(&self, nominal: &Robot, generator: &mut ChaCha8Rng) -> Robot {
         let mut motion_about = |point: &Vector3<f64>| {
@@ -210,7 +235,53 @@ impl Simulation {
             .collect();
         let mut actual = nominal.with_screws(&screws);
         actual.home = motion_about(&nominal.home.translation) * nominal.home;
+        let mut moved = |mount: &Mount| {
+            let place = actual.base_from(mount);
+            let motion = motion_about(&place.translation);
+            actual.mount(&mount.name, mount.body, &(motion * place))
+        };
+        let mounted: Vec<Mount> = actual.mounted.iter().map(&mut moved).collect();
+        let instruments: Vec<Mount> = actual.instruments.iter().map(&mut moved).collect();
+        (actual.mounted, actual.instruments) = (mounted, instruments);
+        // A target at the tip is the tip, or else an instrument there.
+        let at_tip = |mounts: &[Mount]| mounts.iter().position(|mount| nominal.is_at_tip(mount));
+        if let Some(at) = at_tip(&nominal.mounted) {
+            actual.home = actual.base_from(&actual.mounted[at]);
+        } else if let Some(at) = at_tip(&nominal.instruments) {
+            actual.home = actual.base_from(&actual.instruments[at]);
+        }
         actual.name = format!("{}_actual", nominal.name);
         actual
     }
+}
+
+/// Pairs of an instrument on the robot and a target with a body of its own; `None` is the device beside the robot, and the tip. Nothing if both
+/// are all there is. Instruments do not see targets on their own bodies.
+pub(crate) fn pairs(robot: &Robot) -> Vec<(Option<&Mount>, Option<&Mount>)> {
+    let some_or_none = |mounts: &'_ [Mount]| mounts.is_empty().then_some(None);
+    let instruments =
+        || some_or_none(&robot.instruments).into_iter().chain(robot.instruments.iter().map(Some));
+    let targets = || some_or_none(&robot.mounted).into_iter().chain(robot.mounted.iter().map(Some));
+    let body = |target: Option<&Mount>| target.map_or_else(|| robot.tip_body(), |mount| mount.body);
+    let moves = |(instrument, target): &(Option<&Mount>, Option<&Mount>)| {
+        instrument.map_or(Body::Base, |mount| mount.body) != body(*target)
+    };
+    instruments()
+        .flat_map(|instrument| targets().map(move |target| (instrument, target)))
+        .filter(moves)
+        .collect()
+}
+
+/// `instrument_from_target`; without an instrument, as the device beside the robot sees it.
+pub(crate) fn seen(
+    robot: &Robot,
+    device_from_base: &Pose,
+    (instrument, target): (Option<&Mount>, Option<&Mount>),
+    readings: &[f64],
+) -> Pose {
+    let values = robot.joint_values(readings);
+    let base_from = |mount: &Mount| robot.motion_of(mount.body, &values) * robot.base_from(mount);
+    let base_from_target = target.map_or_else(|| robot.forward_kinematics(readings), base_from);
+    let instrument_from_base = instrument.map_or(*device_from_base, |mount| base_from(mount).inverse());
+    instrument_from_base * base_from_target
 }

@@ -1,8 +1,8 @@
 //! The hot path against the general path: Gram matrix, gradient and cost on many problems, by every set of instructions that this
 //! machine has, and with any number of threads.
 
-use crate::reference;
 use crate::largest::larger;
+use crate::reference;
 use crate::trials::some;
 use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, fit_screws};
@@ -197,7 +197,8 @@ fn both_paths_agree() {
         for kind in [Kind::Pose, Kind::Point, Kind::Mixed] {
             for case in some(cases()).iter().filter(|case| robot.joints.len() < 20 || case.rows < 100) {
                 let session = Session::new(&robot, kind, case);
-                let general = reference::normal(&session.problem(case, SimdLevel::BASELINE), &session.estimate);
+                let general =
+                    reference::normal(&session.problem(case, SimdLevel::BASELINE), &session.estimate);
                 for level in simd_levels() {
                     let problem = session.problem(case, level);
                     let fast = problem.normal(&session.estimate);

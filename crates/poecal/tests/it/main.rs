@@ -48,6 +48,7 @@ mod stations;
 mod statistics;
 mod suspicion;
 mod theory;
+mod tree_models;
 #[allow(dead_code)]
 #[path = "../trials/mod.rs"]
 mod trials;

@@ -37,9 +37,11 @@ pub(crate) fn for_rows(
         for ((e, [a, b, c, p, q, r]), channel) in residual.iter_mut().zip(sensitivity).zip(seen.channels()) {
             let sigma = noise[channel.quantity];
             *e /= sigma;
-            jacobian.extend(twists.iter().map(|(v, w)| {
-                (Vector3::new(a, b, c).dot(v) + Vector3::new(p, q, r).dot(w)) / sigma
-            }));
+            jacobian.extend(
+                twists
+                    .iter()
+                    .map(|(v, w)| (Vector3::new(a, b, c).dot(v) + Vector3::new(p, q, r).dot(w)) / sigma),
+            );
         }
         each(row, &jacobian, &residual[..seen.dim()]);
     }

@@ -1,6 +1,6 @@
 //! Data of a calibration file that its judgement needs.
 
-use super::CalibrationFile;
+use super::{CalibrationFile, MeasuredEntry};
 use crate::calibration::DeviceFrameKnowledge;
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
@@ -101,7 +101,12 @@ impl CalibrationFile {
                      column `target`, {refit}"
                 ),
                 Some(name) => match self.targets.get(name) {
-                    Some(target) if target.quaternion_xyzw.is_none() && is_frame => {
+                    Some(target) if target.measured() == MeasuredEntry::Nothing => {
+                        format!(
+                            "found measurements of target `{name}`, expected targets that the calibration measured: calibrate with some of it, {refit}"
+                        )
+                    }
+                    Some(target) if target.measured() == MeasuredEntry::Position && is_frame => {
                         format!(
                             "found orientations of target `{name}`, expected positions alone, since it is a point in the calibration: leave the orientation columns out, {refit}"
                         )

@@ -1,5 +1,6 @@
 //! `calibration.json`: a finished calibration as a versioned file, sufficient for predictions.
 
+mod bodies;
 mod judging;
 mod outliers;
 mod refusal;
@@ -8,6 +9,7 @@ mod schema;
 mod trust;
 mod validation;
 
+pub use bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
@@ -34,12 +36,6 @@ impl CalibrationFile {
     pub fn new(calibration: &Calibration, data: &Dataset, inputs: Inputs) -> Self {
         let robot = &calibration.robot;
         let joints = JointEntry::of_robot(robot, &calibration.nominal);
-        let targets = calibration.targets.iter().filter_map(|target| {
-            let name = target.name.clone()?;
-            let quaternion_xyzw = target.is_frame.then(|| target.tip_from_target.quaternion_xyzw());
-            let position_m = target.tip_from_target.translation.into();
-            Some((name, TargetEntry { position_m, quaternion_xyzw }))
-        });
         CalibrationFile {
             schema: SCHEMA.to_owned(),
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -90,7 +86,8 @@ impl CalibrationFile {
             },
             stations: StationEntry::of(calibration),
             tool: (&robot.last_joint_from_tip()).into(),
-            targets: targets.collect(),
+            targets: bodies::targets(calibration),
+            instruments: InstrumentEntry::of(robot, &robot.instruments),
         }
     }
 
@@ -120,35 +117,6 @@ impl CalibrationFile {
     /// [`ErrorKind::Export`] if a number is not finite.
     pub fn to_text(&self) -> Result<String> {
         json_text(self, "calibration")
-    }
-
-    /// The calibrated robot, with its named targets.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Model`] if the file holds no valid robot.
-    pub fn robot(&self) -> Result<Robot> {
-        self.robot_of(|joint| &joint.screw, &self.robot.base_from_tip_at_zero)
-    }
-
-    /// The nominal robot, with the calibrated targets.
-    ///
-    /// # Errors
-    /// As [`CalibrationFile::robot`].
-    pub fn nominal_robot(&self) -> Result<Robot> {
-        self.robot_of(|joint| &joint.nominal_screw, &self.robot.nominal_base_from_tip_at_zero)
-    }
-
-    fn robot_of(&self, screw: impl Fn(&JointEntry) -> &ScrewEntry, home: &PoseEntry) -> Result<Robot> {
-        let joints = self.joints.iter().map(|entry| entry.joint(screw(entry))).collect::<Result<Vec<_>>>()?;
-        let mut robot = Robot::new(&self.robot.name, joints, home.pose()?)?;
-        robot.base_name.clone_from(&self.robot.base_link);
-        robot.tip_name.clone_from(&self.robot.tip_link);
-        robot.targets = self
-            .targets
-            .iter()
-            .map(|(name, target)| Ok((name.clone(), target.pose()?)))
-            .collect::<Result<Vec<_>>>()?;
-        Ok(robot)
     }
 
     /// `base_from_device` of the calibration.
@@ -182,6 +150,7 @@ impl RobotEntry {
             tip_link: robot.tip_name.clone(),
             base_from_tip_at_zero: (&robot.home).into(),
             nominal_base_from_tip_at_zero: (&nominal.home).into(),
+            tip_on: robot.tip.map(|body| BodyEntry::of(robot, body)),
         }
     }
 }
@@ -230,10 +199,12 @@ impl JointEntry {
                 base_from_joint: (&joint.frame).into(),
                 limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
                 reading: joint.reading.clone(),
+                on: joint.stands_on.map(|body| BodyEntry::of(robot, body)),
             })
             .collect()
     }
 
+    /// The joint with one of its screws; on which body it stands is left open.
     fn joint(&self, screw: &ScrewEntry) -> Result<Joint> {
         let kind = self.kind;
         let twist = Twist::new(Vector3::from(screw.v_m), Vector3::from(screw.w));
@@ -267,17 +238,6 @@ impl JointEntry {
             tolerance: None,
             stands_on: None,
         })
-    }
-}
-
-impl TargetEntry {
-    /// `tip_from_target`; a point has the tip's orientation.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Model`] if the quaternion is far from unit.
-    pub fn pose(&self) -> Result<Pose> {
-        let quaternion_xyzw = self.quaternion_xyzw.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-        PoseEntry { position_m: self.position_m, quaternion_xyzw }.pose()
     }
 }
 

@@ -6,6 +6,7 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
@@ -82,8 +83,11 @@ pub struct CalibrationFile {
     pub stations: Vec<StationEntry>,
     /// Pose of the tip in the last joint's frame.
     pub tool: PoseEntry,
-    /// Named targets in the tip frame.
+    /// Named targets: in the tip frame, or on a body of their own (`on`).
     pub targets: BTreeMap<String, TargetEntry>,
+    /// Instruments on the robot.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub instruments: BTreeMap<String, InstrumentEntry>,
 }
 
 /// Inputs.
@@ -260,6 +264,9 @@ pub struct RobotEntry {
     pub base_from_tip_at_zero: PoseEntry,
     /// The same of the nominal model.
     pub nominal_base_from_tip_at_zero: PoseEntry,
+    /// Body of the tip, if it is not the last joint's link.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tip_on: Option<BodyEntry>,
 }
 
 /// A calibrated joint.
@@ -279,6 +286,9 @@ pub struct JointEntry {
     pub limits: Option<[f64; 2]>,
     /// The joint's value as a function of a reading.
     pub reading: Reading,
+    /// Body on which the joint stands, if that is not the link of the joint before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<BodyEntry>,
 }
 
 /// A screw, linear part first.
@@ -311,7 +321,7 @@ pub struct FrameEntry {
 pub struct StationEntry {
     /// Name of the instrument: from the column `instrument`, or the file with `--frames per-file`.
     pub instrument: Option<String>,
-    /// Pose of the device in the base.
+    /// Pose of the device in the base; of an instrument on the robot, at zero joint values.
     pub base_from_device: PoseEntry,
     /// Standard deviation of each component of its measurements that state none, if it differs from that of the first instrument.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -327,12 +337,18 @@ pub struct PoseEntry {
     pub quaternion_xyzw: [f64; 4],
 }
 
-/// A target in the tip frame; a point has no orientation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// A target; a point has no orientation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TargetEntry {
     /// Position, metres.
     pub position_m: [f64; 3],
-    /// Unit quaternion x, y, z, w, where orientation was measured.
+    /// Unit quaternion x, y, z, w, where orientation was measured; of a target on a body of its own, always.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub quaternion_xyzw: Option<[f64; 4]>,
+    /// Body of a target that is not in the tip frame: its pose is in the frame of the joint that moves the body, or in the base.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on: Option<BodyEntry>,
+    /// What was measured of such a target; the rest of its pose is the model's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measured: Option<MeasuredEntry>,
 }

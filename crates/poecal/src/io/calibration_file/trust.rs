@@ -7,11 +7,12 @@ use super::{CalibrationFile, PoseEntry};
 use crate::analysis::JointCoverage;
 use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Stand, Tree};
 use crate::measurement::Quantity::{Position, Rotation};
 use crate::measurement::{ByQuantity, Measured, Noise};
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::Layout;
+use crate::robot::{Body, Robot};
 use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
 use crate::unit::Unit;
 
@@ -295,6 +296,16 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Model`] if the calibration holds no valid uncertainty.
     pub fn uncertainty(&self, targets: &[Option<&str>]) -> Result<(Uncertainty, Vec<usize>)> {
+        self.uncertainty_from(targets, &self.robot()?, Body::Base)
+    }
+
+    /// The same of predictions from a body of the robot.
+    pub(super) fn uncertainty_from(
+        &self,
+        targets: &[Option<&str>],
+        robot: &Robot,
+        body: Body,
+    ) -> Result<(Uncertainty, Vec<usize>)> {
         let bad = |what: &str| {
             let message = format!(
                 "found {what}, expected the uncertainty that `poecal calibrate` writes: calibrate again with this version"
@@ -306,15 +317,15 @@ impl CalibrationFile {
                            calibrate with more configurations, or hold out fewer";
             Error::new(ErrorKind::Model, message)
         })?;
-        let robot = self.robot()?;
         let axes = entry.axes.iter().map(PoseEntry::pose).collect::<Result<Vec<_>>>()?;
         if axes.len() != robot.joints.len() {
             return Err(bad("another number of axes than of joints"));
         }
-        let mut estimate = Estimate::new(&robot, Vec::new(), self.base_from_device()?.inverse());
+        let tree = Tree::new(robot, vec![Stand::On(body)], Vec::new());
+        let mut estimate = Estimate::on(robot, tree, Vec::new(), self.base_from_device()?.inverse());
         estimate.base_from_axis = axes;
         let mut free = screw_axes(estimate.kinds());
-        let is_known = |name: &str| robot.targets.iter().any(|(known, _)| known == name);
+        let is_known = |name: &str| self.targets.contains_key(name);
         let place = robot.places_of_targets();
         for (index, (name, is_frame)) in entry.targets.iter().enumerate() {
             if !name.is_empty() && !is_known(name) {

@@ -6,6 +6,8 @@ use crate::calibration::{
 };
 use crate::error::Result;
 use crate::measurement::Dataset;
+use crate::robot::Body;
+use crate::uncertainty::Uncertainty;
 
 /// Ratio to the calibration's own error above which a device frame that is not refitted must have moved.
 const MOVED_DEVICE: f64 = 20.0;
@@ -33,7 +35,7 @@ impl CalibrationFile {
         // Refitted targets are not those of the calibration.
         let known = data.targets.iter().map(Option::as_deref).filter(|_| !refit_tool);
         let names: Vec<Option<&str>> = known.collect();
-        let found = if self.uncertainty.is_some() { Some(self.uncertainty(&names)?) } else { None };
+        let found = if self.uncertainty.is_some() { Some(self.uncertainty_as_seen(&names)?) } else { None };
         let predicted = found.as_ref().map(|(uncertainty, targets)| PredictedUncertainty {
             uncertainty,
             targets,
@@ -51,6 +53,15 @@ impl CalibrationFile {
             uncertainty: predicted,
         };
         judge(&subject, data)
+    }
+
+    /// Uncertainty of predictions as the first instrument sees them: they do not depend on what moves both.
+    fn uncertainty_as_seen(&self, targets: &[Option<&str>]) -> Result<(Uncertainty, Vec<usize>)> {
+        let robot = self.robot()?;
+        let first = self.stations.first().and_then(|station| station.instrument.as_ref());
+        let mount = robot.instruments.iter().find(|mount| Some(&mount.name) == first);
+        let body = mount.map_or(Body::Base, |mount| mount.body);
+        self.uncertainty_from(targets, &robot, body)
     }
 
     /// Contradiction between a judgement and the calibration, as a sentence.

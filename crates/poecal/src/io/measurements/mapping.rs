@@ -15,6 +15,7 @@ use super::orientation::OrientationForm;
 use super::units::{Dimension, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::source_text;
+use crate::io::urdf::ChainSelection;
 
 /// A mapping of a file's columns to ours, as TOML (docs/file-formats.md, "Mapping file").
 ///
@@ -48,6 +49,15 @@ pub struct ColumnMap {
     pub(super) sigma_position: Option<ColumnSpec>,
     pub(super) sigma_rotation: Option<ColumnSpec>,
     pub(super) targets: Vec<TargetSpec>,
+    mount: MountSpec,
+}
+
+/// Links of a URDF on which instruments and targets are, by their names.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct MountSpec {
+    instruments: BTreeMap<String, String>,
+    targets: BTreeMap<String, String>,
 }
 
 /// Direction of the file's poses.
@@ -160,6 +170,26 @@ impl ColumnMap {
         map.path = path.to_path_buf();
         map.check().map_err(|error| error.in_file(path))?;
         Ok(map)
+    }
+
+    /// A selection of a URDF's links with the mapping's `[mount.instruments]` and `[mount.targets]` added.
+    ///
+    /// ```
+    /// use poecal::{ChainSelection, io::measurements::ColumnMap};
+    /// let map = ColumnMap::parse("[mount.instruments]\ncamera = \"camera_link\"\n", "map.toml")?;
+    /// let selection = map.mounts(ChainSelection::default())?;
+    /// assert_eq!(selection.instruments, [("camera".to_owned(), "camera_link".to_owned())]);
+    /// # Ok::<(), poecal::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if an instrument or a target has another link in the selection.
+    pub fn mounts(&self, selection: ChainSelection) -> Result<ChainSelection> {
+        let pairs = |map: &BTreeMap<String, String>| -> Vec<(String, String)> {
+            map.iter().map(|(name, link)| (name.clone(), link.clone())).collect()
+        };
+        let (instruments, targets) = (pairs(&self.mount.instruments), pairs(&self.mount.targets));
+        selection.joined(&instruments, &targets).map_err(|error| error.in_file(&self.path))
     }
 
     fn check(&self) -> Result<()> {

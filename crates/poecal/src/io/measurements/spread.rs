@@ -11,8 +11,10 @@ use super::scale::short;
 use super::units::{Dimension, Unit};
 use crate::distributions::{median, median_point};
 use crate::error::{Error, ErrorKind, Result};
+use crate::lie::Pose;
 use crate::measurement::Dataset;
-use crate::robot::Robot;
+use crate::robot::{Mount, Robot};
+use crate::simulate::seen;
 
 /// Most rows of the comparison.
 const ROWS: usize = 500;
@@ -51,7 +53,10 @@ pub(super) fn check(
             let readings: Vec<f64> = readings
                 .map(|(value, input)| if is_angle(input) { value * angle_factor } else { *value })
                 .collect();
-            robot.forward_kinematics(&readings).translation
+            match pair_of(robot, data, row) {
+                (None, None) => robot.forward_kinematics(&readings).translation,
+                pair => seen(robot, &Pose::identity(), pair, &readings).translation,
+            }
         };
         spread(rows.iter().map(tip).collect())
     };
@@ -79,6 +84,19 @@ pub(super) fn check(
             InputSource::Constant(_) => Error::new(ErrorKind::Unit, message).in_file(path),
         }),
     }
+}
+
+/// Instrument and target of a row, if the model says where they are.
+fn pair_of<'a>(robot: &'a Robot, data: &Dataset, row: usize) -> (Option<&'a Mount>, Option<&'a Mount>) {
+    let Some(observation) = data.observations.get(row) else { return (None, None) };
+    let find = |mounts: &'a [Mount], names: &[Option<String>], index: usize| {
+        let name = names.get(index).and_then(Option::as_ref)?;
+        mounts.iter().find(|mount| mount.name == *name)
+    };
+    (
+        find(&robot.instruments, &data.stations, observation.station),
+        find(&robot.mounted, &data.targets, observation.target),
+    )
 }
 
 /// Median distance from the middle, which a few corrupt rows do not change.

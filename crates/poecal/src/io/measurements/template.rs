@@ -9,6 +9,7 @@ use super::write::{decimal, header, reading_header, reading_units};
 use crate::error::Result;
 use crate::robot::Robot;
 use crate::simulate::{Configurations, Kind};
+use crate::text::visible;
 
 /// Number of rows between visits of the first configuration.
 const ROWS_BETWEEN_VISITS: usize = 20;
@@ -16,7 +17,10 @@ const ROWS_BETWEEN_VISITS: usize = 20;
 /// A measurement file without rows: the columns for this robot, with instructions as comments.
 pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
     let names = robot.reading_names();
-    let columns = header(&names, &reading_units(&names, robot)?, kind.sees_orientation())?;
+    let mut columns = header(&names, &reading_units(&names, robot)?, kind.sees_orientation())?;
+    for (column, mounts) in [(",instrument", &robot.instruments), (",target", &robot.mounted)] {
+        columns.push_str(if mounts.is_empty() { "" } else { column });
+    }
     let mut text = "# Measurements: a row for each configuration, below the line of column names. Lines that begin with # are ignored.\n\
          # Units stand in brackets. If your numbers have others, change them there: [rad], [deg], [m], [mm], [um].\n\
          #\n\
@@ -34,6 +38,14 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
              #             where a point was seen.\n"
         }
     });
+    for (column, does, mounts) in
+        [("instrument", "sees", &robot.instruments), ("target    ", "is seen", &robot.mounted)]
+    {
+        if !mounts.is_empty() {
+            let names: Vec<&str> = mounts.iter().map(|mount| mount.name.as_str()).collect();
+            let _ = writeln!(text, "# {column}  which {does} in this row: {}", visible(&names.join(", ")));
+        }
+    }
     text.push_str(
         "#\n\
          # Columns to add if you have them, in any place:\n\

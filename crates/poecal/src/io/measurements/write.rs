@@ -8,14 +8,19 @@ use crate::io::csv_text;
 use crate::measurement::{Dataset, Noise, Quantity};
 use crate::robot::{JointKind, Robot};
 
-/// Rows of the unnamed target as a file with a leading comment: degrees and millimetres, orientations as quaternions. Readings are exact;
+/// Rows as a file with a leading comment: degrees and millimetres, orientations as quaternions, names where there are some. Readings are exact;
 /// measured numbers are rounded to less than a thousandth of their noise.
 pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
     let mm = Unit::parse("mm", Dimension::Length)?;
     let number = Dimension::Number.si_unit();
     let orientations = data.observations.iter().any(|row| row.measurement.sees_orientation());
     let units = reading_units(data.reading_names(), robot)?;
-    let mut out = format!("# {comment}\n{}\n", header(data.reading_names(), &units, orientations)?);
+    let named = [&data.stations, &data.targets].map(|names| names.iter().any(Option::is_some));
+    let mut out = format!("# {comment}\n{}", header(data.reading_names(), &units, orientations)?);
+    for (column, _) in [",instrument", ",target"].into_iter().zip(named).filter(|(_, named)| *named) {
+        out.push_str(column);
+    }
+    out.push('\n');
     let position_decimals = decimals(mm.from_si(noise[Quantity::Position]));
     // A rotation turns the quaternion by half its angle.
     let quaternion_decimals = decimals(noise[Quantity::Rotation] / 2.0);
@@ -30,6 +35,11 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
             measured.extend(pose.quaternion_xyzw().map(|part| decimal(part, number, quaternion_decimals)));
         } else if orientations {
             measured.resize(7, String::new());
+        }
+        let names = [(&data.stations, observation.station), (&data.targets, observation.target)];
+        for ((names, index), _) in names.into_iter().zip(named).filter(|(_, named)| *named) {
+            let name = names.get(index).and_then(Option::as_deref).unwrap_or_default();
+            measured.push(csv_text::cell(name).into_owned());
         }
         let _ = writeln!(out, "{}", measured.join(","));
     }

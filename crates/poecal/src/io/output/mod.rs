@@ -78,8 +78,8 @@ enum Content<'a> {
 struct NewFile<'a> {
     name: String,
     content: Content<'a>,
-    /// The robot of a model file, and the name of its tip link.
-    model_of: Option<(&'a Robot, String)>,
+    /// The robot of a model file, and the selection with which it gives it.
+    model_of: Option<(&'a Robot, ChainSelection)>,
 }
 
 impl<'a> NewFile<'a> {
@@ -96,11 +96,11 @@ impl<'a> NewFile<'a> {
     }
 
     fn of_robot(name: String, text: String, robot: &'a Robot) -> Self {
-        NewFile {
-            name,
-            content: Content::Text(vec![text.into()]),
-            model_of: Some((robot, robot.tip_name.clone())),
-        }
+        NewFile::of_urdf(name, text, robot, ChainSelection::default())
+    }
+
+    fn of_urdf(name: String, text: String, robot: &'a Robot, selection: ChainSelection) -> Self {
+        NewFile { name, content: Content::Text(vec![text.into()]), model_of: Some((robot, selection)) }
     }
 
     fn write_to(&self, out: &mut (dyn Write + Send)) -> std::io::Result<()> {
@@ -111,14 +111,8 @@ impl<'a> NewFile<'a> {
     }
 
     /// The robot of the file, read back from its staging folder.
-    fn read_back(&self, robot: &Robot, tip_link: &str, folder: &Path, final_folder: &Path) -> Result<Robot> {
-        let selection = if self.name.ends_with(".urdf") {
-            let (base_link, tip_link) = (Some(robot.base_name.clone()), Some(tip_link.to_owned()));
-            ChainSelection { base_link, tip_link }
-        } else {
-            ChainSelection::default()
-        };
-        let read = Model::read(folder.join(&self.name), &selection);
+    fn read_back(&self, selection: &ChainSelection, folder: &Path, final_folder: &Path) -> Result<Robot> {
+        let read = Model::read(folder.join(&self.name), selection);
         Ok(read.map_err(|error| error.with_path(&final_folder.join(&self.name)))?.robot)
     }
 }
@@ -128,8 +122,8 @@ fn prove(files: &[NewFile], folder: &Path, final_folder: &Path) -> Result<Differ
     let mut largest = Difference { position_m: 0.0, rotation_rad: 0.0 };
     let mut known: Option<Reference> = None;
     for file in files {
-        let Some((robot, tip_link)) = &file.model_of else { continue };
-        let read = file.read_back(robot, tip_link, folder, final_folder)?;
+        let Some((robot, selection)) = &file.model_of else { continue };
+        let read = file.read_back(selection, folder, final_folder)?;
         let reference = match known.take() {
             Some(known) if known.is_of(robot) => known,
             _ => Reference::new(robot, CONFIGURATIONS),
@@ -162,14 +156,13 @@ fn robot_files<'a>(
         ModelSource::Urdf(document) => {
             let patched = document.patched(robot)?;
             notes.extend(patched.notes);
-            let model_of = Some((robot, patched.tip_link));
-            Ok(vec![NewFile { name: urdf, content: Content::Text(vec![patched.text.into()]), model_of }])
+            Ok(vec![NewFile::of_urdf(urdf, patched.text, robot, patched.selection)])
         }
         ModelSource::Toml | ModelSource::Calibration(_) => {
             let toml = NewFile::of_robot(format!("{stem}.toml"), robot_toml::write(robot), robot);
-            let new = urdf::write_new(robot)?;
+            let (new, selection) = urdf::written_new(robot)?;
             notes.extend(new.notes);
-            Ok(vec![toml, NewFile::of_robot(urdf, new.text, robot)])
+            Ok(vec![toml, NewFile::of_urdf(urdf, new.text, robot, selection)])
         }
     }
 }

@@ -69,15 +69,27 @@ impl Project<'_> {
         let links = [("base_link", &self.chain.base_link), ("tip_link", &self.chain.tip_link)];
         let links = || links.into_iter().filter_map(|(key, link)| Some((key, link.as_ref()?)));
         let line = |(key, link): (&str, &String)| format!("{key} = {}\n", toml::Value::String(link.clone()));
-        let words = |(key, link): (&str, &String)| {
-            format!(" --{} '{}'", key.replace('_', "-"), link.replace('\'', "'\\''"))
+        let option = |key: &str, value: &str| {
+            format!(" --{} '{}'", key.replace('_', "-"), value.replace('\'', "'\\''"))
         };
+        let words = |(key, link): (&str, &String)| option(key, link);
+        let named = [("instrument", &self.chain.instruments), ("target", &self.chain.targets)];
+        let pairs = |mounts: &[(String, String)]| -> Vec<String> {
+            mounts.iter().map(|(name, link)| format!("{name}={link}")).collect()
+        };
+        let lists = named.iter().filter(|(_, mounts)| !mounts.is_empty()).map(|(key, mounts)| {
+            let values = pairs(mounts).into_iter().map(toml::Value::String).collect();
+            format!("{key} = {}\n", toml::Value::Array(values))
+        });
+        let typed = named
+            .iter()
+            .flat_map(|(key, mounts)| pairs(mounts).into_iter().map(move |pair| option(key, &pair)));
         let orientation = if self.kind.sees_orientation() { ROTATION_NOISE } else { "" };
         let name = visible(&self.model.robot.name).into_owned();
         let replaced = [
             ("{model}", self.model_name().to_owned()),
-            ("{chain}\n", links().map(line).collect()),
-            ("{chain options}", links().map(words).collect()),
+            ("{chain}\n", links().map(line).chain(lists).collect()),
+            ("{chain options}", links().map(words).chain(typed).collect()),
             ("{rotation noise}\n", orientation.to_owned()),
             ("{kind}", self.kind.word().to_owned()),
             ("{count}", self.count.to_string()),

@@ -1,11 +1,13 @@
 //! Output of a simulated session: both robots, the measurements and the truth.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::{FolderPlace, NewFile, Written, robot_files, write_files};
 use crate::calibration::DeviceFrameKnowledge;
 use crate::error::Result;
-use crate::io::calibration_file::{FrameEntry, JointEntry, PoseEntry, RobotEntry};
+use crate::io::calibration_file::{FrameEntry, InstrumentEntry, JointEntry, PoseEntry, RobotEntry};
 use crate::io::json_text;
 use crate::io::measurements;
 use crate::io::model::Model;
@@ -47,6 +49,11 @@ struct TruthFile {
     joints: Vec<JointEntry>,
     measurement_frame: FrameEntry,
     tool: PoseEntry,
+    /// Instruments on the robot, and targets with a body of their own.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    instruments: BTreeMap<String, InstrumentEntry>,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    targets: BTreeMap<String, InstrumentEntry>,
 }
 
 #[derive(Serialize)]
@@ -85,6 +92,8 @@ impl TruthFile {
                 base_from_device: (&made.device_from_base.inverse()).into(),
             },
             tool: (&made.actual.last_joint_from_tip()).into(),
+            instruments: InstrumentEntry::of(&made.actual, &made.actual.instruments),
+            targets: InstrumentEntry::of(&made.actual, &made.actual.mounted),
         }
     }
 }

@@ -7,6 +7,7 @@ use toml::Spanned;
 
 use super::context::{Context, TABLE_ROUNDING, span};
 use super::file::{Convention, File, JointTable, PoseTable, ScrewTable};
+use super::mounts;
 use crate::error::Result;
 use crate::io::mimic;
 use crate::lie::{Pose, Screw, Twist};
@@ -40,16 +41,7 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
             return Err(context.error(tip.span(), message));
         }
     }
-    let mut names = BTreeSet::new();
-    for target in &file.target {
-        let name = context.name(&target.name, "the target")?;
-        if !names.insert(target.name.get_ref()) {
-            let message = format!("found a second target named `{name}`, expected unique target names");
-            return Err(context.error(target.name.span(), message));
-        }
-        let pose = context.pose(&target.pose(), &format!("target `{name}`"))?;
-        robot.targets.push((name, pose));
-    }
+    mounts::place(context, file, &mut robot)?;
     Ok(robot)
 }
 

@@ -16,12 +16,15 @@ pub(super) struct File {
     pub(super) convention: Convention,
     pub(super) base_link: Option<Spanned<String>>,
     pub(super) tip_link: Option<Spanned<String>>,
+    pub(super) tip_on: Option<Spanned<String>>,
     pub(super) joint: Vec<JointTable>,
     pub(super) home: Option<Spanned<PoseTable>>,
     pub(super) base: Option<Spanned<PoseTable>>,
     pub(super) tool: Option<Spanned<PoseTable>>,
     #[serde(default)]
     pub(super) target: Vec<TargetTable>,
+    #[serde(default)]
+    pub(super) instrument: Vec<TargetTable>,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -74,6 +77,7 @@ pub(super) enum Convention {
 #[serde(deny_unknown_fields)]
 pub(super) struct JointTable {
     pub(super) name: Spanned<String>,
+    pub(super) parent: Option<Spanned<String>>,
     #[serde(default = "revolute", rename = "type")]
     pub(super) kind: JointKind,
     pub(super) screw: Option<Spanned<ScrewTable>>,
@@ -137,10 +141,12 @@ pub(super) struct PoseTable {
     pub(super) rotation: Option<Spanned<[[f64; 3]; 3]>>,
 }
 
+/// A target or an instrument.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TargetTable {
     pub(super) name: Spanned<String>,
+    pub(super) on: Option<Spanned<String>>,
     position: Spanned<[f64; 3]>,
     quaternion_xyzw: Option<Spanned<[f64; 4]>>,
     rpy: Option<Spanned<[f64; 3]>>,

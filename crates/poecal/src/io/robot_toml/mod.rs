@@ -19,6 +19,7 @@
 mod build;
 mod context;
 mod file;
+mod mounts;
 mod write;
 
 use std::path::Path;

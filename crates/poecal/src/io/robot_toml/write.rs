@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use super::mounts::BASE;
 use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
-use crate::robot::{Joint, JointKind, Robot};
+use crate::robot::{Body, Joint, JointKind, Robot};
 
 /// The robot as a TOML text of screws, SI units. Numbers are the shortest decimals that read back the same, freed of rounding
 /// below 1e-15.
@@ -24,20 +25,43 @@ use crate::robot::{Joint, JointKind, Robot};
 #[must_use]
 pub fn write(robot: &Robot) -> String {
     let mut text = format!(
-        "poecal_robot = 1\nname = {}\nlength_unit = \"m\"\nangle_unit = \"rad\"\nbase_link = {}\ntip_link = {}\n\njoint = [\n",
+        "poecal_robot = 1\nname = {}\nlength_unit = \"m\"\nangle_unit = \"rad\"\nbase_link = {}\ntip_link = {}\n",
         quoted(&robot.name),
         quoted(&robot.base_name),
         quoted(&robot.tip_name)
     );
+    // Writing to a String cannot fail.
+    if let Some(tip) = robot.tip {
+        let _ = writeln!(text, "tip_on = {}", body_name(robot, tip));
+    }
+    text.push_str("\njoint = [\n");
     for joint in &robot.joints {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "  {{ {} }},", joint_keys(joint));
+        let parent =
+            joint.stands_on.map_or_else(String::new, |on| format!(", parent = {}", body_name(robot, on)));
+        let _ = writeln!(text, "  {{ {}{parent} }},", joint_keys(joint));
     }
     let _ = write!(text, "]\n\n[home]\n{}", pose_keys(&robot.home));
     for (name, pose) in &robot.targets {
         let _ = write!(text, "\n[[target]]\nname = {}\n{}", quoted(name), pose_keys(pose));
     }
+    for (key, mounts) in [("target", &robot.mounted), ("instrument", &robot.instruments)] {
+        for mount in mounts {
+            let (name, on) = (quoted(&mount.name), body_name(robot, mount.body));
+            let pose = pose_keys(&robot.base_from(mount));
+            let _ = write!(text, "\n[[{key}]]\nname = {name}\non = {on}\n{pose}");
+        }
+    }
     text
+}
+
+/// Name of the joint that moves a body, or the word for the base.
+fn body_name(robot: &Robot, body: Body) -> String {
+    let is_joint = |name: &str| robot.joints.iter().any(|joint| joint.name == name);
+    match body.joint().and_then(|joint| robot.joints.get(joint)) {
+        Some(joint) => quoted(&joint.name),
+        None if is_joint(BASE) => quoted(""),
+        None => quoted(BASE),
+    }
 }
 
 fn joint_keys(joint: &Joint) -> String {

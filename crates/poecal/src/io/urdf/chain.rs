@@ -1,28 +1,69 @@
-//! Chain from base to tip: the selected one, or the only one.
+//! Links and joints of the robot: the chain from base to tip, the selected one or the only one, and the ways to named links.
+
+use std::collections::BTreeSet;
 
 use super::tree::Tree;
 use super::xml::XmlSource;
 use super::{ChainSelection, ends};
 use crate::error::{Error, ErrorKind, Result, nearest_or_all};
 
-/// A chain through the tree: links and joints as indices into the tree, joints from base to tip.
+/// Links and joints of the robot, as indices into the tree. Each joint comes after that on whose link it stands: those from base to tip
+/// first.
 pub(super) struct UrdfChain {
     pub(super) base: usize,
     pub(super) tip: usize,
     pub(super) joints: Vec<usize>,
+    /// Links of named instruments and targets.
+    pub(super) instruments: Vec<(String, usize)>,
+    pub(super) targets: Vec<(String, usize)>,
 }
 
 pub(super) fn select(tree: &Tree, selection: &ChainSelection) -> Result<UrdfChain> {
     let find =
         |name: &Option<String>, option| name.as_deref().map(|name| find_link(tree, name, option)).transpose();
-    let base = find(&selection.base_link, "--base-link")?;
+    let named = |mounts: &[(String, String)], what: &str| -> Result<Vec<(String, usize)>> {
+        let found = |(name, link): &(String, String)| {
+            Ok((name.clone(), find_link(tree, link, &format!("{what} `{name}`"))?))
+        };
+        mounts.iter().map(found).collect()
+    };
+    let mut base = find(&selection.base_link, "--base-link")?;
+    let instruments = named(&selection.instruments, "instrument")?;
+    let targets = named(&selection.targets, "target")?;
     let tip = match find(&selection.tip_link, "--tip-link")? {
         Some(tip) => tip,
-        None => only_tip(tree, base)?,
+        None if targets.is_empty() => only_tip(tree, base)?,
+        None => first_moved(tree, base, targets.iter().chain(&instruments)),
     };
-    let chain = way_up(tree, base, tip)?;
+    let mut chain = way_up(tree, base, tip, "tip")?;
+    base.get_or_insert(chain.base);
+    let mut known: BTreeSet<usize> = chain.joints.iter().copied().collect();
+    for (what, mounts) in [("instrument", &instruments), ("target", &targets)] {
+        for (name, link) in mounts {
+            let further = way_up(tree, base, *link, &format!("{what} `{name}`: its"))?;
+            chain.joints.extend(further.joints.into_iter().filter(|&joint| known.insert(joint)));
+        }
+    }
+    (chain.instruments, chain.targets) = (instruments, targets);
     check_joints(tree, &chain)?;
     Ok(chain)
+}
+
+/// The first of some links that a joint moves, else the first of all.
+fn first_moved<'a>(
+    tree: &Tree,
+    base: Option<usize>,
+    mut links: impl Iterator<Item = &'a (String, usize)> + Clone,
+) -> usize {
+    let is_moved = |link: usize| {
+        let below_base = tree.ancestors(link).scan(link, |at, (_, joint)| {
+            let above = std::mem::replace(at, joint.parent);
+            (base != Some(above)).then_some(joint.kind.moves())
+        });
+        below_base.into_iter().any(|moves| moves)
+    };
+    let first = links.clone().next();
+    links.find(|(_, link)| is_moved(*link)).or(first).map_or(0, |(_, link)| *link)
 }
 
 fn error(source: &XmlSource, message: String) -> Error {
@@ -57,8 +98,8 @@ fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
     }
 }
 
-/// Path from `tip` up to `base`, or to the root.
-fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<UrdfChain> {
+/// Path from `tip` up to `base`, or to the root. `what` is the link at its end, for messages.
+fn way_up(tree: &Tree, base: Option<usize>, tip: usize, what: &str) -> Result<UrdfChain> {
     let mut at = tip;
     let mut joints = Vec::new();
     for (index, joint) in tree.ancestors(tip) {
@@ -73,24 +114,31 @@ fn way_up(tree: &Tree, base: Option<usize>, tip: usize) -> Result<UrdfChain> {
         Some(base) if base != at => {
             let above: Vec<_> = tree.ancestors(tip).map(|(_, joint)| tree.link_name(joint.parent)).collect();
             let message = format!(
-                "tip link `{}` is not below base link `{}`, expected a base link above the tip ({})",
+                "{what} link `{}` is not below base link `{}`, expected a base link above {} ({})",
                 tree.link_name(tip),
                 tree.link_name(base),
+                if what == "tip" { "the tip" } else { "it" },
                 if above.is_empty() { "there is none".to_owned() } else { list(above) }
             );
             Err(error(&tree.source, message))
         }
-        _ => Ok(UrdfChain { base: at, tip, joints }),
+        _ => Ok(UrdfChain { base: at, tip, joints, instruments: Vec::new(), targets: Vec::new() }),
     }
 }
 
 fn check_joints(tree: &Tree, chain: &UrdfChain) -> Result<()> {
     let (base, tip) = (tree.link_name(chain.base), tree.link_name(chain.tip));
+    let named = !chain.instruments.is_empty() || !chain.targets.is_empty();
     let joints = || chain.joints.iter().filter_map(|&joint| tree.joints.get(joint));
     for joint in joints() {
         if !joint.kind.moves() && joint.kind != super::tree::JointType::Fixed {
+            let place = if named {
+                format!("on the way from `{base}` to the named links")
+            } else {
+                format!("between `{base}` and `{tip}`")
+            };
             let message = format!(
-                "joint `{}` between `{base}` and `{tip}` is {}, expected revolute, continuous, prismatic or fixed: choose a chain without it with --base-link and --tip-link",
+                "joint `{}` {place} is {}, expected revolute, continuous, prismatic or fixed: choose a chain without it with --base-link and --tip-link",
                 joint.name,
                 joint.kind.word()
             );
@@ -98,6 +146,13 @@ fn check_joints(tree: &Tree, chain: &UrdfChain) -> Result<()> {
         }
     }
     if !joints().any(|joint| joint.kind.moves()) {
+        if named {
+            let message = format!(
+                "found no moving joint between base link `{base}` and the links of the named instruments and targets, expected at least \
+                 one: name a link that a joint moves"
+            );
+            return Err(error(&tree.source, message));
+        }
         let message = format!(
             "found no moving joint between base link `{base}` and tip link `{tip}`, expected at least one: choose others with --base-link and --tip-link"
         );

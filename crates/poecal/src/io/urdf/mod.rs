@@ -1,4 +1,4 @@
-//! URDF: reads a serial chain, and writes calibrated values into the same text.
+//! URDF: reads a serial chain, or the tree of joints that move named links, and writes calibrated values into the same text.
 //!
 //! It reads links, joints (fixed, revolute, continuous, prismatic), origins, axes, limits and mimic relations. Everything else in the
 //! file (meshes, inertias, controllers, comments) is ignored and stays.
@@ -7,6 +7,7 @@ mod chain;
 mod ends;
 mod parts;
 mod patch;
+mod selection;
 mod splice;
 mod tree;
 mod write;
@@ -17,31 +18,18 @@ use std::path::{Path, PathBuf};
 use roxmltree::Document;
 
 pub use patch::PatchedUrdf;
+pub use selection::{ChainSelection, named_link};
 pub use write::write_new;
+pub(super) use write::written_new;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::source_text;
 use crate::robot::Robot;
-use parts::Part;
+use parts::{End, Part};
 use tree::Tree;
 use xml::{XmlSource, crowded_element};
 
-/// Selection of a chain. An omitted end must be unique: the base is then the root above the tip, and the tip the only end link below a
-/// moving joint.
-///
-/// ```
-/// let selection = poecal::io::urdf::ChainSelection { tip_link: Some("tool0".into()), ..Default::default() };
-/// assert!(selection.base_link.is_none());
-/// ```
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct ChainSelection {
-    /// First link of the chain.
-    pub base_link: Option<String>,
-    /// Last link of the chain.
-    pub tip_link: Option<String>,
-}
-
-/// A URDF text with its serial chain.
+/// A URDF text with its serial chain, or its tree of the joints that move named links.
 ///
 /// ```
 /// use poecal::io::urdf::{ChainSelection, UrdfDocument};
@@ -66,6 +54,8 @@ pub struct UrdfDocument {
     path: PathBuf,
     robot: Robot,
     parts: Vec<Part>,
+    /// The tip's link, then those of instruments and targets, in the robot's order.
+    ends: Vec<End>,
 }
 
 impl UrdfDocument {
@@ -78,7 +68,7 @@ impl UrdfDocument {
         Self::parse(&source_text::read(path, "a URDF robot description")?, path, selection)
     }
 
-    /// Reads the chain from a text; `path` is for the messages only.
+    /// Reads the chain or tree from a text; `path` is for the messages only.
     ///
     /// # Errors
     /// [`ErrorKind::Syntax`] if the text is no XML or no URDF, [`ErrorKind::Model`] if it is not a tree of links, the chain is not unique
@@ -101,18 +91,22 @@ impl UrdfDocument {
         refuse_xacro(&source)?;
         let tree = Tree::read(source)?;
         let chain = chain::select(&tree, selection)?;
-        let (parts, joints, home) = parts::read(&tree, &chain)?;
         let name = robot_element.attribute("name").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
-        let mut robot = Robot::new(name, joints, home).map_err(|error| error.in_file(path))?;
-        tree.link_name(chain.base).clone_into(&mut robot.base_name);
-        tree.link_name(chain.tip).clone_into(&mut robot.tip_name);
-        Ok(UrdfDocument { text: text.to_owned(), path: path.to_path_buf(), robot, parts })
+        let (parts, ends, robot) = parts::read(&tree, &chain, name)?;
+        Ok(UrdfDocument { text: text.to_owned(), path: path.to_path_buf(), robot, parts, ends })
     }
 
     /// The robot of the chain; frames and screws are in the base link.
     #[must_use]
     pub fn robot(&self) -> &Robot {
         &self.robot
+    }
+
+    /// The selection with which this text gives this robot: base, tip, instruments and targets with their links.
+    #[must_use]
+    pub fn selection(&self) -> ChainSelection {
+        let links: Vec<&str> = self.ends.iter().map(|end| end.link.as_str()).collect();
+        ChainSelection::of(&self.robot, &links)
     }
 
     /// The original text.

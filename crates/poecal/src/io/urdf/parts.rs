@@ -1,5 +1,6 @@
-//! Joints of the chain: origins, axes, limits and mimic relations, with their places in the text.
+//! Joints of the chain or tree: origins, axes, limits and mimic relations, with their places in the text.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -11,11 +12,13 @@ use super::xml::{XmlSource, value_range};
 use crate::error::{Result, nearest_or_all};
 use crate::io::mimic;
 use crate::lie::Pose;
-use crate::robot::{Joint, JointKind, Limits, Reading};
+use crate::robot::{Body, Joint, JointKind, Limits, Reading, Robot, check_name};
 
-/// A fixed or moving joint of the chain, with the places for writing it back.
+/// A fixed or moving joint, with the places for writing it back.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
+    /// The joint above its parent link; none for the base.
+    pub(super) parent: Option<usize>,
     /// `<origin>`: pose of the joint's frame in its parent link.
     pub(super) parent_from_joint: Pose,
     /// Unit `<axis>` in the joint's frame; `None` for a fixed joint.
@@ -39,19 +42,62 @@ pub(super) struct Place {
     pub(super) axis_xyz: Option<Range<usize>>,
 }
 
-/// The joints of the chain, and the moving ones among them with frames and screws in the base link.
-pub(super) fn read(tree: &Tree, chain: &UrdfChain) -> Result<(Vec<Part>, Vec<Joint>, Pose)> {
-    let mut base_from_link = Pose::identity();
+/// A named link: the tip's, an instrument's or a target's.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct End {
+    /// Name of the link.
+    pub(super) link: String,
+    /// The joint above it; none for the base.
+    pub(super) part: Option<usize>,
+}
+
+/// Where a link is.
+#[derive(Clone, Copy)]
+struct At {
+    base_from_link: Pose,
+    part: Option<usize>,
+    body: Body,
+}
+
+/// The joints in their order, the ends, and the robot of the moving joints with frames and screws in the base link.
+pub(super) fn read(tree: &Tree, chain: &UrdfChain, name: &str) -> Result<(Vec<Part>, Vec<End>, Robot)> {
+    let base = At { base_from_link: Pose::identity(), part: None, body: Body::Base };
+    let mut links = BTreeMap::from([(chain.base, base)]);
     let (mut parts, mut joints) = (Vec::new(), Vec::new());
     for joint in chain.joints.iter().filter_map(|&joint| tree.joints.get(joint)) {
-        let part = read_part(&tree.source, joint)?;
-        base_from_link = base_from_link * part.parent_from_joint;
+        let parent = links.get(&joint.parent).copied().unwrap_or(base);
+        let mut part = read_part(&tree.source, joint)?;
+        part.parent = parent.part;
+        let base_from_link = parent.base_from_link * part.parent_from_joint;
+        let mut body = parent.body;
         if let Some(axis) = part.axis {
-            joints.push(moving_joint(tree, joint, &axis, base_from_link)?);
+            let before = joints.len().checked_sub(1).map_or(Body::Base, Body::Link);
+            body = Body::Link(joints.len());
+            let stands_on = Some(parent.body).filter(|&stands_on| stands_on != before);
+            joints.push(Joint { stands_on, ..moving_joint(tree, joint, &axis, base_from_link)? });
         }
+        links.insert(joint.child, At { base_from_link, part: Some(parts.len()), body });
         parts.push(part);
     }
-    Ok((parts, joints, base_from_link))
+    let at = |link: usize| links.get(&link).copied().unwrap_or(base);
+    let tip = at(chain.tip);
+    let mut robot =
+        Robot::new(name, joints, tip.base_from_link).map_err(|error| error.in_file(tree.source.path))?;
+    tree.link_name(chain.base).clone_into(&mut robot.base_name);
+    tree.link_name(chain.tip).clone_into(&mut robot.tip_name);
+    robot.tip = Some(tip.body).filter(|&body| body != robot.tip_body());
+    let mount = |(name, link): &(String, usize)| {
+        let At { base_from_link, body, .. } = at(*link);
+        check_name(name, "frame").map_err(|error| error.in_file(tree.source.path))?;
+        Ok(robot.mount(name, body, &base_from_link))
+    };
+    let instruments = chain.instruments.iter().map(mount).collect::<Result<_>>()?;
+    let mounted = chain.targets.iter().map(mount).collect::<Result<_>>()?;
+    (robot.instruments, robot.mounted) = (instruments, mounted);
+    let named = chain.instruments.iter().chain(&chain.targets).map(|(_, link)| *link);
+    let end = |link: usize| End { link: tree.link_name(link).to_owned(), part: at(link).part };
+    let ends = std::iter::once(chain.tip).chain(named).map(end).collect();
+    Ok((parts, ends, robot))
 }
 
 fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {
@@ -93,6 +139,7 @@ fn read_part<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Part> 
     let unit_axis = if joint.kind.moves() { Some(read_axis(source, joint, axis)?) } else { None };
     let attribute = |node: Option<Node>, name| node.and_then(|node| value_range(node, name));
     Ok(Part {
+        parent: None,
         parent_from_joint: Pose::from_xyz_rpy(xyz, rpy),
         axis: unit_axis,
         place: Place {

@@ -1,14 +1,16 @@
 //! Writes a calibrated robot into the text of the nominal one.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Vector3;
 
-use super::UrdfDocument;
-use super::parts::{Part, Place};
+use super::parts::Part;
 use super::splice::{Splice, escaped, triple};
+use super::{ChainSelection, UrdfDocument};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::numbers::tidy;
 use crate::lie::{Pose, Screw, rotation};
-use crate::robot::{Joint, Robot};
+use crate::robot::{Joint, Mount, Robot};
 
 /// Smaller differences (metres, or of rotation matrices) are rounding: the text stays.
 const UNCHANGED: f64 = 1e-15;
@@ -37,6 +39,8 @@ pub struct PatchedUrdf {
     pub text: String,
     /// The link that is now the tip.
     pub tip_link: String,
+    /// The selection with which the text gives the robot again.
+    pub selection: ChainSelection,
     /// Notes for the user, a sentence each.
     pub notes: Vec<String>,
 }
@@ -44,73 +48,163 @@ pub struct PatchedUrdf {
 impl UrdfDocument {
     /// The text with the origins (and axes, where needed) of `calibrated`; all other bytes stay.
     ///
-    /// `calibrated` is this document's robot with other screws, joint frames and home pose. Values that differ only by rounding stay. The
-    /// tip's pose is written to the last fixed joint before the tip; without one, a link `<tip>_calibrated` is added.
+    /// `calibrated` is this document's robot with other screws, joint frames, home pose, instruments and targets. Values that differ only by
+    /// rounding stay. The tip's pose is written to the last fixed joint before the tip; without one, a link `<tip>_calibrated` is added.
+    /// Frames of instruments and targets are written in the same way, but to no fixed joint on which a moving one stands.
     ///
     /// # Errors
-    /// [`ErrorKind::Export`] if `calibrated` has other joints, or a number of it is not finite.
+    /// [`ErrorKind::Export`] if `calibrated` has other joints, instruments or targets, or a number of it is not finite.
     pub fn patched(&self, calibrated: &Robot) -> Result<PatchedUrdf> {
         self.check_same_joints(calibrated)?;
+        let wanted = self.wanted(calibrated)?;
         let mut splice = Splice::new(&self.text);
         let mut joints = calibrated.joints.iter();
+        let carried = self.carried(&wanted);
         // Values as the new text has them, so that rounding does not add up along the chain.
-        let mut base_from_link = Pose::identity();
-        let last = self.parts.len().saturating_sub(1);
-        for (index, part) in self.parts.iter().enumerate() {
+        let mut base_from_links: Vec<Pose> = Vec::with_capacity(self.parts.len());
+        let at = |links: &[Pose], part: Option<usize>| {
+            part.and_then(|part| links.get(part)).copied().unwrap_or_else(Pose::identity)
+        };
+        for (part, carried) in self.parts.iter().zip(carried) {
+            let base_from_parent = at(&base_from_links, part.parent);
             let moving = part.axis.and_then(|axis| Some((axis, joints.next()?)));
-            base_from_link = match moving {
-                Some((axis, joint)) => write_joint(&mut splice, part, &axis, base_from_link, joint),
-                None if index == last => write_origin(&mut splice, part, base_from_link, &calibrated.home),
-                None => base_from_link * part.parent_from_joint,
+            base_from_links.push(match (moving, carried) {
+                (Some((axis, joint)), _) => write_joint(&mut splice, part, &axis, base_from_parent, joint),
+                (None, Some(pose)) => write_origin(&mut splice, part, base_from_parent, &pose),
+                (None, None) => base_from_parent * part.parent_from_joint,
+            });
+        }
+        let mut added = Added { names: BTreeSet::new(), links: Vec::new() };
+        let (mut links, mut notes) = (Vec::new(), Vec::new());
+        for (index, (end, wanted)) in self.ends.iter().zip(&wanted).enumerate() {
+            let base_from_link = at(&base_from_links, end.part);
+            if close(&base_from_link, wanted) {
+                links.push(end.link.clone());
+                continue;
+            }
+            let known = added.links.iter().find(|(of, pose, _)| *of == end.link && close(pose, wanted));
+            if let Some((_, _, name)) = known {
+                links.push(name.clone());
+                continue;
+            }
+            let Some(place) = end.part.map_or(self.parts.first(), |part| self.parts.get(part)) else {
+                continue;
             };
-        }
-        let mut tip_link = self.robot.tip_name.clone();
-        let mut notes = Vec::new();
-        if let Some(part) = self.parts.last()
-            && !close(&base_from_link, &calibrated.home)
-        {
-            let link_from_tip = base_from_link.inverse() * calibrated.home;
-            tip_link = self.add_tip(&mut splice, &part.place, &link_from_tip);
+            let name = self.free_name(&end.link, &added);
+            let (xyz, rpy) = origin_values(&(base_from_link.inverse() * *wanted));
+            splice.add_link(&place.place, &escaped(&end.link), &escaped(&name), &triple(xyz), &triple(rpy));
+            let what = self.end_words(index);
             notes.push(format!(
-                "link `{tip_link}` was added below `{}` to hold the calibrated tip, since no fixed joint follows the last moving one",
-                self.robot.tip_name
+                "link `{name}` was added below `{}` to hold the calibrated {what}, since no fixed joint {}",
+                end.link,
+                if index == 0 { "follows the last moving one" } else { "of its own leads there" }
             ));
+            links.push(name.clone());
+            added.names.insert(name.clone());
+            added.links.push((end.link.clone(), *wanted, name));
         }
-        Ok(PatchedUrdf { text: splice.apply(), tip_link, notes })
+        let links: Vec<&str> = links.iter().map(String::as_str).collect();
+        let selection = ChainSelection::of(&self.robot, &links);
+        let tip_link = selection.tip_link.clone().unwrap_or_default();
+        Ok(PatchedUrdf { text: splice.apply(), tip_link, selection, notes })
+    }
+
+    /// `base_from_link` of each end at zero joint values.
+    fn wanted(&self, calibrated: &Robot) -> Result<Vec<Pose>> {
+        let place = |mount: &Mount, among: &[Mount], what: &str| {
+            let found = among.iter().find(|other| other.name == mount.name && other.body == mount.body);
+            found.map(|found| calibrated.base_from(found)).ok_or_else(|| {
+                self.other(&format!("the calibrated robot has no {what} `{}` there", mount.name))
+            })
+        };
+        let robot = &self.robot;
+        let mut wanted = vec![calibrated.home];
+        for (among, calibrated, what) in [
+            (&robot.instruments, &calibrated.instruments, "instrument"),
+            (&robot.mounted, &calibrated.mounted, "target"),
+        ] {
+            for mount in among {
+                wanted.push(place(mount, calibrated, what)?);
+            }
+        }
+        match wanted.iter().all(is_finite) {
+            true => Ok(wanted),
+            false => Err(self.other("an instrument or a target is not at a finite place")),
+        }
+    }
+
+    /// For each joint, the pose of the link below it if it is fixed and holds an end: no moving joint stands on it.
+    fn carried(&self, wanted: &[Pose]) -> Vec<Option<Pose>> {
+        let mut leads = vec![false; self.parts.len()];
+        for (index, part) in self.parts.iter().enumerate().rev() {
+            let moves = part.axis.is_some() || leads.get(index).copied().unwrap_or(false);
+            if let Some(above) = part.parent.and_then(|parent| leads.get_mut(parent)) {
+                *above |= moves;
+            }
+        }
+        let mut carried = vec![None; self.parts.len()];
+        for (end, wanted) in self.ends.iter().zip(wanted) {
+            let Some(part) = end.part.filter(|&part| !leads.get(part).copied().unwrap_or(true)) else {
+                continue;
+            };
+            if let Some(carried) = carried.get_mut(part) {
+                carried.get_or_insert(*wanted);
+            }
+        }
+        carried
+    }
+
+    /// The tip, or the name of an instrument or a target.
+    fn end_words(&self, index: usize) -> String {
+        let mounts = self.robot.instruments.iter().chain(&self.robot.mounted);
+        match index.checked_sub(1).and_then(|index| mounts.into_iter().nth(index)) {
+            Some(mount) => format!("frame of `{}`", mount.name),
+            None => "tip".to_owned(),
+        }
+    }
+
+    fn other(&self, found: &str) -> Error {
+        let message = format!("{found}, expected the robot that was read from {}", self.path.display());
+        Error::new(ErrorKind::Export, message)
     }
 
     fn check_same_joints(&self, calibrated: &Robot) -> Result<()> {
-        let error = |found: String| {
-            let message = format!("{found}, expected the robot that was read from {}", self.path.display());
-            Err(Error::new(ErrorKind::Export, message))
+        let stands = |robot: &Robot| -> Vec<_> {
+            let joints = robot.joints.iter().enumerate();
+            joints.map(|(at, joint)| (joint.name.clone(), joint.kind, robot.body_before(at))).collect()
         };
-        let names = |robot: &Robot| robot.joints.iter().map(|j| (j.name.clone(), j.kind)).collect::<Vec<_>>();
-        if names(calibrated) != names(&self.robot) {
-            return error("the calibrated robot has other joints".to_owned());
+        if stands(calibrated) != stands(&self.robot) || calibrated.tip_body() != self.robot.tip_body() {
+            return Err(self.other("the calibrated robot has other joints"));
         }
-        let finite = |pose: &Pose| {
-            pose.rotation.iter().chain(pose.translation.iter()).all(|number| number.is_finite())
-        };
         for joint in &calibrated.joints {
-            if !finite(&joint.frame) || !finite(&joint.screw.exp(0.0)) {
-                return error(format!("joint `{}` is not at a finite place", joint.name));
+            if !is_finite(&joint.frame) || !is_finite(&joint.screw.exp(0.0)) {
+                return Err(self.other(&format!("joint `{}` is not at a finite place", joint.name)));
             }
         }
-        if !finite(&calibrated.home) {
-            return error("the home pose is not at a finite place".to_owned());
+        if !is_finite(&calibrated.home) {
+            return Err(self.other("the home pose is not at a finite place"));
         }
         Ok(())
     }
 
-    fn add_tip(&self, splice: &mut Splice, after: &Place, link_from_tip: &Pose) -> String {
-        let mut name = format!("{}_calibrated", self.robot.tip_name);
-        while self.text.contains(&escaped(&name)) {
+    /// A name of a link that nothing in the text has.
+    fn free_name(&self, link: &str, added: &Added) -> String {
+        let mut name = format!("{link}_calibrated");
+        while self.text.contains(&escaped(&name)) || added.names.contains(&name) {
             name.push('_');
         }
-        let (xyz, rpy) = origin_values(link_from_tip);
-        splice.add_link(after, &escaped(&self.robot.tip_name), &escaped(&name), &triple(xyz), &triple(rpy));
         name
     }
+}
+
+/// Links that were added, and what they hold: the link below which each is, and its pose in the base.
+struct Added {
+    names: BTreeSet<String>,
+    links: Vec<(String, Pose, String)>,
+}
+
+fn is_finite(pose: &Pose) -> bool {
+    pose.rotation.iter().chain(pose.translation.iter()).all(|number| number.is_finite())
 }
 
 /// Writes a moving joint's origin, and its axis if it is not that of the frame. Returns its frame as in the text.

@@ -1,19 +1,21 @@
-//! A new, minimal URDF of any robot: links without shape, the moving joints, and a fixed joint to the tip.
+//! A new, minimal URDF of any robot: links without shape, the moving joints, and fixed joints to the tip and to instruments and targets.
 
 use std::fmt::Write;
 
+use super::ChainSelection;
 use super::patch::{frame_on_axis, origin_values};
 use super::splice::{escaped, triple};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::model::Converted;
 use crate::io::numbers::{shortest, tidy};
 use crate::lie::Pose;
-use crate::robot::{Joint, JointKind, Robot};
+use crate::robot::{Body, Joint, JointKind, Robot};
 
 /// Limit for a prismatic joint without limits, metres: URDF requires one.
 const WIDE_LIMIT_M: f64 = 1000.0;
 
-/// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint.
+/// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint. Instruments, and targets with a body of their own,
+/// are links on fixed joints too.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -32,33 +34,63 @@ const WIDE_LIMIT_M: f64 = 1000.0;
 /// # Errors
 /// [`ErrorKind::Export`] if URDF cannot express a joint's reading (a factor or offset on its own reading).
 pub fn write_new(robot: &Robot) -> Result<Converted> {
+    written_new(robot).map(|(converted, _)| converted)
+}
+
+/// The same with the selection that gives the robot again.
+pub(in crate::io) fn written_new(robot: &Robot) -> Result<(Converted, ChainSelection)> {
     let mut writer = Writer { text: String::new(), notes: Vec::new(), links: Vec::new() };
     writer.line(0, "<?xml version=\"1.0\"?>");
     writer.line(0, &format!("<robot name=\"{}\">", escaped(&robot.name)));
     writer.links.push(robot.tip_name.clone());
     let base = writer.link(&robot.base_name);
     writer.leaders(robot, &base);
-    let (mut parent, mut base_from_link) = (base, Pose::identity());
-    for joint in &robot.joints {
+    // Name and pose of each joint's link as in the text.
+    let mut links: Vec<(String, Pose)> = Vec::with_capacity(robot.joints.len());
+    let of = |links: &[(String, Pose)], body: Body| {
+        let link = body.joint().and_then(|joint| links.get(joint)).cloned();
+        link.unwrap_or_else(|| (base.clone(), Pose::identity()))
+    };
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let (parent, base_from_link) = of(&links, robot.body_before(index));
         let frame = frame_on_axis(&joint.frame, &joint.screw);
         let child = writer.link(&format!("{}_link", joint.name));
         let origin = base_from_link.inverse() * frame;
-        base_from_link = base_from_link * writer.joint(joint, &parent, &child, &origin)?;
-        parent = child;
+        let base_from_link = base_from_link * writer.joint(joint, &parent, &child, &origin)?;
+        links.push((child, base_from_link));
     }
-    let mut mount = format!("{}_mount", robot.tip_name);
-    while robot.joints.iter().any(|joint| joint.name == mount || joint.reading.name == mount) {
-        mount.push('_');
-    }
+    let mut mounted: Vec<String> = Vec::new();
+    let mut mount_name = |link: &str| {
+        let mut mount = format!("{link}_mount");
+        while robot.joints.iter().any(|joint| joint.name == mount || joint.reading.name == mount)
+            || mounted.contains(&mount)
+        {
+            mount.push('_');
+        }
+        mounted.push(mount.clone());
+        mount
+    };
+    let (parent, base_from_link) = of(&links, robot.tip_body());
     writer.line(1, &format!("<link name=\"{}\"/>", escaped(&robot.tip_name)));
-    writer.open_joint(&mount, "fixed", &parent, &robot.tip_name);
+    writer.open_joint(&mount_name(&robot.tip_name), "fixed", &parent, &robot.tip_name);
     writer.origin(&(base_from_link.inverse() * robot.home));
     writer.line(1, "</joint>");
+    let mut ends = vec![robot.tip_name.clone()];
+    for mount in robot.instruments.iter().chain(&robot.mounted) {
+        let (parent, base_from_link) = of(&links, mount.body);
+        let link = writer.link(&mount.name);
+        writer.open_joint(&mount_name(&link), "fixed", &parent, &link);
+        writer.origin(&(base_from_link.inverse() * robot.base_from(mount)));
+        writer.line(1, "</joint>");
+        ends.push(link);
+    }
     writer.line(0, "</robot>");
     if !robot.targets.is_empty() {
         writer.notes.push("targets are not part of a URDF and were left out".to_owned());
     }
-    Ok(Converted { text: writer.text, notes: writer.notes })
+    let ends: Vec<&str> = ends.iter().map(String::as_str).collect();
+    let selection = ChainSelection::of(robot, &ends);
+    Ok((Converted { text: writer.text, notes: writer.notes }, selection))
 }
 
 struct Writer {

@@ -24,15 +24,27 @@ fn view(file: &CalibrationFile) -> Markup {
         axis(&mut table, (k, joint), ("calibrated", &joint.screw, "screw"));
     }
     let content = html! {
-        p {
-            "The arm as lines along its joints' axes: nominal in grey, calibrated in colour. Arrows go from the place \
-             of a target by the calibrated model to its measured place."
+        @if is_drawn(file) {
+            p {
+                "The arm as lines along its joints' axes: nominal in grey, calibrated in colour. Arrows go from the place \
+                 of a target by the calibrated model to its measured place."
+            }
+            div #arm.arm {}
+            noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
+        } @else {
+            p.note { "There is no picture of a robot with branches, or with instruments on it. All figures are in the tables." }
+            // The script draws into it, unseen.
+            div #arm.arm hidden {}
         }
-        div #arm.arm {}
-        noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
         (folded("The axes as numbers", &table))
     };
     section("view", "In 3D", &content)
+}
+
+/// Whether the page can draw the robot: a serial chain before instruments that stand beside it.
+fn is_drawn(file: &CalibrationFile) -> bool {
+    let is_chain = file.joints.iter().all(|joint| joint.on.is_none()) && file.robot.tip_on.is_none();
+    is_chain && file.instruments.is_empty() && file.targets.values().all(|target| target.on.is_none())
 }
 
 /// A joint's axis in one of the models.

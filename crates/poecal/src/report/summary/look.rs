@@ -148,6 +148,7 @@ fn cause_words(cause: Cause) -> &'static str {
         Cause::BaseFrame => "the base frame is a matter of choice",
         Cause::JointOffsets => "their offsets cannot be separated from their axes",
         Cause::NoOrientation => "no orientation was measured",
+        Cause::Unseen => "no way from an instrument to its target passes them",
         Cause::StoodStill => "did not move",
         Cause::TooFew => "too few measurements",
         Cause::PointOnAxis => "the point measured lies on the axis",

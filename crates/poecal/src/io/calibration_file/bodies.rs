@@ -1,0 +1,211 @@
+//! The robot of a calibration file: its joints, and on which bodies joints, targets and instruments stand.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{CalibrationFile, JointEntry, PoseEntry, ScrewEntry, TargetEntry};
+use crate::calibration::{CalibratedTarget, Calibration};
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::Pose;
+use crate::robot::{Body, Mount, Robot};
+
+/// A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves.
+///
+/// ```
+/// use poecal::io::calibration_file::BodyEntry;
+/// let entry: BodyEntry = serde_json::from_str(r#"{"link_of": "torso2"}"#)?;
+/// assert_eq!(entry, BodyEntry::LinkOf("torso2".into()));
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyEntry {
+    /// The base.
+    Base,
+    /// The link that this joint moves.
+    LinkOf(String),
+}
+
+/// An instrument on the robot.
+///
+/// ```
+/// use poecal::io::calibration_file::{BodyEntry, InstrumentEntry};
+/// let (on, quaternion_xyzw) = (BodyEntry::Base, [0.0, 0.0, 0.0, 1.0]);
+/// let entry = InstrumentEntry { on, position_m: [0.5, 0.0, 0.1], quaternion_xyzw };
+/// assert_eq!(serde_json::to_value(&entry)?["on"], "base");
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct InstrumentEntry {
+    /// Body on which it stands. Its pose is in the frame of the joint that moves the body, or in the base.
+    pub on: BodyEntry,
+    /// Position, metres.
+    pub position_m: [f64; 3],
+    /// Unit quaternion x, y, z, w.
+    pub quaternion_xyzw: [f64; 4],
+}
+
+/// What was measured of a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MeasuredEntry {
+    /// Position and orientation.
+    Pose,
+    /// Position alone.
+    Position,
+    /// Nothing: no row names it.
+    Nothing,
+}
+
+impl TargetEntry {
+    /// What was measured of it.
+    #[must_use]
+    pub fn measured(&self) -> MeasuredEntry {
+        let by_quaternion =
+            if self.quaternion_xyzw.is_some() { MeasuredEntry::Pose } else { MeasuredEntry::Position };
+        self.measured.unwrap_or(by_quaternion)
+    }
+}
+
+impl CalibrationFile {
+    /// The calibrated robot, with its named targets.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the file holds no valid robot.
+    pub fn robot(&self) -> Result<Robot> {
+        self.robot_of(|joint| &joint.screw, &self.robot.base_from_tip_at_zero)
+    }
+
+    /// The nominal robot, with the calibrated targets.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::robot`].
+    pub fn nominal_robot(&self) -> Result<Robot> {
+        let robot = self.robot_of(|joint| &joint.nominal_screw, &self.robot.nominal_base_from_tip_at_zero)?;
+        if robot.mounted.is_empty() && robot.instruments.is_empty() {
+            return Ok(robot);
+        }
+        // Targets and instruments stand in the frames of nominal joints: those of the file are of the calibrated ones.
+        let calibrated = self.robot()?;
+        let screws: Vec<_> = robot.joints.iter().map(|joint| joint.screw).collect();
+        let joints = calibrated.with_screws(&screws).joints;
+        Ok(Robot { joints, ..robot })
+    }
+
+    fn robot_of(&self, screw: impl Fn(&JointEntry) -> &ScrewEntry, home: &PoseEntry) -> Result<Robot> {
+        let joints = self.joints.iter().map(|entry| entry.joint(screw(entry))).collect::<Result<Vec<_>>>()?;
+        let mut robot = Robot::new(&self.robot.name, joints, home.pose()?)?;
+        robot.base_name.clone_from(&self.robot.base_link);
+        robot.tip_name.clone_from(&self.robot.tip_link);
+        for index in 0..self.joints.len() {
+            let on = self.joints.get(index).and_then(|entry| entry.on.as_ref());
+            let on = on.map(|on| on.body(&robot)).transpose()?;
+            if let Some(joint) = robot.joints.get_mut(index) {
+                joint.stands_on = on;
+            }
+        }
+        robot.tip = self.robot.tip_on.as_ref().map(|on| on.body(&robot)).transpose()?;
+        for (name, target) in &self.targets {
+            match &target.on {
+                None => robot.targets.push((name.clone(), target.pose()?)),
+                Some(on) => {
+                    let (body, pose) = (on.body(&robot)?, target.pose()?);
+                    robot.mounted.push(Mount { name: name.clone(), body, pose });
+                }
+            }
+        }
+        for (name, instrument) in &self.instruments {
+            let (body, pose) = (instrument.on.body(&robot)?, instrument.pose()?);
+            robot.instruments.push(Mount { name: name.clone(), body, pose });
+        }
+        robot.check_tree()?;
+        Ok(robot)
+    }
+}
+
+impl BodyEntry {
+    /// The entry of a body of a robot.
+    pub(crate) fn of(robot: &Robot, body: Body) -> Self {
+        match body.joint().and_then(|joint| robot.joints.get(joint)) {
+            Some(joint) => BodyEntry::LinkOf(joint.name.clone()),
+            None => BodyEntry::Base,
+        }
+    }
+
+    fn body(&self, robot: &Robot) -> Result<Body> {
+        match self {
+            BodyEntry::Base => Ok(Body::Base),
+            BodyEntry::LinkOf(name) => {
+                let found = robot.joints.iter().position(|joint| joint.name == *name);
+                found.map(Body::Link).ok_or_else(|| {
+                    let message =
+                        format!("found the link of joint `{name}`, expected that of a joint of this file");
+                    Error::new(ErrorKind::Model, message)
+                })
+            }
+        }
+    }
+}
+
+/// The named targets of a calibration: those that were measured, and those of the model with a body of their own.
+pub(super) fn targets(calibration: &Calibration) -> BTreeMap<String, TargetEntry> {
+    let robot = &calibration.robot;
+    let on_body = |mount: &Mount, measured: MeasuredEntry| TargetEntry {
+        position_m: mount.pose.translation.into(),
+        quaternion_xyzw: Some(mount.pose.quaternion_xyzw()),
+        on: Some(BodyEntry::of(robot, mount.body)),
+        measured: Some(measured),
+    };
+    let entry = |target: &CalibratedTarget| {
+        let name = target.name.clone()?;
+        let entry = match robot.mounted.iter().find(|mount| mount.name == name) {
+            Some(mount) if target.is_frame => on_body(mount, MeasuredEntry::Pose),
+            Some(mount) => on_body(mount, MeasuredEntry::Position),
+            None => TargetEntry {
+                position_m: target.tip_from_target.translation.into(),
+                quaternion_xyzw: target.is_frame.then(|| target.tip_from_target.quaternion_xyzw()),
+                on: None,
+                measured: None,
+            },
+        };
+        Some((name, entry))
+    };
+    let is_measured =
+        |mount: &&Mount| calibration.targets.iter().any(|target| target.name.as_ref() == Some(&mount.name));
+    let unused = robot.mounted.iter().filter(|mount| !is_measured(mount));
+    let unused = unused.map(|mount| (mount.name.clone(), on_body(mount, MeasuredEntry::Nothing)));
+    calibration.targets.iter().filter_map(entry).chain(unused).collect()
+}
+
+impl InstrumentEntry {
+    /// Entries of instruments, or targets, of a robot.
+    pub(in crate::io) fn of(robot: &Robot, mounts: &[Mount]) -> BTreeMap<String, Self> {
+        let entry = |mount: &Mount| {
+            let PoseEntry { position_m, quaternion_xyzw } = (&mount.pose).into();
+            let on = BodyEntry::of(robot, mount.body);
+            (mount.name.clone(), InstrumentEntry { on, position_m, quaternion_xyzw })
+        };
+        mounts.iter().map(entry).collect()
+    }
+
+    /// Its pose in the frame of the joint that moves its body, or in the base.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the quaternion is far from unit.
+    pub fn pose(&self) -> Result<Pose> {
+        PoseEntry { position_m: self.position_m, quaternion_xyzw: self.quaternion_xyzw }.pose()
+    }
+}
+
+impl TargetEntry {
+    /// Its pose in the tip frame, or in the frame of its body; a point has the orientation of that frame.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the quaternion is far from unit.
+    pub fn pose(&self) -> Result<Pose> {
+        let quaternion_xyzw = self.quaternion_xyzw.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+        PoseEntry { position_m: self.position_m, quaternion_xyzw }.pose()
+    }
+}
