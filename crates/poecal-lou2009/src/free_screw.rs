@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use poecal::estimate::{Chain, JointView};
 use poecal::lie::{Pose, Screw, TargetTwist, Twist, rotation};
-use poecal::parameters::{Column, OtherScrew, Parameter, ScrewModel, Unit};
+use poecal::parameters::{Column, OtherScrew, Parameter, ScrewModel};
 use poecal::robot::JointKind;
 
 /// A screw with all its numbers free, `ξ ← ξ + dξ`, made a screw again by the retraction (okamura1996, lou2009
@@ -31,10 +31,16 @@ impl FreeScrew {
     }
 }
 
-const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
-const TURN: Column = Column { unit: Unit::Radian, shifts_only: false };
+const SCREW: [Column; 6] = [
+    Column::shift("vx"),
+    Column::shift("vy"),
+    Column::shift("vz"),
+    Column::turn("wx"),
+    Column::turn("wy"),
+    Column::turn("wz"),
+];
 /// A change of a unit direction: a number that counts as radians.
-const DIRECTION: Column = Column { unit: Unit::Radian, shifts_only: true };
+const DIRECTION: [Column; 3] = [Column::direction("vx"), Column::direction("vy"), Column::direction("vz")];
 
 impl ScrewModel for FreeScrew {
     fn name(&self) -> &'static str {
@@ -43,8 +49,8 @@ impl ScrewModel for FreeScrew {
 
     fn columns(&self, kind: JointKind) -> &'static [Column] {
         match kind {
-            JointKind::Revolute => &[SHIFT, SHIFT, SHIFT, TURN, TURN, TURN],
-            JointKind::Prismatic => &[DIRECTION, DIRECTION, DIRECTION],
+            JointKind::Revolute => &SCREW,
+            JointKind::Prismatic => &DIRECTION,
         }
     }
 

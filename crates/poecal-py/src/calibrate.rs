@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use poecal::calibration::{CalibrationOptions, Stage, calibrate_with_progress, settle_sets};
+use poecal::calibration::{BlockChoice, CalibrationOptions, Stage, calibrate_with_progress, settle_sets};
 use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
 use poecal::measurement::Dataset;
@@ -35,6 +35,10 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 /// tolerance_deg_mm
 ///     Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
 ///     decides where the measurements determine nothing.
+/// fix
+///     Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * stands for any letters.
+/// free
+///     Blocks to fit, also those that are usually held, like "joint2.offset", and after `fix`.
 /// held_out
 ///     Share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row.
 /// seed
@@ -67,7 +71,7 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     No finite result is reached.
 #[pyfunction]
 #[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Some((0.5, 5.0)),
-                    held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, progress=None))]
+                    fix=None, free=None, held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
@@ -77,6 +81,8 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
     #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Option<(f64, f64)>,
+    #[pyo3(from_py_with = arg::fix)] fix: Option<Vec<String>>,
+    #[pyo3(from_py_with = arg::free)] free: Option<Vec<String>>,
     #[pyo3(from_py_with = arg::held_out)] held_out: Option<f64>,
     #[pyo3(from_py_with = arg::seed)] seed: Option<u64>,
     #[pyo3(from_py_with = arg::robust)] robust: &str,
@@ -95,6 +101,7 @@ pub(crate) fn calibrate(
     };
     let options = CalibrationOptions {
         frame: frame_word(frame)?,
+        blocks: BlockChoice { free: free.unwrap_or_default(), fix: fix.unwrap_or_default() },
         sigma_position_m: sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm)).transpose()?,
         sigma_rotation_rad: sigma_rotation_deg
             .map(|it| sigma("sigma_rotation_deg", it, f64::to_radians))

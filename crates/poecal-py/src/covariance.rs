@@ -1,10 +1,9 @@
 //! The covariance of a calibration's unknowns.
 
 use numpy::{PyArray1, PyArray2, PyArray3};
+use poecal::Unit;
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::lie::Pose;
-use poecal::parameters::{Parameter, Unit};
-use poecal::robot::JointKind;
 use pyo3::prelude::*;
 
 use crate::arrays::{pose_arrays, table};
@@ -23,39 +22,15 @@ pub(crate) struct Covariance {
     axes: Vec<Pose>,
 }
 
-/// What the unknowns of a parameter are called.
-fn words(parameter: &Parameter) -> &'static [&'static str] {
-    match parameter {
-        Parameter::ScrewAxis(axis) => match axis.kind {
-            JointKind::Revolute => &["shift_x", "shift_y", "turn_x", "turn_y"],
-            JointKind::Prismatic => &["turn_x", "turn_y"],
-        },
-        Parameter::TargetPlace(_) => &["shift_x", "shift_y", "shift_z"],
-        Parameter::TargetFrame(_) => &["shift_x", "shift_y", "shift_z", "turn_x", "turn_y", "turn_z"],
-        // Not among those of a calibration that is written.
-        Parameter::OtherScrew(_) | Parameter::ValueTerm(_) | Parameter::DeviceFrame(_) => &[],
-    }
-}
-
 impl Covariance {
     pub(crate) fn of(file: &CalibrationFile) -> PyResult<Self> {
         let (found, _) = file.uncertainty(&[]).map_err(raise)?;
-        let targets = file.uncertainty.iter().flat_map(|entry| &entry.targets);
-        let targets: Vec<&str> =
-            targets.map(|(name, _)| if name.is_empty() { "tip" } else { name.as_str() }).collect();
-        let joint = |index: usize| file.joints.get(index).map_or("", |joint| joint.name.as_str());
-        let target = |index: usize| targets.get(index).copied().unwrap_or_default();
+        let names = file.unknowns().map_err(raise)?;
         let (mut unknowns, mut places) = (Vec::new(), Vec::new());
         for (parameter, own) in found.layout.parameters() {
-            let group = match parameter {
-                Parameter::ScrewAxis(axis) => joint(axis.joint),
-                Parameter::TargetPlace(place) => target(place.target),
-                Parameter::TargetFrame(frame) => target(frame.target),
-                Parameter::OtherScrew(_) | Parameter::ValueTerm(_) | Parameter::DeviceFrame(_) => "",
-            };
             let columns = parameter.model().columns();
-            for ((word, column), &place) in words(parameter).iter().zip(columns).zip(own) {
-                unknowns.push((format!("{group}.{word}"), column.unit));
+            for (column, &place) in columns.iter().zip(own) {
+                unknowns.push((names.get(place.0).cloned().unwrap_or_default(), column.unit));
                 places.push(place);
             }
         }
@@ -71,10 +46,10 @@ impl Covariance {
 
 #[pymethods]
 impl Covariance {
-    /// Name of each of the k unknowns: a joint or target and its motion, as "joint1.shift_x" or "tip.turn_z".
+    /// Name of each of the k unknowns: a block and a motion, as "joint1.axis.x" or "target.rz".
     ///
-    /// A revolute joint has shifts along x and y and turns about x and y of its frame in `axes`, a prismatic one turns about x and y; a
-    /// target has shifts along its own axes, and turns about them if its orientation was measured.
+    /// A revolute joint has shifts x and y along and turns rx and ry about the axes of its frame in `axes`, a prismatic one turns; a target
+    /// has shifts along its own axes, and turns about them if its orientation was measured.
     #[getter]
     fn names(&self) -> Vec<String> {
         self.unknowns.iter().map(|(name, _)| name.clone()).collect()
@@ -86,6 +61,7 @@ impl Covariance {
         let word = |unit| match unit {
             Unit::Metre => "m",
             Unit::Radian => "rad",
+            Unit::One => "1",
         };
         self.unknowns.iter().map(|(_, unit)| word(*unit)).collect()
     }

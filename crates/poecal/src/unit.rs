@@ -13,6 +13,8 @@ pub enum Unit {
     Metre,
     /// Radians; shown in degrees.
     Radian,
+    /// A number without unit.
+    One,
 }
 
 impl Unit {
@@ -22,6 +24,7 @@ impl Unit {
         match self {
             Unit::Metre => si * 1e3,
             Unit::Radian => si.to_degrees(),
+            Unit::One => si,
         }
     }
 
@@ -31,24 +34,26 @@ impl Unit {
         match self {
             Unit::Metre => shown * 1e-3,
             Unit::Radian => shown.to_radians(),
+            Unit::One => shown,
         }
     }
 
-    /// Symbol of the unit in which people read it: `mm` or `deg`.
+    /// Symbol of the unit in which people read it: `mm`, `deg`, or nothing.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
             Unit::Metre => "mm",
             Unit::Radian => "deg",
+            Unit::One => "",
         }
     }
 
-    /// Metres of a number, where a radian counts `length_m` metres.
+    /// Metres of a number, where a radian counts `length_m` metres, and so does a number without unit: it is by radians.
     #[must_use]
     pub fn metres(self, length_m: f64) -> f64 {
         match self {
             Unit::Metre => 1.0,
-            Unit::Radian => length_m,
+            Unit::Radian | Unit::One => length_m,
         }
     }
 }

@@ -39,6 +39,12 @@ pub(crate) struct Calibrate {
     /// nothing. A joint of a TOML model may state its own
     #[arg(long, value_name = "ANGLE,LENGTH|none", default_value = "0.5deg,5mm")]
     pub(crate) tolerance: BelievedTolerance,
+    /// Blocks to hold as in the model: joints, targets, frames, or names like joint2.axis, in which * stands for any letters
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) fix: Vec<String>,
+    /// Blocks to fit, also those that are usually held, like joint2.offset, and after --fix: `--fix joints --free joint2`
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) free: Vec<String>,
     /// Share of the configurations held out, where nothing else says which rows are; 0 fits every row in any case [default: 0.3]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     pub(crate) held_out: Option<f64>,

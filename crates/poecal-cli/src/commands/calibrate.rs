@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal::calibration::{
-    Calibration, CalibrationOptions, Level, Stage, calibrate_with_progress, settle_sets,
+    BlockChoice, Calibration, CalibrationOptions, Level, Stage, calibrate_with_progress, settle_sets,
 };
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
@@ -159,6 +159,7 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
     let method = arguments.method.unwrap_or(arguments.formulation.usual_method());
     CalibrationOptions {
         frame: arguments.frame,
+        blocks: BlockChoice { free: arguments.free.clone(), fix: arguments.fix.clone() },
         sigma_position_m: arguments.sigma_position,
         sigma_rotation_rad: arguments.sigma_rotation,
         tolerance: arguments.tolerance.0,

@@ -144,7 +144,7 @@ impl Rules<'_> {
                 let concerned = directions.iter().any(|direction| direction[place].powi(2) > NOTABLE);
                 match column.unit {
                     Unit::Metre => lengths |= concerned,
-                    Unit::Radian => angles |= concerned,
+                    Unit::Radian | Unit::One => angles |= concerned,
                 }
             }
         }

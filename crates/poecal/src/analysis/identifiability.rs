@@ -1,5 +1,7 @@
 //! Rank judged against the noise, and undetermined directions described with joint names (theory.md §7 (36)).
 
+use std::borrow::Cow;
+
 use super::causes::{Degree, explain};
 use super::direction::{Cause, Direction};
 use super::excitation::Excitation;
@@ -8,7 +10,7 @@ use super::setup::Setup;
 use super::spectrum::{ROUNDING, Spectrum, WEAK, rounding};
 use crate::linalg;
 use crate::parameters::Parameter;
-use crate::robot::JointKind;
+use crate::robot::{Joint, JointKind};
 use crate::solve::Normal;
 
 /// What the measurements determine.
@@ -69,6 +71,9 @@ pub fn effective_unknowns(normal: &Normal, part: &Normal) -> f64 {
 #[must_use]
 pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identifiability {
     let n = setup.layout.dim();
+    // Motions of the base without any effect are no unknowns: they count as known.
+    let base = setup.layout.base_motions(setup.estimate, &setup.session.data.frames(setup.rows));
+    let gram = &with_known(gram, n, &base);
     let spectrum = Spectrum::new(gram, n, variance, setup.session.length_m);
     let values = &spectrum.values;
     let largest = values.last().copied().unwrap_or(0.0);
@@ -86,21 +91,40 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
     let mut hardly = explain(setup, &excitation, &spectrum, Degree::Weak(weak));
     hardly.extend(excitation.seen_once(setup));
     Identifiability {
-        parameters: n,
-        rank: n - spectrum.undetermined,
-        effective_unknowns: (n - spectrum.undetermined) as f64,
+        parameters: n - base.len(),
+        rank: n - base.len() - spectrum.undetermined,
+        effective_unknowns: (n - base.len() - spectrum.undetermined) as f64,
         condition,
         unidentifiable,
         weak: hardly,
-        structural: structural(setup),
+        structural: structural(setup, base.len()),
         observability: Observability::new(&singular, setup.rows.len()),
         spectrum,
     }
 }
 
-/// The structural kernel, known before anything is measured: theory.md §7 (35).
-fn structural(setup: &Setup<'_>) -> Vec<Direction> {
-    let joints = &setup.session.robot.joints;
+/// The information with more of it along some directions, as much as the measurements give of any unknown.
+fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>]) -> Cow<'a, [f64]> {
+    let mut gram = Cow::Borrowed(gram);
+    if directions.is_empty() {
+        return gram;
+    }
+    let most = (0..n).map(|k| gram[k * n + k]).fold(0.0, f64::max);
+    for direction in directions {
+        for (k, value) in gram.to_mut().iter_mut().enumerate() {
+            *value += most * direction[k / n] * direction[k % n];
+        }
+    }
+    gram
+}
+
+/// The structural kernel, known before anything is measured: theory.md §7 (35). So many motions of the base have no effect though some
+/// things are held.
+fn structural(setup: &Setup<'_>, base_motions: usize) -> Vec<Direction> {
+    let unknowns = setup.session.unknowns;
+    let joints = setup.session.robot.joints.iter().enumerate();
+    let joints: Vec<&Joint> =
+        joints.filter(|(joint, _)| unknowns.moves_axis(*joint)).map(|(_, joint)| joint).collect();
     let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
     let sliding = joints.iter().filter(|joint| joint.kind == JointKind::Prismatic).count();
     let turning = joints.len() - sliding;
@@ -121,13 +145,18 @@ fn structural(setup: &Setup<'_>) -> Vec<Direction> {
         }
     };
     add(Cause::OwnAxis, 2 * turning + 4 * sliding, &names, own);
-    if setup.session.device_free {
+    if setup.session.base_free() {
         let base =
             "base frame: moving it under all axes is the same as moving the device: kept as in the model";
         add(Cause::BaseFrame, 6, &[], base);
     }
+    let base = "base frame: the held axes and targets leave motions of it that are the same as moving the device: chosen nearest to the model";
+    add(Cause::BaseFrame, base_motions, &[], base);
     let zeros = "joint offsets: later axes and the tool have the same effect: kept as read";
-    add(Cause::JointOffsets, joints.len(), &names, zeros);
+    // Beside held axes or targets an offset is no other unknown.
+    if unknowns.are_usual() {
+        add(Cause::JointOffsets, joints.len(), &names, zeros);
+    }
     let points = setup.layout.parameters().filter(|(it, _)| matches!(it, Parameter::TargetPlace(_))).count();
     let no_orientation = "orientation of the tool: no orientation was measured";
     add(Cause::NoOrientation, 3 * points, &[], no_orientation);

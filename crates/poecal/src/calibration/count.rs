@@ -2,14 +2,17 @@
 
 use super::measurements_words;
 use crate::error::{Error, ErrorKind, Result};
-use crate::measurement::Dataset;
+use crate::estimate::Session;
 use crate::problem::MOST_UNKNOWNS;
-use crate::robot::{JointKind, Robot};
+use crate::robot::JointKind;
 
 /// Refuses problems with fewer measured numbers than unknowns that data of this kind can determine.
-pub(super) fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Result<()> {
+pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()> {
+    let Session { robot, data, unknowns, .. } = *session;
+    let joints = robot.joints.iter().enumerate().filter(|(joint, _)| unknowns.moves_axis(*joint));
     let screws: usize =
-        robot.joints.iter().map(|joint| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum();
+        joints.map(|(_, joint)| if joint.kind == JointKind::Revolute { 4 } else { 2 }).sum::<usize>()
+            + unknowns.terms.len();
     let mut is_seen = vec![false; data.targets.len()];
     fit_rows.iter().for_each(|&row| is_seen[data.observations[row as usize].target] = true);
     for (is_seen, name) in is_seen.into_iter().zip(&data.targets) {
@@ -23,8 +26,12 @@ pub(super) fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Re
             ));
         }
     }
-    let targets: usize = data.frames(fit_rows).iter().map(|&is_frame| if is_frame { 6 } else { 3 }).sum();
-    let devices = 6 * (data.station_count() - 1);
+    let targets = data.frames(fit_rows).into_iter().enumerate();
+    let targets = targets.filter(|(target, _)| unknowns.moves_target(*target));
+    let targets: usize = targets.map(|(_, is_frame)| if is_frame { 6 } else { 3 }).sum();
+    // Beside free axes the first frame is no further unknown.
+    let first = usize::from(!session.device_free || session.base_free());
+    let devices = 6 * (first..data.station_count()).filter(|&at| unknowns.moves_frame(at)).count();
     let needed = screws + targets + devices;
     if needed > MOST_UNKNOWNS {
         return Err(Error::new(
@@ -54,5 +61,5 @@ pub(super) fn check_count(robot: &Robot, data: &Dataset, fit_rows: &[u32]) -> Re
 
 /// Unknowns of further device frames as part of a list, if there are any.
 fn of_devices(unknowns: usize) -> String {
-    if unknowns > 0 { format!(", {unknowns} of further device frames") } else { String::new() }
+    if unknowns > 0 { format!(", {unknowns} of device frames") } else { String::new() }
 }

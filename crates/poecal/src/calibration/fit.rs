@@ -11,8 +11,8 @@ use crate::distributions::is_within_band;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Session, rms_m, sample_rows};
 use crate::gauge;
-use crate::measurement::{Dataset, Noise, Quantity};
-use crate::parameters::{DeviceFrame, Parameter, screw_axes};
+use crate::measurement::{Noise, Quantity};
+use crate::parameters::{DeviceFrame, Parameter, Subject, ValueTerm, screw_axes};
 use crate::problem::{Layout, Prior, Problem};
 use crate::simulate::random;
 use crate::solve::{LeastSquares, Normal, Options, Summary};
@@ -37,19 +37,35 @@ const SUSPICIOUS: f64 = 3e-3;
 /// the remaining pull of the prior.
 const RENEWALS: usize = 12;
 
-/// Free parameters of a fit: screws, targets, and the device frames but the first.
+/// Free parameters of a fit: screws, terms, targets, and device frames; not the first one if the base frame is a choice.
 pub(super) fn free_parameters(
+    session: &Session<'_>,
     estimate: &Estimate,
-    data: &Dataset,
     rows: &[u32],
     joints: Vec<Parameter>,
 ) -> Vec<Parameter> {
-    let further = 1..=estimate.further_devices.len();
-    let further = further.filter(|&station| estimate.tree.shared(station).is_none()).map(|station| {
+    let Session { data, unknowns, .. } = session;
+    let is_fixed = !session.device_free || session.base_free();
+    let stations = usize::from(is_fixed)..=estimate.further_devices.len();
+    let is_free =
+        |station: &usize| unknowns.moves_frame(*station) && estimate.tree.shared(*station).is_none();
+    let frames = stations.filter(is_free).map(|station| {
         let about = data.mean_position(&data.seen_from(station, rows));
         Parameter::DeviceFrame(DeviceFrame { station, about })
     });
-    further.chain(joints).chain(target_parameters(data, rows)).collect()
+    let is_free = |parameter: &Parameter| match parameter.model().subject() {
+        Subject::Joint(joint) => unknowns.moves_axis(joint),
+        Subject::Instrument(_) | Subject::Target(_) => true,
+    };
+    let terms = unknowns.terms.iter().filter_map(|&(joint, term)| {
+        let kind = *estimate.kinds().get(joint)?;
+        Some(Parameter::ValueTerm(ValueTerm { joint, kind, term }))
+    });
+    frames
+        .chain(joints.into_iter().filter(is_free))
+        .chain(terms)
+        .chain(target_parameters(session, rows))
+        .collect()
 }
 
 /// One fit of all screws and targets from a start, the first device frame fixed, with the formulation and solver of the options; of many
@@ -64,7 +80,7 @@ pub fn fit_screws(
     options: &CalibrationOptions,
 ) -> (Estimate, Normal, Summary) {
     let Formulation { joint_parameters, minimize, .. } = options.formulation;
-    let free = free_parameters(&start, session.data, rows, joint_parameters(start.kinds()));
+    let free = free_parameters(&session, &start, rows, joint_parameters(start.kinds()));
     let problem = |rows: Vec<u32>| Problem::new(session, rows, free.clone(), noise).with_prior(prior);
     let mut start = start;
     let (mut solver, mut before) = (options.solver, None);
@@ -95,7 +111,7 @@ pub(super) fn minimal(
     estimate: &Estimate,
     noise: Noise,
 ) -> (Layout, Normal) {
-    let free = free_parameters(estimate, session.data, rows, screw_axes(estimate.kinds()));
+    let free = free_parameters(&session, estimate, rows, screw_axes(estimate.kinds()));
     let problem = Problem::new(session, rows.to_vec(), free, noise);
     (problem.layout().clone(), problem.normal(estimate))
 }
@@ -276,7 +292,7 @@ impl Task<'_> {
     /// The free parameters.
     fn free(&self, estimate: &Estimate) -> Vec<Parameter> {
         let joints = (self.options.formulation.joint_parameters)(estimate.kinds());
-        free_parameters(estimate, self.session.data, self.rows, joints)
+        free_parameters(&self.session, estimate, self.rows, joints)
     }
 
     /// The problem of these rows and weights.
@@ -354,7 +370,8 @@ impl Task<'_> {
         report: &mut SolverReport,
     ) -> (Estimate, Normal) {
         let (mut estimate, mut normal) = (estimate, normal);
-        let Session { robot, data, length_m, device_free: base_free, .. } = self.session;
+        let Session { robot, data, length_m, .. } = self.session;
+        let base_free = self.session.base_free();
         let targets = delivered(robot, data).base_from_target;
         for _ in 0..8 {
             if base_free {

@@ -1,6 +1,7 @@
 //! From a robot and measurements to a calibrated robot: the steps by name.
 
 mod accuracy;
+mod blocks;
 mod count;
 mod coverage_check;
 mod doubts;
@@ -24,6 +25,8 @@ mod trust;
 mod verdict;
 
 pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
+pub use blocks::BlockChoice;
+pub(crate) use blocks::names;
 pub use coverage_check::{CoverageCheck, InSampledRange, PartCoverage, PredictedUncertainty};
 pub use fit::fit_screws;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
@@ -100,7 +103,10 @@ pub fn calibrate_with_progress(
 ) -> Result<Calibration> {
     let (data, rows) = (&written(data, options.formulation.pose_residual), data.len());
     let packed = Arc::new(threads::in_pool(rows, || Packed::of(robot, data)));
-    let session = Session::new(robot, data, &packed, options.frame == DeviceFrameKnowledge::Unknown);
+    let unknowns = options.blocks.unknowns(robot, data)?;
+    let device_free = options.frame == DeviceFrameKnowledge::Unknown
+        && (0..data.station_count()).any(|station| unknowns.moves_frame(station));
+    let session = Session::new(robot, data, &packed, device_free).with_unknowns(&unknowns);
     let prepared = threads::in_pool(rows, || Prepared::new(session, options))?;
     progress(Stage::Registration);
     let (registered, noise, source) = threads::in_pool(rows, || prepared.register());

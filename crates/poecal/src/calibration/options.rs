@@ -9,7 +9,7 @@ use crate::problem::Prior;
 use crate::robot::Tolerance;
 use crate::solve;
 
-use super::{Formulation, Robust};
+use super::{BlockChoice, Formulation, Robust};
 
 /// What is known of the measuring device's frame.
 ///
@@ -38,10 +38,12 @@ pub enum DeviceFrameKnowledge {
 /// let options = CalibrationOptions { held_out: 0.2, ..Default::default() };
 /// assert_eq!(options.seed, 1);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationOptions {
     /// What is known of the device's frame.
     pub frame: DeviceFrameKnowledge,
+    /// Which blocks of unknowns are fitted; by default all axes, targets and frames.
+    pub blocks: BlockChoice,
     /// Standard deviation of each measured position component, metres; estimated from the data if absent.
     pub sigma_position_m: Option<f64>,
     /// Standard deviation of each measured rotation component, radians; estimated from the data if absent.
@@ -69,6 +71,7 @@ impl Default for CalibrationOptions {
     fn default() -> Self {
         CalibrationOptions {
             frame: DeviceFrameKnowledge::Unknown,
+            blocks: BlockChoice::default(),
             sigma_position_m: None,
             sigma_rotation_rad: None,
             held_out: 0.3,
@@ -97,6 +100,6 @@ impl CalibrationOptions {
     #[must_use]
     pub(in crate::calibration) fn prior(&self, session: &Session<'_>) -> Option<Prior> {
         let tolerance = self.tolerance.filter(|_| self.formulation == Formulation::default());
-        tolerance.map(|tolerance| Prior::new(session.robot, tolerance, session.device_free))
+        tolerance.map(|tolerance| Prior::new(session.robot, tolerance, session.base_free()))
     }
 }

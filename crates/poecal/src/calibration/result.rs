@@ -7,7 +7,7 @@ use super::{
     SolverReport, Trust, Verdict, fit_screws,
 };
 use crate::analysis::Identifiability;
-use crate::estimate::{Estimate, Packed, Session};
+use crate::estimate::{Estimate, Packed, Session, Unknowns};
 use crate::forensics::Diagnosis;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
@@ -70,6 +70,8 @@ pub struct Calibration {
     pub targets: Vec<CalibratedTarget>,
     /// What was known of the device's frame.
     pub frame: DeviceFrameKnowledge,
+    /// What the fit changed.
+    pub unknowns: Unknowns,
     /// How the fit was written and minimised.
     pub formulation: Formulation,
     /// `base_from_device`, of the first station.
@@ -120,6 +122,7 @@ impl Calibration {
     /// The session of these measurements and their joint values.
     pub(crate) fn session<'a>(&'a self, data: &'a Dataset, packed: &'a Packed) -> Session<'a> {
         Session::new(&self.nominal, data, packed, self.frame == DeviceFrameKnowledge::Unknown)
+            .with_unknowns(&self.unknowns)
     }
 
     /// The calibrated robot with the named targets in its tip frame, as written to model files.
@@ -175,6 +178,8 @@ pub(super) fn place_tip(
     estimate: &Estimate,
 ) -> (Robot, Vec<CalibratedTarget>) {
     let mut calibrated = robot.with_screws(&estimate.screws());
+    calibrated.terms.clone_from(&estimate.terms);
+    calibrated.terms.retain(|it| it.coefficient != 0.0);
     let last_joint = calibrated.tip_body().joint().and_then(|joint| calibrated.joints.get(joint));
     calibrated.home =
         last_joint.map_or_else(Pose::identity, |joint| joint.frame) * robot.last_joint_from_tip();

@@ -2,6 +2,7 @@
 
 use super::{CalibrationOptions, DeviceFrameKnowledge, measurements_words};
 use crate::error::{Error, ErrorKind, Result};
+use crate::estimate::Unknowns;
 use crate::measurement::Dataset;
 
 /// Fewest rows that determine a device frame: three points.
@@ -12,6 +13,7 @@ pub(super) fn check_stations(
     data: &Dataset,
     [fitted, held_out]: [&[u32]; 2],
     options: &CalibrationOptions,
+    unknowns: &Unknowns,
 ) -> Result<()> {
     let stations = data.station_count();
     if stations == 1 {
@@ -24,7 +26,7 @@ pub(super) fn check_stations(
         );
         return Err(Error::new(ErrorKind::Option, message));
     }
-    for station in 0..stations {
+    for station in (0..stations).filter(|&station| unknowns.moves_frame(station)) {
         let rows = data.seen_from(station, fitted).len();
         if rows >= FEWEST_ROWS {
             continue;

@@ -15,7 +15,7 @@ use super::stations::check_stations;
 use super::trust::{Finished, trust};
 use super::verdict::{Grounds, verdict};
 use super::{
-    Accuracy, Calibration, CalibrationOptions, CoverageCheck, Level, Models, NoiseSource,
+    Accuracy, Calibration, CalibrationOptions, CoverageCheck, Formulation, Level, Models, NoiseSource,
     PredictedUncertainty, Robustness, Trust, delivered, estimate_noise, noise, set_accuracy, split_rows,
 };
 use crate::analysis::{Identifiability, Setup, identifiability};
@@ -52,8 +52,8 @@ impl<'a> Prepared<'a> {
     pub(super) fn new(session: Session<'a>, options: &'a CalibrationOptions) -> Result<Self> {
         let Session { robot, data, .. } = session;
         let (fit_rows, held_out_rows) = split_rows(data, options)?;
-        check_stations(data, [&fit_rows, &held_out_rows], options)?;
-        check_count(robot, data, &fit_rows)?;
+        check_stations(data, [&fit_rows, &held_out_rows], options, session.unknowns)?;
+        check_count(&session, &fit_rows)?;
         let (delivered, prior) = (delivered(robot, data), options.prior(&session));
         Ok(Prepared { session, options, delivered, prior, fit_rows, held_out_rows })
     }
@@ -181,6 +181,7 @@ impl<'a> Prepared<'a> {
             robot,
             targets,
             frame: self.options.frame,
+            unknowns: self.session.unknowns.clone(),
             formulation: self.options.formulation,
             base_from_device: models.calibrated.device_from_base.inverse(),
             stations: stations(&self.session, &models.calibrated, fitted.noise),
@@ -207,12 +208,17 @@ impl<'a> Prepared<'a> {
         // Positions decide tool and frame; orientations decide only the directions that positions do not determine.
         let positions = ByQuantity::from_fn(|quantity| match quantity.unit() {
             Unit::Metre => fitted.noise[quantity],
-            Unit::Radian => POSITIONS_FIRST * fitted.noise[quantity],
+            Unit::Radian | Unit::One => POSITIONS_FIRST * fitted.noise[quantity],
         });
         let again =
             |targets_free| register(&self.registration(kept, positions, targets_free), &self.delivered).0;
-        let found = fitted.estimate.without_offsets();
-        let calibrated = if self.session.device_free {
+        // Offsets that were asked for stay; those of a formulation are a way to write the screws.
+        let found = if self.options.formulation == Formulation::default() {
+            fitted.estimate.clone()
+        } else {
+            fitted.estimate.without_offsets()
+        };
+        let calibrated = if self.session.base_free() {
             let targets = &self.delivered.base_from_target;
             let motion = gauge::base_motion(&found, self.session.robot, targets, self.session.length_m);
             found.rebased(&motion)
@@ -252,7 +258,8 @@ impl<'a> Prepared<'a> {
 
     /// Judges the result in the minimal basis and by the kept rows, whatever the parameterisation and loss of the fit.
     fn trust(&self, fitted: &Fitted, models: &Models, kept: &[u32], is_robust: bool) -> (Trust, Remainder) {
-        let (layout, normal) = if fitted.layout.is_minimal() && !is_robust {
+        let is_usual = self.options.formulation == Formulation::default();
+        let (layout, normal) = if (is_usual || fitted.layout.is_minimal()) && !is_robust {
             (fitted.layout.clone(), fitted.normal.clone())
         } else {
             fit::minimal(self.session, kept, &models.calibrated, fitted.noise)
@@ -332,7 +339,7 @@ impl<'a> Prepared<'a> {
     /// Different device frames, if a fit with one has larger errors than a robot's own.
     fn frames_apart(&self, fitted: &Fitted, accuracy: &Accuracy) -> Option<FramesApart> {
         let left_m = accuracy.training.calibrated.leading_m();
-        if !self.session.device_free || !fit::is_suspicious(left_m, self.session.length_m) {
+        if !self.session.base_free() || !fit::is_suspicious(left_m, self.session.length_m) {
             return None;
         }
         frames_apart(&self.frame_search(fitted, left_m))
@@ -354,7 +361,7 @@ impl<'a> Prepared<'a> {
         let rows = if is_stated { self.fit_rows.clone() } else { self.session.data.all_rows() };
         // Least squares take a part of a move into the screws; a robust loss does not.
         let again =
-            (self.session.device_free && !is_robust).then(|| self.frame_search(fitted, f64::INFINITY));
+            (self.session.base_free() && !is_robust).then(|| self.frame_search(fitted, f64::INFINITY));
         moved(&ChangeSearch {
             session: self.session,
             estimate: calibrated,

@@ -225,9 +225,9 @@ fn range_parts(ranges: &[[f64; 2]], values: &[f64], errors: &[Vec<Matrix3<f64>>]
 /// Correction of each joint with its uncertainty and effect.
 fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<JointCorrection> {
     let view = &finished.view;
-    let Session { robot, length_m, device_free, .. } = view.session;
+    let Session { robot, length_m, .. } = view.session;
     let calibrated = &finished.models.calibrated;
-    let deviations = screw_deviations(calibrated, robot, finished.layout, length_m, device_free);
+    let deviations = screw_deviations(calibrated, robot, finished.layout, length_m, view.session.base_free());
     let nominal: Vec<_> = robot.joints.iter().map(|joint| joint.screw).collect();
     let rows = sample_rows(view.rows, EFFECT_SAMPLE);
     let mut joints: Vec<JointCorrection> = deviations

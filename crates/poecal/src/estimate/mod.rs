@@ -10,6 +10,7 @@ mod row_error;
 mod session;
 mod sight;
 mod tree;
+mod unknowns;
 
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
@@ -19,6 +20,7 @@ pub(crate) use row_error::rms_m;
 pub use session::Session;
 pub use sight::Sight;
 pub use tree::{Passed, Stand, Tree};
+pub use unknowns::Unknowns;
 
 use std::sync::Arc;
 

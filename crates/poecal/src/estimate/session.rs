@@ -1,6 +1,7 @@
 //! The measurements of one robot, as every step of a calibration reads them.
 
-use super::{Packed, radian_m};
+use super::unknowns::USUAL;
+use super::{Packed, Unknowns, radian_m};
 use crate::measurement::{ByQuantity, Dataset, Noise, Observation};
 use crate::robot::Robot;
 
@@ -32,13 +33,28 @@ pub struct Session<'a> {
     pub device_free: bool,
     /// Noise of each instrument in units of the first one's; empty if all are alike.
     pub noise_ratios: &'a [Noise],
+    /// What a fit changes.
+    pub unknowns: &'a Unknowns,
 }
 
 impl<'a> Session<'a> {
     /// A radian counts a third of the reach ([`radian_m`]).
     #[must_use]
     pub fn new(robot: &'a Robot, data: &'a Dataset, packed: &'a Packed, device_free: bool) -> Self {
-        Session { robot, data, packed, length_m: radian_m(robot, packed), device_free, noise_ratios: &[] }
+        let length_m = radian_m(robot, packed);
+        Session { robot, data, packed, length_m, device_free, noise_ratios: &[], unknowns: &USUAL }
+    }
+
+    /// The same with these unknowns.
+    #[must_use]
+    pub fn with_unknowns(self, unknowns: &'a Unknowns) -> Self {
+        Session { unknowns, ..self }
+    }
+
+    /// Whether the base frame is a choice: the device frame is unknown, and nothing is held in the base.
+    #[must_use]
+    pub fn base_free(&self) -> bool {
+        self.device_free && self.unknowns.base_is_free()
     }
 
     /// The same with another length that a radian counts, metres.

@@ -85,7 +85,7 @@ impl<'a> Fitter<'a> {
 
     pub(super) fn session<'b>(&'b self, data: &'b Dataset, packed: &'b Packed) -> Session<'b> {
         let Fitter { robot, device_free, length_m, .. } = *self;
-        Session { robot, data, packed, length_m, device_free, noise_ratios: &[] }
+        Session::new(robot, data, packed, device_free).with_length(length_m)
     }
 
     /// Registers the nominal robot.
@@ -151,9 +151,9 @@ impl<'a> Fitter<'a> {
     ) -> (Estimate, Misfit) {
         let packed = self.packed(data);
         let rows = data.all_rows();
-        free.extend(target_parameters(data, &rows));
-        let mut start = registered.clone();
         let session = self.session(data, &packed);
+        free.extend(target_parameters(&session, &rows));
+        let mut start = registered.clone();
         start.recentre(&session, &rows);
         let problem = Problem::new(session, rows, free, self.noise);
         // Without geodesic steps: hypotheses that explain nothing would take most of the time.

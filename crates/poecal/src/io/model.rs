@@ -1,5 +1,6 @@
 //! Robot models of any form: choice of the reader, and conversion.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -206,9 +207,13 @@ pub struct Converted {
 /// than 1 m, 1e-12 of the size).
 pub fn convert(model: &Model, to: ModelFormat) -> Result<Converted> {
     let robot = &model.robot;
+    let mut plain = Cow::Borrowed(robot);
     let (converted, again) = match to {
         ModelFormat::Urdf => {
-            let (urdf, selection) = urdf::written_new(robot)?;
+            let mut notes = Vec::new();
+            plain = urdf::holdable(robot, &mut notes);
+            let (mut urdf, selection) = urdf::written_new(&plain)?;
+            urdf.notes.splice(0..0, notes);
             let again = UrdfDocument::parse(&urdf.text, &model.path, &selection);
             (urdf, again.map(|document| document.robot().clone()))
         }
@@ -221,7 +226,7 @@ pub fn convert(model: &Model, to: ModelFormat) -> Result<Converted> {
     let again = again.map_err(|error| {
         export(model, format!("the converted model cannot be read back: {}", error.message()))
     })?;
-    verify(model, &again)?;
+    verify(model, &plain, &again)?;
     Ok(converted)
 }
 
@@ -239,7 +244,7 @@ fn export(model: &Model, message: String) -> Error {
 }
 
 /// Compares the forward kinematics of a model and of its text read back.
-fn verify(model: &Model, again: &Robot) -> Result<()> {
+fn verify(model: &Model, robot: &Robot, again: &Robot) -> Result<()> {
     let names = |robot: &Robot| robot.reading_names().into_iter().collect::<BTreeSet<_>>();
     let is_same = if model.robot.is_serial() {
         again.reading_names() == model.robot.reading_names()
@@ -249,7 +254,7 @@ fn verify(model: &Model, again: &Robot) -> Result<()> {
     if !is_same {
         return Err(export(model, "the converted model has other joints, expected the same".to_owned()));
     }
-    let Difference { position_m, rotation_rad } = Difference::of(&model.robot, again, 1000);
+    let Difference { position_m, rotation_rad } = Difference::of(robot, again, 1000);
     let tolerance_m = 1e-12 * model.robot.reach_m().max(1.0);
     if position_m <= tolerance_m && rotation_rad <= 1e-12 {
         return Ok(());

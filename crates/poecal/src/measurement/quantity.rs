@@ -130,7 +130,7 @@ impl Noise {
         while k < values.len() {
             values[k] = match Quantity::ALL[k].entry().2 {
                 Unit::Metre => length_m,
-                Unit::Radian => angle_rad,
+                Unit::Radian | Unit::One => angle_rad,
             };
             k += 1;
         }
@@ -146,7 +146,7 @@ impl Noise {
     pub(crate) fn without_lengths(self, length_m: f64) -> Self {
         ByQuantity::from_fn(|quantity| match quantity.unit() {
             Unit::Metre => length_m,
-            Unit::Radian => self[quantity],
+            Unit::Radian | Unit::One => self[quantity],
         })
     }
 }

@@ -10,16 +10,51 @@ use crate::unit::Unit;
 ///
 /// ```
 /// use poecal::parameters::{Column, Unit};
-/// let column = Column { unit: Unit::Metre, shifts_only: true };
-/// assert!(column.shifts_only);
+/// let column = Column { name: "x", unit: Unit::Metre, shifts_only: true };
+/// assert_eq!(column, Column::shift("x"));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
+    /// Name within its parameter; empty if it is the only one.
+    pub name: &'static str,
     /// Unit of the step.
     pub unit: Unit,
     /// Whether a step translates the target without rotating it.
     pub shifts_only: bool,
 }
+
+impl Column {
+    /// A translation of the target, metres.
+    #[must_use]
+    pub const fn shift(name: &'static str) -> Column {
+        Column { name, unit: Unit::Metre, shifts_only: true }
+    }
+
+    /// A rotation of the target, radians.
+    #[must_use]
+    pub const fn turn(name: &'static str) -> Column {
+        Column { name, unit: Unit::Radian, shifts_only: false }
+    }
+
+    /// A direction along which the target moves, radians.
+    #[must_use]
+    pub const fn direction(name: &'static str) -> Column {
+        Column { name, unit: Unit::Radian, shifts_only: true }
+    }
+}
+
+/// Columns of a frame: translations along its axes, rotations about them.
+pub(super) const FRAME: [Column; 6] = [
+    Column::shift("x"),
+    Column::shift("y"),
+    Column::shift("z"),
+    Column::turn("rx"),
+    Column::turn("ry"),
+    Column::turn("rz"),
+];
+
+/// Columns of a place: translations along its axes.
+pub(super) const PLACE: [Column; 3] = [Column::shift("x"), Column::shift("y"), Column::shift("z")];
 
 /// Force `f` at a target's origin and torque `τ`, device axes: the whitened residual pulled back through the measurement
 /// (theory.md §6 (31a)).

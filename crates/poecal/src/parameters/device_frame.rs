@@ -2,10 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject, Wrench};
+use super::columns::{Column, Columns, FRAME, Subject, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
-use crate::unit::Unit;
 
 /// The device frame, stepped about the point `about` of that frame (the middle of the data, so that rotation and translation are nearly
 /// uncorrelated): columns `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)). They are zero in rows of another station.
@@ -22,16 +21,13 @@ pub struct DeviceFrame {
     pub about: Vector3<f64>,
 }
 
-const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
-const TURN: Column = Column { unit: Unit::Radian, shifts_only: false };
-
 impl Columns for DeviceFrame {
     fn subject(&self) -> Subject {
         Subject::Instrument(self.station)
     }
 
     fn columns(&self) -> &'static [Column] {
-        &[SHIFT, SHIFT, SHIFT, TURN, TURN, TURN]
+        &FRAME
     }
 
     fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {

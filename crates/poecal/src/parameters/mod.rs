@@ -1,6 +1,7 @@
 //! Parameters: groups of unknowns of a robot, its targets and the device. A parameter provides the motion of the target by each of its
 //! unknowns, and depends on no measurement.
 
+mod block;
 mod columns;
 mod device_frame;
 mod other_screw;
@@ -10,6 +11,7 @@ mod target_place;
 mod value_term;
 
 pub use crate::unit::Unit;
+pub use block::{Block, Names};
 pub use columns::{Column, Columns, Subject, Wrench};
 pub use device_frame::DeviceFrame;
 pub use other_screw::{OtherScrew, ScrewModel};
@@ -71,6 +73,18 @@ impl Parameter {
             Parameter::TargetPlace(place) => place,
             Parameter::TargetFrame(frame) => frame,
             Parameter::DeviceFrame(frame) => frame,
+        }
+    }
+
+    /// The term of a joint's value, if the parameter is one.
+    pub(crate) fn value_term(&self) -> Option<&ValueTerm> {
+        match self {
+            Parameter::ValueTerm(term) => Some(term),
+            Parameter::ScrewAxis(_)
+            | Parameter::OtherScrew(_)
+            | Parameter::TargetPlace(_)
+            | Parameter::TargetFrame(_)
+            | Parameter::DeviceFrame(_) => None,
         }
     }
 

@@ -6,7 +6,6 @@ use super::columns::{Column, Columns, Subject, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{Pose, TargetTwist, Twist};
 use crate::robot::JointKind;
-use crate::unit::Unit;
 
 /// The screw of joint `joint`, moved by the adjoint of a local step `ε` in its axis frame: `A ← A exp(ε)`, which is
 /// `ξ ← Ad_exp(η) ξ` with `η = Ad_A ε` (theory.md §5 (18); lou2009 (16) to (18) without the kernel of η).
@@ -30,9 +29,8 @@ pub struct ScrewAxis {
     pub kind: JointKind,
 }
 
-const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
-const TILT: Column = Column { unit: Unit::Radian, shifts_only: false };
-const SLIDE: Column = Column { unit: Unit::Radian, shifts_only: true };
+const TURNED: [Column; 4] = [Column::shift("x"), Column::shift("y"), Column::turn("rx"), Column::turn("ry")];
+const SLID: [Column; 2] = [Column::direction("rx"), Column::direction("ry")];
 
 impl Columns for ScrewAxis {
     fn subject(&self) -> Subject {
@@ -41,8 +39,8 @@ impl Columns for ScrewAxis {
 
     fn columns(&self) -> &'static [Column] {
         match self.kind {
-            JointKind::Revolute => &[SHIFT, SHIFT, TILT, TILT],
-            JointKind::Prismatic => &[SLIDE, SLIDE],
+            JointKind::Revolute => &TURNED,
+            JointKind::Prismatic => &SLID,
         }
     }
 

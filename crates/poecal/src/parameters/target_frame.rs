@@ -2,10 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject};
+use super::columns::{Column, Columns, FRAME, Subject};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
-use crate::unit::Unit;
 
 /// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`
 /// (theory.md §5 (24)).
@@ -20,16 +19,13 @@ pub struct TargetFrame {
     pub target: usize,
 }
 
-const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
-const TURN: Column = Column { unit: Unit::Radian, shifts_only: false };
-
 impl Columns for TargetFrame {
     fn subject(&self) -> Subject {
         Subject::Target(self.target)
     }
 
     fn columns(&self) -> &'static [Column] {
-        &[SHIFT, SHIFT, SHIFT, TURN, TURN, TURN]
+        &FRAME
     }
 
     fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {

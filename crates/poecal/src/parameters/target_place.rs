@@ -2,10 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, Subject};
+use super::columns::{Column, Columns, PLACE, Subject};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::TargetTwist;
-use crate::unit::Unit;
 
 /// The point `P_c0` of lou2009 (19) to (26), stepped in the target's own axes: columns `(R_target e_k; 0)` (theory.md §5 (23)).
 ///
@@ -19,15 +18,13 @@ pub struct TargetPlace {
     pub target: usize,
 }
 
-const SHIFT: Column = Column { unit: Unit::Metre, shifts_only: true };
-
 impl Columns for TargetPlace {
     fn subject(&self) -> Subject {
         Subject::Target(self.target)
     }
 
     fn columns(&self) -> &'static [Column] {
-        &[SHIFT; 3]
+        &PLACE
     }
 
     fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {

@@ -34,18 +34,24 @@ impl Columns for ValueTerm {
     }
 
     fn columns(&self) -> &'static [Column] {
-        match (self.term.unit(self.kind), self.kind) {
-            (Unit::Radian, JointKind::Revolute) => &[Column { unit: Unit::Radian, shifts_only: false }],
-            (Unit::Metre, JointKind::Revolute) => &[Column { unit: Unit::Metre, shifts_only: false }],
-            (Unit::Radian, JointKind::Prismatic) => &[Column { unit: Unit::Radian, shifts_only: true }],
-            (Unit::Metre, JointKind::Prismatic) => &[Column { unit: Unit::Metre, shifts_only: true }],
+        const fn column(unit: Unit, shifts_only: bool) -> Column {
+            Column { name: "", unit, shifts_only }
+        }
+        const TURNED: [[Column; 1]; 3] =
+            [[column(Unit::Metre, false)], [column(Unit::Radian, false)], [column(Unit::One, false)]];
+        const SHIFTED: [[Column; 1]; 3] =
+            [[column(Unit::Metre, true)], [column(Unit::Radian, true)], [column(Unit::One, true)]];
+        let at = self.term.model().unit(self.kind) as usize;
+        match self.kind {
+            JointKind::Revolute => &TURNED[at],
+            JointKind::Prismatic => &SHIFTED[at],
         }
     }
 
     fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
         out[0] = (Vector3::zeros(), Vector3::zeros());
         for view in chain.of_joint(self.joint) {
-            let basis = self.term.basis(self.joint, chain.values(view));
+            let basis = self.term.model().basis(self.joint, chain.values(view));
             let z = view.z * if view.backward { -basis } else { basis };
             let (moved, turned) = match self.kind {
                 JointKind::Revolute => (z.cross(&(chain.target.translation - view.origin)), z),

@@ -282,7 +282,7 @@ pub(super) fn pack(
         |at, term| {
             let (passed, term) = terms[term];
             let from = session.observation(rows[at]).from.filter(|_| passed.backward);
-            let basis = term.basis(passed.joint, session.packed.values_at(rows[at] as usize, from));
+            let basis = term.model().basis(passed.joint, session.packed.values_at(rows[at] as usize, from));
             if passed.backward { -basis } else { basis }
         },
     );

@@ -1,5 +1,6 @@
 //! Rows × columns: the only place where measurements and parameters meet. Assembly of the normal equations, no algorithms.
 
+mod base_motions;
 mod column_map;
 mod curvature;
 mod fast;

@@ -6,7 +6,8 @@ use super::Layout;
 use crate::estimate::Estimate;
 use crate::lie::{Pose, Twist};
 use crate::linalg::{self, Factor6};
-use crate::robot::{Robot, Tolerance};
+use crate::parameters::ValueTerm;
+use crate::robot::{JointTerm, Robot, Tolerance};
 use crate::solve::Normal;
 
 /// Most Gauss-Newton iterations for the motion of the base, which converge quadratically.
@@ -40,6 +41,7 @@ const ROUNDING: f64 = 1e-12;
 pub struct Prior {
     axes: Vec<Nominal>,
     base_free: bool,
+    terms: Vec<JointTerm>,
 }
 
 /// A nominal axis.
@@ -102,7 +104,7 @@ impl Prior {
             turns: !joint.screw.is_prismatic(),
             tolerance: joint.tolerance.unwrap_or(common),
         });
-        Prior { axes: axes.collect(), base_free }
+        Prior { axes: axes.collect(), base_free, terms: robot.terms.clone() }
     }
 
     /// `½ min_G Σ |u|²`: theory.md §6 (27a) for weight 1.
@@ -146,12 +148,32 @@ impl Prior {
         (found, factor)
     }
 
+    /// Adds `weight` times `½ Σ ((c - c⁰) / σ)²` of the terms of joint values that are unknown, with their nominal coefficients c⁰.
+    fn add_terms(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
+        let n = layout.dim();
+        for (parameter, places) in layout.parameters() {
+            let Some(&ValueTerm { joint, kind, term }) = parameter.value_term() else { continue };
+            let nominal = self.terms.iter().find(|it| it.joint == joint && it.term == term);
+            let sigma = term.model().deviation(kind);
+            let value =
+                (estimate.coefficient(joint, term) - nominal.map_or(0.0, |it| it.coefficient)) / sigma;
+            normal.cost += 0.5 * weight * value * value;
+            for &(place, scale) in places {
+                normal.gradient[place] -= weight * value / (sigma * scale);
+                if let Some(information) = normal.gram.get_mut(place * n + place) {
+                    *information += weight / (sigma * scale).powi(2);
+                }
+            }
+        }
+    }
+
     /// Adds `weight` times the prior to the normal information of a layout's unknowns: to the upper triangle of `JᵀJ` (unless that is
     /// empty), to the gradient and to the cost, with the base eliminated (theory.md §6 (27a)).
     pub fn add(&self, estimate: &Estimate, layout: &Layout, weight: f64, normal: &mut Normal) {
         let (deviations, base) = self.at_best_base(estimate);
         let n = layout.dim();
         let is_wanted = !normal.gram.is_empty();
+        self.add_terms(estimate, layout, weight, normal);
         // Products of each unknown's column with those of the base.
         let mut shared: Vec<(usize, Vector6<f64>)> = Vec::with_capacity(n);
         for (parameter, places) in layout.parameters() {

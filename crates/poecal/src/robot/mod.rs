@@ -4,12 +4,13 @@ mod body;
 mod dh;
 mod joint;
 mod kinematics;
+mod offset;
 mod term;
 
 pub use body::{Body, Mount};
 pub use dh::{DhConvention, DhRow};
 pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
-pub use term::{JointTerm, Term};
+pub use term::{JointTerm, Term, TermModel};
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,17 +1,36 @@
 //! Terms of joint values: what a joint really turns or slides beyond its reading.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::JointKind;
+use super::offset::Offset;
 use crate::unit::Unit;
 
-/// A term of a joint's value, `θ ← θ + c b(θ)` with a known function b of the joint values and a coefficient c (theory.md §3).
+/// Interface of a term: the function b of the joint values, and what its coefficient c is.
+pub trait TermModel {
+    /// Its name.
+    fn name(&self) -> &'static str;
+
+    /// Unit of the coefficient for a joint of this kind.
+    fn unit(&self, kind: JointKind) -> Unit;
+
+    /// The function b of a joint, from the values of all joints without terms, radians or metres.
+    fn basis(&self, joint: usize, values: &[f64]) -> f64;
+
+    /// Standard deviation of the coefficient over robots, its prior, in the unit of the coefficient.
+    fn deviation(&self, kind: JointKind) -> f64;
+}
+
+/// A term of a joint's value, `θ ← θ + c b(θ)` with a known function b of the joint values and a coefficient c (theory.md §3). A new term is
+/// one file with [`TermModel`], one variant here and its line in [`Term::ALL`].
 ///
 /// ```
 /// use poecal::robot::Term;
-/// assert_eq!((Term::Offset.name(), Term::Offset.basis(0, &[0.7])), ("offset", 1.0));
+/// let offset = Term::Offset.model();
+/// assert_eq!((offset.name(), offset.basis(0, &[0.7])), ("offset", 1.0));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Term {
     /// Joint offset: 1.
@@ -22,28 +41,11 @@ impl Term {
     /// All terms.
     pub const ALL: [Term; 1] = [Term::Offset];
 
-    /// Its name.
+    /// What the term is.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub fn model(self) -> &'static dyn TermModel {
         match self {
-            Term::Offset => "offset",
-        }
-    }
-
-    /// Unit of its coefficient.
-    #[must_use]
-    pub fn unit(self, kind: JointKind) -> Unit {
-        match (self, kind) {
-            (Term::Offset, JointKind::Revolute) => Unit::Radian,
-            (Term::Offset, JointKind::Prismatic) => Unit::Metre,
-        }
-    }
-
-    /// The function b of a joint, from the values of all joints without terms, radians or metres.
-    #[must_use]
-    pub fn basis(self, _joint: usize, _values: &[f64]) -> f64 {
-        match self {
-            Term::Offset => 1.0,
+            Term::Offset => &Offset,
         }
     }
 }
@@ -61,7 +63,7 @@ pub struct JointTerm {
     pub joint: usize,
     /// The term.
     pub term: Term,
-    /// Its coefficient c, in [`Term::unit`].
+    /// Its coefficient c, in [`TermModel::unit`].
     pub coefficient: f64,
 }
 
@@ -70,6 +72,6 @@ impl JointTerm {
     #[must_use]
     pub fn sum(terms: &[JointTerm], joint: usize, values: &[f64]) -> f64 {
         let own = terms.iter().filter(|it| it.joint == joint);
-        own.map(|it| it.coefficient * it.term.basis(joint, values)).sum()
+        own.map(|it| it.coefficient * it.term.model().basis(joint, values)).sum()
     }
 }

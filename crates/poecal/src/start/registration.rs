@@ -4,9 +4,9 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::averaging::{mean_rotation, rigid_motion};
 use super::hand_eye;
-use crate::estimate::{Chain, Estimate, Linkage, Session, sample_rows};
+use crate::estimate::{Chain, Estimate, Linkage, Session, Unknowns, sample_rows};
 use crate::lie::{Pose, rotation};
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::Noise;
 use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
 use crate::problem::Problem;
 use crate::solve::{Options, minimize};
@@ -94,21 +94,25 @@ pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<P
     let mut free = Vec::new();
     if problem.session.device_free {
         let data = problem.session.data;
-        let stations = (0..data.station_count()).map(|station| {
+        let unknowns = problem.session.unknowns;
+        let stations = (0..data.station_count()).filter(|&station| unknowns.moves_frame(station));
+        let stations = stations.map(|station| {
             let about = data.mean_position(&data.seen_from(station, rows));
             Parameter::DeviceFrame(DeviceFrame { station, about })
         });
         free.extend(stations);
     }
     if problem.targets_free {
-        free.extend(target_parameters(problem.session.data, problem.rows));
+        free.extend(target_parameters(&problem.session, problem.rows));
     }
     free
 }
 
-/// The free parameters of all targets: frames where these rows measured orientation, places elsewhere.
-pub(crate) fn target_parameters(data: &Dataset, rows: &[u32]) -> impl Iterator<Item = Parameter> {
-    data.frames(rows).into_iter().enumerate().map(|(target, is_frame)| {
+/// The free parameters of the targets: frames where these rows measured orientation, places elsewhere.
+pub(crate) fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = Parameter> {
+    let unknowns = session.unknowns;
+    let targets = session.data.frames(rows).into_iter().enumerate();
+    targets.filter(|&(target, _)| unknowns.moves_target(target)).map(|(target, is_frame)| {
         if is_frame {
             Parameter::TargetFrame(TargetFrame { target })
         } else {
@@ -280,7 +284,7 @@ impl SampledRows {
         estimate.device_from_base = device_from_base;
         if problem.targets_free {
             for round in 0..rounds {
-                self.place_targets(&mut estimate);
+                self.place_targets(&mut estimate, problem.session.unknowns);
                 if problem.session.device_free && round + 1 < rounds {
                     estimate.device_from_base = self.rigid(&estimate.base_from_target);
                 }
@@ -290,12 +294,12 @@ impl SampledRows {
     }
 
     /// Each target's best place and orientation on the last link, given the device's frame: theory.md §6 (32).
-    fn place_targets(&self, estimate: &mut Estimate) {
+    fn place_targets(&self, estimate: &mut Estimate, unknowns: &Unknowns) {
         let base_from_device = estimate.device_from_base.inverse();
         for target in 0..estimate.base_from_target.len() {
             let rows = || (0..self.target.len()).filter(move |&k| self.target[k] == target);
             let count = rows().count();
-            if count == 0 {
+            if count == 0 || !unknowns.moves_target(target) {
                 continue;
             }
             let sum: Vector3<f64> = rows()

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use super::registration::{Registration, at_one_station, polish};
-use crate::estimate::{Estimate, Session};
+use crate::estimate::{Estimate, Session, Unknowns};
 
 /// Rows that determine a device frame if the targets are known: three points.
 const FEWEST: usize = 3;
@@ -26,15 +26,22 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         .map(|station| (station, problem.session.data.seen_from(station, problem.rows)))
         .filter(|(_, rows)| !rows.is_empty())
         .collect();
-    stations.sort_by_key(|(_, rows)| Reverse(rows.len()));
+    stations.sort_by_key(|(station, rows)| {
+        Reverse((!problem.session.unknowns.moves_frame(*station), rows.len()))
+    });
     let mut found = start.clone();
-    let mut known = vec![!problem.targets_free; start.base_from_target.len()];
+    let unknowns = problem.session.unknowns;
+    let of_one = Unknowns { held_frames: Vec::new(), ..unknowns.clone() };
+    let is_known = |target| !problem.targets_free || !unknowns.moves_target(target);
+    let mut known: Vec<bool> = (0..start.base_from_target.len()).map(is_known).collect();
     for (station, rows) in stations {
         let target = |row: &u32| alone.observations[*row as usize].target;
         let of_known: Vec<u32> = rows.iter().copied().filter(|row| known[target(row)]).collect();
         let by_known = of_known.len() >= FEWEST.min(rows.len());
         let rows = if by_known { of_known } else { rows };
-        let session = Session { data: &alone, noise_ratios: &[], ..problem.session };
+        let device_free = unknowns.moves_frame(station);
+        let session =
+            Session { data: &alone, noise_ratios: &[], device_free, unknowns: &of_one, ..problem.session };
         let noise = problem.session.usual_noise(station, problem.noise);
         let one = Registration { noise, session, rows: &rows, targets_free: !by_known };
         let (seen, _) = at_one_station(&one, &found.seen_from(station));

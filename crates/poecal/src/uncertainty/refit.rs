@@ -35,7 +35,7 @@ impl Uncertainty {
     /// ones. `None` if the refitted unknowns are not determined.
     #[must_use]
     pub fn refitted(&self, refit: &Refit<'_>) -> Option<Uncertainty> {
-        let (kept, places) = self.kept(refit.targets);
+        let (kept, places) = self.kept(refit);
         let parameters: Vec<Parameter> = kept.iter().chain(refit.free).copied().collect();
         let layout = Layout::new(parameters.clone(), self.length_m);
         let estimate =
@@ -88,7 +88,12 @@ impl Uncertainty {
     }
 
     /// The parameters that stay as calibrated, targets by their numbers among the rows', and the places of their unknowns.
-    fn kept(&self, targets: &[Option<usize>]) -> (Vec<Parameter>, Vec<usize>) {
+    fn kept(&self, refit: &Refit<'_>) -> (Vec<Parameter>, Vec<usize>) {
+        let targets = refit.targets;
+        let is_refitted = |parameter: &Parameter| {
+            let subject = parameter.model().subject();
+            refit.free.iter().any(|anew| anew.model().subject() == subject)
+        };
         let (mut kept, mut places) = (Vec::new(), Vec::new());
         for (parameter, own) in self.layout.parameters() {
             let number = |known: usize| targets.iter().position(|&target| target == Some(known));
@@ -101,10 +106,10 @@ impl Uncertainty {
                     frame.target = target;
                     Parameter::TargetFrame(frame)
                 }),
-                other @ (Parameter::ScrewAxis(_)
-                | Parameter::OtherScrew(_)
-                | Parameter::ValueTerm(_)
-                | Parameter::DeviceFrame(_)) => Some(other),
+                other @ Parameter::DeviceFrame(_) => (!is_refitted(&other)).then_some(other),
+                other @ (Parameter::ScrewAxis(_) | Parameter::OtherScrew(_) | Parameter::ValueTerm(_)) => {
+                    Some(other)
+                }
             };
             if let Some(parameter) = renumbered {
                 kept.push(parameter);

@@ -248,7 +248,7 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
         let of_all = |all: &ResidualSums| own.groups as f64 / all.groups.max(1) as f64;
         let determined = match quantity.unit() {
             Unit::Metre => (in_sample - by_rotations) * of_all(&lengths),
-            Unit::Radian => by_rotations * of_all(&angles),
+            Unit::Radian | Unit::One => by_rotations * of_all(&angles),
         };
         own.part(determined, view.noise_is_stated[quantity])
     });

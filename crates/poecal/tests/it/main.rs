@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod basin;
+mod blocks;
 mod cell;
 mod common;
 mod determinism;

@@ -52,9 +52,14 @@ impl<'a> RowInfluence<'a> {
         let data = written(data, calibration.formulation.pose_residual);
         let weights = calibration.robustness.rows.iter().map(|row| row.weight).collect();
         let Calibration { fit_rows, models, .. } = calibration;
-        let free =
-            fit::free_parameters(&models.calibrated, &data, fit_rows, screw_axes(models.calibrated.kinds()));
-        let length_m = calibration.session(&data, &packed).length_m;
+        let session = calibration.session(&data, &packed);
+        let free = fit::free_parameters(
+            &session,
+            &models.calibrated,
+            fit_rows,
+            screw_axes(models.calibrated.kinds()),
+        );
+        let length_m = session.length_m;
         let mut made = RowInfluence { calibration, data, packed, weights, free, length_m, normal: None };
         if !made.data.is_empty() {
             let problem = made.problem(&calibration.fit_rows).with_weights(&made.weights);
@@ -72,6 +77,7 @@ impl<'a> RowInfluence<'a> {
             length_m: self.length_m,
             device_free: self.calibration.frame == DeviceFrameKnowledge::Unknown,
             noise_ratios: &self.calibration.noise_ratios,
+            unknowns: &self.calibration.unknowns,
         }
     }
 

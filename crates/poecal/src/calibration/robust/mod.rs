@@ -251,7 +251,7 @@ impl<'c> Reweighted<'c> {
     fn run(&mut self, task: &Task<'_>, loss: Loss, source: NoiseSource) {
         let quick = CalibrationOptions {
             solver: solve::Options { iterations: ITERATIONS, ..task.options.solver },
-            ..*task.options
+            ..task.options.clone()
         };
         for _ in 0..REWEIGHTINGS {
             let mut parts = parts(&task.session, task.rows, &self.estimate, self.noise);

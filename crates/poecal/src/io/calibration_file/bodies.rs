@@ -9,7 +9,7 @@ use super::{CalibrationFile, JointEntry, PoseEntry, ScrewEntry, TargetEntry};
 use crate::calibration::{CalibratedTarget, Calibration};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
-use crate::robot::{Body, Mount, Robot};
+use crate::robot::{Body, JointTerm, Mount, Robot, Term};
 
 /// A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves.
 ///
@@ -75,7 +75,7 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Model`] if the file holds no valid robot.
     pub fn robot(&self) -> Result<Robot> {
-        self.robot_of(|joint| &joint.screw, &self.robot.base_from_tip_at_zero)
+        self.robot_of(|joint| (&joint.screw, &joint.terms), &self.robot.base_from_tip_at_zero)
     }
 
     /// The nominal robot, with the calibrated targets.
@@ -83,7 +83,10 @@ impl CalibrationFile {
     /// # Errors
     /// As [`CalibrationFile::robot`].
     pub fn nominal_robot(&self) -> Result<Robot> {
-        let robot = self.robot_of(|joint| &joint.nominal_screw, &self.robot.nominal_base_from_tip_at_zero)?;
+        let robot = self.robot_of(
+            |joint| (&joint.nominal_screw, &joint.nominal_terms),
+            &self.robot.nominal_base_from_tip_at_zero,
+        )?;
         if robot.mounted.is_empty() && robot.instruments.is_empty() {
             return Ok(robot);
         }
@@ -94,9 +97,24 @@ impl CalibrationFile {
         Ok(Robot { joints, ..robot })
     }
 
-    fn robot_of(&self, screw: impl Fn(&JointEntry) -> &ScrewEntry, home: &PoseEntry) -> Result<Robot> {
-        let joints = self.joints.iter().map(|entry| entry.joint(screw(entry))).collect::<Result<Vec<_>>>()?;
+    fn robot_of(
+        &self,
+        of: impl Fn(&JointEntry) -> (&ScrewEntry, &BTreeMap<Term, f64>),
+        home: &PoseEntry,
+    ) -> Result<Robot> {
+        let joints = self.joints.iter().map(|entry| entry.joint(of(entry).0)).collect::<Result<Vec<_>>>()?;
         let mut robot = Robot::new(&self.robot.name, joints, home.pose()?)?;
+        for (joint, entry) in self.joints.iter().enumerate() {
+            for (&term, &coefficient) in of(entry).1 {
+                if !coefficient.is_finite() {
+                    let (name, term) = (&entry.name, term.model().name());
+                    let message =
+                        format!("found {coefficient} as the {term} of joint `{name}`, expected a number");
+                    return Err(Error::new(ErrorKind::Model, message));
+                }
+                robot.terms.push(JointTerm { joint, term, coefficient });
+            }
+        }
         robot.base_name.clone_from(&self.robot.base_link);
         robot.tip_name.clone_from(&self.robot.tip_link);
         for index in 0..self.joints.len() {

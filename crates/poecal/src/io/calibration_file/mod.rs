@@ -15,15 +15,17 @@ pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
 pub use trust::*;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::{json_text, source_text};
-use crate::calibration::{CalibratedStation, Calibration};
+use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge, names};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
 use crate::measurement::{Dataset, Measured, Quantity};
-use crate::robot::{Joint, JointKind, Limits, Robot};
+use crate::parameters::Block;
+use crate::robot::{Joint, JointKind, JointTerm, Limits, Robot, Term};
 use nalgebra::Vector3;
 use refusal::refusal;
 
@@ -41,6 +43,7 @@ impl CalibrationFile {
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
             inputs,
             accuracy: calibration.accuracy,
+            blocks: BlocksEntry::of(calibration, data),
             solver: SolverEntry {
                 formulation: calibration.formulation.words.formulation.to_owned(),
                 pose_residual: calibration.formulation.words.pose_residual.to_owned(),
@@ -64,7 +67,7 @@ impl CalibrationFile {
                 .zip(&calibration.trust.joints)
                 .map(CorrectionEntry::of)
                 .collect(),
-            uncertainty: UncertaintyEntry::of(calibration),
+            uncertainty: UncertaintyEntry::of(calibration, data),
             robust: RobustEntry::of(calibration),
             outliers: OutlierEntry::of(calibration, data),
             repeatability: RepeatabilityEntry::of(calibration, data),
@@ -127,6 +130,11 @@ impl CalibrationFile {
         self.measurement_frame.base_from_device.pose()
     }
 
+    /// Name of the first station.
+    fn first_station(&self) -> Option<&str> {
+        self.stations.first().and_then(|station| station.instrument.as_deref())
+    }
+
     /// The JSON Schema (draft 2020-12) of the file.
     #[must_use]
     pub fn json_schema() -> String {
@@ -173,6 +181,31 @@ impl StationEntry {
     }
 }
 
+impl BlocksEntry {
+    /// Of a fit of other blocks than the usual.
+    fn of(calibration: &Calibration, data: &Dataset) -> Option<Self> {
+        let unknowns = &calibration.unknowns;
+        if unknowns.are_usual() {
+            return None;
+        }
+        let names = names(&calibration.nominal, data);
+        let (mut free, mut held) = (Vec::new(), Vec::new());
+        for block in names.blocks() {
+            let is_free = match block {
+                Block::Axis(joint) => unknowns.moves_axis(joint),
+                Block::Target(target) => unknowns.moves_target(target),
+                Block::Frame(station) => {
+                    unknowns.moves_frame(station) && calibration.frame == DeviceFrameKnowledge::Unknown
+                }
+                Block::Term(joint, term) if unknowns.terms.contains(&(joint, term)) => true,
+                Block::Term(..) => continue,
+            };
+            if is_free { &mut free } else { &mut held }.push(names.of(block));
+        }
+        Some(BlocksEntry { free, held })
+    }
+}
+
 impl OffsetEntry {
     /// Joint offsets of a formulation that has them.
     fn of(calibration: &Calibration) -> Option<Vec<Self>> {
@@ -200,6 +233,16 @@ impl JointEntry {
                 limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
                 reading: joint.reading.clone(),
                 on: joint.stands_on.map(|body| BodyEntry::of(robot, body)),
+                terms: BTreeMap::new(),
+                nominal_terms: BTreeMap::new(),
+            })
+            .enumerate()
+            .map(|(joint, entry)| {
+                let of = |terms: &[JointTerm]| -> BTreeMap<Term, f64> {
+                    let own = terms.iter().filter(|it| it.joint == joint);
+                    own.map(|it| (it.term, it.coefficient)).collect()
+                };
+                JointEntry { terms: of(&robot.terms), nominal_terms: of(&nominal.terms), ..entry }
             })
             .collect()
     }

@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
 use crate::measurement::Measured;
-use crate::robot::{JointKind, Reading};
+use crate::robot::{JointKind, Reading, Term};
 use crate::solve::Termination;
 
 /// A finished calibration.
@@ -36,6 +36,9 @@ pub struct CalibrationFile {
     pub inputs: Inputs,
     /// Errors of the nominal, registered and calibrated model on training and held-out rows.
     pub accuracy: Accuracy,
+    /// What was fitted and what held, where that is not the usual: all axes, targets and frames.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blocks: Option<BlocksEntry>,
     /// The minimisation: steps, end, convergence.
     pub solver: SolverEntry,
     /// Which unknowns the measurements determine.
@@ -180,6 +183,15 @@ pub struct OffsetEntry {
     pub offset_mm: Option<f64>,
 }
 
+/// Blocks of unknowns by name: `JOINT.axis`, `JOINT.offset` and other terms, `target.NAME`, `frame.NAME`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct BlocksEntry {
+    /// Fitted.
+    pub free: Vec<String>,
+    /// Held as in the model; terms that are none are not listed.
+    pub held: Vec<String>,
+}
+
 /// Which unknowns the measurements determine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct IdentifiabilityEntry {
@@ -289,6 +301,12 @@ pub struct JointEntry {
     /// Body on which the joint stands, if that is not the link of the joint before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<BodyEntry>,
+    /// Coefficients of terms of the joint's value, in radians, metres, or by value: the value is the reading's, plus these terms.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub terms: BTreeMap<Term, f64>,
+    /// The same of the nominal model.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub nominal_terms: BTreeMap<Term, f64>,
 }
 
 /// A screw, linear part first.

@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use super::{CalibrationFile, PoseEntry};
 use crate::analysis::JointCoverage;
-use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust};
+use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust, names};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Stand, Tree};
 use crate::measurement::Quantity::{Position, Rotation};
-use crate::measurement::{ByQuantity, Measured, Noise};
-use crate::parameters::{Parameter, TargetFrame, TargetPlace, screw_axes};
+use crate::measurement::{ByQuantity, Dataset, Measured, Noise};
+use crate::parameters::{DeviceFrame, Names, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
 use crate::problem::Layout;
-use crate::robot::{Body, Robot};
+use crate::robot::{Body, JointKind, Robot, Term};
 use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
 use crate::unit::Unit;
 
@@ -165,6 +165,12 @@ pub struct UncertaintyEntry {
     pub axes: Vec<PoseEntry>,
     /// Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. The tip has an empty name.
     pub targets: Vec<(String, bool)>,
+    /// Names of the unknowns, in the order of the covariance; empty in older files.
+    #[serde(default)]
+    pub unknowns: Vec<String>,
+    /// Point of the device frame about which its unknowns turn, metres, where the frame is among them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame_about_m: Option<[f64; 3]>,
     /// Covariance of the unknowns, square metres, turns multiplied by `length_m`: the upper triangle by rows, in the order of the fit with
     /// pure translations first.
     pub covariance_m2: Vec<f64>,
@@ -233,18 +239,38 @@ impl CorrectionEntry {
 }
 
 impl UncertaintyEntry {
-    pub(super) fn of(calibration: &Calibration) -> Option<Self> {
+    pub(super) fn of(calibration: &Calibration, data: &Dataset) -> Option<Self> {
         let trust = &calibration.trust;
         let found = trust.uncertainty.as_ref()?;
         let n = found.layout.dim();
-        // Predictions are in the base frame, so that frames of further stations do not matter.
-        let mut kept: Vec<usize> = found
-            .layout
-            .parameters()
-            .filter(|(parameter, _)| !matches!(parameter, Parameter::DeviceFrame(_)))
-            .flat_map(|(_, places)| places.iter().map(|&(place, _)| place))
+        // Predictions are in the frame of the first station, so that those of others do not matter.
+        let is_kept = |parameter: &Parameter| match parameter {
+            Parameter::DeviceFrame(frame) => frame.station == 0,
+            Parameter::ScrewAxis(_)
+            | Parameter::OtherScrew(_)
+            | Parameter::ValueTerm(_)
+            | Parameter::TargetPlace(_)
+            | Parameter::TargetFrame(_) => true,
+        };
+        let names = names(&calibration.nominal, data);
+        let of_layout: Vec<_> =
+            found.layout.parameters().filter(|(parameter, _)| is_kept(parameter)).collect();
+        let mut kept: Vec<(usize, String)> = of_layout
+            .iter()
+            .flat_map(|(parameter, places)| {
+                places.iter().zip(names.of_unknowns(parameter)).map(|(&(place, _), name)| (place, name))
+            })
             .collect();
         kept.sort_unstable();
+        let (kept, unknowns): (Vec<usize>, Vec<String>) = kept.into_iter().unzip();
+        let about = of_layout.iter().find_map(|(parameter, _)| match parameter {
+            Parameter::DeviceFrame(frame) => Some(frame.about.into()),
+            Parameter::ScrewAxis(_)
+            | Parameter::OtherScrew(_)
+            | Parameter::ValueTerm(_)
+            | Parameter::TargetPlace(_)
+            | Parameter::TargetFrame(_) => None,
+        });
         let upper = |matrix: &[f64]| -> Vec<f64> {
             let rows = kept.iter().enumerate();
             rows.flat_map(|(at, &i)| kept[at..].iter().map(move |&j| i * n + j))
@@ -284,6 +310,8 @@ impl UncertaintyEntry {
             length_m: found.length_m,
             axes: found.estimate.base_from_axis.iter().map(PoseEntry::from).collect(),
             targets: names.map(|it| (it.name.clone().unwrap_or_default(), it.is_frame)).collect(),
+            unknowns,
+            frame_about_m: about,
             covariance_m2: upper(&found.covariance),
             covariance_outside_m2: found.covariance_outside.as_deref().map(upper),
         })
@@ -297,6 +325,26 @@ impl CalibrationFile {
     /// [`ErrorKind::Model`] if the calibration holds no valid uncertainty.
     pub fn uncertainty(&self, targets: &[Option<&str>]) -> Result<(Uncertainty, Vec<usize>)> {
         self.uncertainty_from(targets, &self.robot()?, Body::Base)
+    }
+
+    /// Names of the unknowns, in the order of the covariance.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::uncertainty`].
+    pub fn unknowns(&self) -> Result<Vec<String>> {
+        let (found, _) = self.uncertainty(&[])?;
+        let robot = self.robot()?;
+        let mut unknowns = vec![String::new(); found.layout.dim()];
+        let names = self.uncertainty.as_ref().map(|entry| entry.names(&robot, self.first_station()));
+        for (parameter, places) in found.layout.parameters() {
+            let own = names.iter().flat_map(|names| names.of_unknowns(parameter));
+            for (&(place, _), name) in places.iter().zip(own) {
+                if let Some(unknown) = unknowns.get_mut(place) {
+                    *unknown = name;
+                }
+            }
+        }
+        Ok(unknowns)
     }
 
     /// The same of predictions from a body of the robot.
@@ -324,7 +372,8 @@ impl CalibrationFile {
         let tree = Tree::new(robot, vec![Stand::On(body)], Vec::new());
         let mut estimate = Estimate::on(robot, tree, Vec::new(), self.base_from_device()?.inverse());
         estimate.base_from_axis = axes;
-        let mut free = screw_axes(estimate.kinds());
+        estimate.terms.clone_from(&robot.terms);
+        let mut free = entry.joint_parameters(robot);
         let is_known = |name: &str| self.targets.contains_key(name);
         let place = robot.places_of_targets();
         for (index, (name, is_frame)) in entry.targets.iter().enumerate() {
@@ -338,6 +387,14 @@ impl CalibrationFile {
             } else {
                 Parameter::TargetPlace(TargetPlace { target: index })
             });
+        }
+        if !entry.unknowns.is_empty() {
+            let names = entry.names(robot, self.first_station());
+            let is_unknown = |parameter: &Parameter| {
+                let own = names.of_unknowns(parameter);
+                own.first().is_some_and(|name| entry.unknowns.contains(name))
+            };
+            free.retain(is_unknown);
         }
         let mut index = |wanted: &Option<&str>| {
             let wanted = wanted.unwrap_or_default();
@@ -381,6 +438,31 @@ impl CalibrationFile {
     }
 }
 
+impl UncertaintyEntry {
+    /// Parameters of the first device frame and the joints that may be among the unknowns, in the order of a fit.
+    fn joint_parameters(&self, robot: &Robot) -> Vec<Parameter> {
+        let frame = self
+            .frame_about_m
+            .map(|about| Parameter::DeviceFrame(DeviceFrame { station: 0, about: about.into() }));
+        let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
+        let terms = kinds.iter().enumerate().flat_map(|(joint, &kind)| {
+            let terms = Term::ALL.into_iter().filter(|_| !self.unknowns.is_empty());
+            terms.map(move |term| Parameter::ValueTerm(ValueTerm { joint, kind, term }))
+        });
+        frame.into_iter().chain(screw_axes(&kinds)).chain(terms).collect()
+    }
+
+    /// The names by which unknowns are called.
+    fn names(&self, robot: &Robot, first_station: Option<&str>) -> Names {
+        let target = |(name, _): &(String, bool)| Some(name.clone()).filter(|name| !name.is_empty());
+        Names {
+            joints: robot.joints.iter().map(|joint| joint.name.clone()).collect(),
+            targets: self.targets.iter().map(target).collect(),
+            stations: vec![first_station.map(str::to_owned)],
+        }
+    }
+}
+
 /// A symmetric matrix from its upper triangle by rows.
 fn symmetric(upper: &[f64], n: usize) -> Vec<f64> {
     let mut matrix = vec![0.0; n * n];
@@ -396,6 +478,6 @@ fn symmetric(upper: &[f64], n: usize) -> Vec<f64> {
 fn by_unit<T: Copy>(of_lengths: T, of_angles: T) -> ByQuantity<T> {
     ByQuantity::from_fn(|quantity| match quantity.unit() {
         Unit::Metre => of_lengths,
-        Unit::Radian => of_angles,
+        Unit::Radian | Unit::One => of_angles,
     })
 }

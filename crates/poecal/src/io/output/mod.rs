@@ -79,7 +79,7 @@ struct NewFile<'a> {
     name: String,
     content: Content<'a>,
     /// The robot of a model file, and the selection with which it gives it.
-    model_of: Option<(&'a Robot, ChainSelection)>,
+    model_of: Option<(Cow<'a, Robot>, ChainSelection)>,
 }
 
 impl<'a> NewFile<'a> {
@@ -96,10 +96,10 @@ impl<'a> NewFile<'a> {
     }
 
     fn of_robot(name: String, text: String, robot: &'a Robot) -> Self {
-        NewFile::of_urdf(name, text, robot, ChainSelection::default())
+        NewFile::of_urdf(name, text, Cow::Borrowed(robot), ChainSelection::default())
     }
 
-    fn of_urdf(name: String, text: String, robot: &'a Robot, selection: ChainSelection) -> Self {
+    fn of_urdf(name: String, text: String, robot: Cow<'a, Robot>, selection: ChainSelection) -> Self {
         NewFile { name, content: Content::Text(vec![text.into()]), model_of: Some((robot, selection)) }
     }
 
@@ -152,17 +152,18 @@ fn robot_files<'a>(
     notes: &mut Vec<String>,
 ) -> Result<Vec<NewFile<'a>>> {
     let urdf = format!("{stem}.urdf");
+    let plain = urdf::holdable(robot, notes);
     match &model.source {
         ModelSource::Urdf(document) => {
-            let patched = document.patched(robot)?;
+            let patched = document.patched(&plain)?;
             notes.extend(patched.notes);
-            Ok(vec![NewFile::of_urdf(urdf, patched.text, robot, patched.selection)])
+            Ok(vec![NewFile::of_urdf(urdf, patched.text, plain, patched.selection)])
         }
         ModelSource::Toml | ModelSource::Calibration(_) => {
             let toml = NewFile::of_robot(format!("{stem}.toml"), robot_toml::write(robot), robot);
-            let (new, selection) = urdf::written_new(robot)?;
+            let (new, selection) = urdf::written_new(&plain)?;
             notes.extend(new.notes);
-            Ok(vec![toml, NewFile::of_urdf(urdf, new.text, robot, selection)])
+            Ok(vec![toml, NewFile::of_urdf(urdf, new.text, plain, selection)])
         }
     }
 }

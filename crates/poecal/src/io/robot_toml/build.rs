@@ -11,7 +11,8 @@ use super::mounts;
 use crate::error::Result;
 use crate::io::mimic;
 use crate::lie::{Pose, Screw, Twist};
-use crate::robot::{DhConvention, DhRow, Joint, JointKind, Limits, Reading, Robot, Tolerance};
+use crate::robot::{DhConvention, DhRow, Joint, JointKind, JointTerm, Limits, Reading, Robot, Tolerance};
+use crate::unit::Unit;
 
 /// Largest `v·ω` that counts as rounding, as a share of the robot's size.
 const PITCH_ROUNDING: f64 = 1e-3;
@@ -39,6 +40,18 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
         if robot.tip_name == robot.base_name {
             let message = format!("base and tip are both named `{}`, expected two names", robot.tip_name);
             return Err(context.error(tip.span(), message));
+        }
+    }
+    for (joint, table) in file.joint.iter().enumerate() {
+        for (&term, value) in &table.terms {
+            let found = match term.model().unit(table.kind) {
+                Unit::Metre => context.length.to_metres(*value.get_ref()),
+                Unit::Radian => context.angle.to_radians(*value.get_ref()),
+                Unit::One => *value.get_ref(),
+            };
+            let of = format!("{} of joint `{}`", term.model().name(), table.name());
+            let [coefficient] = context.checked([found], value.span(), &of)?;
+            robot.terms.push(JointTerm { joint, term, coefficient });
         }
     }
     mounts::place(context, file, &mut robot)?;

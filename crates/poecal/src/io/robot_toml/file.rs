@@ -1,9 +1,11 @@
 //! The tables and keys of the file, as serde reads them.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::robot::JointKind;
+use crate::robot::{JointKind, Term};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -91,6 +93,8 @@ pub(super) struct JointTable {
     pub(super) limits: Option<Spanned<[f64; 2]>>,
     pub(super) mimic: Option<Spanned<MimicTable>>,
     pub(super) tolerance: Option<Spanned<ToleranceTable>>,
+    #[serde(default)]
+    pub(super) terms: BTreeMap<Term, Spanned<f64>>,
 }
 
 impl JointTable {

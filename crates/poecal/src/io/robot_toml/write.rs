@@ -35,10 +35,11 @@ pub fn write(robot: &Robot) -> String {
         let _ = writeln!(text, "tip_on = {}", body_name(robot, tip));
     }
     text.push_str("\njoint = [\n");
-    for joint in &robot.joints {
+    for (index, joint) in robot.joints.iter().enumerate() {
         let parent =
             joint.stands_on.map_or_else(String::new, |on| format!(", parent = {}", body_name(robot, on)));
-        let _ = writeln!(text, "  {{ {}{parent} }},", joint_keys(joint));
+        let terms = term_keys(robot, index);
+        let _ = writeln!(text, "  {{ {}{parent}{terms} }},", joint_keys(joint));
     }
     let _ = write!(text, "]\n\n[home]\n{}", pose_keys(&robot.home));
     for (name, pose) in &robot.targets {
@@ -89,6 +90,14 @@ fn joint_keys(joint: &Joint) -> String {
         );
     }
     keys
+}
+
+/// The terms of a joint's value.
+fn term_keys(robot: &Robot, joint: usize) -> String {
+    let own = robot.terms.iter().filter(|it| it.joint == joint);
+    let keys: Vec<String> =
+        own.map(|it| format!("{} = {}", it.term.model().name(), shortest(it.coefficient))).collect();
+    if keys.is_empty() { String::new() } else { format!(", terms = {{ {} }}", keys.join(", ")) }
 }
 
 fn pose_keys(pose: &Pose) -> String {

@@ -9,6 +9,7 @@ mod parts;
 mod patch;
 mod selection;
 mod splice;
+mod terms;
 mod tree;
 mod write;
 mod xml;
@@ -19,6 +20,7 @@ use roxmltree::Document;
 
 pub use patch::PatchedUrdf;
 pub use selection::{ChainSelection, named_link};
+pub(super) use terms::holdable;
 pub use write::write_new;
 pub(super) use write::written_new;
 

@@ -19,11 +19,12 @@ pub(super) fn error_words(quantity: Quantity, of: &str) -> String {
     let name = quantity.name();
     let (first, rest) = name.split_at(name.len().min(1));
     let unit = match quantity.unit() {
-        Unit::Metre => "mm",
-        Unit::Radian => "degrees",
+        Unit::Metre => ", mm",
+        Unit::Radian => ", degrees",
+        Unit::One => "",
     };
     let of = if of.is_empty() { String::new() } else { format!(" {of}") };
-    format!("{}{rest} error{of}, {unit}", first.to_uppercase())
+    format!("{}{rest} error{of}{unit}", first.to_uppercase())
 }
 
 pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {

@@ -6,6 +6,7 @@ use super::figures;
 use super::html::{HtmlTable, count, facts, figure, folded, path, plots, quoted, section};
 use crate::calibration::DeviceFrameKnowledge;
 use crate::io::calibration_file::CalibrationFile;
+use crate::report::summary::terms;
 use crate::solve::Termination;
 
 /// A number of the trace beyond which its table would only be long.
@@ -50,6 +51,15 @@ fn solver(file: &CalibrationFile) -> Markup {
         (quoted(&solver.formulation, "solver.formulation")) " formulation, "
         (quoted(&solver.pose_residual, "solver.pose_residual")) " residuals of poses"
     };
+    let held = file.blocks.as_ref().map_or(&[][..], |blocks| &blocks.held);
+    let held = html! {
+        @for (k, name) in held.iter().enumerate() {
+            @if k > 0 { ", " } (quoted(name, format_args!("blocks.held.{k}")))
+        }
+    };
+    let terms = html! {
+        @for (k, (name, value)) in terms(file).enumerate() { @if k > 0 { ", " } (name) " " (value) }
+    };
     let steps = html! {
         (solver.method) ", " (count(solver.iterations, "solver.iterations")) " iterations, " (end)
         @if solver.restarts > 0 { ", " (count(solver.restarts, "solver.restarts")) " further starts" }
@@ -57,13 +67,14 @@ fn solver(file: &CalibrationFile) -> Markup {
     let version = html! {
         "poecal " (quoted(&file.poecal_version, "poecal_version")) ", form " (quoted(&file.schema, "schema"))
     };
-    facts(&[
-        ("Unknowns", unknowns),
-        ("Steps", steps),
-        ("Loss", html! { (file.robust.loss.map_or("least squares", |loss| loss.word())) }),
-        ("Device frame", device),
-        ("Version", version),
-    ])
+    let own = [("Held as in the model", held), ("Terms of joint values", terms)];
+    let own = own.into_iter().filter(|(_, content)| !content.0.is_empty());
+    let loss = html! { (file.robust.loss.map_or("least squares", |loss| loss.word())) };
+    let all: Vec<_> = std::iter::once(("Unknowns", unknowns))
+        .chain(own)
+        .chain([("Steps", steps), ("Loss", loss), ("Device frame", device), ("Version", version)])
+        .collect();
+    facts(&all)
 }
 
 fn convergence(file: &CalibrationFile) -> Markup {

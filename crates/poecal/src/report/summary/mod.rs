@@ -161,6 +161,23 @@ fn known(out: &mut String, file: &CalibrationFile) {
     let structural = found.structural.iter().filter(|it| it.cause == Cause::NoOrientation);
     undetermined.extend(structural.map(|direction| direction.description.clone()));
     lines(out, "undetermined", undetermined);
+    if let Some(blocks) = &file.blocks {
+        lines(out, "held", (!blocks.held.is_empty()).then(|| blocks.held.join(", ")));
+    }
+    lines(out, "terms", terms(file).map(|(name, value)| format!("{name} {value}")));
+}
+
+/// The terms of joint values with their coefficients, as they are read.
+pub(super) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, String)> {
+    file.joints.iter().flat_map(|joint| {
+        joint.terms.iter().map(|(term, &coefficient)| {
+            let (model, name) = (term.model(), &joint.name);
+            let unit = model.unit(joint.kind);
+            let sign = if coefficient < 0.0 { "-" } else { "" };
+            let value = format!("{sign}{} {}", number(unit.shown(coefficient.abs())), unit.symbol());
+            (format!("{name}.{}", model.name()), value.trim_end().to_owned())
+        })
+    })
 }
 
 /// Some names, the first few of many.

@@ -1,0 +1,107 @@
+//! The choice of what a fit changes, by names of blocks.
+
+use wildmatch::WildMatch;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::estimate::Unknowns;
+use crate::measurement::Dataset;
+use crate::parameters::{Block, Names};
+use crate::robot::Robot;
+
+/// Blocks that a message lists at most.
+const LISTED: usize = 12;
+
+/// What a fit changes beside or without the usual: first the blocks of `fix` are held as in the model, then those of `free` are unknown.
+/// A word is a block's name ([`Names::of`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis;
+/// or one of `joints` (all axes), `targets` and `frames`.
+///
+/// ```
+/// use poecal::calibration::BlockChoice;
+/// use poecal::robot::Term;
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Point)?;
+/// let mastering = BlockChoice { fix: vec!["joints".into()], free: vec!["*.offset".into()] };
+/// let unknowns = mastering.unknowns(&made.nominal, &made.data)?;
+/// assert_eq!((unknowns.held_axes.len(), unknowns.terms[1]), (6, (1, Term::Offset)));
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BlockChoice {
+    /// Words of what is unknown.
+    pub free: Vec<String>,
+    /// Words of what is held.
+    pub fix: Vec<String>,
+}
+
+/// Names of a robot's joints, and of the targets and instruments of its measurements.
+pub(crate) fn names(robot: &Robot, data: &Dataset) -> Names {
+    Names {
+        joints: robot.joints.iter().map(|joint| joint.name.clone()).collect(),
+        targets: data.targets.clone(),
+        stations: data.stations.clone(),
+    }
+}
+
+impl BlockChoice {
+    /// The unknowns of a fit.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if a word names no block, or nothing is unknown.
+    pub fn unknowns(&self, robot: &Robot, data: &Dataset) -> Result<Unknowns> {
+        let names = names(robot, data);
+        let blocks = names.blocks();
+        let mut is_free: Vec<bool> = blocks.iter().map(|block| !matches!(block, Block::Term(..))).collect();
+        for (words, value) in [(&self.fix, false), (&self.free, true)] {
+            for word in words {
+                let chosen = chosen(&names, &blocks, word);
+                if !chosen.contains(&true) {
+                    return Err(unknown_word(&names, &blocks, word));
+                }
+                chosen.iter().zip(&mut is_free).filter(|it| *it.0).for_each(|(_, is_free)| *is_free = value);
+            }
+        }
+        let mut unknowns = Unknowns::default();
+        for (block, is_free) in blocks.into_iter().zip(&is_free) {
+            match block {
+                Block::Axis(joint) if !is_free => unknowns.held_axes.push(joint),
+                Block::Target(target) if !is_free => unknowns.held_targets.push(target),
+                Block::Frame(station) if !is_free => unknowns.held_frames.push(station),
+                Block::Term(joint, term) if *is_free => unknowns.terms.push((joint, term)),
+                Block::Axis(_) | Block::Target(_) | Block::Frame(_) | Block::Term(..) => {}
+            }
+        }
+        if !is_free.contains(&true) {
+            let message = "found that every block is held, expected at least one that is unknown: fix fewer";
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+        Ok(unknowns)
+    }
+}
+
+/// Of each block, whether a word means it.
+fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
+    let pattern = WildMatch::new(word);
+    let is_meant = |block: &Block| match (word, block) {
+        ("joints", Block::Axis(_)) | ("targets", Block::Target(_)) | ("frames", Block::Frame(_)) => true,
+        (_, Block::Axis(joint)) => {
+            names.joints.get(*joint).is_some_and(|name| name == word) || pattern.matches(&names.of(*block))
+        }
+        (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => pattern.matches(&names.of(*block)),
+    };
+    blocks.iter().map(is_meant).collect()
+}
+
+fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
+    let mut listed: Vec<String> = blocks.iter().take(LISTED).map(|block| names.of(*block)).collect();
+    if blocks.len() > LISTED {
+        let last = blocks.last().map(|block| names.of(*block));
+        listed.push("…".to_owned());
+        listed.extend(last);
+    }
+    let message = format!(
+        "found `{word}`, expected what to free or fix: joints, targets, frames, or a block's name, in which `*` stands for any letters \
+         ({})",
+        listed.join(", ")
+    );
+    Error::new(ErrorKind::Option, message)
+}

@@ -1,0 +1,67 @@
+//! Which parts of a session are unknown.
+
+use crate::robot::Term;
+
+/// What a fit changes: the axes of all joints, all targets and all frames of instruments, but for what is held as in the model; and terms of
+/// joint values, of which none is unknown without being named.
+///
+/// ```
+/// use poecal::estimate::Unknowns;
+/// use poecal::robot::Term;
+/// let mastering = Unknowns { held_axes: vec![0, 1], terms: vec![(0, Term::Offset), (1, Term::Offset)], ..Unknowns::USUAL };
+/// assert!(!mastering.moves_axis(1) && mastering.moves_target(0) && !mastering.base_is_free());
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Unknowns {
+    /// Joints whose axes are held.
+    pub held_axes: Vec<usize>,
+    /// Targets that are held.
+    pub held_targets: Vec<usize>,
+    /// Stations whose frames are held.
+    pub held_frames: Vec<usize>,
+    /// Terms of joint values that are unknown.
+    pub terms: Vec<(usize, Term)>,
+}
+
+impl Unknowns {
+    /// All axes, targets and frames, and no term.
+    pub const USUAL: Unknowns = Unknowns {
+        held_axes: Vec::new(),
+        held_targets: Vec::new(),
+        held_frames: Vec::new(),
+        terms: Vec::new(),
+    };
+
+    /// Whether they are the usual ones.
+    #[must_use]
+    pub fn are_usual(&self) -> bool {
+        *self == Unknowns::USUAL
+    }
+
+    /// Whether the axis of a joint is unknown.
+    #[must_use]
+    pub fn moves_axis(&self, joint: usize) -> bool {
+        !self.held_axes.contains(&joint)
+    }
+
+    /// Whether a target is unknown.
+    #[must_use]
+    pub fn moves_target(&self, target: usize) -> bool {
+        !self.held_targets.contains(&target)
+    }
+
+    /// Whether the frame of a station is unknown.
+    #[must_use]
+    pub fn moves_frame(&self, station: usize) -> bool {
+        !self.held_frames.contains(&station)
+    }
+
+    /// Whether nothing stands in the base frame, so that any motion of it is one of the device (theory.md §8 (37)).
+    #[must_use]
+    pub fn base_is_free(&self) -> bool {
+        self.held_axes.is_empty() && self.held_targets.is_empty() && self.held_frames.is_empty()
+    }
+}
+
+/// The usual unknowns, to refer to.
+pub(super) static USUAL: Unknowns = Unknowns::USUAL;

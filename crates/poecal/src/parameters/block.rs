@@ -1,0 +1,93 @@
+//! Blocks of unknowns and their names.
+
+use crate::robot::Term;
+
+use super::{Parameter, Subject};
+
+/// A block of unknowns, which a fit changes or holds as a whole.
+///
+/// ```
+/// use poecal::parameters::{Block, Parameter, TargetPlace};
+/// assert_eq!(Parameter::TargetPlace(TargetPlace { target: 1 }).block(), Block::Target(1));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Block {
+    /// The axis (or direction) of a joint.
+    Axis(usize),
+    /// A term of a joint's value.
+    Term(usize, Term),
+    /// A target.
+    Target(usize),
+    /// The frame of an instrument.
+    Frame(usize),
+}
+
+/// Names of joints, targets and instruments, from which blocks and unknowns have theirs.
+///
+/// ```
+/// use poecal::parameters::{Block, Names};
+/// let names = Names { joints: vec!["elbow".into()], targets: vec![None], stations: vec![Some("left".into())] };
+/// assert_eq!(names.of(Block::Axis(0)), "elbow.axis");
+/// assert_eq!((names.of(Block::Target(0)), names.of(Block::Frame(0))), ("target".into(), "frame.left".into()));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Names {
+    /// Of the joints.
+    pub joints: Vec<String>,
+    /// Of the targets; the tip has none.
+    pub targets: Vec<Option<String>>,
+    /// Of the instruments; a single one may have none.
+    pub stations: Vec<Option<String>>,
+}
+
+impl Names {
+    /// All blocks: of each joint the axis and its terms, then the targets and the frames.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<Block> {
+        let joints = (0..self.joints.len()).flat_map(|joint| {
+            let terms = Term::ALL.into_iter().map(move |term| Block::Term(joint, term));
+            std::iter::once(Block::Axis(joint)).chain(terms)
+        });
+        let targets = (0..self.targets.len()).map(Block::Target);
+        let frames = (0..self.stations.len().max(1)).map(Block::Frame);
+        joints.chain(targets).chain(frames).collect()
+    }
+
+    /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`; `target` of the tip, `frame` of a single instrument.
+    #[must_use]
+    pub fn of(&self, block: Block) -> String {
+        let joint = |joint: usize| self.joints.get(joint).map_or("", String::as_str);
+        let among = |kind: &str, names: &[Option<String>], at: usize| match names.get(at) {
+            Some(Some(name)) => format!("{kind}.{name}"),
+            Some(None) | None => kind.to_owned(),
+        };
+        match block {
+            Block::Axis(at) => format!("{}.axis", joint(at)),
+            Block::Term(at, term) => format!("{}.{}", joint(at), term.model().name()),
+            Block::Target(at) => among("target", &self.targets, at),
+            Block::Frame(at) => among("frame", &self.stations, at),
+        }
+    }
+
+    /// Names of the unknowns of a parameter, in its order.
+    #[must_use]
+    pub fn of_unknowns(&self, parameter: &Parameter) -> Vec<String> {
+        let block = self.of(parameter.block());
+        let columns = parameter.model().columns().iter();
+        let name = |name: &str| if name.is_empty() { block.clone() } else { format!("{block}.{name}") };
+        columns.map(|column| name(column.name)).collect()
+    }
+}
+
+impl Parameter {
+    /// Its block.
+    #[must_use]
+    pub fn block(&self) -> Block {
+        match (self.model().subject(), self.value_term()) {
+            (Subject::Joint(joint), Some(term)) => Block::Term(joint, term.term),
+            (Subject::Joint(joint), None) => Block::Axis(joint),
+            (Subject::Target(target), _) => Block::Target(target),
+            (Subject::Instrument(station), _) => Block::Frame(station),
+        }
+    }
+}
