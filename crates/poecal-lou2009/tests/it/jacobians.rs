@@ -162,7 +162,7 @@ fn the_kernels_sum_them_as_their_formulas_do() {
             let packed = poecal::estimate::Packed::of(&robot, &made.data);
             let seen = poecal::estimate::Session::new(&robot, &made.data, &packed, true);
             let about = Vector3::new(0.3, 0.1, 0.2);
-            let mut free = vec![Parameter::DeviceFrame(DeviceFrame { station: 0, about })];
+            let mut free = vec![Parameter::DeviceFrame(DeviceFrame::new(0, about))];
             free.extend(
                 formulation.joint_parameters(&robot.joints.iter().map(|it| it.kind).collect::<Vec<_>>()),
             );

@@ -72,7 +72,7 @@ pub fn effective_unknowns(normal: &Normal, part: &Normal) -> f64 {
 pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identifiability {
     let n = setup.layout.dim();
     // Motions of the base without any effect are no unknowns: they count as known.
-    let base = setup.layout.base_motions(setup.estimate, &setup.session.data.frames(setup.rows));
+    let base = setup.layout.base_motions(setup.estimate, setup.session.data, setup.rows);
     let gram = &with_known(gram, n, &base);
     let spectrum = Spectrum::new(gram, n, variance, setup.session.length_m);
     let values = &spectrum.values;

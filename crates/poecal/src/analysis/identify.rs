@@ -130,7 +130,7 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     // The first instrument's frame is a choice of the base.
     free.extend((1..data.station_count()).map(|station| {
         let about = data.mean_position(&data.seen_from(station, &rows));
-        Parameter::DeviceFrame(DeviceFrame { station, about })
+        Parameter::DeviceFrame(DeviceFrame::new(station, about))
     }));
     let problem = Problem::new(session, rows.clone(), free, planned.noise);
     let setup =

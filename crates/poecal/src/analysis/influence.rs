@@ -173,10 +173,7 @@ mod tests {
             let device_from_base = Pose::from_xyz_rpy([0.5, -1.0, 0.2], [0.3, -0.2, 1.2]);
             let estimate = Estimate::new(robot, vec![robot.home, other], device_from_base);
             let mut free = screw_axes(estimate.kinds());
-            free.push(Parameter::DeviceFrame(DeviceFrame {
-                station: 0,
-                about: Vector3::new(0.3, -0.2, 0.5),
-            }));
+            free.push(Parameter::DeviceFrame(DeviceFrame::new(0, Vector3::new(0.3, -0.2, 0.5))));
             free.push(Parameter::TargetPlace(TargetPlace { target: 0 }));
             free.push(Parameter::TargetFrame(TargetFrame { target: 1 }));
             let rows = data.all_rows();

@@ -3,8 +3,10 @@
 use super::measurements_words;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Session;
+use crate::measurement::Dataset;
 use crate::problem::MOST_UNKNOWNS;
 use crate::robot::JointKind;
+use crate::start::device_parameter;
 
 /// Refuses problems with fewer measured numbers than unknowns that data of this kind can determine.
 pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()> {
@@ -31,7 +33,8 @@ pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
     let targets: usize = targets.map(|(_, is_frame)| if is_frame { 6 } else { 3 }).sum();
     // Beside free axes the first frame is no further unknown.
     let first = usize::from(!session.device_free || session.base_free());
-    let devices = 6 * (first..data.station_count()).filter(|&at| unknowns.moves_frame(at)).count();
+    let devices = (first..data.station_count()).filter(|&at| unknowns.moves_frame(at));
+    let devices: usize = devices.map(|at| of_device(data, at, fit_rows)).sum();
     let needed = screws + targets + devices;
     if needed > MOST_UNKNOWNS {
         return Err(Error::new(
@@ -57,6 +60,11 @@ pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
         ));
     }
     Ok(())
+}
+
+/// Unknowns of a station's frame in some rows.
+pub(super) fn of_device(data: &Dataset, station: usize, rows: &[u32]) -> usize {
+    device_parameter(data, station, rows).model().columns().len()
 }
 
 /// Unknowns of further device frames as part of a list, if there are any.

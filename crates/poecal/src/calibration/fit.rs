@@ -12,11 +12,11 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Session, rms_m, sample_rows};
 use crate::gauge;
 use crate::measurement::{Noise, Quantity};
-use crate::parameters::{DeviceFrame, Parameter, Subject, ValueTerm, screw_axes};
+use crate::parameters::{Parameter, Subject, ValueTerm, screw_axes};
 use crate::problem::{Layout, Prior, Problem};
 use crate::simulate::random;
 use crate::solve::{LeastSquares, Normal, Options, Summary};
-use crate::start::target_parameters;
+use crate::start::{device_parameter, target_parameters};
 
 /// A fit of many rows begins on a subsample: at least so many rows, for each unknown, and times the root of the number of rows. After that,
 /// one step with the first `JᵀJ` of all rows is about enough, however many they are.
@@ -49,10 +49,7 @@ pub(super) fn free_parameters(
     let stations = usize::from(is_fixed)..=estimate.further_devices.len();
     let is_free =
         |station: &usize| unknowns.moves_frame(*station) && estimate.tree.shared(*station).is_none();
-    let frames = stations.filter(is_free).map(|station| {
-        let about = data.mean_position(&data.seen_from(station, rows));
-        Parameter::DeviceFrame(DeviceFrame { station, about })
-    });
+    let frames = stations.filter(is_free).map(|station| device_parameter(data, station, rows));
     let is_free = |parameter: &Parameter| match parameter.model().subject() {
         Subject::Joint(joint) => unknowns.moves_axis(joint),
         Subject::Instrument(_) | Subject::Target(_) => true,

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::accuracy::{ModelAccuracy, model_accuracy};
+use super::count::of_device;
 use super::coverage_check::{
     CoverageCheck, InSampledRange, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING, coverage_checks,
 };
@@ -159,7 +160,8 @@ fn judged_rows<'a>(
 
 /// Refuses measurements that cannot determine the refitted unknowns, and empty ones.
 fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
-    let frame = if subject.refit_frame { 6 * data.station_count() } else { 0 };
+    let frames = (0..data.station_count()).map(|station| of_device(data, station, &data.all_rows()));
+    let frame: usize = if subject.refit_frame { frames.sum() } else { 0 };
     let targets = data.frames(&data.all_rows()).into_iter().map(|is_frame| if is_frame { 6 } else { 3 });
     let tool: usize = if subject.refit_tool { targets.sum() } else { 0 };
     if tool > MOST_UNKNOWNS {

@@ -265,7 +265,11 @@ impl<'a> Prepared<'a> {
             fit::minimal(self.session, kept, &models.calibrated, fitted.noise)
         };
         let prior =
-            PriorInformation::new(self.prior.as_ref(), &models.calibrated, &layout, self.session.length_m);
+            PriorInformation::new(self.prior.as_ref(), &models.calibrated, &layout, self.session.length_m)
+                .with_chosen(
+                    &layout.base_motions(&models.calibrated, self.session.data, kept),
+                    self.session.length_m,
+                );
         let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();
         let mut view = View {
             session: self.session,

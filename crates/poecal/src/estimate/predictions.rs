@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::{Estimate, Linkage, Passed, RowError, Session, Sight};
 use crate::lanes::{self, FixedMotion, Frames, SimdLevel, WIDTH, Wide};
 use crate::lie::Pose;
-use crate::measurement::{ByQuantity, Dataset, Measurement, NUMBERS, Observation, Written};
+use crate::measurement::{ByQuantity, Dataset, NUMBERS, Observation, Seen, Written};
 use crate::threads;
 
 /// Rows that one thread takes at a time.
@@ -199,8 +199,9 @@ impl<'a> SideBySide<'a> {
     }
 
     fn error(&self, lane: usize, seen: &Observation) -> RowError {
-        match seen.measurement {
-            Measurement::Point(_) | Measurement::Pose(_) => {
+        match seen.measurement.seen() {
+            Seen::Other(model) => RowError::new(model, &self.predicted(lane, seen)),
+            Seen::Point(_) | Seen::Frame(_) => {
                 let mut values = [0.0; NUMBERS];
                 for (values, [x, y, z]) in values.chunks_exact_mut(3).zip(&self.errors) {
                     let error = Vector3::new(x.0[lane], y.0[lane], z.0[lane]);
@@ -250,7 +251,7 @@ mod tests {
     use super::*;
     use crate::estimate::{Chain, Packed};
     use crate::lie::{Screw, rotation};
-    use crate::measurement::{PointMeasurement, PoseMeasurement, Quantity};
+    use crate::measurement::{Measurement, PointMeasurement, PoseMeasurement, Quantity};
     use crate::robot::{Joint, Robot};
 
     const ROWS: u32 = 21;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix3, Vector4};
 
 use crate::lie::{Pose, rotation};
-use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement};
+use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Seen};
 
 /// A change of every row. Columns are indices of readings.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,8 +73,9 @@ impl Change {
     }
 
     fn measurement(&self, row: usize, seen: &Measurement) -> Measurement {
-        let Pose { rotation: turned, translation } = match *seen {
-            Measurement::Point(PointMeasurement { position }) => {
+        let Pose { rotation: turned, translation } = match seen.seen() {
+            Seen::Other(_) => return *seen,
+            Seen::Point(&position) => {
                 return point(match self {
                     Change::Resize(factor) => position * *factor,
                     Change::Mirror(mirror, _) => mirror * position,
@@ -89,7 +90,7 @@ impl Change {
                     | Change::Turn(_) => position,
                 });
             }
-            Measurement::Pose(PoseMeasurement { pose }) => pose,
+            Seen::Frame(pose) => *pose,
         };
         frame(match self {
             Change::Resize(factor) => Pose::new(turned, translation * *factor),

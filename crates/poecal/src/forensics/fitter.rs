@@ -136,7 +136,7 @@ impl<'a> Fitter<'a> {
         );
         if self.device_free {
             let about = data.mean_position(&data.all_rows());
-            free.push(Parameter::DeviceFrame(DeviceFrame { station: 0, about }));
+            free.push(Parameter::DeviceFrame(DeviceFrame::new(0, about)));
         }
         let (estimate, misfit) = self.fit(data, registered, free, 30);
         (estimate.coefficient(joint, Term::Offset), misfit)

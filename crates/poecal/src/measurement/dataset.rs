@@ -316,6 +316,13 @@ impl Dataset {
         frames
     }
 
+    /// Whether some of these rows depend on the axes of their device; of no rows, as if they did.
+    #[must_use]
+    pub fn sees_axes(&self, rows: &[u32]) -> bool {
+        let sees = |row: &u32| self.observations[*row as usize].measurement.observe().sees_device_axes();
+        rows.is_empty() || rows.iter().any(sees)
+    }
+
     /// Mean of the positions that some rows measured, metres, device frame.
     #[must_use]
     pub fn mean_position(&self, rows: &[u32]) -> Vector3<f64> {

@@ -18,6 +18,8 @@ pub use point::PointMeasurement;
 pub use pose::PoseMeasurement;
 pub use quantity::{ByQuantity, Measured, Noise, Quantity};
 
+use nalgebra::Vector3;
+
 use crate::lie::Pose;
 
 /// One measurement of a target in the measuring device's frame.
@@ -38,6 +40,24 @@ pub enum Measurement {
     Pose(PoseMeasurement),
 }
 
+/// What a measurement shows of the target itself: for all that moves or draws measured places and orientations.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::measurement::{Measurement, PointMeasurement, Seen};
+/// let measured = Measurement::Point(PointMeasurement { position: Vector3::x() });
+/// assert!(matches!(measured.seen(), Seen::Point(position) if position.x == 1.0));
+/// ```
+#[derive(Clone, Copy)]
+pub enum Seen<'a> {
+    /// Its place.
+    Point(&'a Vector3<f64>),
+    /// Its place and orientation.
+    Frame(&'a Pose),
+    /// Something that follows from its pose.
+    Other(&'a dyn Observe),
+}
+
 impl Measurement {
     /// What was measured, by its type.
     #[must_use]
@@ -45,6 +65,15 @@ impl Measurement {
         match self {
             Measurement::Point(point) => point,
             Measurement::Pose(pose) => pose,
+        }
+    }
+
+    /// What it shows of the target itself.
+    #[must_use]
+    pub fn seen(&self) -> Seen<'_> {
+        match self {
+            Measurement::Point(PointMeasurement { position }) => Seen::Point(position),
+            Measurement::Pose(PoseMeasurement { pose }) => Seen::Frame(pose),
         }
     }
 
@@ -63,10 +92,10 @@ impl Measurement {
     /// The measured `device_from_target`, with the identity for what was not measured.
     #[must_use]
     pub fn pose(&self) -> Pose {
-        if let Measurement::Pose(PoseMeasurement { pose }) = self {
-            return *pose;
+        match self.seen() {
+            Seen::Point(position) => Pose::from_translation(*position),
+            Seen::Frame(pose) => *pose,
+            Seen::Other(_) => Pose::identity(),
         }
-        let (seen, none) = (self.observe(), Pose::identity());
-        Pose::new(seen.orientation().unwrap_or(none.rotation), seen.position().unwrap_or(none.translation))
     }
 }

@@ -54,6 +54,16 @@ pub trait Observe {
         None
     }
 
+    /// Measured distance of the target from the device's origin, metres, if that is what the measurement tells.
+    fn range(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether it depends on the device's axes, so that the device is a frame and not only a point.
+    fn sees_device_axes(&self) -> bool {
+        true
+    }
+
     /// Whether all measured numbers are finite.
     fn is_finite(&self) -> bool;
 

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use nalgebra::{Matrix3, Vector3};
 
 use super::pose::POSE;
-use super::{Channel, Measurement, Observe, PoseMeasurement, Sensitivity};
+use super::{Channel, Measurement, Observe, PoseMeasurement, Seen, Sensitivity};
 use crate::lie::Pose;
 
 /// Formulation of the residuals of measured frames as six numbers, of position and rotation. It holds for all frames of a data set
@@ -37,11 +37,9 @@ pub(crate) enum Written<'a> {
 
 impl<'a> Written<'a> {
     pub(crate) fn new(measurement: &'a Measurement, other: Option<&'static dyn PoseResidual>) -> Self {
-        match (measurement, other) {
-            (Measurement::Pose(PoseMeasurement { pose }), Some(residual)) => {
-                Written::Other(OtherPose { pose: *pose, residual })
-            }
-            (Measurement::Pose(_), None) | (Measurement::Point(_), _) => Written::Usual(measurement),
+        match (measurement.seen(), other) {
+            (Seen::Frame(pose), Some(residual)) => Written::Other(OtherPose { pose: *pose, residual }),
+            (Seen::Frame(_), None) | (Seen::Point(_) | Seen::Other(_), _) => Written::Usual(measurement),
         }
     }
 

@@ -50,6 +50,15 @@ impl Quantity {
         self.entry().1
     }
 
+    /// Names of the components of a measurement of it: columns of files.
+    #[must_use]
+    pub fn component_names(self) -> &'static [&'static str] {
+        match self {
+            Quantity::Position => &["x", "y", "z"],
+            Quantity::Rotation => &["rx", "ry", "rz"],
+        }
+    }
+
     /// Number of components that a measurement of it has.
     #[must_use]
     pub fn components(self) -> usize {

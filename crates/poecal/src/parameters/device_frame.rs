@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, FRAME, Subject, Wrench};
+use super::columns::{Column, Columns, FRAME, PLACE, Subject, Wrench};
 use crate::estimate::{Chain, Estimate};
 use crate::lie::{TargetTwist, rotation};
 
@@ -11,7 +11,7 @@ use crate::lie::{TargetTwist, rotation};
 ///
 /// ```
 /// use poecal::parameters::{Columns, DeviceFrame};
-/// assert_eq!(DeviceFrame { station: 0, about: nalgebra::Vector3::zeros() }.columns().len(), 6);
+/// assert_eq!(DeviceFrame::new(0, nalgebra::Vector3::zeros()).columns().len(), 6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceFrame {
@@ -19,6 +19,22 @@ pub struct DeviceFrame {
     pub station: usize,
     /// Point about which the step rotates, metres, device frame.
     pub about: Vector3<f64>,
+    /// Whether the axes are unknown too; otherwise the device shows where it is, and not how it is turned (3 unknowns).
+    pub turns: bool,
+}
+
+impl DeviceFrame {
+    /// A device with axes, stepped about a point.
+    #[must_use]
+    pub fn new(station: usize, about: Vector3<f64>) -> Self {
+        DeviceFrame { station, about, turns: true }
+    }
+
+    /// A device without axes that its measurements show: the anchor of a wire.
+    #[must_use]
+    pub fn anchor(station: usize) -> Self {
+        DeviceFrame { station, about: Vector3::zeros(), turns: false }
+    }
 }
 
 impl Columns for DeviceFrame {
@@ -27,7 +43,7 @@ impl Columns for DeviceFrame {
     }
 
     fn columns(&self) -> &'static [Column] {
-        &FRAME
+        if self.turns { &FRAME } else { &PLACE }
     }
 
     fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
@@ -40,12 +56,14 @@ impl Columns for DeviceFrame {
             let mut axis = Vector3::zeros();
             axis[k] = 1.0;
             out[k] = (axis, Vector3::zeros());
-            out[3 + k] = (axis.cross(&arm), axis);
+            if self.turns {
+                out[3 + k] = (axis.cross(&arm), axis);
+            }
         }
     }
 
     fn curvature(&self, chain: &Chain, wrench: &Wrench, out: &mut [f64]) {
-        if chain.station != self.station {
+        if chain.station != self.station || !self.turns {
             return;
         }
         let arm = chain.target.translation - self.about;
@@ -60,7 +78,8 @@ impl Columns for DeviceFrame {
     }
 
     fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
-        let turn = rotation::exp(&Vector3::new(step[3], step[4], step[5]));
+        let turn = if self.turns { Vector3::new(step[3], step[4], step[5]) } else { Vector3::zeros() };
+        let turn = rotation::exp(&turn);
         let shift = Vector3::new(step[0], step[1], step[2]);
         let pose = estimate.device_mut(self.station);
         pose.translation = turn * (pose.translation - self.about) + self.about + shift;

@@ -6,6 +6,7 @@ use super::Layout;
 use crate::estimate::Estimate;
 use crate::lie::{Pose, Twist};
 use crate::linalg;
+use crate::measurement::Dataset;
 use crate::parameters::{Parameter, Subject};
 use crate::robot::JointKind;
 
@@ -14,9 +15,19 @@ const UNSEEN: f64 = 1e-12;
 
 impl Layout {
     /// Motions of the base under everything that leave all held things where they are, as directions of a step: orthonormal, and without
-    /// effect on any prediction (theory.md §8 (37)); of which targets the orientation is measured says `is_frame`. There are none where the first device frame is held.
+    /// effect on what these rows measure (theory.md §8 (37)). There are none where the first device frame is held.
     #[must_use]
-    pub(crate) fn base_motions(&self, estimate: &Estimate, is_frame: &[bool]) -> Vec<Vec<f64>> {
+    pub(crate) fn base_motions(&self, estimate: &Estimate, data: &Dataset, rows: &[u32]) -> Vec<Vec<f64>> {
+        let is_held = |station: usize| {
+            let of_it =
+                |(parameter, _): (&Parameter, _)| parameter.model().subject() == Subject::Instrument(station);
+            !self.parameters().any(of_it)
+        };
+        let sees_axes = |station: usize| data.sees_axes(&data.seen_from(station, rows));
+        if is_held(0) && estimate.tree.shared(0).is_none() && sees_axes(0) {
+            return Vec::new();
+        }
+        let is_frame = data.frames(rows);
         let length_m = self.length_m();
         let mut moved: Vec<Vec<f64>> = vec![vec![0.0; self.dim()]; 6];
         // Information that the held things give about a motion of the base.
@@ -67,11 +78,13 @@ impl Layout {
                     _ => None,
                 });
                 let device = estimate.device(station);
-                let at = Pose::from_translation(about.unwrap_or(device.translation));
+                // Of a device without axes the origin is all that is held.
+                let seen = if sees_axes(station) { 6 } else { 3 };
+                let at = Pose::from_translation(about.unwrap_or_default());
                 // `device_from_base G⁻¹`, stepped in the device's axes about a point.
                 add(Subject::Instrument(station), &|k| {
                     let step = -at.inverse().transform(&device.transform(&unit(k))).to_vector();
-                    step.as_slice().to_vec()
+                    step.iter().copied().take(seen).collect()
                 });
             }
         }

@@ -7,7 +7,7 @@ use super::scatter::GramScatter;
 use crate::estimate::{Chain, Estimate, Linkage, Sight};
 use crate::lanes::{self, Arm, FixedMotion, PackedRows, RowData, Shape, ShapedRow, SimdLevel, Totals, WIDTH};
 use crate::lie::Pose;
-use crate::measurement::{Measurement, NUMBERS, Noise, PoseMeasurement};
+use crate::measurement::{NUMBERS, Noise, Seen};
 use crate::parameters::Columns as _;
 use crate::solve::Normal;
 use crate::threads;
@@ -301,11 +301,11 @@ fn row_data<'a>(
         Some(own) => own.sqrt() * weight,
         None => weight,
     };
-    let (position, orientation) = match problem.measurement(row) {
-        Measurement::Point(point) => (&point.position, None),
-        Measurement::Pose(PoseMeasurement { pose }) => {
-            (&pose.translation, is_pose.then_some((&pose.rotation.data.0, ratio)))
-        }
+    let (position, orientation) = match problem.measurement(row).seen() {
+        Seen::Point(position) => (&position.data.0[0], None),
+        Seen::Frame(pose) => (&pose.translation.data.0[0], is_pose.then_some((&pose.rotation.data.0, ratio))),
+        // What such rows measured comes with their shape.
+        Seen::Other(_) => (&[0.0; 3], None),
     };
-    RowData { joints: problem.session.packed.row(row), position: &position.data.0[0], orientation, weight }
+    RowData { joints: problem.session.packed.row(row), position, orientation, weight }
 }

@@ -2,7 +2,7 @@
 
 use super::Problem;
 use crate::estimate::Sight;
-use crate::measurement::{Measurement, Noise, Observation, Quantity};
+use crate::measurement::{Noise, Observation, Quantity, Seen};
 use crate::threads;
 
 /// Rows that one thread groups at a time.
@@ -88,11 +88,12 @@ pub(super) enum Form {
 impl Form {
     fn of(problem: &Problem<'_>, row: u32) -> Self {
         let is_other = problem.layout.has_other_screws();
-        match (problem.measurement(row as usize), problem.session.data.pose_residual) {
-            (Measurement::Point(_), _) if !is_other => Form::Point,
-            (Measurement::Pose(_), None) if !is_other => Form::Pose,
-            (other @ (Measurement::Point(_) | Measurement::Pose(_)), _) => {
-                Form::Shaped(other.observe().dim(), other.sees_orientation())
+        let measured = problem.measurement(row as usize);
+        match (measured.seen(), problem.session.data.pose_residual) {
+            (Seen::Point(_), _) if !is_other => Form::Point,
+            (Seen::Frame(_), None) if !is_other => Form::Pose,
+            (Seen::Point(_) | Seen::Frame(_) | Seen::Other(_), _) => {
+                Form::Shaped(measured.observe().dim(), measured.sees_orientation())
             }
         }
     }

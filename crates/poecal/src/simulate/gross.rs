@@ -6,7 +6,7 @@ use rand_core::SeedableRng;
 
 use super::random;
 use crate::lie::{Pose, rotation};
-use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement};
+use crate::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Seen};
 
 /// Gross errors of a share of the rows: each is moved in a random direction, and every second one with an orientation is also rotated.
 /// Distances and angles are uniform between their two limits.
@@ -60,14 +60,13 @@ impl Gross {
             direction * (least + (most - least) * random::uniform(generator))
         };
         let (shift, turn) = (between(self.distance_m), between(self.angle_rad));
-        let Pose { rotation: seen, translation } = measurement.pose();
-        let position = translation + shift;
-        match measurement {
-            Measurement::Point(_) => Measurement::Point(PointMeasurement { position }),
-            Measurement::Pose(_) => {
-                let rotation = if turned { rotation::exp(&turn) * seen } else { seen };
-                Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position) })
+        match measurement.seen() {
+            Seen::Point(place) => Measurement::Point(PointMeasurement { position: place + shift }),
+            Seen::Frame(pose) => {
+                let rotation = if turned { rotation::exp(&turn) * pose.rotation } else { pose.rotation };
+                Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, pose.translation + shift) })
             }
+            Seen::Other(_) => *measurement,
         }
     }
 }

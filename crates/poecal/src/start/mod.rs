@@ -8,6 +8,6 @@ mod stations;
 
 pub(crate) use averaging::mean_rotation;
 pub use registration::{Registration, register_again};
-pub(crate) use registration::{free_parameters, register_roughly, target_parameters};
+pub(crate) use registration::{device_parameter, free_parameters, register_roughly, target_parameters};
 pub use robust::register_robustly;
 pub use stations::register;

@@ -1,12 +1,13 @@
 //! Registration: device frame and targets are fitted, with fixed screws.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
 
 use super::averaging::{mean_rotation, rigid_motion};
 use super::hand_eye;
 use crate::estimate::{Chain, Estimate, Linkage, Session, Unknowns, sample_rows};
 use crate::lie::{Pose, rotation};
-use crate::measurement::Noise;
+use crate::linalg;
+use crate::measurement::{Dataset, Noise};
 use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
 use crate::problem::Problem;
 use crate::solve::{Options, minimize};
@@ -19,6 +20,9 @@ const FINALISTS: usize = 4;
 const ROUNDS: usize = 4;
 /// Root mean square distance, as a share of the data's own spread, above which the closed forms are not trusted alone.
 const GOOD_MISFIT: f64 = 0.05;
+
+/// Share of the information of distances about an anchor below which it is rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// A registration problem: rows, noise and unknowns.
 #[derive(Clone, Copy, Debug)]
@@ -96,16 +100,23 @@ pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<P
         let data = problem.session.data;
         let unknowns = problem.session.unknowns;
         let stations = (0..data.station_count()).filter(|&station| unknowns.moves_frame(station));
-        let stations = stations.map(|station| {
-            let about = data.mean_position(&data.seen_from(station, rows));
-            Parameter::DeviceFrame(DeviceFrame { station, about })
-        });
+        let stations = stations.map(|station| device_parameter(data, station, rows));
         free.extend(stations);
     }
     if problem.targets_free {
         free.extend(target_parameters(&problem.session, problem.rows));
     }
     free
+}
+
+/// The free parameter of a station's frame: stepped about the middle of its rows; its place alone if no row sees its axes.
+pub(crate) fn device_parameter(data: &Dataset, station: usize, rows: &[u32]) -> Parameter {
+    let own = data.seen_from(station, rows);
+    Parameter::DeviceFrame(if data.sees_axes(&own) {
+        DeviceFrame::new(station, data.mean_position(&own))
+    } else {
+        DeviceFrame::anchor(station)
+    })
 }
 
 /// The free parameters of the targets: frames where these rows measured orientation, places elsewhere.
@@ -127,6 +138,8 @@ struct SampledRows {
     measured: Vec<Vector3<f64>>,
     turned: Vec<Option<Matrix3<f64>>>,
     target: Vec<usize>,
+    /// Of rows that tell no place: the arm's motion, the distance from the device, and the target.
+    ranges: Vec<(Pose, f64, usize)>,
     /// Spread of the measured positions, metres.
     spread_m: f64,
 }
@@ -142,15 +155,19 @@ impl SampledRows {
             measured: Vec::new(),
             turned: Vec::new(),
             target: Vec::new(),
+            ranges: Vec::new(),
             spread_m: problem.session.data.spread_m(sample),
         };
         for &row in sample {
             let observation = problem.session.observation(row);
             let model = observation.measurement.observe();
-            let Some(position) = model.position() else { continue };
             chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
-            let home = start.base_from_target[observation.target];
-            seen.base_motion.push(chain.target * home.inverse());
+            let motion = chain.target * start.base_from_target[observation.target].inverse();
+            let Some(position) = model.position() else {
+                seen.ranges.extend(model.range().map(|range| (motion, range, observation.target)));
+                continue;
+            };
+            seen.base_motion.push(motion);
             seen.measured.push(position);
             seen.turned.push(model.orientation());
             seen.target.push(observation.target);
@@ -219,6 +236,9 @@ impl SampledRows {
         if !problem.session.device_free {
             return vec![start.device_from_base];
         }
+        if self.measured.is_empty() {
+            return vec![self.by_ranges(start).unwrap_or(start.device_from_base)];
+        }
         let mut candidates = vec![self.rigid(&start.base_from_target)];
         let framed: Vec<usize> = (0..self.turned.len()).filter(|&k| self.turned[k].is_some()).collect();
         if framed.len() >= 3 {
@@ -241,6 +261,31 @@ impl SampledRows {
             candidates.push(self.rigid(&shrunk));
         }
         candidates
+    }
+
+    /// The device at the point a that has the measured distances d from the targets p: with `|a|²` as an unknown of its own,
+    /// `|p|² - d² = 2 p·a - |a|²` is linear. Its axes are those of the start.
+    fn by_ranges(&self, start: &Estimate) -> Option<Pose> {
+        let places = || {
+            self.ranges.iter().map(|(motion, range, target)| {
+                (motion.act(&start.base_from_target[*target].translation), *range)
+            })
+        };
+        let count = self.ranges.len();
+        let middle = places().map(|(place, _)| place).sum::<Vector3<f64>>() / count.max(1) as f64;
+        let (mut gram, mut right) = (Matrix4::zeros(), Vector4::zeros());
+        for (place, range) in places() {
+            let arm = place - middle;
+            let row = Vector4::new(2.0 * arm.x, 2.0 * arm.y, 2.0 * arm.z, -1.0);
+            gram += row * row.transpose();
+            right += row * (arm.norm_squared() - range * range);
+        }
+        let upper: Vec<f64> = gram.iter().copied().collect();
+        let factor = linalg::cholesky(&upper, 4, ROUNDING * gram.trace())?;
+        let found = linalg::cholesky_solve(&factor, right.as_slice());
+        let anchor = middle + Vector3::new(*found.first()?, *found.get(1)?, *found.get(2)?);
+        let turn = start.device_from_base.rotation;
+        Some(Pose::new(turn, -(turn * anchor)))
     }
 
     /// The target moved onto the last axis, where the last joint does not move it.
@@ -282,7 +327,7 @@ impl SampledRows {
     ) -> Estimate {
         let mut estimate = start.clone();
         estimate.device_from_base = device_from_base;
-        if problem.targets_free {
+        if problem.targets_free && !self.measured.is_empty() {
             for round in 0..rounds {
                 self.place_targets(&mut estimate, problem.session.unknowns);
                 if problem.session.device_free && round + 1 < rounds {

@@ -20,17 +20,18 @@ pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64)
 
 /// Each frame from its own rows, that of most rows first; the targets found with it are known to the others (theory.md §6, *Start*).
 fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
+    let unknowns = problem.session.unknowns;
     // A data set of one station: each registration uses the rows of one station only.
     let alone = problem.session.data.without_stations();
     let mut stations: Vec<(usize, Vec<u32>)> = (0..problem.session.data.station_count())
         .map(|station| (station, problem.session.data.seen_from(station, problem.rows)))
         .filter(|(_, rows)| !rows.is_empty())
         .collect();
+    // What is held is known; a device that shows places finds its frame best.
     stations.sort_by_key(|(station, rows)| {
-        Reverse((!problem.session.unknowns.moves_frame(*station), rows.len()))
+        Reverse((!unknowns.moves_frame(*station), problem.session.data.sees_axes(rows), rows.len()))
     });
     let mut found = start.clone();
-    let unknowns = problem.session.unknowns;
     let of_one = Unknowns { held_frames: Vec::new(), ..unknowns.clone() };
     let is_known = |target| !problem.targets_free || !unknowns.moves_target(target);
     let mut known: Vec<bool> = (0..start.base_from_target.len()).map(is_known).collect();

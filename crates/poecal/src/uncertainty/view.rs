@@ -35,6 +35,20 @@ impl PriorInformation {
         PriorInformation { normal, is_fitted: prior.is_some() }
     }
 
+    /// The same with directions that are a choice, such as motions of the base without effect: as if they were known.
+    #[must_use]
+    pub fn with_chosen(mut self, directions: &[Vec<f64>], length_m: f64) -> Self {
+        const CHOSEN: f64 = 1e-6;
+        let information = 1.0 / (CHOSEN * length_m).powi(2);
+        for direction in directions {
+            let n = direction.len();
+            for (k, value) in self.normal.gram.iter_mut().enumerate() {
+                *value += information * direction[k / n] * direction[k % n];
+            }
+        }
+        self
+    }
+
     /// Upper triangle of `N + s²Λ`, the H of theory.md §9 (39), from that of N and the variance s² of the whitened residuals.
     #[must_use]
     pub fn with(&self, gram: &[f64], variance: f64) -> Vec<f64> {

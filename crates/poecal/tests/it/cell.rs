@@ -7,7 +7,9 @@ use nalgebra::Vector3;
 use poecal::analysis::{Setup, identifiability};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use poecal::lie::{Pose, Screw, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement};
+use poecal::measurement::{
+    Dataset, Measurement, NUMBERS, Noise, Observation, PointMeasurement, PoseMeasurement,
+};
 use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
 use poecal::problem::Problem;
 use poecal::robot::{Body, Joint, JointKind, Mount, Robot, Term};
@@ -19,23 +21,25 @@ use std::f64::consts::PI;
 
 const NOISE: Noise = Noise::new(1e-4, 2e-4);
 
-/// What is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Seen {
-    Point,
-    Pose,
-}
+/// A measurement of a target's pose in the instrument's frame.
+type Function = fn(&Pose) -> Measurement;
+
+const POINT: Function = |pose| Measurement::Point(PointMeasurement { position: pose.translation });
+const POSE: Function = |pose| Measurement::Pose(PoseMeasurement { pose: *pose });
+
+/// What can be measured, with the number of unknowns that one target and its first instrument add to those of the axes.
+const FUNCTIONS: [(&str, Function, usize); 2] = [("poses", POSE, 6), ("points", POINT, 3)];
 
 /// Something that an instrument sees, by their names; in two configurations if `apart`.
 #[derive(Clone, Copy, Debug)]
 struct Sees {
     instrument: Option<&'static str>,
     target: Option<&'static str>,
-    seen: Seen,
+    seen: Function,
     apart: bool,
 }
 
-const fn sees(instrument: Option<&'static str>, target: Option<&'static str>, seen: Seen) -> Sees {
+const fn sees(instrument: Option<&'static str>, target: Option<&'static str>, seen: Function) -> Sees {
     Sees { instrument, target, seen, apart: false }
 }
 
@@ -112,31 +116,41 @@ fn torso() -> Robot {
 
 /// Joints below the base frame that move the instrument, so that the way goes back and forth on one arm.
 fn cells() -> Vec<Cell> {
-    use Seen::{Point, Pose};
-    let tip = |seen| vec![sees(None, None, seen)];
-    let camera = |seen| vec![sees(Some("camera"), Some("board"), seen)];
-    let apart = |seen| vec![Sees { apart: true, ..sees(Some("tool"), Some("tool"), seen) }];
+    let tip = |seen: Function| vec![sees(None, None, seen)];
+    let camera = |seen: Function| vec![sees(Some("camera"), Some("board"), seen)];
+    let apart = |seen: Function| vec![Sees { apart: true, ..sees(Some("tool"), Some("tool"), seen) }];
     let cell = |name, robot, sees, rank| Cell { name, robot, sees, rank };
     let g = |kinds: &str| kinds.chars().map(|kind| if kind == 'p' { 2 } else { 4 }).sum::<usize>();
     let mut all = Vec::new();
     for kinds in ["rrrrrr", "rrrrrrr", "rrrppp", "rrpr"] {
-        all.push(cell("poses", chain(kinds, 1), tip(Pose), g(kinds) + 6));
-        all.push(cell("points of one target", chain(kinds, 2), tip(Point), g(kinds) + 3));
-        all.push(cell("eye in hand", eye_in_hand(kinds), camera(Pose), g(kinds) + 6));
-        all.push(cell("two configurations", chain(kinds, 3), apart(Pose), g(kinds)));
+        for (name, function, more) in FUNCTIONS {
+            all.push(cell(name, chain(kinds, 1), tip(function), g(kinds) + more));
+        }
+        all.push(cell("eye in hand", eye_in_hand(kinds), camera(POSE), g(kinds) + 6));
+        all.push(cell("two configurations", chain(kinds, 3), apart(POSE), g(kinds)));
     }
     let two_hands = |of: &'static str| {
-        vec![sees(Some(of), Some("left_hand"), Pose), sees(Some(of), Some("right_hand"), Pose)]
+        vec![sees(Some(of), Some("left_hand"), POSE), sees(Some(of), Some("right_hand"), POSE)]
     };
     // The chest is on the torso: what is below it cancels. The head's own joint is seen.
     all.push(cell("chest sees both hands", torso(), two_hands("chest"), 48 + 12));
     all.push(cell("head sees both hands", torso(), two_hands("eyes"), 52 + 12));
     // A device on the floor sees the torso as well; a second one shares its targets.
-    let floor = vec![sees(None, Some("left_hand"), Pose), sees(None, Some("right_hand"), Point)];
+    let floor = vec![sees(None, Some("left_hand"), POSE), sees(None, Some("right_hand"), POINT)];
     all.push(cell("floor sees both hands", torso(), floor.clone(), 8 + 48 + 9));
-    let with_chest = [floor, vec![sees(Some("chest"), Some("left_hand"), Pose)]].concat();
+    let with_chest = [floor, vec![sees(Some("chest"), Some("left_hand"), POSE)]].concat();
     all.push(cell("floor and chest", torso(), with_chest, 8 + 48 + 9 + 6));
     all
+}
+
+/// The frame of a station, or its place if no row sees its axes.
+fn device(data: &Dataset, station: usize, about: Vector3<f64>) -> Parameter {
+    let is_frame = data.sees_axes(&data.seen_from(station, &data.all_rows()));
+    Parameter::DeviceFrame(if is_frame {
+        DeviceFrame::new(station, about)
+    } else {
+        DeviceFrame::anchor(station)
+    })
 }
 
 /// A cell with measurements, at a state that predicts them but for some residual.
@@ -165,10 +179,7 @@ impl Measured {
             };
             let from = it.apart.then(|| data.push_further(&readings()).unwrap());
             let (target, station) = (data.target_index(it.target), data.station_index(it.instrument));
-            let measurement = match it.seen {
-                Seen::Point => Measurement::Point(PointMeasurement { position: Vector3::zeros() }),
-                Seen::Pose => Measurement::Pose(PoseMeasurement { pose: Pose::identity() }),
-            };
+            let measurement = (it.seen)(&Pose::identity());
             let observation = Observation { station, from, ..Observation::new(target, measurement) };
             data.push_observation(&readings(), observation).unwrap();
         }
@@ -182,18 +193,11 @@ impl Measured {
             chain.evaluate(&linkage, &packed, row, &data.observations[row]);
             let turn = rotation::exp(&(random::direction(&mut generator) * off));
             let position = chain.target.translation + random::direction(&mut generator) * off;
-            data.observations[row].measurement = match data.observations[row].measurement {
-                Measurement::Point(_) => Measurement::Point(PointMeasurement { position }),
-                Measurement::Pose(_) => {
-                    let pose = Pose::new(turn * chain.target.rotation, position);
-                    Measurement::Pose(PoseMeasurement { pose })
-                }
-            };
+            let seen = cell.sees[row % cell.sees.len()].seen;
+            data.observations[row].measurement = seen(&Pose::new(turn * chain.target.rotation, position));
         }
         let mut free: Vec<Parameter> = (1..data.station_count())
-            .map(|station| {
-                Parameter::DeviceFrame(DeviceFrame { station, about: Vector3::new(0.1, -0.2, 0.3) })
-            })
+            .map(|station| device(&data, station, Vector3::new(0.1, -0.2, 0.3)))
             .collect();
         free.extend(screw_axes(estimate.kinds()));
         free.extend(data.frames(&data.all_rows()).into_iter().enumerate().map(|(target, is_frame)| {
@@ -229,10 +233,7 @@ fn sensitivities_of_every_way_are_those_of_differences() {
         }
         // The first device as well.
         if made.estimate.tree.shared(0).is_none() {
-            free.insert(
-                0,
-                Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::new(0.2, 0.1, 0.0) }),
-            );
+            free.insert(0, device(&made.data, 0, Vector3::new(0.2, 0.1, 0.0)));
         }
         let problem = made.problem(free);
         let normal = problem.normal(&estimate);
@@ -293,9 +294,13 @@ fn errors_of_every_way_are_measured_minus_predicted() {
         for (row, error) in errors.iter().enumerate() {
             let seen = &made.data.observations[row];
             chain.evaluate(&linkage, &made.packed, row, seen);
-            let apart = seen.measurement.pose().translation - chain.target.translation - error.position_m();
-            assert!(apart.norm() < 1e-13, "{} {row}: {:e}", cell.name, apart.norm());
-            assert_eq!(error.rotation_rad().is_some(), seen.measurement.sees_orientation());
+            let mut expected = [0.0; NUMBERS];
+            seen.measurement.observe().residual(&chain.target, &mut expected);
+            assert_eq!(error.dim(), seen.measurement.observe().dim());
+            for ((_, found), expected) in error.numbers().zip(expected) {
+                // Rounding of a few products of numbers of about one, and of a logarithm.
+                assert!((found - expected).abs() < 1e-13, "{} {row}: {found:e} {expected:e}", cell.name);
+            }
         }
     }
 }

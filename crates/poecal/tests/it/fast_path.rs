@@ -151,11 +151,11 @@ fn parameters(robot: &Robot, data: &Dataset, case: &Case) -> Vec<Parameter> {
         return free;
     }
     if case.device {
-        free.push(Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::new(0.3, -0.2, 0.5) }));
+        free.push(Parameter::DeviceFrame(DeviceFrame::new(0, Vector3::new(0.3, -0.2, 0.5))));
     }
     for station in 1..=case.further {
         let about = Vector3::new(0.1 * station as f64, 0.2, -0.1);
-        free.push(Parameter::DeviceFrame(DeviceFrame { station, about }));
+        free.push(Parameter::DeviceFrame(DeviceFrame::new(station, about)));
     }
     for (joint, it) in robot.joints.iter().enumerate() {
         if !case.some_axes || joint % 2 == 1 {
@@ -279,7 +279,7 @@ fn kernels_serve_the_kinds_that_they_know() {
             Parameter::ValueTerm(ValueTerm { joint: 0, kind, term: Term::Offset }),
             Parameter::TargetPlace(TargetPlace { target: 0 }),
             Parameter::TargetFrame(TargetFrame { target: 0 }),
-            Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::zeros() }),
+            Parameter::DeviceFrame(DeviceFrame::new(0, Vector3::zeros())),
         ] {
             session.free = vec![parameter];
             let problem = session.problem(&Case::default(), SimdLevel::BASELINE);

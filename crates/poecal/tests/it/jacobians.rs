@@ -34,8 +34,8 @@ const MEASUREMENTS: [(&str, Measure); 2] = [
 fn parameters(robot: &Robot) -> Vec<(&'static str, Parameter)> {
     let about = Vector3::new(0.1, -0.2, 0.3);
     let mut all = vec![
-        ("device frame", Parameter::DeviceFrame(DeviceFrame { station: 0, about })),
-        ("other frame", Parameter::DeviceFrame(DeviceFrame { station: 1, about })),
+        ("device frame", Parameter::DeviceFrame(DeviceFrame::new(0, about))),
+        ("other frame", Parameter::DeviceFrame(DeviceFrame::new(1, about))),
     ];
     for (joint, it) in robot.joints.iter().enumerate() {
         all.push((it.kind.word(), Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));

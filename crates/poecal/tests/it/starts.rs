@@ -170,7 +170,7 @@ fn measure(session: &Session, robot: &Robot, generator: &mut ChaCha8Rng) -> (Dat
 /// `½ Σ e²` of the registration that starts at the truth.
 fn cost_from_truth(session: estimate::Session<'_>, rows: &[u32], truth: Estimate) -> f64 {
     let data = session.data;
-    let mut free = vec![Parameter::DeviceFrame(DeviceFrame { station: 0, about: Vector3::zeros() })];
+    let mut free = vec![Parameter::DeviceFrame(DeviceFrame::new(0, Vector3::zeros()))];
     free.extend((0..data.targets.len()).map(|target| {
         if data.target_is_frame(target) {
             Parameter::TargetFrame(TargetFrame { target })

@@ -441,9 +441,7 @@ impl CalibrationFile {
 impl UncertaintyEntry {
     /// Parameters of the first device frame and the joints that may be among the unknowns, in the order of a fit.
     fn joint_parameters(&self, robot: &Robot) -> Vec<Parameter> {
-        let frame = self
-            .frame_about_m
-            .map(|about| Parameter::DeviceFrame(DeviceFrame { station: 0, about: about.into() }));
+        let frame = self.frame_about_m.map(|about| Parameter::DeviceFrame(DeviceFrame::new(0, about.into())));
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
         let terms = kinds.iter().enumerate().flat_map(|(joint, &kind)| {
             let terms = Term::ALL.into_iter().filter(|_| !self.unknowns.is_empty());

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::header::{Header, unit_in_name};
 use super::inputs::{Input, InputSource, Term};
+use super::kinds::{self, KindColumns};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
 use super::units::{Dimension, Unit, UnitSource};
@@ -37,6 +38,11 @@ const OUR_NAMES: [&str; 19] = [
     "set",
 ];
 
+/// Whether a name has a meaning in every file.
+fn is_our_name(name: &str) -> bool {
+    OUR_NAMES.contains(&name) || kinds::names().any(|known| known == name)
+}
+
 /// Advice where a column of ours is missing.
 const MISSING: &str = ": rename or add a column, or name the right one in a mapping file (--columns)";
 
@@ -44,10 +50,13 @@ const MISSING: &str = ": rename or add a column, or name the right one in a mapp
 #[derive(Clone, Debug)]
 pub(super) struct TargetLayout {
     pub(super) name: Option<String>,
-    pub(super) position: [usize; 3],
+    /// None in a file of other kinds of measurements.
+    pub(super) position: Option<[usize; 3]>,
     pub(super) orientation: Option<(OrientationForm, Vec<usize>)>,
     pub(super) sigma_position: Option<usize>,
     pub(super) sigma_rotation: Option<usize>,
+    /// Other kinds of measurements.
+    pub(super) kinds: Vec<KindColumns>,
 }
 
 /// Finds columns in a header, and records which are used.
@@ -178,9 +187,8 @@ impl<'a> Builder<'a> {
 
     /// Index of a required column.
     pub(super) fn text_column(&mut self, name: &str, purpose: &str) -> Result<usize> {
-        let is_known =
-            |found: &str| found != name && (self.readings.contains(found) || OUR_NAMES.contains(&found));
-        let is_ours = self.readings.contains(name) || OUR_NAMES.contains(&name);
+        let is_known = |found: &str| found != name && (self.readings.contains(found) || is_our_name(found));
+        let is_ours = self.readings.contains(name) || is_our_name(name);
         let advice = if is_ours { MISSING } else { "" };
         let index = self
             .header
@@ -192,7 +200,7 @@ impl<'a> Builder<'a> {
 
     /// Explains a duplicate column by a joint of the model with the name of a column with a meaning.
     fn explained(&self, name: &str, error: Error) -> Error {
-        let is_clash = self.readings.contains(name) && OUR_NAMES.contains(&name);
+        let is_clash = self.readings.contains(name) && is_our_name(name);
         match self.header.second(name) {
             Some(second) if is_clash => {
                 let message = format!("found a second column `{name}`, {}", clash(name));
@@ -247,7 +255,12 @@ impl<'a> Builder<'a> {
     /// One target of a row; the columns of the only one may have our names.
     fn target(&mut self, target: &TargetSpec, is_only: bool) -> Result<TargetLayout> {
         let prefix = if is_only { String::new() } else { format!("{} ", target.name) };
-        let position = self.position(&prefix, &target.position)?;
+        let kinds = if is_only { KindColumns::find(self)? } else { Vec::new() };
+        let is_named = target.position.columns.is_some() || ["x", "y", "z"].iter().any(|name| self.has(name));
+        let position = match kinds.is_empty() || is_named {
+            true => Some(self.position(&prefix, &target.position)?),
+            false => None,
+        };
         let orientation = match &target.orientation {
             Some(spec) => Some(self.mapped_orientation(&prefix, spec)?),
             None if is_only => self.default_orientation()?,
@@ -259,7 +272,22 @@ impl<'a> Builder<'a> {
         let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Dimension::Length)?;
         let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Dimension::Angle)?;
         let name = Some(target.name.clone());
-        Ok(TargetLayout { name, position, orientation, sigma_position, sigma_rotation })
+        Ok(TargetLayout { name, position, orientation, sigma_position, sigma_rotation, kinds })
+    }
+
+    /// Whether the header has a column of this name that is not used otherwise.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.header.count(name) > 0 && !self.readings.contains(name)
+    }
+
+    /// A number in a column of ours.
+    pub(super) fn own_column(&mut self, name: &str, quantity: Dimension, purpose: &str) -> Result<usize> {
+        self.column_input(name, name, quantity, None, purpose)
+    }
+
+    /// A standard deviation in a column of ours, if there is one.
+    pub(super) fn own_sigma(&mut self, name: &str, quantity: Dimension) -> Result<Option<usize>> {
+        self.sigma(name, None, quantity, true)
     }
 
     fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {
@@ -360,7 +388,7 @@ impl<'a> Builder<'a> {
     pub(super) fn ignored(&self) -> Vec<(String, Option<String>)> {
         let cells = self.header.cells.iter().enumerate();
         let missing: Vec<&'static str> =
-            OUR_NAMES.into_iter().filter(|ours| self.header.count(ours) == 0).collect();
+            OUR_NAMES.into_iter().chain(kinds::names()).filter(|ours| self.header.count(ours) == 0).collect();
         cells
             .filter(|(index, cell)| !self.is_used(*index) && !cell.text.is_empty())
             .map(|(_, cell)| (cell.text.clone(), meant(&cell.name, &missing)))

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::builder::TargetLayout;
 use super::inputs::InputReader;
+use super::kinds::KindColumns;
 use super::table::Row;
 use crate::error::{Error, Result};
 
@@ -65,7 +66,7 @@ impl LostBeams {
                 Beam::Zero if strict => return Err(refused(row, target, inputs, "the position 0, 0, 0")),
                 Beam::Zero => {
                     self.add(row.line);
-                    inputs.forget(&target.position);
+                    inputs.forget(target.position.as_ref().map_or(&[][..], |position| position));
                     inputs.forget(target.orientation.as_ref().map_or(&[], |(_, parts)| parts));
                 }
             }
@@ -114,7 +115,10 @@ pub(super) fn named_lines(count: usize, first_lines: &[usize]) -> String {
 
 /// State of a target in the current row.
 fn beam(target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
-    let position = inputs.all(target.position);
+    if target.kinds.iter().any(|kind| kind.is_measured(inputs)) {
+        return Beam::Seen;
+    }
+    let position = target.position.map_or([None; 3], |position| inputs.all(position));
     let orientation =
         || target.orientation.iter().flat_map(|(_, parts)| parts).map(|&part| inputs.value(part));
     if position == [None; 3] {
@@ -136,7 +140,9 @@ fn beam(target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
 }
 
 fn refused(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>, found: &str) -> Error {
-    let [first, ..] = target.position;
+    let first =
+        target.position.iter().flatten().chain(target.kinds.iter().flat_map(KindColumns::numbers)).next();
+    let first = first.copied().unwrap_or(0);
     let message = format!("found {found}, as of a lost beam, expected what was measured; leave out the row");
     row.error(inputs.column(first), message)
 }

@@ -10,6 +10,7 @@ mod fit_where;
 mod header;
 mod inputs;
 mod joints;
+mod kinds;
 mod layout;
 mod lost;
 mod mapping;

@@ -19,7 +19,7 @@ use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
-use crate::measurement::{ByQuantity, Dataset, Observation, Quantity, Set, Source};
+use crate::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Set, Source};
 use crate::robot::{Robot, check_name};
 use crate::text::visible;
 
@@ -197,31 +197,50 @@ impl<'a> Reader<'a> {
         let set = self.set(row, layout)?;
         for target in &layout.targets {
             let may_be_missing = layout.targets.len() > 1;
-            let Some(measurement) = measurement(row, target, layout.pose, inputs, may_be_missing)? else {
-                continue;
-            };
-            let mut stated: ByQuantity<Option<f64>> = ByQuantity::default();
-            stated[Quantity::Position] = sigma(row, target.sigma_position, inputs)?;
-            stated[Quantity::Rotation] = sigma(row, target.sigma_rotation, inputs)?;
-            let observation = Observation {
-                target: self.target(row, layout, target)?,
-                station: self.station(row, layout)?,
-                from: None,
-                measurement,
-                stated,
-                set,
-                source: Source {
-                    file: u32::try_from(self.found.understood.len()).unwrap_or(u32::MAX),
-                    line: u32::try_from(row.line).unwrap_or(u32::MAX),
-                },
-            };
-            self.found
-                .data
-                .push_observation(inputs.readings(), observation)
-                .map_err(|error| row.error(0, error.message()))?;
-            if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
-                self.found.data.ids.push(cell.text().into_owned());
+            if let Some(measurement) = measurement(row, target, layout.pose, inputs, may_be_missing)? {
+                let mut stated: ByQuantity<Option<f64>> = ByQuantity::default();
+                stated[Quantity::Position] = sigma(row, target.sigma_position, inputs)?;
+                stated[Quantity::Rotation] = sigma(row, target.sigma_rotation, inputs)?;
+                self.observation(row, layout, (target, set), (measurement, stated), inputs)?;
             }
+            for kind in &target.kinds {
+                if let Some((measurement, quantity, sigma)) = kind.measurement(row, inputs)? {
+                    let mut stated: ByQuantity<Option<f64>> = ByQuantity::default();
+                    stated[quantity] = sigma;
+                    self.observation(row, layout, (target, set), (measurement, stated), inputs)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a measurement of a row.
+    fn observation(
+        &mut self,
+        row: &Row<'_>,
+        layout: &ColumnLayout,
+        (target, set): (&TargetLayout, Option<Set>),
+        (measurement, stated): (Measurement, ByQuantity<Option<f64>>),
+        inputs: &InputReader<'_>,
+    ) -> Result<()> {
+        let observation = Observation {
+            target: self.target(row, layout, target)?,
+            station: self.station(row, layout)?,
+            from: None,
+            measurement,
+            stated,
+            set,
+            source: Source {
+                file: u32::try_from(self.found.understood.len()).unwrap_or(u32::MAX),
+                line: u32::try_from(row.line).unwrap_or(u32::MAX),
+            },
+        };
+        self.found
+            .data
+            .push_observation(inputs.readings(), observation)
+            .map_err(|error| row.error(0, error.message()))?;
+        if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
+            self.found.data.ids.push(cell.text().into_owned());
         }
         Ok(())
     }

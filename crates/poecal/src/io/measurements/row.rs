@@ -21,12 +21,14 @@ pub(super) fn measurement(
     inputs: &InputReader<'_>,
     may_be_missing: bool,
 ) -> Result<Option<Measurement>> {
-    let position = match inputs.all(target.position) {
+    let Some(columns) = target.position else { return Ok(None) };
+    let may_be_missing = may_be_missing || target.kinds.iter().any(|kind| kind.is_measured(inputs));
+    let position = match inputs.all(columns) {
         [Some(x), Some(y), Some(z)] => Vector3::new(x, y, z),
         [None, None, None] if may_be_missing => return Ok(None),
         parts => {
             let empty = parts.iter().position(Option::is_none).unwrap_or(0);
-            let input = target.position.get(empty).copied().unwrap_or(0);
+            let input = columns.get(empty).copied().unwrap_or(0);
             return Err(inputs.error(row, input, "found an empty cell", EMPTY));
         }
     };
@@ -35,7 +37,7 @@ pub(super) fn measurement(
         (None, PoseDirection::TargetFromDevice) => {
             let message = "found a position without orientation, expected both, because the mapping says that \
                            poses are target_from_device";
-            return Err(row.error(inputs.column(target.position[0]), message));
+            return Err(row.error(inputs.column(columns[0]), message));
         }
         (Some(rotation), PoseDirection::DeviceFromTarget) => {
             Measurement::Pose(PoseMeasurement { pose: Pose::new(rotation, position) })

@@ -212,7 +212,7 @@ pub(super) fn check_positions(
     slides_m: f64,
     rows: &[Observation],
 ) -> Result<()> {
-    let Some(input) = layout.targets.first().and_then(|target| layout.inputs.get(target.position[0])) else {
+    let Some(input) = layout.targets.first().and_then(|target| layout.inputs.get(target.position?[0])) else {
         return Ok(());
     };
     let smaller = match input.unit.symbol() {
@@ -223,16 +223,17 @@ pub(super) fn check_positions(
     };
     // The reach does not contain prismatic joints without limits.
     let reach = robot.reach_m() + slides_m;
-    let positions: Vec<Vector3<f64>> = rows.iter().map(|row| row.measurement.pose().translation).collect();
+    let placed = || rows.iter().filter_map(|row| Some((row.measurement.observe().position()?, row)));
+    let positions: Vec<Vector3<f64>> = placed().map(|(position, _)| position).collect();
     let middle = median_point(&positions);
     let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();
-    let furthest = positions
-        .iter()
-        .zip(rows)
+    let furthest = placed()
         .map(|(position, row)| ((position - middle).norm(), row.source.line))
         .max_by(|a, b| a.0.total_cmp(&b.0));
     let Some((spread, line)) = furthest else { return Ok(()) };
-    if spread <= REACHES * reach || spread > 1e3 * REACHES * reach || (far as f64) < SHARE * rows.len() as f64
+    if spread <= REACHES * reach
+        || spread > 1e3 * REACHES * reach
+        || (far as f64) < SHARE * positions.len() as f64
     {
         return Ok(());
     }

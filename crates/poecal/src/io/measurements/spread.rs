@@ -43,7 +43,7 @@ pub(super) fn check(
 ) -> Result<()> {
     let step = data.len().saturating_sub(first).div_ceil(ROWS).max(1);
     let rows: Vec<usize> = (first..data.len()).step_by(step).collect();
-    let position = layout.targets.first().and_then(|target| layout.inputs.get(target.position[0]));
+    let position = layout.targets.first().and_then(|target| layout.inputs.get(target.position?[0]));
     let (Some(input), true) = (position, rows.len() >= FEWEST_ROWS) else { return Ok(()) };
     let measured = rows.iter().filter_map(|&row| data.observations.get(row));
     let measured = spread(measured.filter_map(|row| row.measurement.observe().position()).collect());

@@ -1,0 +1,85 @@
+//! Measurements of a few numbers, each in columns of its own, beside positions and orientations.
+
+use super::builder::Builder;
+use super::inputs::InputReader;
+use super::row::sigma;
+use super::table::Row;
+use super::units::Dimension;
+use crate::error::Result;
+use crate::measurement::{Measurement, Quantity};
+use crate::unit::Unit;
+
+/// A kind of measurement: its numbers are in the columns that [`Quantity::component_names`] names, their standard deviation is in `sigma_` and the
+/// quantity's name.
+pub(super) struct Kind {
+    pub(super) quantity: Quantity,
+    /// The measurement from its numbers, metres and radians.
+    pub(super) of: fn(&[f64]) -> Measurement,
+}
+
+/// All of them. A new one is a line here.
+pub(super) const KINDS: [Kind; 0] = [];
+
+/// Names of all their columns.
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    KINDS.iter().flat_map(|kind| kind.quantity.component_names().iter().copied())
+}
+
+/// Where a file has the numbers of a kind: indices into the inputs.
+#[derive(Clone, Debug)]
+pub(super) struct KindColumns {
+    /// Index of the kind.
+    kind: usize,
+    numbers: Vec<usize>,
+    sigma: Option<usize>,
+}
+
+impl KindColumns {
+    /// The kinds of which a header has the columns.
+    pub(super) fn find(builder: &mut Builder<'_>) -> Result<Vec<KindColumns>> {
+        let mut found = Vec::new();
+        for (kind, Kind { quantity, .. }) in KINDS.iter().enumerate() {
+            let names = quantity.component_names();
+            if !names.iter().any(|name| builder.has(name)) {
+                continue;
+            }
+            let dimension = match quantity.unit() {
+                Unit::Metre => Dimension::Length,
+                Unit::Radian => Dimension::Angle,
+                Unit::One => Dimension::Number,
+            };
+            let purpose = format!("for the {}", quantity.name());
+            let of_name = |name: &&'static str| builder.own_column(name, dimension, &purpose);
+            let numbers = names.iter().map(of_name).collect::<Result<Vec<_>>>()?;
+            let sigma = builder.own_sigma(&format!("sigma_{}", quantity.name()), dimension)?;
+            found.push(KindColumns { kind, numbers, sigma });
+        }
+        Ok(found)
+    }
+
+    /// The inputs of its numbers.
+    pub(super) fn numbers(&self) -> &[usize] {
+        &self.numbers
+    }
+
+    /// Whether a row has any of its numbers.
+    pub(super) fn is_measured(&self, inputs: &InputReader<'_>) -> bool {
+        self.numbers.iter().any(|&input| inputs.value(input).is_some())
+    }
+
+    /// The measurement of a row, with its quantity and stated standard deviation; `None` if all its cells are empty.
+    pub(super) fn measurement(
+        &self,
+        row: &Row<'_>,
+        inputs: &InputReader<'_>,
+    ) -> Result<Option<(Measurement, Quantity, Option<f64>)>> {
+        let Some(kind) = KINDS.get(self.kind).filter(|_| self.is_measured(inputs)) else { return Ok(None) };
+        let mut numbers = Vec::with_capacity(self.numbers.len());
+        for &input in &self.numbers {
+            let expected = "all numbers of a measurement, or none";
+            let missing = || inputs.error(row, input, "found an empty cell", expected);
+            numbers.push(inputs.value(input).ok_or_else(missing)?);
+        }
+        Ok(Some(((kind.of)(&numbers), kind.quantity, sigma(row, self.sigma, inputs)?)))
+    }
+}
