@@ -73,9 +73,9 @@ impl Layout {
         }
         for station in 0..=estimate.further_devices.len() {
             if estimate.tree.shared(station).is_none() {
-                let about = self.parameters().find_map(|(parameter, _)| match parameter {
-                    Parameter::DeviceFrame(own) if own.station == station => Some(own.about),
-                    _ => None,
+                let about = self.parameters().find_map(|(parameter, _)| {
+                    let Parameter::DeviceFrame(own) = parameter else { return None };
+                    (own.station == station).then_some(own.about)
                 });
                 let device = estimate.device(station);
                 // Of a device without axes the origin is all that is held.

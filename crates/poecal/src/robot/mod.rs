@@ -6,11 +6,14 @@ mod joint;
 mod kinematics;
 mod offset;
 mod term;
+mod term_model;
+mod zeros;
 
 pub use body::{Body, Mount};
 pub use dh::{DhConvention, DhRow};
 pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
-pub use term::{JointTerm, Term, TermModel};
+pub use term::{JointTerm, Term};
+pub use term_model::TermModel;
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -3,24 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::JointKind;
 use super::offset::Offset;
-use crate::unit::Unit;
-
-/// Interface of a term: the function b of the joint values, and what its coefficient c is.
-pub trait TermModel {
-    /// Its name.
-    fn name(&self) -> &'static str;
-
-    /// Unit of the coefficient for a joint of this kind.
-    fn unit(&self, kind: JointKind) -> Unit;
-
-    /// The function b of a joint, from the values of all joints without terms, radians or metres.
-    fn basis(&self, joint: usize, values: &[f64]) -> f64;
-
-    /// Standard deviation of the coefficient over robots, its prior, in the unit of the coefficient.
-    fn deviation(&self, kind: JointKind) -> f64;
-}
+use super::term_model::TermModel;
 
 /// A term of a joint's value, `θ ← θ + c b(θ)` with a known function b of the joint values and a coefficient c (theory.md §3). A new term is
 /// one file with [`TermModel`], one variant here and its line in [`Term::ALL`].

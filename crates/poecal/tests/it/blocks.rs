@@ -32,6 +32,10 @@ fn aside() -> Robot {
 
 /// Measurements of a robot without noise, seen by a device that stands anywhere; its nominal model differs by these errors.
 fn exact(kind: Kind, error: f64) -> (Robot, Dataset) {
+    exact_of(&aside(), kind, error)
+}
+
+fn exact_of(robot: &Robot, kind: Kind, error: f64) -> (Robot, Dataset) {
     let made = Simulation {
         count: 80,
         error_rotation_rad: error,
@@ -40,7 +44,7 @@ fn exact(kind: Kind, error: f64) -> (Robot, Dataset) {
         noise_rotation_rad: 0.0,
         ..Simulation::default()
     };
-    let made = made.run(&aside(), kind).unwrap();
+    let made = made.run(robot, kind).unwrap();
     (made.nominal, made.data)
 }
 
@@ -197,4 +201,33 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
     println!("{:?}", urdf.notes);
     let plain = robot.without_offsets();
     assert!(plain.terms.is_empty() && Difference::of(&robot, &plain, 100).is_within(1e-12, 1e-12));
+}
+
+/// Terms with a coefficient to be found.
+const TERMS: [(Term, f64); 1] = [(Term::Offset, 0.01)];
+
+#[test]
+fn terms_of_joint_values_are_found_and_written() {
+    for (term, coefficient) in TERMS {
+        let mut built = aside();
+        built.terms.push(JointTerm { joint: 2, term, coefficient });
+        let (actual, data) = exact_of(&built, Kind::Point, 0.0);
+        let nominal = Robot { terms: Vec::new(), ..actual };
+        let name = format!("joint3.{}", term.model().name());
+        let found = fitted(&nominal, &data, choice(&["joints"], &[&name]), true);
+        let own = found.robot.terms.iter().map(|it| (it.joint, it.term, it.coefficient)).collect::<Vec<_>>();
+        println!("{name} = {coefficient}: {own:?}, held out {:.1e} mm", held_out_mm(&found));
+        assert_eq!((own.len(), own[0].0, own[0].1), (1, 2, term));
+        assert!((own[0].2 - coefficient).abs() < 1e-9 && held_out_mm(&found) < 1e-6);
+
+        let file = CalibrationFile::new(&found, &data, Inputs::default());
+        let read = robot_toml::parse(&robot_toml::write(&file.robot().unwrap()), "r.toml").unwrap();
+        assert_eq!(read.terms, found.robot.terms);
+        let path = "calibration.json".into();
+        let model = Model { path, robot: read, source: ModelSource::Calibration(Box::new(file)) };
+        let urdf = convert(&model, ModelFormat::Urdf).unwrap();
+        // What URDF cannot hold is said.
+        let lost = !found.robot.without_offsets().terms.is_empty();
+        assert_eq!(urdf.notes.iter().any(|note| note.contains(&name)), lost, "{:?}", urdf.notes);
+    }
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::header::{Header, unit_in_name};
 use super::inputs::{Input, InputSource, Term};
-use super::kinds::{self, KindColumns};
+use super::kinds::{self, KINDS, KindColumns};
 use super::mapping::{ColumnMap, ColumnSpec, OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
 use super::units::{Dimension, Unit, UnitSource};
@@ -255,7 +255,7 @@ impl<'a> Builder<'a> {
     /// One target of a row; the columns of the only one may have our names.
     fn target(&mut self, target: &TargetSpec, is_only: bool) -> Result<TargetLayout> {
         let prefix = if is_only { String::new() } else { format!("{} ", target.name) };
-        let kinds = if is_only { KindColumns::find(self)? } else { Vec::new() };
+        let kinds = if is_only { self.kinds()? } else { Vec::new() };
         let is_named = target.position.columns.is_some() || ["x", "y", "z"].iter().any(|name| self.has(name));
         let position = match kinds.is_empty() || is_named {
             true => Some(self.position(&prefix, &target.position)?),
@@ -276,18 +276,25 @@ impl<'a> Builder<'a> {
     }
 
     /// Whether the header has a column of this name that is not used otherwise.
-    pub(super) fn has(&self, name: &str) -> bool {
+    fn has(&self, name: &str) -> bool {
         self.header.count(name) > 0 && !self.readings.contains(name)
     }
 
-    /// A number in a column of ours.
-    pub(super) fn own_column(&mut self, name: &str, quantity: Dimension, purpose: &str) -> Result<usize> {
-        self.column_input(name, name, quantity, None, purpose)
-    }
-
-    /// A standard deviation in a column of ours, if there is one.
-    pub(super) fn own_sigma(&mut self, name: &str, quantity: Dimension) -> Result<Option<usize>> {
-        self.sigma(name, None, quantity, true)
+    /// The other kinds of measurements of which the header has columns.
+    fn kinds(&mut self) -> Result<Vec<KindColumns>> {
+        let mut found = Vec::new();
+        for (index, kind) in KINDS.iter().enumerate() {
+            let (names, dimension) = (kind.names(), kind.dimension());
+            if !names.iter().any(|name| self.has(name)) {
+                continue;
+            }
+            let purpose = format!("for the {}", kind.quantity.name());
+            let number = |name: &&'static str| self.column_input(name, name, dimension, None, &purpose);
+            let numbers = names.iter().map(number).collect::<Result<Vec<_>>>()?;
+            let sigma = self.sigma(&format!("sigma_{}", kind.quantity.name()), None, dimension, true)?;
+            found.push(KindColumns::new(index, numbers, sigma));
+        }
+        Ok(found)
     }
 
     fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {

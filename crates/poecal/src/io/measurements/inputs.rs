@@ -73,6 +73,18 @@ impl<'a> InputReader<'a> {
         }
     }
 
+    /// The row's standard deviation, if stated.
+    pub(super) fn sigma(&self, row: &Row<'_>, input: Option<usize>) -> Result<Option<f64>> {
+        let Some(input) = input else { return Ok(None) };
+        match self.value(input) {
+            Some(value) if value <= 0.0 => {
+                let text = row.cells.get(self.column(input)).map_or("", |cell| cell.raw);
+                Err(self.error(row, input, &format!("found `{text}`"), "a standard deviation above 0"))
+            }
+            value => Ok(value),
+        }
+    }
+
     /// Reads a row's numbers; an empty cell is `None`.
     pub(super) fn read(&mut self, row: &Row<'_>) -> Result<()> {
         self.values.clear();

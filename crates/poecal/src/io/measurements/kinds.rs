@@ -1,8 +1,6 @@
 //! Measurements of a few numbers, each in columns of its own, beside positions and orientations.
 
-use super::builder::Builder;
 use super::inputs::InputReader;
-use super::row::sigma;
 use super::table::Row;
 use super::units::Dimension;
 use crate::error::Result;
@@ -20,9 +18,25 @@ pub(super) struct Kind {
 /// All of them. A new one is a line here.
 pub(super) const KINDS: [Kind; 0] = [];
 
+impl Kind {
+    /// Names of its columns.
+    pub(super) fn names(&self) -> &'static [&'static str] {
+        self.quantity.component_names()
+    }
+
+    /// Dimension of its numbers.
+    pub(super) fn dimension(&self) -> Dimension {
+        match self.quantity.unit() {
+            Unit::Metre => Dimension::Length,
+            Unit::Radian => Dimension::Angle,
+            Unit::One => Dimension::Number,
+        }
+    }
+}
+
 /// Names of all their columns.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    KINDS.iter().flat_map(|kind| kind.quantity.component_names().iter().copied())
+    KINDS.iter().flat_map(|kind| kind.names().iter().copied())
 }
 
 /// Where a file has the numbers of a kind: indices into the inputs.
@@ -35,26 +49,9 @@ pub(super) struct KindColumns {
 }
 
 impl KindColumns {
-    /// The kinds of which a header has the columns.
-    pub(super) fn find(builder: &mut Builder<'_>) -> Result<Vec<KindColumns>> {
-        let mut found = Vec::new();
-        for (kind, Kind { quantity, .. }) in KINDS.iter().enumerate() {
-            let names = quantity.component_names();
-            if !names.iter().any(|name| builder.has(name)) {
-                continue;
-            }
-            let dimension = match quantity.unit() {
-                Unit::Metre => Dimension::Length,
-                Unit::Radian => Dimension::Angle,
-                Unit::One => Dimension::Number,
-            };
-            let purpose = format!("for the {}", quantity.name());
-            let of_name = |name: &&'static str| builder.own_column(name, dimension, &purpose);
-            let numbers = names.iter().map(of_name).collect::<Result<Vec<_>>>()?;
-            let sigma = builder.own_sigma(&format!("sigma_{}", quantity.name()), dimension)?;
-            found.push(KindColumns { kind, numbers, sigma });
-        }
-        Ok(found)
+    /// Of a kind by its index.
+    pub(super) fn new(kind: usize, numbers: Vec<usize>, sigma: Option<usize>) -> Self {
+        KindColumns { kind, numbers, sigma }
     }
 
     /// The inputs of its numbers.
@@ -80,6 +77,6 @@ impl KindColumns {
             let missing = || inputs.error(row, input, "found an empty cell", expected);
             numbers.push(inputs.value(input).ok_or_else(missing)?);
         }
-        Ok(Some(((kind.of)(&numbers), kind.quantity, sigma(row, self.sigma, inputs)?)))
+        Ok(Some(((kind.of)(&numbers), kind.quantity, inputs.sigma(row, self.sigma)?)))
     }
 }

@@ -10,7 +10,7 @@ use super::lost::LostBeams;
 use super::mapping::ColumnMap;
 use super::naming::Names;
 use super::number::Numbers;
-use super::row::{measurement, sigma};
+use super::row::measurement;
 use super::scale::{self, JointWatch};
 use super::spread;
 use super::table::{Row, Table, refuse_more_rows};
@@ -199,8 +199,8 @@ impl<'a> Reader<'a> {
             let may_be_missing = layout.targets.len() > 1;
             if let Some(measurement) = measurement(row, target, layout.pose, inputs, may_be_missing)? {
                 let mut stated: ByQuantity<Option<f64>> = ByQuantity::default();
-                stated[Quantity::Position] = sigma(row, target.sigma_position, inputs)?;
-                stated[Quantity::Rotation] = sigma(row, target.sigma_rotation, inputs)?;
+                stated[Quantity::Position] = inputs.sigma(row, target.sigma_position)?;
+                stated[Quantity::Rotation] = inputs.sigma(row, target.sigma_rotation)?;
                 self.observation(row, layout, (target, set), (measurement, stated), inputs)?;
             }
             for kind in &target.kinds {

@@ -79,15 +79,3 @@ fn orientation(
         }
     }
 }
-
-/// The row's standard deviation, if stated.
-pub(super) fn sigma(row: &Row<'_>, input: Option<usize>, inputs: &InputReader<'_>) -> Result<Option<f64>> {
-    let Some(input) = input else { return Ok(None) };
-    match inputs.value(input) {
-        Some(value) if value <= 0.0 => {
-            let text = row.cells.get(inputs.column(input)).map_or("", |cell| cell.raw);
-            Err(inputs.error(row, input, &format!("found `{text}`"), "a standard deviation above 0"))
-        }
-        value => Ok(value),
-    }
-}
