@@ -19,8 +19,8 @@ pub(super) struct ColumnMap {
     given_places: Vec<Place>,
     /// Screws in another parameterisation, with the scale of each of their unknowns.
     pub(super) screws: Vec<(OtherScrew, Vec<f64>)>,
-    /// Joint and term of each of the plan's terms.
-    pub(super) terms: Vec<(Passed, Term)>,
+    /// Joint and term of each of the plan's terms, and its column in a step over that of the kernels.
+    pub(super) terms: Vec<(Passed, Term, f64)>,
 }
 
 /// Place of a column in a step, and its sign: the same unknown may move a target twice, and against its own direction.
@@ -152,7 +152,9 @@ impl ColumnMap {
         joint.terms.1 += 1;
         let turn = joint.turns.then_some(self.turn_places.len());
         self.plan.terms.push(TermPlan { shift, turn });
-        self.terms.push((passed, term.term));
+        // The kernels count a radian as a length, and a metre as one.
+        let own = if turn.is_some() { self.plan.length_m } else { 1.0 };
+        self.terms.extend(places.iter().map(|&(_, scale)| (passed, term.term, own / scale)));
         if turn.is_some() {
             // The direction of the rotation, which no unknown moves along.
             self.shift_places.push(Place::NONE);

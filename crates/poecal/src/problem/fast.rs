@@ -280,9 +280,10 @@ pub(super) fn pack(
             (first, second)
         },
         |at, term| {
-            let (passed, term) = terms[term];
+            let (passed, term, scale) = terms[term];
             let from = session.observation(rows[at]).from.filter(|_| passed.backward);
-            let basis = term.model().basis(passed.joint, session.packed.values_at(rows[at] as usize, from));
+            let values = session.packed.values_at(rows[at] as usize, from);
+            let basis = scale * term.model().basis(passed.joint, values);
             if passed.backward { -basis } else { basis }
         },
     );

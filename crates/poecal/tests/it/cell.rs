@@ -256,10 +256,16 @@ fn sensitivities_of_every_way_are_those_of_differences() {
         assert!(worst < 1e-8 * size, "{}: {:e}", cell.name, worst / size);
 
         let by_rows = reference::normal(&problem, &estimate);
+        let largest = (0..n).map(|k| by_rows.gram[k * n + k]).fold(0.0, larger);
         let scale = |k: usize| by_rows.gram[k * n + k].sqrt().max(1e-9);
         for (a, b) in (0..n).flat_map(|a| (a..n).map(move |b| (a, b))) {
             let apart = (normal.gram[a * n + b] - by_rows.gram[a * n + b]).abs();
-            assert!(apart < 1e-11 * scale(a) * scale(b), "{}: {a}, {b}: {apart:e}", cell.name);
+            // A column that cancels, such as of the first joint's zero in two configurations, leaves the rounding of its parts.
+            assert!(
+                apart < 1e-11 * scale(a) * scale(b) + 1e-15 * largest,
+                "{}: {a}, {b}: {apart:e}",
+                cell.name
+            );
         }
     }
 }
