@@ -123,7 +123,7 @@ def test_the_covariance_is_that_of_predictions(kind, frame):
 
 def test_unknowns_have_names_and_units(calibrations):
     covariance = calibrations["pose"].covariance
-    motions = ["shift_x", "shift_y", "turn_x", "turn_y"]
+    motions = ["x", "y", "rx", "ry"]
     tip = [f"tip.{motion}_{axis}" for motion in ["shift", "turn"] for axis in "xyz"]
     assert covariance.names == [f"joint{joint}.{motion}" for joint in range(1, 7) for motion in motions] + tip
     assert set(zip([name.split(".")[1][:4] for name in covariance.names], covariance.units, strict=True)) == {("shif", "m"), ("turn", "rad")}
