@@ -124,9 +124,10 @@ def test_the_covariance_is_that_of_predictions(kind, frame):
 def test_unknowns_have_names_and_units(calibrations):
     covariance = calibrations["pose"].covariance
     motions = ["x", "y", "rx", "ry"]
-    tip = [f"tip.{motion}_{axis}" for motion in ["shift", "turn"] for axis in "xyz"]
-    assert covariance.names == [f"joint{joint}.{motion}" for joint in range(1, 7) for motion in motions] + tip
-    assert set(zip([name.split(".")[1][:4] for name in covariance.names], covariance.units, strict=True)) == {("shif", "m"), ("turn", "rad")}
+    tip = [f"target.{turn}{axis}" for turn in ["", "r"] for axis in "xyz"]
+    assert covariance.names == [f"joint{joint}.axis.{motion}" for joint in range(1, 7) for motion in motions] + tip
+    units = {(len(name.split(".")[-1]), unit) for name, unit in zip(covariance.names, covariance.units, strict=True)}
+    assert units == {(1, "m"), (2, "rad")}
     assert np.allclose(covariance.sigma, np.sqrt(np.diag(covariance.matrix))) and (covariance.matrix == covariance.matrix.T).all()
     assert np.linalg.eigvalsh(covariance.matrix / np.outer(covariance.sigma, covariance.sigma)).min() > 0
     assert len(covariance) == 30 and repr(covariance) == "<poecal.Covariance of 30 unknowns>"
