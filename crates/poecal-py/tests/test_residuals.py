@@ -141,7 +141,7 @@ def test_a_sliding_joint_has_turns_alone():
     )  # fmt: skip
     made = poecal.simulate(robot, count=60)
     found = poecal.calibrate(made.nominal, made.measurements)
-    assert [name for name in found.covariance.names if name.startswith("joint3")] == ["joint3.turn_x", "joint3.turn_y"]
+    assert [name for name in found.covariance.names if name.startswith("joint3")] == ["joint3.axis.rx", "joint3.axis.ry"]
     assert (pickle.loads(pickle.dumps(found)).covariance.matrix == found.covariance.matrix).all()
 
 
