@@ -5,6 +5,7 @@ mod dh;
 mod joint;
 mod kinematics;
 mod offset;
+mod ratio;
 mod term;
 mod term_model;
 mod zeros;

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::offset::Offset;
+use super::ratio::Ratio;
 use super::term_model::TermModel;
 
 /// A term of a joint's value, `θ ← θ + c b(θ)` with a known function b of the joint values and a coefficient c (theory.md §3). A new term is
@@ -19,17 +20,20 @@ use super::term_model::TermModel;
 pub enum Term {
     /// Joint offset: 1.
     Offset,
+    /// Error of the gear's ratio: the joint's value.
+    Ratio,
 }
 
 impl Term {
     /// All terms.
-    pub const ALL: [Term; 1] = [Term::Offset];
+    pub const ALL: [Term; 2] = [Term::Offset, Term::Ratio];
 
     /// What the term is.
     #[must_use]
     pub fn model(self) -> &'static dyn TermModel {
         match self {
             Term::Offset => &Offset,
+            Term::Ratio => &Ratio,
         }
     }
 }

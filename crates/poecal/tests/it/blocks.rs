@@ -204,7 +204,7 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
 }
 
 /// Terms with a coefficient to be found.
-const TERMS: [(Term, f64); 1] = [(Term::Offset, 0.01)];
+const TERMS: [(Term, f64); 2] = [(Term::Offset, 0.01), (Term::Ratio, 0.002)];
 
 #[test]
 fn terms_of_joint_values_are_found_and_written() {
