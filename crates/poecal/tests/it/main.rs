@@ -38,6 +38,7 @@ mod noise_free;
 mod offsets;
 mod oracle;
 mod promises;
+mod quantities;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod refit_promise;
