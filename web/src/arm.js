@@ -1,6 +1,7 @@
 // The arm in three dimensions with its controls.
 import { readingsOf, shown } from "./data.js";
 import { chain } from "./kinematics.js";
+import { withUnit } from "./plot.js";
 import { Scene } from "./scene.js";
 import { onColours } from "./theme.js";
 
@@ -97,10 +98,10 @@ function measurementControls(view) {
   return set;
 }
 
-function describe({ rows, targets }, row) {
+function describe({ rows, targets, lead }, row) {
   const set = rows.held_out[row] ? "held out" : "fitted";
   const target = targets[rows.target[row]][0];
-  return `${rows.place[row]}, ${set}${target ? `, target ${target}` : ""}: off by ${shown(rows.error_mm[row])} mm`;
+  return `${rows.place[row]}, ${set}${target ? `, target ${target}` : ""}: off by ${withUnit(rows.error_mm[row], lead.unit)}`;
 }
 
 function slider(label, { min, max, step, value, spoken }, changedTo) {
@@ -243,6 +244,6 @@ function scaleLine(scene) {
   const ramp = element("span", "ramp");
   ramp.style.setProperty("--from", "var(--arrow-least)");
   ramp.style.setProperty("--to", "var(--arrow-most)");
-  line.append(`Arrows: ${least}`, ramp, `${shown(most)} mm and more. Grid: ${square} mm. Drag to turn, wheel to come nearer.`);
+  line.append(`Arrows: ${least}`, ramp, `${withUnit(most, scene.data.lead.unit)} and more. Grid: ${square} mm. Drag to turn, wheel to come nearer.`);
   return line;
 }

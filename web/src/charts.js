@@ -3,6 +3,11 @@ import { shown } from "./data.js";
 import { bars, dots, keys, line, plot, readoutLine, steps, withUnit } from "./plot.js";
 import { interpolate, normalQuantile, quantile, smooth } from "./statistics.js";
 
+/** Residuals by component: name, values, unit. */
+function componentsOf({ rows }) {
+  return rows.residuals.flatMap(({ unit, components }) => components.map(({ name, values }) => [name, values, unit]));
+}
+
 /** Draws every chart that the page has a place for. */
 export function drawCharts(data) {
   const charts = { rows, components, joints, histogram, normal, leverage };
@@ -39,10 +44,10 @@ function sized(data) {
 }
 
 /** What is said of a row under the cursor. */
-function name({ rows }, row) {
+function name({ rows, lead }, row) {
   const set = rows.held_out[row] ? "held out" : "fitted";
   const suspected = rows.suspected[row] ? ", suspected" : "";
-  return `${rows.place[row]}, ${set}${suspected}: ${withUnit(rows.error_mm[row], "mm")}`;
+  return `${rows.place[row]}, ${set}${suspected}: ${withUnit(rows.error_mm[row], lead.unit)}`;
 }
 
 function rows(place, data) {
@@ -54,33 +59,30 @@ function rows(place, data) {
   place.append(chart);
   plot(chart, {
     x: "row, in the order read",
-    y: "position error, mm",
+    y: `${data.lead.name} error, ${data.lead.unit}`,
     series,
     values: [data.rows.number, ...columns],
     range: (_, __, most) => [0, most > 0 ? most * 1.05 : 1],
-    spoken: `Position error of ${order.length} rows in the order read; the largest is ${name(data, largest)}.`,
+    spoken: `Error of ${data.lead.name} in ${order.length} rows in the order read; the largest is ${name(data, largest)}.`,
     readout: readoutLine(place),
     tell: (index) => name(data, order[index]),
   });
 }
 
 function components(place, data) {
-  const { residual_mm, residual_deg } = data.rows;
-  const parts = ["x", "y", "z"].map((it, k) => [it, "mm", residual_mm[k]]);
-  if (residual_deg) parts.push(...["x", "y", "z"].map((it, k) => [`about ${it}`, "°", residual_deg[k]]));
   const order = inOrder(data);
-  keys(place, bySet(data, order, residual_mm[0], 5).series);
+  keys(place, bySet(data, order, data.rows.number, 5).series);
   const grid = gridIn(place);
-  for (const [part, unit, values] of parts) {
+  for (const [part, values, unit] of componentsOf(data)) {
     const cell = cellIn(grid, part);
     const { series, columns } = bySet(data, order, values, sized(data) - 1);
     plot(cell, {
       x: "row",
-      y: unit === "°" ? "residual, °" : "residual, mm",
+      y: `residual, ${unit}`,
       height: 190,
       series,
       values: [data.rows.number, ...columns],
-      spoken: `Residuals ${part} of each row in the order read; the table below has their means and spreads.`,
+      spoken: `Residuals of ${part} of each row in the order read; the table below has their means and spreads.`,
     });
   }
 }
@@ -104,14 +106,13 @@ function cellIn(grid, title) {
 }
 
 /** What can be drawn over joint values. */
-function quantities({ rows }) {
-  const device = ["x", "y", "z"].map((it, k) => [`along the device's ${it}`, () => rows.residual_mm[k]]);
-  const turned = rows.residual_deg ? ["x", "y", "z"].map((it, k) => [`rotation about the device's ${it}`, () => rows.residual_deg[k], "°"]) : [];
+function quantities(data) {
+  const { rows, lead } = data;
+  const moves = rows.motion.some((column) => column.some((value) => value !== null));
   return [
-    ["along the joint's own motion", (reading) => rows.motion[reading]],
-    ["distance", () => rows.error_mm],
-    ...device,
-    ...turned,
+    ...(moves ? [["along the joint's own motion", (reading) => rows.motion[reading], "mm"]] : []),
+    [`${lead.name} error`, () => rows.error_mm, lead.unit],
+    ...componentsOf(data).map(([part, values, unit]) => [part, () => values, unit]),
   ];
 }
 
@@ -128,7 +129,7 @@ function joints(place, data) {
   const grid = gridIn(place);
   const draw = () => {
     grid.replaceChildren();
-    const [text, valuesOf, unit = "mm"] = offered[select.selectedIndex];
+    const [text, valuesOf, unit] = offered[select.selectedIndex];
     const range = commonRange(data.readings.flatMap((_, k) => believed.map((row) => valuesOf(k)[row])));
     data.readings.forEach((reading, k) => {
       joint(cellIn(grid, reading.name), data, { believed, reading, k, text, values: valuesOf(k), unit, range });
@@ -185,11 +186,12 @@ function joint(cell, data, { believed, reading, k, text, values, unit, range }) 
 
 /** Errors of fitted and of held-out rows that stand for all. */
 function errorsOfSets({ rows }) {
-  const of = (held) => rows.error_mm.filter((_, row) => rows.even[row] && Boolean(rows.held_out[row]) === held);
+  const of = (held) => rows.error_mm.filter((error, row) => error !== null && rows.even[row] && Boolean(rows.held_out[row]) === held);
   return [of(false), of(true)];
 }
 
 function histogram(place, data) {
+  const { lead } = data;
   const sets = errorsOfSets(data);
   const sorted = sets.flat().sort((a, b) => a - b);
   // A few rows far off would leave all others in one bar.
@@ -214,22 +216,23 @@ function histogram(place, data) {
   const chart = document.createElement("div");
   place.append(chart);
   plot(chart, {
-    x: beyond ? `position error, mm (${beyond} rows beyond are not drawn)` : "position error, mm",
+    x: `${lead.name} error, ${lead.unit}${beyond ? ` (${beyond} rows beyond are not drawn)` : ""}`,
     y: "share of the rows, %",
     height: 240,
     wide: true,
     series,
     values: [Array.from({ length: count + 1 }, (_, k) => k * width), ...columns],
     range: (_, __, highest) => [0, highest * 1.08],
-    spoken: `Histogram of position errors in steps of ${withUnit(width, "mm")}; the tables of errors have mean, RMS, 95 % and largest.`,
+    spoken: `Histogram of errors of ${lead.name} in steps of ${withUnit(width, lead.unit)}; the tables of errors have mean, RMS, 95 % and largest.`,
   });
 }
 
 const NORMAL_POINTS = 1500;
 
 function normal(place, data) {
-  const { rows } = data;
-  const values = rows.residual_mm.flatMap((column) => column.filter((_, row) => rows.even[row]));
+  const { rows, lead } = data;
+  const own = componentsOf(data).filter(([, , unit]) => unit === lead.unit);
+  const values = own.flatMap(([, column]) => column.filter((value, row) => value !== null && rows.even[row]));
   values.sort((a, b) => a - b);
   const count = Math.min(values.length, NORMAL_POINTS);
   // Both ends whole, and the middle thinned if there are many.
@@ -243,11 +246,11 @@ function normal(place, data) {
   place.append(chart);
   plot(chart, {
     x: "quantile of the normal distribution, standard deviations",
-    y: "component, mm",
+    y: `component, ${lead.unit}`,
     height: 240,
     series,
     values: [xs, ranks.map((rank) => values[rank]), xs.map((x) => (low + high) / 2 + slope * x)],
-    spoken: `Normal plot of ${values.length} components of position; a normal distribution through their quartiles has a standard deviation of ${withUnit(slope, "mm")}.`,
+    spoken: `Normal plot of ${values.length} components of ${lead.name}; a normal distribution through their quartiles has a standard deviation of ${withUnit(slope, lead.unit)}.`,
   });
 }
 

@@ -15,12 +15,20 @@ export function readData() {
   rows.motion = data.readings.map(() => []);
   for (let row = 0; row < rows.count; row++) {
     const found = chain(data, readingsOf(data, row), "screw", data.targets[rows.target[row]][1]);
-    const residual = rotate(data.base_from_device.r, rows.residual_mm.map((column) => column[row]));
+    const shift = shiftOf(rows, row);
+    const residual = shift && rotate(data.base_from_device.r, shift);
     rows.predicted.push(found.target);
-    rows.residual.push(residual);
+    rows.residual.push(residual ?? [0, 0, 0]);
     found.motion.forEach((motion, reading) => rows.motion[reading].push(along(residual, motion)));
   }
   return data;
+}
+
+/** The residual of a row's position in the axes of the device, millimetres; none if no position was measured. */
+function shiftOf({ residuals }, row) {
+  const position = residuals.find(({ name }) => name === "position");
+  const shift = position?.components.map(({ values }) => values[row]);
+  return shift?.includes(null) ? undefined : shift;
 }
 
 /** The readings of a row, radians or metres. */
@@ -28,10 +36,10 @@ export function readingsOf(data, row) {
   return data.rows.values.map((column, reading) => column[row] * data.factors[reading]);
 }
 
-/** The part of a residual along a direction; none where that is no direction. */
+/** The part of a residual along a direction; none where that is no direction, or there is no residual. */
 function along(residual, motion) {
   const length = Math.hypot(...motion);
-  return length > 1e-3 ? residual.reduce((sum, part, k) => sum + part * motion[k], 0) / length : null;
+  return residual && length > 1e-3 ? residual.reduce((sum, part, k) => sum + part * motion[k], 0) / length : null;
 }
 
 /** A number with a few digits that matter. */

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use poecal::calibration::{BlockChoice, CalibrationOptions, Stage, calibrate_with_progress, settle_sets};
 use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
-use poecal::measurement::Dataset;
+use poecal::measurement::{ByQuantity, Dataset, Quantity};
 use poecal::robot::Tolerance;
 use poecal::{Error, ErrorKind};
 use poecal_lou2009::{Formulation, Method, Residual, formulated};
@@ -99,13 +99,14 @@ pub(crate) fn calibrate(
         Some(word) => chosen("method", word, &Method::ALL.map(|it| (it.word(), it)))?,
         None => formulation.usual_method(),
     };
+    let sigma_position_m = sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm));
+    let sigma_rotation_rad = sigma_rotation_deg.map(|it| sigma("sigma_rotation_deg", it, f64::to_radians));
     let options = CalibrationOptions {
         frame: frame_word(frame)?,
         blocks: BlockChoice { free: free.unwrap_or_default(), fix: fix.unwrap_or_default() },
-        sigma_position_m: sigma_position_mm.map(|it| sigma("sigma_position_mm", it, from_mm)).transpose()?,
-        sigma_rotation_rad: sigma_rotation_deg
-            .map(|it| sigma("sigma_rotation_deg", it, f64::to_radians))
-            .transpose()?,
+        sigma: ByQuantity::default()
+            .with(Quantity::Position, sigma_position_m.transpose()?)
+            .with(Quantity::Rotation, sigma_rotation_rad.transpose()?),
         tolerance: tolerance_deg_mm.map(tolerance).transpose()?,
         held_out: held_out.unwrap_or(usual.held_out),
         seed: seed.unwrap_or(usual.seed),

@@ -162,7 +162,8 @@ impl Calibration {
         Covariance::of(self.file())
     }
 
-    /// Draws the errors of position before and after, and those of each row. Needs matplotlib.
+    /// Draws the errors before and after, and those of each row: of position, or of the first other quantity where none was measured.
+    /// Needs matplotlib.
     ///
     /// Parameters
     /// ----------
@@ -409,10 +410,10 @@ impl Calibration {
             None => (&file.accuracy.training, "fitted"),
         };
         let verdict = file.verdict.as_ref().map_or("no verdict", |verdict| verdict.level.words());
-        let [registered, calibrated] =
-            [set.registered, set.calibrated].map(|it| number(it.position_mm().rms));
+        let [registered, calibrated] = [set.registered, set.calibrated].map(|it| number(it.lead().rms));
+        let unit = set.calibrated.leading().map_or("mm", |(quantity, _)| quantity.unit().symbol());
         format!(
-            "<poecal.Calibration of {}: {verdict}, {calibrated} mm RMS on {} {name} rows (nominal, tool and device fitted: {registered})>",
+            "<poecal.Calibration of {}: {verdict}, {calibrated} {unit} RMS on {} {name} rows (nominal, tool and device fitted: {registered})>",
             file.robot.name, set.count
         )
     }

@@ -1,7 +1,9 @@
 //! How objects show themselves in notebooks, as HTML.
 
 use maud::{Markup, html};
+use poecal::Unit;
 use poecal::io::calibration_file::CalibrationFile;
+use poecal::measurement::Quantity;
 use poecal::robot::{Joint, JointKind, Robot};
 use poecal::text::visible_markup;
 
@@ -57,14 +59,12 @@ pub(crate) fn calibration(file: &CalibrationFile, warnings: &[String]) -> String
                 tr { @for name in ["error (RMS)", "rows", "nominal", "registered", "calibrated"] { th { (name) } } }
                 @for (name, set) in sets {
                     @let models = [&set.nominal, &set.registered, &set.calibrated];
-                    tr {
-                        td { "position, " (name) } td { (set.count) }
-                        @for model in models { td { (format_args!("{:.4} mm", model.position_mm().rms)) } }
-                    }
-                    @if let [Some(a), Some(b), Some(c)] = models.map(|model| model.rotation_deg()) {
+                    @for (quantity, _) in set.calibrated.iter() {
                         tr {
-                            td { "rotation, " (name) } td { (set.count) }
-                            @for it in [a, b, c] { td { (format_args!("{:.4}°", it.rms)) } }
+                            td { (quantity.name()) ", " (name) } td { (set.count) }
+                            @for found in models.map(|model| model.get(quantity)).into_iter().flatten() {
+                                td { (format_args!("{:.4}{}", found.rms, sign(quantity))) }
+                            }
                         }
                     }
                 }
@@ -72,6 +72,15 @@ pub(crate) fn calibration(file: &CalibrationFile, warnings: &[String]) -> String
             (warned(warnings))
         }
     })
+}
+
+/// The unit of a quantity behind a number.
+fn sign(quantity: Quantity) -> &'static str {
+    match quantity.unit() {
+        Unit::Metre => " mm",
+        Unit::Radian => "°",
+        Unit::One => "",
+    }
 }
 
 fn warned(warnings: &[String]) -> Markup {

@@ -1,15 +1,18 @@
 //! Residuals of each row as arrays and as tables of other packages.
 
 use numpy::{PyArray1, PyArray2};
-use poecal::io::residuals::{ModelErrors, ResidualRow, Residuals as Rows, RowDiagnostics};
+use poecal::io::residuals::{ModelErrors, ResidualRow, Residuals as Rows, RowDiagnostics, columns as names};
+use poecal::measurement::Quantity;
 use poecal::robot::JointKind;
 use pyo3::exceptions::PyModuleNotFoundError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arguments as arg;
 use crate::arrays::table;
 use crate::calibration::Calibration;
 use crate::errors::no_package;
+use crate::words::{chosen, quantity as quantity_word};
 
 /// Residuals and diagnostics of each row, fitted or held out, in the order of the measurements.
 ///
@@ -62,14 +65,24 @@ impl Residuals {
         self.numbers(py, |row| row.judged.as_ref().map(&of))
     }
 
-    /// Errors of position of a model.
-    fn position<'py>(&self, py: Python<'py>, model: OfModel) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.numbers(py, |row| Some(model.of(&row.position_mm)))
+    /// Errors of a quantity of a model.
+    fn errors_of<'py>(
+        &self,
+        py: Python<'py>,
+        quantity: Quantity,
+        model: OfModel,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.numbers(py, |row| row.errors.get(quantity).map(|errors| model.of(&errors)))
     }
 
-    /// Errors of rotation of a model.
-    fn rotation<'py>(&self, py: Python<'py>, model: OfModel) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.numbers(py, |row| row.rotation_deg.as_ref().map(|errors| model.of(errors)))
+    /// Residuals of a quantity by component.
+    fn components_of<'py>(&self, py: Python<'py>, quantity: Quantity) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let count = quantity.components();
+        let of = |row: &ResidualRow| match row.errors.get(quantity) {
+            Some(errors) => errors.residual().to_vec(),
+            None => vec![f64::NAN; count],
+        };
+        table(py, self.each(|_, row| of(row))?.concat(), count)
     }
 
     /// The table in a class of another package.
@@ -79,6 +92,12 @@ impl Residuals {
 }
 
 impl OfModel {
+    const ALL: [(&'static str, OfModel); 3] = [
+        ("nominal", OfModel::Nominal),
+        ("registered", OfModel::Registered),
+        ("calibrated", OfModel::Calibrated),
+    ];
+
     fn of(self, errors: &ModelErrors) -> f64 {
         let [nominal, registered, calibrated] = errors.models;
         match self {
@@ -144,53 +163,105 @@ impl Residuals {
         self.each(|rows, row| rows.stations.get(row.station).and_then(|name| named(name)))
     }
 
-    /// Residual of position by component, shape (m, 3), millimetres.
+    /// Residual of position by component, shape (m, 3), millimetres; NaN where no position was measured.
     #[getter]
     fn position_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.each(|_, row| row.position_mm.residual)?.concat(), 3)
+        self.components_of(py, Quantity::Position)
     }
 
     /// Residual of rotation by component, shape (m, 3), degrees; NaN where no orientation was measured.
     #[getter]
     fn rotation_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let of = |row: &ResidualRow| row.rotation_deg.map_or([f64::NAN; 3], |errors| errors.residual);
-        table(py, self.each(|_, row| of(row))?.concat(), 3)
+        self.components_of(py, Quantity::Rotation)
     }
 
-    /// Error of position of the nominal model, shape (m,), millimetres.
+    /// Error of position of the nominal model, shape (m,), millimetres; NaN where no position was measured.
     #[getter]
     fn position_nominal_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.position(py, OfModel::Nominal)
+        self.errors_of(py, Quantity::Position, OfModel::Nominal)
     }
 
-    /// Error of position of the registered model, shape (m,), millimetres.
+    /// Error of position of the registered model, shape (m,), millimetres; NaN where no position was measured.
     #[getter]
     fn position_registered_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.position(py, OfModel::Registered)
+        self.errors_of(py, Quantity::Position, OfModel::Registered)
     }
 
-    /// Error of position of the calibrated model, shape (m,), millimetres.
+    /// Error of position of the calibrated model, shape (m,), millimetres; NaN where no position was measured.
     #[getter]
     fn position_calibrated_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.position(py, OfModel::Calibrated)
+        self.errors_of(py, Quantity::Position, OfModel::Calibrated)
     }
 
     /// Error of rotation of the nominal model, shape (m,), degrees; NaN where no orientation was measured.
     #[getter]
     fn rotation_nominal_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.rotation(py, OfModel::Nominal)
+        self.errors_of(py, Quantity::Rotation, OfModel::Nominal)
     }
 
     /// Error of rotation of the registered model, shape (m,), degrees; NaN where no orientation was measured.
     #[getter]
     fn rotation_registered_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.rotation(py, OfModel::Registered)
+        self.errors_of(py, Quantity::Rotation, OfModel::Registered)
     }
 
     /// Error of rotation of the calibrated model, shape (m,), degrees; NaN where no orientation was measured.
     #[getter]
     fn rotation_calibrated_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.rotation(py, OfModel::Calibrated)
+        self.errors_of(py, Quantity::Rotation, OfModel::Calibrated)
+    }
+
+    /// Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged.
+    #[getter]
+    fn quantities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let rows = self.rows()?;
+        let units = PyDict::new(py);
+        for quantity in rows.leading().into_iter().chain(rows.measured()) {
+            units.set_item(quantity.name(), quantity.unit().symbol())?;
+        }
+        Ok(units)
+    }
+
+    /// Residual of any quantity by component.
+    ///
+    /// Parameters
+    /// ----------
+    /// quantity
+    ///     Its name, as in `quantities`.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (m, n), millimetres or degrees; NaN where it was not measured.
+    fn components<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arg::quantity)] quantity: &str,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.components_of(py, quantity_word(quantity)?)
+    }
+
+    /// Error of any quantity of a model.
+    ///
+    /// Parameters
+    /// ----------
+    /// quantity
+    ///     Its name, as in `quantities`.
+    /// model
+    ///     "nominal", "registered" or "calibrated".
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray
+    ///     Shape (m,), millimetres or degrees; NaN where it was not measured.
+    #[pyo3(signature = (quantity, *, model="calibrated"))]
+    fn errors<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = arg::quantity)] quantity: &str,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.errors_of(py, quantity_word(quantity)?, chosen("model", model, &OfModel::ALL)?)
     }
 
     /// Weight of each row in the fit, shape (m,); of a held-out row the weight that it would have had.
@@ -232,22 +303,11 @@ impl Residuals {
         columns.set_item("id", self.ids()?)?;
         columns.set_item("set", self.each(|_, row| if row.held_out { "held_out" } else { "fit" })?)?;
         columns.set_item("target", self.targets()?)?;
-        let models = [
-            (OfModel::Nominal, "nominal"),
-            (OfModel::Registered, "registered"),
-            (OfModel::Calibrated, "calibrated"),
-        ];
-        for (model, name) in models {
-            columns.set_item(format!("position_{name}[mm]"), self.position(py, model)?)?;
-        }
-        for (at, name) in ["x[mm]", "y[mm]", "z[mm]"].into_iter().enumerate() {
-            columns.set_item(name, self.numbers(py, |row| row.position_mm.residual.get(at).copied())?)?;
-        }
-        for (model, name) in models {
-            columns.set_item(format!("rotation_{name}[deg]"), self.rotation(py, model)?)?;
-        }
-        for (at, name) in ["rx[deg]", "ry[deg]", "rz[deg]"].into_iter().enumerate() {
-            columns.set_item(name, self.numbers(py, |row| row.rotation_deg?.residual.get(at).copied())?)?;
+        for quantity in rows.quantities() {
+            for (at, name) in names(quantity).enumerate() {
+                columns
+                    .set_item(name, self.numbers(py, |row| row.errors.get(quantity)?.numbers().nth(at))?)?;
+            }
         }
         columns.set_item("weight", self.weight(py)?)?;
         columns.set_item("leverage", self.leverage(py)?)?;

@@ -1,6 +1,7 @@
 //! Arguments that are one of a few words, and numbers with a unit in their name.
 
 use poecal::calibration::{DeviceFrameKnowledge, Loss, Robust};
+use poecal::measurement::Quantity;
 use poecal::nearest;
 use poecal::offsets::End;
 use poecal::simulate::Kind;
@@ -25,6 +26,10 @@ pub(crate) fn frame(word: &str) -> PyResult<DeviceFrameKnowledge> {
 
 pub(crate) fn kind(word: &str) -> PyResult<Kind> {
     chosen("kind", word, &[Kind::Pose, Kind::Point, Kind::Mixed].map(|kind| (kind.word(), kind)))
+}
+
+pub(crate) fn quantity(word: &str) -> PyResult<Quantity> {
+    chosen("quantity", word, &Quantity::ALL.map(|quantity| (quantity.name(), quantity)))
 }
 
 pub(crate) fn robust(word: &str) -> PyResult<Robust> {

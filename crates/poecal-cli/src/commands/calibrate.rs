@@ -12,7 +12,7 @@ use poecal::io::model::Model;
 use poecal::io::named_files::{refuse_fitted, refuse_repeats};
 use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
 use poecal::io::residuals::{ResidualRows, Residuals};
-use poecal::measurement::Dataset;
+use poecal::measurement::{ByQuantity, Dataset, Quantity};
 use poecal::report::Detail;
 use poecal::{Error, ErrorKind, Result, report};
 use poecal_lou2009::{Residual, formulated};
@@ -160,8 +160,9 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
     CalibrationOptions {
         frame: arguments.frame,
         blocks: BlockChoice { free: arguments.free.clone(), fix: arguments.fix.clone() },
-        sigma_position_m: arguments.sigma_position,
-        sigma_rotation_rad: arguments.sigma_rotation,
+        sigma: ByQuantity::default()
+            .with(Quantity::Position, arguments.sigma_position)
+            .with(Quantity::Rotation, arguments.sigma_rotation),
         tolerance: arguments.tolerance.0,
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),

@@ -192,11 +192,11 @@ fn bad_models_get_one_sentence_each() {
         case("predict bad.json joints.csv", "{\"schema\": \"poecal-calibration-1\",\n",
              "bad.json:2:1: found broken JSON (EOF while parsing a value), expected a calibration as written by `poecal calibrate`: name a calibration.json"),
         case("predict bad.json joints.csv", "{\"schema\": \"poecal-calibration-9\"}",
-             "bad.json: found schema `poecal-calibration-9`, expected `poecal-calibration-1`: calibrate again with this version"),
+             "bad.json: found schema `poecal-calibration-9`, expected `poecal-calibration-2`: calibrate again with this version"),
         case("predict bad.json joints.csv", "{\"schema\": \"poecal-calibration-1\"}",
              "bad.json:1:34: found something that does not fit the schema (missing field `poecal_version`), expected a calibration as written by `poecal calibrate`: name a calibration.json"),
         case("predict bad.json joints.csv", "{}",
-             "bad.json: found JSON without the key `schema`, expected a calibration of schema `poecal-calibration-1`"),
+             "bad.json: found JSON without the key `schema`, expected a calibration of schema `poecal-calibration-2`"),
         case("validate robot.urdf good.csv", "",
              "robot.urdf:1:1: found broken JSON (expected value), expected a calibration as written by `poecal calibrate`: name a calibration.json"),
     ]);

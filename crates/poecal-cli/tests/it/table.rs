@@ -128,7 +128,10 @@ fn a_bad_day_is_told_in_short_lists_and_in_full_on_demand() {
     assert!(look.contains("rows are outliers"), "{}", run.out);
     let full = folder.run("calibrate robot.urdf poor.csv --force --verbose").out;
     println!("{full}");
-    assert!(!full.contains("more, in the report") && full.contains("off by, mm"), "{full}");
+    assert!(
+        !full.contains("more, in the report") && full.contains("off by           position, mm"),
+        "{full}"
+    );
     // What the table has no room for stands in the report.
     let page = folder.read("poecal-out/report.html");
     assert!(page.contains("Look at") && page.contains("rows are outliers"));

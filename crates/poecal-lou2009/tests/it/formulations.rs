@@ -140,8 +140,7 @@ fn spatial_residual_costs_accuracy() {
             let options = CalibrationOptions {
                 frame: DeviceFrameKnowledge::Base,
                 formulation: with(residual),
-                sigma_position_m: Some(noise[Quantity::Position]),
-                sigma_rotation_rad: Some(noise[Quantity::Rotation]),
+                sigma: noise.map(Some),
                 held_out: 0.0,
                 ..CalibrationOptions::default()
             };

@@ -20,7 +20,7 @@ SETS = [("fitted", False, "tab:blue", "."), ("held out", True, "tab:orange", "x"
 
 
 def plot(calibration: Calibration, axes: Sequence[Axes] | NDArray[Any] | None = None) -> Figure:
-    """Draws errors of position into two axes, and gives their figure."""
+    """Draws errors of the leading quantity, of poses and points the position, into two axes, and gives their figure."""
     try:
         import matplotlib.pyplot as plt
         from matplotlib.axes import Axes
@@ -38,14 +38,17 @@ def plot(calibration: Calibration, axes: Sequence[Axes] | NDArray[Any] | None = 
     residuals = calibration.residuals
     held_out = residuals.held_out
     judged, name = (held_out, "held-out") if held_out.any() else (~held_out, "fitted")
+    quantity, unit = next(iter(residuals.quantities.items()))
+    calibrated = residuals.errors(quantity)
     models = [
-        ("nominal, tool and device fitted", residuals.position_registered_mm, "0.5"),
-        ("calibrated", residuals.position_calibrated_mm, "tab:orange" if held_out.any() else "tab:blue"),
+        ("nominal, tool and device fitted", residuals.errors(quantity, model="registered"), "0.5"),
+        ("calibrated", calibrated, "tab:orange" if held_out.any() else "tab:blue"),
     ]
+    judged = judged & ~np.isnan(calibrated)
     share = 100 * np.arange(1, judged.sum() + 1) / judged.sum()
     for label, values, colour in models:
         errors.step(np.sort(values[judged]), share, where="post", label=label, color=colour)
-    errors.set(xscale="log", xlabel="error of position, mm", ylabel="% of the rows with at most this error")
+    errors.set(xscale="log", xlabel=f"error of {quantity}, {unit}", ylabel="% of the rows with at most this error")
     errors.set_title(f"{calibration.robot.name}: {judged.sum()} {name} rows")
     errors.xaxis.set_major_formatter("{x:g}")
     # Room for the legends above the largest.
@@ -56,11 +59,11 @@ def plot(calibration: Calibration, axes: Sequence[Axes] | NDArray[Any] | None = 
     for label, of_set, colour, marker in SETS:
         chosen = held_out == of_set
         if chosen.any():
-            rows.plot(index[chosen], residuals.position_calibrated_mm[chosen], marker, color=colour, label=label)
+            rows.plot(index[chosen], calibrated[chosen], marker, color=colour, label=label)
     if residuals.suspected.any():
         suspected = residuals.suspected
-        rows.plot(index[suspected], residuals.position_calibrated_mm[suspected], "o", mfc="none", color="tab:red", label="suspected")
-    rows.set(xlabel="row", ylabel="error of position, mm", ylim=(0, 1.2 * rows.get_ylim()[1]), title="calibrated, row by row")
+        rows.plot(index[suspected], calibrated[suspected], "o", mfc="none", color="tab:red", label="suspected")
+    rows.set(xlabel="row", ylabel=f"error of {quantity}, {unit}", ylim=(0, 1.2 * rows.get_ylim()[1]), title="calibrated, row by row")
     rows.legend(loc="upper right", ncols=len(SETS) + 1)
     for each in (errors, rows):
         each.grid(True, alpha=0.3)

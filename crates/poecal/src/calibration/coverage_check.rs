@@ -167,10 +167,11 @@ impl Observed<'_> {
     fn covariance(&mut self, predicted: &PredictedError, row: u32, quantity: Quantity) -> Matrix3<f64> {
         let observation = self.session.observation(row);
         let seen = observation.measurement.observe();
-        match quantity {
-            Quantity::Position if seen.position().is_some() => return predicted.position,
-            Quantity::Rotation if seen.orientation().is_some() => return predicted.rotation,
-            Quantity::Position | Quantity::Rotation => {}
+        if quantity == Quantity::Position && seen.position().is_some() {
+            return predicted.position;
+        }
+        if quantity == Quantity::Rotation && seen.orientation().is_some() {
+            return predicted.rotation;
         }
         let mut sensitivity = [[0.0; 6]; NUMBERS];
         self.chain.evaluate(&self.linkage, self.session.packed, row as usize, observation);

@@ -211,7 +211,7 @@ impl Task<'_> {
             // The axes' deviations estimate how good the nominal model is.
             weight /= task.prior.map_or(1.0, |(prior, _)| prior.looseness(&found.estimate));
             // Change of the ratios of noises: of the largest to the smallest change of any of them.
-            let is_used = |quantity| self.session.data.has(quantity) || quantity <= Quantity::Rotation;
+            let is_used = |quantity: Quantity| self.session.data.has(quantity) || quantity.is_of_pose();
             let used = || noise.iter().filter(|(quantity, _)| is_used(*quantity));
             let logs = || used().map(|(quantity, sigma)| (sigma / before[quantity]).ln());
             let change = logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min);

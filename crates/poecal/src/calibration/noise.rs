@@ -35,9 +35,10 @@ pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
     let by_rows = |row: &Observation| {
         Quantity::ALL.into_iter().all(|it| !row.measurement.has(it) || row.stated[it].is_some())
     };
-    let by_option = |quantity: Quantity| options.sigma(quantity).is_some() || !data.has(quantity);
+    let by_option = |quantity: Quantity| options.sigma[quantity].is_some() || !data.has(quantity);
     let is_given = Quantity::ALL.into_iter().all(by_option);
-    let source = if is_given && options.sigma_position_m.is_some() && options.sigma_rotation_rad.is_some() {
+    let mut of_poses = Quantity::ALL.into_iter().filter(|quantity| quantity.is_of_pose());
+    let source = if is_given && of_poses.all(|quantity| options.sigma[quantity].is_some()) {
         NoiseSource::Given
     } else if data.observations.iter().all(by_rows) {
         NoiseSource::Rows
@@ -64,13 +65,13 @@ pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
 pub(super) fn is_stated(data: &Dataset, options: &CalibrationOptions) -> ByQuantity<bool> {
     ByQuantity::from_fn(|quantity| {
         let by_row = |row: &Observation| row.stated[quantity].is_some() || !row.measurement.has(quantity);
-        options.sigma(quantity).is_some() || !data.is_empty() && data.observations.iter().all(by_row)
+        options.sigma[quantity].is_some() || !data.is_empty() && data.observations.iter().all(by_row)
     })
 }
 
 /// Estimated noise, with the parts that the user stated in their place.
 pub(super) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
-    ByQuantity::from_fn(|quantity| options.sigma(quantity).unwrap_or(found[quantity]))
+    ByQuantity::from_fn(|quantity| options.sigma[quantity].unwrap_or(found[quantity]))
 }
 
 /// Noise of each quantity from the residuals of an estimate, each variance corrected for the unknowns: theory.md §6 (34). Rows

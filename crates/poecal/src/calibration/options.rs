@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::estimate::Session;
-use crate::measurement::Quantity;
+use crate::measurement::ByQuantity;
 use crate::problem::Prior;
 use crate::robot::Tolerance;
 use crate::solve;
@@ -44,10 +44,8 @@ pub struct CalibrationOptions {
     pub frame: DeviceFrameKnowledge,
     /// Which blocks of unknowns are fitted; by default all axes, targets and frames.
     pub blocks: BlockChoice,
-    /// Standard deviation of each measured position component, metres; estimated from the data if absent.
-    pub sigma_position_m: Option<f64>,
-    /// Standard deviation of each measured rotation component, radians; estimated from the data if absent.
-    pub sigma_rotation_rad: Option<f64>,
+    /// Stated standard deviation of each component of a quantity, metres or radians; estimated from the data if absent.
+    pub sigma: ByQuantity<Option<f64>>,
     /// Share of the configurations held out, 0 to below 1, if rows do not state their set.
     pub held_out: f64,
     /// Seed of that choice and of further starts.
@@ -72,8 +70,7 @@ impl Default for CalibrationOptions {
         CalibrationOptions {
             frame: DeviceFrameKnowledge::Unknown,
             blocks: BlockChoice::default(),
-            sigma_position_m: None,
-            sigma_rotation_rad: None,
+            sigma: ByQuantity::default(),
             held_out: 0.3,
             seed: 1,
             formulation: Formulation::default(),
@@ -87,15 +84,6 @@ impl Default for CalibrationOptions {
 }
 
 impl CalibrationOptions {
-    /// Stated standard deviation of each component of a quantity, metres or radians.
-    #[must_use]
-    pub fn sigma(&self, quantity: Quantity) -> Option<f64> {
-        match quantity {
-            Quantity::Position => self.sigma_position_m,
-            Quantity::Rotation => self.sigma_rotation_rad,
-        }
-    }
-
     /// Prior of the fit: `None` with formulations for comparison.
     #[must_use]
     pub(in crate::calibration) fn prior(&self, session: &Session<'_>) -> Option<Prior> {

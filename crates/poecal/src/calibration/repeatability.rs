@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{Calibration, RowError};
 use crate::estimate::{Estimate, turn_to_first};
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Quantity};
 
 /// Fewest rows of one configuration; ISO 9283 asks for 30.
 const ROWS: usize = 3;
@@ -16,19 +16,22 @@ const DEVIATIONS: f64 = 3.0;
 /// One target in one configuration that was measured at least three times (theory.md §9 (46)).
 ///
 /// ```
-/// use poecal::calibration::RepeatedPose;
-/// let pose = RepeatedPose { rows: vec![0, 1, 2], accuracy_m: [2e-3, 1e-3, 2e-4], repeatability_m: 5e-5 };
-/// assert!(pose.repeatability_m < pose.accuracy_m[2]);
+/// use poecal::{Quantity, calibration::RepeatedPose};
+/// let (rows, quantity) = (vec![0, 1, 2], Quantity::Position);
+/// let pose = RepeatedPose { rows, quantity, accuracy: [2e-3, 1e-3, 2e-4], repeatability: 5e-5 };
+/// assert!(pose.repeatability < pose.accuracy[2]);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct RepeatedPose {
     /// Its rows.
     pub rows: Vec<u32>,
-    /// Length of the mean error of the nominal, registered and calibrated model: A of theory.md §9 (46), metres.
-    pub accuracy_m: [f64; 3],
-    /// Mean distance of the position errors from their mean, plus three standard deviations: R of theory.md §9 (46), metres, by the
+    /// The quantity whose errors are compared: the first of its measurements, of poses and points the position.
+    pub quantity: Quantity,
+    /// Length of the mean error of the nominal, registered and calibrated model: A of theory.md §9 (46), metres or radians.
+    pub accuracy: [f64; 3],
+    /// Mean distance of the errors from their mean, plus three standard deviations: R of theory.md §9 (46), metres or radians, by the
     /// calibrated model.
-    pub repeatability_m: f64,
+    pub repeatability: f64,
 }
 
 /// Every target and configuration with three rows or more, in the order measured: theory.md §9 (46). Readings within 0.0001 rad or 0.1 mm
@@ -51,23 +54,31 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
     let packed = calibration.packed(data);
     let session = calibration.session(data, &packed);
     let models = &calibration.models;
-    let poses = groups.into_iter().map(|rows| {
+    let poses = groups.into_iter().filter_map(|rows| {
+        let quantity = leading(data, *rows.first()?)?;
         let errors = |estimate: &Estimate| {
             let mut errors = session.errors(&rows, estimate);
             turn_to_first(data, &rows, estimate, &mut errors);
             errors
         };
         let accuracy = |estimate| mean(&errors(estimate)).norm();
-        let accuracy_m = [&models.nominal, &models.registered, &models.calibrated].map(accuracy);
-        let repeatability_m = scatter(&errors(&models.calibrated));
-        RepeatedPose { rows, accuracy_m, repeatability_m }
+        let accuracy = [&models.nominal, &models.registered, &models.calibrated].map(accuracy);
+        let repeatability = scatter(&errors(&models.calibrated));
+        Some(RepeatedPose { rows, quantity, accuracy, repeatability })
     });
     poses.collect()
 }
 
-/// Rows of one target and configuration (the readings of the group's first row), at least [`ROWS`].
+/// Rows of one target, quantity and configuration (the readings of the group's first row), at least [`ROWS`].
 fn groups(data: &Dataset) -> Vec<Vec<u32>> {
-    data.alike(&data.all_rows(), SAME, ROWS, |row| data.observations[row as usize].target)
+    let class = |row: u32| (data.observations[row as usize].target, leading(data, row));
+    data.alike(&data.all_rows(), SAME, ROWS, class)
+}
+
+/// The first quantity that a row measured.
+fn leading(data: &Dataset, row: u32) -> Option<Quantity> {
+    let channels = data.observations[row as usize].measurement.observe().channels();
+    channels.first().map(|channel| channel.quantity)
 }
 
 /// The mean of the errors.

@@ -221,13 +221,17 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
         reasons.push(format!("{open} of {unknowns} unknowns {is} not determined by these configurations"));
     }
     if let Some((found, worst)) = trust.cross_validation.as_ref().and_then(|it| Some((it, it.worst()?)))
-        && worst.position_rms_m > BLOCKS * found.random.position_rms_m
+        && let Some((quantity, rms)) = worst.rms.leading()
+        && let Some(of_random) = found.random.rms.get(quantity)
+        && rms > BLOCKS * of_random
     {
+        let unit = quantity.unit();
         reasons.push(format!(
-            "cross-validation: the error of {} is {:.3} mm, {:.1} times that of random rows",
+            "cross-validation: the error of {} is {:.3} {}, {:.1} times that of random rows",
             worst.name,
-            1e3 * worst.position_rms_m,
-            worst.position_rms_m / found.random.position_rms_m
+            unit.shown(rms),
+            unit.symbol(),
+            rms / of_random
         ));
     }
     if let (Some(measured), Some(range)) = (trust.measured, trust.range)

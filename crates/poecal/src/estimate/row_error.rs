@@ -115,8 +115,22 @@ impl RowError {
 
     /// Its square.
     pub(crate) fn square_m2(&self) -> f64 {
-        let lengths = Quantity::ALL.into_iter().filter(|quantity| quantity.unit() == Unit::Metre);
-        lengths.map(|quantity| self.square(quantity)).sum()
+        self.square_of(Unit::Metre)
+    }
+
+    /// The square of the error of all numbers that are angles: the rotation's.
+    pub(crate) fn square_rad2(&self) -> f64 {
+        self.square_of(Unit::Radian)
+    }
+
+    /// Whether a number is an angle.
+    pub(crate) fn has_angle(&self) -> bool {
+        self.channels.iter().any(|channel| channel.quantity.unit() == Unit::Radian)
+    }
+
+    fn square_of(&self, unit: Unit) -> f64 {
+        let own = Quantity::ALL.into_iter().filter(|quantity| quantity.unit() == unit);
+        own.map(|quantity| self.square(quantity)).sum()
     }
 
     /// The same error in other axes, turned by a rotation; a quantity that is no vector stays.

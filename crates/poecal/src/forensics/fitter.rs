@@ -4,7 +4,7 @@ use super::change::{like, push};
 use crate::estimate::{Estimate, Packed, RowError, Session, delivered, sample_rows};
 use crate::gauge;
 use crate::lie::{Pose, Screw};
-use crate::measurement::{ByQuantity, Dataset, Noise, Observation, Quantity};
+use crate::measurement::{ByQuantity, Dataset, Noise, Observation};
 use crate::parameters::{DeviceFrame, Parameter, ScrewAxis, ValueTerm};
 use crate::problem::Problem;
 use crate::robot::Term;
@@ -34,7 +34,7 @@ pub(super) const SHORT: usize = 12;
 pub(super) struct Misfit {
     /// Root mean square distance, metres.
     pub(super) position_m: f64,
-    /// Root mean square angle, radians; 0 where no orientation was measured.
+    /// Root mean square angle, radians; 0 where no angle was measured.
     pub(super) rotation_rad: f64,
     /// Both together, an angle counted as its arc at `length_m`.
     pub(super) total_m: f64,
@@ -201,7 +201,7 @@ impl<'a> Fitter<'a> {
 
     /// Squared error of a row, an angle counted as its arc at `length_m`.
     pub(super) fn squared_m2(&self, error: &RowError) -> f64 {
-        error.square_m2() + error.square(Quantity::Rotation) * self.length_m.powi(2)
+        error.square_m2() + error.square_rad2() * self.length_m.powi(2)
     }
 
     pub(super) fn misfit(&self, session: &Session<'_>, estimate: &Estimate) -> Misfit {
@@ -209,8 +209,8 @@ impl<'a> Fitter<'a> {
         let errors = session.errors(&session.data.all_rows(), estimate);
         for error in &errors {
             position += error.square_m2();
-            rotation += error.square(Quantity::Rotation);
-            turned += usize::from(!error.part(Quantity::Rotation).is_empty());
+            rotation += error.square_rad2();
+            turned += usize::from(error.has_angle());
         }
         let count = errors.len().max(1) as f64;
         Misfit {

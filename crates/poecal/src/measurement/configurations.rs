@@ -33,12 +33,12 @@ impl Dataset {
 
     /// Groups of `least` rows or more of one class among these whose readings differ from those of the group's first row by no more than
     /// `same`.
-    pub(crate) fn alike(
+    pub(crate) fn alike<C: Copy + Ord + Send + Sync>(
         &self,
         rows: &[u32],
         same: f64,
         least: usize,
-        class: impl Fn(u32) -> usize,
+        class: impl Fn(u32) -> C,
     ) -> Vec<Vec<u32>> {
         let readings = |row: u32| self.readings(row as usize);
         // Rows of equal readings are neighbours in the order of any weighted sum; with these weights other rows seldom are.
@@ -46,7 +46,7 @@ impl Dataset {
         let key =
             |row: u32| readings(row).iter().enumerate().map(|(k, value)| weight(k) * value).sum::<f64>();
         let window = same * (0..self.reading_names().len()).map(weight).sum::<f64>();
-        let mut order: Vec<(usize, f64, u32)> = rows.iter().map(|&row| (class(row), key(row), row)).collect();
+        let mut order: Vec<(C, f64, u32)> = rows.iter().map(|&row| (class(row), key(row), row)).collect();
         threads::sort_by(&mut order, |a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         let is_same =
             |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= same);

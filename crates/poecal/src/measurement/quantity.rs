@@ -10,67 +10,119 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::unit::Unit;
 
-/// A measured quantity. Noise, scales and accuracies are of each quantity apart; a measurement type has one or two of them.
+/// Key of a quantity: its name, and the unit of files.
+macro_rules! key {
+    ($name:literal, Metre) => {
+        concat!($name, "_mm")
+    };
+    ($name:literal, Radian) => {
+        concat!($name, "_deg")
+    };
+}
+
+/// Makes an enum of quantities from their table, a line for each: name, unit, and names of its components.
+macro_rules! quantities {
+    ($(#[$attribute:meta])* pub enum $Quantity:ident {
+        $($(#[$doc:meta])* $variant:ident = ($name:literal, $unit:ident, [$($component:literal),+]),)+
+    }) => {
+        $(#[$attribute])*
+        pub enum $Quantity {
+            $($(#[$doc])* $variant,)+
+        }
+
+        impl $Quantity {
+            /// All quantities, in the order of every table.
+            pub const ALL: [$Quantity; [$($name),+].len()] = [$($Quantity::$variant),+];
+
+            /// What is stated of it: the only place that tells quantities apart.
+            const fn entry(self) -> Entry {
+                match self {
+                    $($Quantity::$variant => Entry {
+                        name: $name,
+                        key: key!($name, $unit),
+                        unit: Unit::$unit,
+                        components: &[$($component),+],
+                    },)+
+                }
+            }
+        }
+    };
+}
+
+quantities! {
+/// A measured quantity. Noise, scales and accuracies are of each quantity apart; a measurement type has one or two of them. A quantity that
+/// is added to this table has its place in files, reports and the Python package.
 ///
 /// ```
 /// use poecal::{Quantity, Unit};
 /// assert_eq!((Quantity::Rotation.name(), Quantity::Rotation.unit()), ("rotation", Unit::Radian));
-/// assert_eq!(Quantity::Position.key(), "position_mm");
+/// assert_eq!((Quantity::Position.key(), Quantity::Position.component_names()), ("position_mm", &["x", "y", "z"][..]));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Place of a target.
-    Position,
+    Position = ("position", Metre, ["x", "y", "z"]),
     /// Orientation of a target.
-    Rotation,
+    Rotation = ("rotation", Radian, ["rx", "ry", "rz"]),
+}
 }
 
-impl Quantity {
-    /// All quantities, in the order of every table.
-    pub const ALL: [Quantity; 2] = [Quantity::Position, Quantity::Rotation];
+/// What is stated of a quantity.
+struct Entry {
+    name: &'static str,
+    key: &'static str,
+    unit: Unit,
+    components: &'static [&'static str],
+}
 
-    /// Name of it, its key in files, and its unit.
-    const fn entry(self) -> (&'static str, &'static str, Unit) {
-        match self {
-            Quantity::Position => ("position", "position_mm", Unit::Metre),
-            Quantity::Rotation => ("rotation", "rotation_deg", Unit::Radian),
-        }
+// A quantity with more components does not compile.
+const _: () = {
+    let mut k = 0;
+    while k < Quantity::ALL.len() {
+        assert!(Quantity::ALL[k].entry().components.len() <= Quantity::MOST_COMPONENTS);
+        k += 1;
     }
+};
+
+impl Quantity {
+    /// Most components of a quantity.
+    pub const MOST_COMPONENTS: usize = 3;
 
     /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
-        self.entry().0
+        self.entry().name
     }
 
     /// Its name with the unit of files: a key of `calibration.json`.
     #[must_use]
     pub fn key(self) -> &'static str {
-        self.entry().1
+        self.entry().key
     }
 
     /// Names of the components of a measurement of it: columns of files.
     #[must_use]
     pub fn component_names(self) -> &'static [&'static str] {
-        match self {
-            Quantity::Position => &["x", "y", "z"],
-            Quantity::Rotation => &["rx", "ry", "rz"],
-        }
+        self.entry().components
     }
 
-    /// Number of components that a measurement of it has.
+    /// Number of components that a measurement of it has, at most [`Quantity::MOST_COMPONENTS`].
     #[must_use]
     pub fn components(self) -> usize {
-        match self {
-            Quantity::Position | Quantity::Rotation => 3,
-        }
+        self.component_names().len()
     }
 
     /// Its unit.
     #[must_use]
     pub fn unit(self) -> Unit {
-        self.entry().2
+        self.entry().unit
+    }
+
+    /// Whether it is a part of a pose. Files have a place for these also where they were not measured.
+    #[must_use]
+    pub fn is_of_pose(self) -> bool {
+        [Quantity::Position, Quantity::Rotation].contains(&self)
     }
 }
 
@@ -94,6 +146,19 @@ impl<T> ByQuantity<T> {
     /// What `to` gives for each value.
     pub fn map<U>(self, to: impl FnMut(T) -> U) -> ByQuantity<U> {
         ByQuantity(self.0.map(to))
+    }
+
+    /// The same with another value of one quantity.
+    ///
+    /// ```
+    /// use poecal::{ByQuantity, Quantity};
+    /// let stated = ByQuantity::default().with(Quantity::Position, Some(5e-5));
+    /// assert_eq!((stated[Quantity::Position], stated[Quantity::Rotation]), (Some(5e-5), None));
+    /// ```
+    #[must_use]
+    pub fn with(mut self, quantity: Quantity, value: T) -> Self {
+        self[quantity] = value;
+        self
     }
 
     /// The quantities with their values.
@@ -137,7 +202,7 @@ impl Noise {
         let mut values = [0.0; Quantity::ALL.len()];
         let mut k = 0;
         while k < values.len() {
-            values[k] = match Quantity::ALL[k].entry().2 {
+            values[k] = match Quantity::ALL[k].entry().unit {
                 Unit::Metre => length_m,
                 Unit::Radian | Unit::One => angle_rad,
             };
@@ -187,6 +252,11 @@ impl<T: Copy> Measured<T> {
     /// The measured quantities with their values.
     pub fn iter(&self) -> impl Iterator<Item = (Quantity, T)> {
         self.0.iter().filter_map(|(quantity, value)| Some((quantity, (*value)?)))
+    }
+
+    /// What `to` gives for each value.
+    pub fn map<U: Copy>(self, mut to: impl FnMut(Quantity, T) -> U) -> Measured<U> {
+        Measured::of(|quantity| self.get(quantity).map(|value| to(quantity, value)))
     }
 
     /// The first measured quantity, lengths before angles: that by which a model is judged.

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::table::{kinds_words, line, number, robot_words};
+use super::table::{kinds_words, line, noise_words, number, robot_words};
 use crate::analysis::{Cause, Foresight, JointCoverage, PlannedSession};
-use crate::io::calibration_file::IdentifiabilityEntry;
+use crate::io::calibration_file::{IdentifiabilityEntry, Keyed, SigmaKeys};
 use crate::io::model::Model;
-use crate::measurement::Quantity;
+use crate::measurement::{Measured, Quantity};
 use crate::robot::JointKind;
 use crate::text::visible;
 
@@ -37,7 +37,7 @@ pub struct Identify {
     kind: &'static str,
     frame: &'static str,
     configurations: usize,
-    noise: NoiseEntry,
+    noise: Keyed<SigmaKeys>,
     identifiability: IdentifiabilityEntry,
     expected_error: ExpectedEntry,
     coverage: Vec<JointCoverage>,
@@ -45,13 +45,6 @@ pub struct Identify {
     robot_words: String,
     #[serde(skip)]
     kinds: Vec<JointKind>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct NoiseEntry {
-    sigma_position_mm: f64,
-    /// Null for points.
-    sigma_rotation_deg: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -67,18 +60,15 @@ impl Identify {
     /// What `identify` found of a model in the configurations of some files, named as the user named them.
     #[must_use]
     pub fn new(model: &Model, files: &[String], session: &PlannedSession, found: &Foresight) -> Self {
-        let sigma_rotation_deg =
-            session.kind.sees_orientation().then(|| session.noise[Quantity::Rotation].to_degrees());
+        let sigma = |quantity: Quantity| quantity.unit().shown(session.noise[quantity]);
+        let sigma = Measured::of(|quantity| session.kind.has(quantity).then(|| sigma(quantity)));
         Identify {
             model: model.path.display().to_string(),
             files: files.to_vec(),
             kind: session.kind.word(),
             frame: if session.device_free { "unknown" } else { "base" },
             configurations: found.count,
-            noise: NoiseEntry {
-                sigma_position_mm: session.noise[Quantity::Position] * 1e3,
-                sigma_rotation_deg,
-            },
+            noise: sigma.into(),
             identifiability: IdentifiabilityEntry::of(&found.identifiability),
             expected_error: ExpectedEntry {
                 configurations: found.expected.configurations,
@@ -103,10 +93,7 @@ impl Identify {
             _ => (self.configurations.div_ceil(2), self.configurations / 2),
         };
         line(&mut out, "to measure", &format!("{}: {}", kinds_words(poses, points), self.files.join(", ")));
-        let rotation =
-            self.noise.sigma_rotation_deg.map_or_else(String::new, |deg| format!(", {} deg", number(deg)));
-        let noise = format!("{} mm{rotation} each component", number(self.noise.sigma_position_mm));
-        line(&mut out, "noise", &noise);
+        line(&mut out, "noise", &noise_words(&self.noise));
         identifiability_lines(&mut out, &self.identifiability);
         line(&mut out, "observability", &self.observability_words());
         line(&mut out, "expected", &self.expected_words());

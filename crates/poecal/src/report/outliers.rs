@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::table::{line, number, number_or_dash};
+use super::table::{INDENT, line, number_or_dash};
 use crate::io::calibration_file::{CalibrationFile, OutlierSet};
+use crate::measurement::Quantity;
 use crate::text::visible;
 
 /// Rows that are named.
@@ -28,19 +29,30 @@ pub(super) fn suspected(out: &mut String, file: &CalibrationFile) {
     let sets = format!("{} fitted, {} held out", robust.suspected_fit, robust.suspected_held_out);
     line(out, "outliers", &format!("{count} {rows} suspected ({sets}); {fit}"));
     // Writing to a String cannot fail.
-    let _ = writeln!(out, "{:14}{:>12}{:>12}{:>9}  file:line", "", "off by, mm", "deg", "weight");
-    for outlier in file.outliers.iter().take(WORST) {
+    let worst = || file.outliers.iter().take(WORST);
+    let measured: Vec<Quantity> = Quantity::ALL
+        .into_iter()
+        .filter(|quantity| worst().any(|outlier| outlier.residual.get(*quantity).is_some()))
+        .collect();
+    let head = |quantity: &Quantity| format!("{}, {}", quantity.name(), quantity.unit().symbol());
+    let head: Vec<String> = measured.iter().map(head).collect();
+    cells(out, "off by", &head);
+    let _ = writeln!(out, "{:>9}  file:line", "weight");
+    for outlier in worst() {
         let held_out = if outlier.set == OutlierSet::HeldOut { " (held out)" } else { "" };
-        let _ = writeln!(
-            out,
-            "{:14}{:>12}{:>12}{:>9.3}  {}:{}{held_out}",
-            "",
-            number(outlier.residual_mm),
-            number_or_dash(outlier.residual_deg),
-            outlier.weight,
-            visible(&outlier.file),
-            outlier.row
-        );
+        let off_by = |quantity: &Quantity| number_or_dash(outlier.residual.get(*quantity));
+        cells(out, "", &measured.iter().map(off_by).collect::<Vec<_>>());
+        let (weight, place) = (outlier.weight, visible(&outlier.file));
+        let _ = writeln!(out, "{weight:>9.3}  {place}:{}{held_out}", outlier.row);
     }
     out.push('\n');
+}
+
+/// A label and the first cells of a row.
+fn cells(out: &mut String, label: &str, cells: &[String]) {
+    // Writing to a String cannot fail.
+    let _ = write!(out, "{label:<INDENT$}");
+    for cell in cells {
+        let _ = write!(out, "{cell:>15}");
+    }
 }

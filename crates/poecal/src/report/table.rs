@@ -4,7 +4,7 @@ use std::fmt::{Display, Write as _};
 
 use crate::calibration::{ModelAccuracy, SetAccuracy, Statistic};
 use crate::error::shown;
-use crate::measurement::Quantity;
+use crate::measurement::{Measured, Quantity};
 use crate::robot::{JointKind, Robot};
 use crate::text::visible;
 
@@ -32,7 +32,7 @@ pub(super) const STATISTICS: [StatisticRow; 4] = [
 /// Widths of the label and of each cell in tables of models.
 pub(super) const WIDTHS: [usize; 2] = [26, 14];
 
-/// Position and rotation errors of the three models, training and held out apart.
+/// Errors of each quantity by the three models, training and held out apart.
 pub(super) fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccuracy>) -> String {
     let mut out = String::new();
     for (k, quantity) in measured(training, held_out).enumerate() {
@@ -98,6 +98,18 @@ pub fn number(value: f64) -> String {
     }
     let digits = (3 - value.log10().floor() as i32).clamp(1, 4) as usize;
     format!("{value:.digits$}")
+}
+
+/// A number of the leading quantity with its unit, or a dash if nothing was measured.
+pub(super) fn leading_words(numbers: &Measured<f64>) -> String {
+    let words = |(quantity, it): (Quantity, f64)| format!("{} {}", number(it), quantity.unit().symbol());
+    numbers.leading().map_or_else(|| "-".to_owned(), words)
+}
+
+/// The noise of each measured quantity, with its unit.
+pub(super) fn noise_words(sigma: &Measured<f64>) -> String {
+    let words = sigma.iter().map(|(quantity, it)| format!("{} {}", number(it), quantity.unit().symbol()));
+    format!("{} each component", words.collect::<Vec<_>>().join(", "))
 }
 
 /// [`number`], or a dash for what does not exist.

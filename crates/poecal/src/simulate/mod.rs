@@ -16,7 +16,7 @@ use rand_core::SeedableRng;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::measurement::{
-    ByQuantity, Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Source,
+    ByQuantity, Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Source,
 };
 use crate::robot::{Body, Mount, Robot};
 
@@ -44,6 +44,12 @@ impl Kind {
             Kind::Point => "point",
             Kind::Mixed => "mixed",
         }
+    }
+
+    /// Whether some rows at least measure a quantity.
+    #[must_use]
+    pub fn has(self, quantity: Quantity) -> bool {
+        quantity == Quantity::Position || quantity == Quantity::Rotation && self.sees_orientation()
     }
 
     /// Whether some rows at least measure the orientation of the tip.

@@ -11,7 +11,7 @@ use super::view::View;
 use super::{TOGETHER, covariance, factor, motions};
 use crate::estimate::{Estimate, Linkage, RowError, sample_rows};
 use crate::linalg;
-use crate::measurement::Quantity;
+use crate::measurement::{ByQuantity, Measured};
 use crate::problem::Layout;
 use crate::simulate::random;
 use crate::solve::LeastSquares;
@@ -37,9 +37,10 @@ pub(super) struct Fold {
 /// Errors of the rows of a fold or block, predicted by the fit of the others.
 ///
 /// ```
-/// use poecal::uncertainty::LeftOut;
-/// let fold = LeftOut { name: "the low end of joint2".into(), rows: 40, position_rms_m: 1e-4, rotation_rms_rad: None, growth: 1.0 };
-/// assert_eq!(fold.rows, 40);
+/// use poecal::{Measured, Quantity, uncertainty::LeftOut};
+/// let rms = Measured::of(|quantity| (quantity == Quantity::Position).then_some(1e-4));
+/// let fold = LeftOut { name: "the low end of joint2".into(), rows: 40, rms, growth: 1.0 };
+/// assert_eq!(fold.rms.lead(), 1e-4);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOut {
@@ -47,12 +48,10 @@ pub struct LeftOut {
     pub name: String,
     /// Number of rows.
     pub rows: usize,
-    /// Root mean square error of position, metres.
-    pub position_rms_m: f64,
-    /// Root mean square error of rotation, radians, where measured.
-    pub rotation_rms_rad: Option<f64>,
-    /// Growth of the squared error of position when these rows are left out, over its expectation by the covariance of the unknowns
-    /// (theory.md §9 (43)).
+    /// Root mean square error of each measured quantity, metres or radians.
+    pub rms: Measured<f64>,
+    /// Growth of the squared error of lengths, as of position, when these rows are left out, over its expectation by the covariance of the
+    /// unknowns (theory.md §9 (43)).
     pub growth: f64,
 }
 
@@ -71,7 +70,7 @@ impl CrossValidation {
     /// The block that was predicted worst.
     #[must_use]
     pub fn worst(&self) -> Option<&LeftOut> {
-        self.blocked.iter().max_by(|a, b| a.position_rms_m.total_cmp(&b.position_rms_m))
+        self.blocked.iter().max_by(|a, b| a.rms.lead().total_cmp(&b.rms.lead()))
     }
 }
 
@@ -155,21 +154,24 @@ fn groups(sample: &[u32], name: impl Fn(u32) -> Option<String>) -> Vec<Fold> {
 #[derive(Clone, Copy, Default)]
 struct ErrorSums {
     rows: usize,
-    turned: usize,
-    position: f64,
-    rotation: f64,
-    /// Squared position errors by the fit of all rows.
+    /// Of each quantity, with the number of rows that measured it.
+    parts: ByQuantity<(f64, usize)>,
+    /// Of all lengths.
+    lengths: f64,
+    /// The same by the fit of all rows.
     before: f64,
-    /// Expected growth of the squared position errors, by the covariances: denominator of theory.md §9 (43).
+    /// Expected growth of the squared errors of lengths, by the covariances: denominator of theory.md §9 (43).
     expected: f64,
 }
 
 impl ErrorSums {
     fn add(&mut self, other: &ErrorSums) {
         self.rows += other.rows;
-        self.turned += other.turned;
-        self.position += other.position;
-        self.rotation += other.rotation;
+        for (quantity, (squares, count)) in self.parts.values_mut() {
+            *squares += other.parts[quantity].0;
+            *count += other.parts[quantity].1;
+        }
+        self.lengths += other.lengths;
         self.before += other.before;
         self.expected += other.expected;
     }
@@ -178,9 +180,11 @@ impl ErrorSums {
         LeftOut {
             name,
             rows: self.rows,
-            position_rms_m: (self.position / self.rows.max(1) as f64).sqrt(),
-            rotation_rms_rad: (self.turned > 0).then(|| (self.rotation / self.turned as f64).sqrt()),
-            growth: (self.position - self.before) / self.expected.max(f64::MIN_POSITIVE),
+            rms: Measured::of(|quantity| {
+                let (squares, count) = self.parts[quantity];
+                (count > 0).then(|| (squares / count as f64).sqrt())
+            }),
+            growth: (self.lengths - self.before) / self.expected.max(f64::MIN_POSITIVE),
         }
     }
 }
@@ -233,9 +237,11 @@ impl<'a> Downdated<'a> {
         let expected = self.position_variance(problem.layout(), rows, &both);
         let mut sums = ErrorSums { rows: rows.len(), expected, ..ErrorSums::default() };
         for error in self.view.session.errors(rows, &without) {
-            sums.position += error.square_m2();
-            sums.rotation += error.square(Quantity::Rotation);
-            sums.turned += usize::from(!error.part(Quantity::Rotation).is_empty());
+            for (quantity, (squares, count)) in sums.parts.values_mut() {
+                *squares += error.square(quantity);
+                *count += usize::from(!error.part(quantity).is_empty());
+            }
+            sums.lengths += error.square_m2();
         }
         let before = self.view.session.errors(rows, &self.estimate);
         sums.before = before.iter().map(RowError::square_m2).sum();

@@ -39,6 +39,7 @@ mod noise_free;
 mod offsets;
 mod oracle;
 mod promises;
+mod quantities;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod refit_promise;

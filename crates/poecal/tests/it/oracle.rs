@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{
     CalibrationOptions, Level, PredictedUncertainty, Robust, Subject, calibrate, judge,
 };
-use poecal::measurement::{Dataset, Measurement, PointMeasurement};
+use poecal::measurement::{ByQuantity, Dataset, Measurement, PointMeasurement, Quantity};
 use poecal::simulate::{Kind, Simulation, elbow, random};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -202,7 +202,10 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
     };
     // Noise that is stated too large or too small is one of the faults.
     let sigma_m = NOISE_M * one(&mut generator, &[1.0, 1.0, 1.0, 0.2, 5.0]);
-    let options = CalibrationOptions { sigma_position_m: is_stated.then_some(sigma_m), ..options };
+    let options = CalibrationOptions {
+        sigma: ByQuantity::default().with(Quantity::Position, is_stated.then_some(sigma_m)),
+        ..options
+    };
     let words = format!("{robot}, {wrong}");
     let Ok(found) = calibrate(&made.nominal, &dataset(&fitted), &options) else {
         return (words, is_stated, None);

@@ -5,7 +5,9 @@ use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, Level, calibrate};
 use poecal::estimate::{Chain, Linkage, Packed};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Quantity};
+use poecal::measurement::{
+    ByQuantity, Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity,
+};
 use poecal::robot::{Joint, Robot};
 use poecal::simulate::{Kind, Simulated, Simulation, elbow, random, random_configuration};
 use poecal::uncertainty::Attribution;
@@ -36,11 +38,7 @@ fn session(count: usize, seed: u64, kind: Kind) -> Simulated {
 }
 
 fn stated() -> CalibrationOptions {
-    CalibrationOptions {
-        sigma_position_m: Some(NOISE_M),
-        sigma_rotation_rad: Some(NOISE_RAD),
-        ..everything()
-    }
+    CalibrationOptions { sigma: Noise::new(NOISE_M, NOISE_RAD).map(Some), ..everything() }
 }
 
 fn everything() -> CalibrationOptions {
@@ -193,7 +191,10 @@ fn noise_that_is_correlated_in_time_is_seen() {
                 (made.device_from_base * made.actual.forward_kinematics(readings)).translation + noise;
             data.push(readings, None, Measurement::Point(PointMeasurement { position })).unwrap();
         }
-        let options = CalibrationOptions { sigma_position_m: Some(NOISE_M), ..everything() };
+        let options = CalibrationOptions {
+            sigma: ByQuantity::default().with(Quantity::Position, Some(NOISE_M)),
+            ..everything()
+        };
         let found = calibrate(&made.nominal, &data, &options).unwrap();
         seen += usize::from(found.trust.uncertainty.as_ref().unwrap().discrepancy.lag_one.is_some());
         errors.extend(judged(&found, &made, seed, <[f64]>::to_vec));
@@ -321,7 +322,10 @@ fn joints_of_one_reading_are_drawn_together() {
 fn absurd_noise_is_never_good() {
     for sigma_m in [0.05, 100.0, 1e-9] {
         let made = session(80, 1, Kind::Pose);
-        let options = CalibrationOptions { sigma_position_m: Some(sigma_m), ..CalibrationOptions::default() };
+        let options = CalibrationOptions {
+            sigma: ByQuantity::default().with(Quantity::Position, Some(sigma_m)),
+            ..CalibrationOptions::default()
+        };
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();
         let rms = found.accuracy.held_out.unwrap().calibrated.position_mm().rms;
         println!("{sigma_m} m: {rms:.4} mm, {:?} {:?}", found.verdict, found.warnings);

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, Judgement, Level, calibrate};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::lie::Pose;
+use poecal::measurement::Noise;
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulation, elbow, random, seven_axis};
 use rand_chacha::ChaCha8Rng;
@@ -24,8 +25,7 @@ fn judged(robot: &Robot, kind: Kind, seed: u64, refit_tool: bool) -> Judgement {
     let made = simulation.run(robot, kind).unwrap();
     let options = CalibrationOptions {
         held_out: 0.0,
-        sigma_position_m: Some(simulation.noise_position_m),
-        sigma_rotation_rad: Some(simulation.noise_rotation_rad),
+        sigma: Noise::new(simulation.noise_position_m, simulation.noise_rotation_rad).map(Some),
         ..CalibrationOptions::default()
     };
     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();

@@ -9,7 +9,7 @@ use poecal::calibration::{
 };
 use poecal::estimate::{Estimate, Packed, Session};
 use poecal::io::calibration_file::{CalibrationFile, Inputs, OutlierSet};
-use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, Quantity, Set};
+use poecal::measurement::{ByQuantity, Dataset, Measurement, Noise, PointMeasurement, Quantity, Set};
 use poecal::parameters::screw_axes;
 use poecal::problem::Problem;
 use poecal::robot::Robot;
@@ -252,7 +252,10 @@ fn leverages_add_up_to_the_rank() {
 #[test]
 fn studentized_residuals_do_not_depend_on_whether_the_row_was_fitted() {
     let (_, made) = session(&elbow(), Kind::Point, 6);
-    let options = CalibrationOptions { sigma_position_m: Some(5e-5), ..Default::default() };
+    let options = CalibrationOptions {
+        sigma: ByQuantity::default().with(Quantity::Position, Some(5e-5)),
+        ..Default::default()
+    };
     let mut data = made.data;
     data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
     let studentized = |data: &Dataset| {
@@ -308,7 +311,10 @@ fn held_out_rows_are_judged_too_and_the_file_names_all() {
 #[test]
 fn a_stated_noise_that_is_too_small_makes_no_suspects() {
     let (_, made) = session(&scara(), Kind::Point, 9);
-    let options = CalibrationOptions { sigma_position_m: Some(5e-6), ..Default::default() };
+    let options = CalibrationOptions {
+        sigma: ByQuantity::default().with(Quantity::Position, Some(5e-6)),
+        ..Default::default()
+    };
     let found = calibrate(&scara(), &made.data, &options).unwrap();
     assert_eq!((found.robustness.loss, found.robustness.suspects().count()), (None, 0));
     let (data, gross) = spoilt(&made, 0.1, 9);

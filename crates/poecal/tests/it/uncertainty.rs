@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::estimate::{Chain, Linkage, Packed};
 use poecal::lie::rotation;
+use poecal::measurement::Noise;
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis};
 use rand_chacha::ChaCha8Rng;
@@ -39,8 +40,7 @@ fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
     let options = CalibrationOptions {
         held_out: 0.0,
         tolerance: None,
-        sigma_position_m: Some(simulated.noise_position_m),
-        sigma_rotation_rad: Some(simulated.noise_rotation_rad),
+        sigma: Noise::new(simulated.noise_position_m, simulated.noise_rotation_rad).map(Some),
         ..CalibrationOptions::default()
     };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();

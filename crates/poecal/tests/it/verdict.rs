@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, calibrate};
 use poecal::forensics::DiagnosisKind;
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, PointMeasurement, PoseMeasurement, Set};
+use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Set};
 use poecal::robot::Robot;
 use poecal::simulate::{Gross, Kind, Simulated, Simulation, elbow, scara, seven_axis};
 use rayon::prelude::*;
@@ -110,8 +110,7 @@ fn noise_in_a_wrong_unit_is_doubted() {
         [(1e-3, "times the stated noise"), (1e3, "times smaller than the stated noise"), (1.0, "")]
     {
         let options = CalibrationOptions {
-            sigma_position_m: Some(5e-5 * factor),
-            sigma_rotation_rad: Some(1.7e-4),
+            sigma: Noise::new(5e-5 * factor, 1.7e-4).map(Some),
             ..CalibrationOptions::default()
         };
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();

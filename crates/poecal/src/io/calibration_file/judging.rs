@@ -4,10 +4,10 @@ use super::{CalibrationFile, MeasuredEntry};
 use crate::calibration::DeviceFrameKnowledge;
 use crate::error::{Error, ErrorKind, Result, first_few, nearest};
 use crate::lie::Pose;
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{ByQuantity, Dataset, Noise, Quantity};
 
-/// Rotation noise if the calibration measured positions alone, degrees.
-const UNSEEN_ROTATION_DEG: f64 = 0.05;
+/// Noise of a quantity if the calibration measured none of its unit, millimetres or degrees.
+const UNSEEN: f64 = 0.05;
 
 impl CalibrationFile {
     /// Knowledge of the device frame.
@@ -21,21 +21,24 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Model`] if the file holds no valid noise.
     pub fn noise(&self) -> Result<Noise> {
-        let rotation_deg = self.noise.sigma_rotation_deg.unwrap_or(UNSEEN_ROTATION_DEG);
-        for (key, sigma) in [("position_mm", self.noise.sigma_position_mm), ("rotation_deg", rotation_deg)] {
+        let sigma = &self.noise.sigma;
+        for (_, key, sigma) in sigma.keys() {
             if sigma.is_nan() || sigma <= 0.0 {
                 let message = format!(
-                    "found `noise.sigma_{key}` of {sigma}, expected a standard deviation above 0: calibrate again"
+                    "found `noise.{key}` of {sigma}, expected a standard deviation above 0: calibrate again"
                 );
                 return Err(Error::new(ErrorKind::Model, message));
             }
         }
-        Ok(Noise::new(self.noise.sigma_position_mm / 1e3, rotation_deg.to_radians()))
+        let like = |quantity: Quantity| sigma.iter().find(|(other, _)| other.unit() == quantity.unit());
+        let shown = |quantity| sigma.get(quantity).or_else(|| like(quantity).map(|(_, sigma)| sigma));
+        Ok(ByQuantity::from_fn(|quantity| quantity.unit().from_shown(shown(quantity).unwrap_or(UNSEEN))))
     }
 
-    /// Root mean square position error on held-out rows, otherwise on training rows, millimetres.
+    /// Root mean square error of the leading quantity, of poses and points the position, on held-out rows, otherwise on training rows;
+    /// millimetres or degrees.
     #[must_use]
-    pub fn own_position_rms_mm(&self) -> f64 {
+    pub fn own_rms(&self) -> f64 {
         let accuracy = &self.accuracy;
         accuracy.held_out.as_ref().unwrap_or(&accuracy.training).calibrated.lead().rms
     }

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod judging;
+mod keyed;
 mod outliers;
 mod refusal;
 mod repeatability;
@@ -10,6 +11,7 @@ mod trust;
 mod validation;
 
 pub use bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
+pub use keyed::*;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;
@@ -23,14 +25,17 @@ use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge, n
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
-use crate::measurement::{Dataset, Measured, Quantity};
+use crate::measurement::{Dataset, Measured, Noise};
 use crate::parameters::Block;
 use crate::robot::{Joint, JointKind, JointTerm, Limits, Robot, Term};
 use nalgebra::Vector3;
 use refusal::refusal;
 
-/// Version of the file; readers refuse others.
-pub const SCHEMA: &str = "poecal-calibration-1";
+/// Version of the files that are written. Readers take those of [`EARLIER`] too, and refuse others.
+pub const SCHEMA: &str = "poecal-calibration-2";
+
+/// Version without quantities beside position and rotation, but otherwise the same.
+const EARLIER: &str = "poecal-calibration-1";
 
 impl CalibrationFile {
     /// File of a finished calibration, with the user's names of the inputs.
@@ -74,11 +79,7 @@ impl CalibrationFile {
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             noise: NoiseEntry {
-                sigma_position_mm: calibration.noise[Quantity::Position] * 1e3,
-                sigma_rotation_deg: data
-                    .frames(&calibration.fit_rows)
-                    .contains(&true)
-                    .then(|| calibration.noise[Quantity::Rotation].to_degrees()),
+                sigma: measured(calibration, calibration.noise).into(),
                 source: calibration.noise_source,
             },
             robot: RobotEntry::new(robot, &calibration.nominal),
@@ -103,13 +104,15 @@ impl CalibrationFile {
         Self::parse(&source_text::read(path, "a calibration.json")?, path)
     }
 
-    /// Reads the text of a file.
+    /// Reads the text of a file. One of an earlier version that can be read becomes one of this version.
     ///
     /// # Errors
-    /// [`ErrorKind::Syntax`] if it is no calibration of this version.
+    /// [`ErrorKind::Syntax`] if it is no calibration of a version that can be read.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
         match serde_json::from_str::<Self>(text) {
-            Ok(file) if file.schema == SCHEMA => Ok(file),
+            Ok(file) if [SCHEMA, EARLIER].contains(&&*file.schema) => {
+                Ok(CalibrationFile { schema: SCHEMA.to_owned(), ..file })
+            }
             other => Err(refusal(text, other.err(), path.as_ref())),
         }
     }
@@ -171,11 +174,7 @@ impl StationEntry {
         let entry = |it: &CalibratedStation| StationEntry {
             instrument: it.name.clone(),
             base_from_device: (&it.base_from_device).into(),
-            sigma: (it.noise != calibration.noise).then(|| {
-                let is_own =
-                    |quantity: Quantity| calibration.accuracy.training.calibrated.get(quantity).is_some();
-                Measured::of(|quantity| is_own(quantity).then(|| quantity.unit().shown(it.noise[quantity])))
-            }),
+            sigma: (it.noise != calibration.noise).then(|| measured(calibration, it.noise)),
         };
         if is_plain { Vec::new() } else { stations.map(entry).collect() }
     }
@@ -204,6 +203,11 @@ impl BlocksEntry {
         }
         Some(BlocksEntry { free, held })
     }
+}
+
+/// Noise of the quantities that the fitted rows measured, millimetres or degrees.
+fn measured(calibration: &Calibration, noise: Noise) -> Measured<f64> {
+    calibration.accuracy.training.calibrated.map(|quantity, _| quantity.unit().shown(noise[quantity]))
 }
 
 impl OffsetEntry {

@@ -3,8 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::keyed::{Keyed, ResidualKeys, shown};
 use crate::calibration::{Calibration, Loss, RowError, SetAccuracy, row_influence};
-use crate::measurement::{Dataset, Quantity};
+use crate::measurement::Dataset;
 
 /// Most suspected rows in a file; `robust` has their number.
 const LISTED: usize = 1000;
@@ -33,10 +34,10 @@ pub struct OutlierEntry {
     pub row: u32,
     /// Its set.
     pub set: OutlierSet,
-    /// Distance from the position that the calibrated model predicts, millimetres.
-    pub residual_mm: f64,
-    /// Angle from the orientation that it predicts, degrees; null where none was measured.
-    pub residual_deg: Option<f64>,
+    /// Distance from the position that the calibrated model predicts, angle from the orientation, and so on of each measured quantity,
+    /// millimetres or degrees.
+    #[serde(flatten)]
+    pub residual: Keyed<ResidualKeys>,
     /// Studentised residual: length over its own standard deviation.
     pub studentized: f64,
     /// Weight in the fit, 0 to 1; of a held-out row the weight that it would have had.
@@ -93,8 +94,7 @@ impl OutlierEntry {
                 file: file.map_or_else(String::new, |path| path.display().to_string()),
                 row: source.line,
                 set: if held_out { OutlierSet::HeldOut } else { OutlierSet::Fit },
-                residual_mm: error.length_m() * 1e3,
-                residual_deg: error.length(Quantity::Rotation).map(f64::to_degrees),
+                residual: shown(|quantity| error.length(quantity)),
                 studentized: *studentized,
                 weight: robustness.rows.get(*row as usize).map_or(1.0, |judged| judged.weight),
             }

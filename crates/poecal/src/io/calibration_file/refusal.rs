@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::SCHEMA;
+use super::{EARLIER, SCHEMA};
 use crate::error::{Error, ErrorKind};
 
 /// Message for a text that is no calibration of this version; `error` is the parser's.
@@ -25,7 +25,7 @@ pub(super) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
         Err(error) => return syntax(&error),
     };
     let message = match (value.get("schema").and_then(serde_json::Value::as_str), error) {
-        (Some(SCHEMA), Some(error)) => return syntax(&error),
+        (Some(SCHEMA | EARLIER), Some(error)) => return syntax(&error),
         (Some(other), _) => {
             format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version")
         }

@@ -3,13 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::keyed::{CalibratedKeys, Keyed, NominalKeys, RegisteredKeys, RepeatabilityKeys, WorstKeys, shown};
 use crate::calibration::{Calibration, RepeatedPose, repeatability};
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Measured, Quantity};
 
 /// Most poses in a file.
 const LISTED: usize = 100;
 
-/// Pose accuracy and repeatability of positions, after ISO 9283.
+/// Pose accuracy and repeatability of positions, after ISO 9283; of poses that were measured by other quantities theirs.
 ///
 /// ```
 /// use poecal::io::calibration_file::RepeatabilityEntry;
@@ -25,16 +26,12 @@ pub struct RepeatabilityEntry {
     pub poses: usize,
     /// Number of their rows.
     pub rows: usize,
-    /// Mean pose accuracy of the nominal model: distance from its prediction to the mean measured position, millimetres.
-    pub accuracy_nominal_mm: f64,
-    /// The same of the registered model.
-    pub accuracy_registered_mm: f64,
-    /// The same of the calibrated model.
-    pub accuracy_calibrated_mm: f64,
-    /// Mean repeatability: mean distance of measured positions from their mean, plus three standard deviations, millimetres.
-    pub repeatability_mm: f64,
+    /// Means over the poses.
+    #[serde(flatten)]
+    pub mean: PoseRepeatability,
     /// The largest repeatability.
-    pub worst_repeatability_mm: f64,
+    #[serde(flatten)]
+    pub worst_repeatability: Keyed<WorstKeys>,
     /// The poses, those with most rows first, at most 100.
     pub listed: Vec<RepeatedPoseEntry>,
 }
@@ -48,14 +45,39 @@ pub struct RepeatedPoseEntry {
     pub row: u32,
     /// Number of its rows.
     pub rows: usize,
-    /// Accuracy of the nominal model, millimetres.
-    pub accuracy_nominal_mm: f64,
+    /// Its accuracy and repeatability.
+    #[serde(flatten)]
+    pub own: PoseRepeatability,
+}
+
+/// Accuracy and repeatability of the quantity by which a pose was measured, millimetres or degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PoseRepeatability {
+    /// Accuracy of the nominal model: distance from its prediction to the mean measured position.
+    #[serde(flatten)]
+    pub accuracy_nominal: Keyed<NominalKeys>,
     /// Of the registered model.
-    pub accuracy_registered_mm: f64,
+    #[serde(flatten)]
+    pub accuracy_registered: Keyed<RegisteredKeys>,
     /// Of the calibrated model.
-    pub accuracy_calibrated_mm: f64,
-    /// Repeatability, millimetres.
-    pub repeatability_mm: f64,
+    #[serde(flatten)]
+    pub accuracy_calibrated: Keyed<CalibratedKeys>,
+    /// Repeatability: mean distance of measured positions from their mean, plus three standard deviations.
+    #[serde(flatten)]
+    pub repeatability: Keyed<RepeatabilityKeys>,
+}
+
+impl PoseRepeatability {
+    /// Those of a quantity with their keys.
+    #[must_use]
+    pub fn of(&self, quantity: Quantity) -> [(String, Option<f64>); 4] {
+        [
+            self.accuracy_nominal.named(quantity),
+            self.accuracy_registered.named(quantity),
+            self.accuracy_calibrated.named(quantity),
+            self.repeatability.named(quantity),
+        ]
+    }
 }
 
 impl RepeatabilityEntry {
@@ -64,15 +86,28 @@ impl RepeatabilityEntry {
         let mut poses = repeatability(calibration, data);
         poses.sort_by_key(|pose| std::cmp::Reverse(pose.rows.len()));
         let count = poses.len();
-        let mean_mm = |of: fn(&RepeatedPose) -> f64| 1e3 * poses.iter().map(of).sum::<f64>() / count as f64;
+        let each = |quantity: Quantity, of: fn(&RepeatedPose) -> f64| -> Option<Vec<f64>> {
+            let own = poses.iter().filter(|pose| pose.quantity == quantity);
+            Some(own.map(of).collect()).filter(|numbers: &Vec<f64>| !numbers.is_empty())
+        };
+        let mean = |of: fn(&RepeatedPose) -> f64| {
+            Measured::of(|quantity| {
+                let numbers = each(quantity, of)?;
+                Some(quantity.unit().shown(1.0) * numbers.iter().sum::<f64>() / numbers.len() as f64)
+            })
+        };
+        let worst =
+            |quantity| Some(each(quantity, |pose| pose.repeatability)?.into_iter().fold(0.0, f64::max));
         (count > 0).then(|| RepeatabilityEntry {
             poses: count,
             rows: poses.iter().map(|pose| pose.rows.len()).sum(),
-            accuracy_nominal_mm: mean_mm(|pose| pose.accuracy_m[0]),
-            accuracy_registered_mm: mean_mm(|pose| pose.accuracy_m[1]),
-            accuracy_calibrated_mm: mean_mm(|pose| pose.accuracy_m[2]),
-            repeatability_mm: mean_mm(|pose| pose.repeatability_m),
-            worst_repeatability_mm: 1e3 * poses.iter().map(|pose| pose.repeatability_m).fold(0.0, f64::max),
+            mean: PoseRepeatability {
+                accuracy_nominal: mean(|pose| pose.accuracy[0]).into(),
+                accuracy_registered: mean(|pose| pose.accuracy[1]).into(),
+                accuracy_calibrated: mean(|pose| pose.accuracy[2]).into(),
+                repeatability: mean(|pose| pose.repeatability).into(),
+            },
+            worst_repeatability: shown(worst),
             listed: poses.iter().take(LISTED).map(|pose| RepeatedPoseEntry::of(pose, data)).collect(),
         })
     }
@@ -83,15 +118,18 @@ impl RepeatedPoseEntry {
         let first = pose.rows.first().and_then(|&row| data.observations.get(row as usize));
         let source = first.map(|observation| observation.source).unwrap_or_default();
         let file = data.files.get(source.file as usize);
-        let [nominal, registered, calibrated] = pose.accuracy_m.map(|accuracy| accuracy * 1e3);
+        let own = |quantity: Quantity, number: f64| (quantity == pose.quantity).then_some(number);
+        let [nominal, registered, calibrated] = pose.accuracy;
         RepeatedPoseEntry {
             file: file.map_or_else(String::new, |path| path.display().to_string()),
             row: source.line,
             rows: pose.rows.len(),
-            accuracy_nominal_mm: nominal,
-            accuracy_registered_mm: registered,
-            accuracy_calibrated_mm: calibrated,
-            repeatability_mm: pose.repeatability_m * 1e3,
+            own: PoseRepeatability {
+                accuracy_nominal: shown(|quantity| own(quantity, nominal)),
+                accuracy_registered: shown(|quantity| own(quantity, registered)),
+                accuracy_calibrated: shown(|quantity| own(quantity, calibrated)),
+                repeatability: shown(|quantity| own(quantity, pose.repeatability)),
+            },
         }
     }
 }

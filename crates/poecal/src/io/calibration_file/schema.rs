@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
+use super::keyed::{Keyed, SigmaKeys};
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
@@ -235,10 +236,9 @@ impl IdentifiabilityEntry {
 /// Noise by which residuals were weighted where a row stated none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NoiseEntry {
-    /// Standard deviation of each position component, millimetres.
-    pub sigma_position_mm: f64,
-    /// Standard deviation of each rotation component, degrees; null where no orientation was measured.
-    pub sigma_rotation_deg: Option<f64>,
+    /// Standard deviation of each component of each measured quantity, millimetres or degrees.
+    #[serde(flatten)]
+    pub sigma: Keyed<SigmaKeys>,
     /// Source of the noise.
     pub source: NoiseSource,
 }

@@ -3,18 +3,17 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::keyed::{AttributionKeys, DiscrepancyKeys, FreedomKeys, Keyed, NoiseKeys, RmsKeys, shown};
 use super::{CalibrationFile, PoseEntry};
 use crate::analysis::JointCoverage;
 use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust, names};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Stand, Tree};
-use crate::measurement::Quantity::{Position, Rotation};
-use crate::measurement::{ByQuantity, Dataset, Measured, Noise};
+use crate::measurement::{ByQuantity, Dataset, Measured, Quantity};
 use crate::parameters::{DeviceFrame, Names, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
 use crate::problem::Layout;
 use crate::robot::{Body, JointKind, Robot, Term};
 use crate::uncertainty::{Attribution, Bootstrap, Discrepancy, LeftOut, Uncertainty};
-use crate::unit::Unit;
 
 /// Errors of the rows of a fold or block, predicted by a fit of the others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -23,10 +22,9 @@ pub struct LeftOutEntry {
     pub left_out: String,
     /// Number of rows.
     pub rows: usize,
-    /// Root mean square error of position, millimetres.
-    pub position_rms_mm: f64,
-    /// Root mean square error of rotation, degrees, where measured.
-    pub rotation_rms_deg: Option<f64>,
+    /// Root mean square error of each measured quantity, millimetres or degrees.
+    #[serde(flatten)]
+    pub rms: Keyed<RmsKeys>,
 }
 
 /// Cross-validation on the fitted rows.
@@ -121,28 +119,18 @@ pub struct UncertaintyEntry {
     /// The same outside the sampled range; absent if no larger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolation: Option<f64>,
-    /// Model error: standard deviation of each position component, millimetres.
-    pub discrepancy_position_mm: f64,
-    /// Of each rotation component, degrees.
-    pub discrepancy_rotation_deg: f64,
-    /// Measurement noise in the residuals: standard deviation of each position component, millimetres.
-    #[serde(default)]
-    pub noise_position_mm: f64,
-    /// Of each rotation component, degrees.
-    #[serde(default)]
-    pub noise_rotation_deg: f64,
-    /// Whether the residuals of position count as the robot's or the instrument's.
-    #[serde(default = "robot")]
-    pub residuals_position: Attribution,
-    /// The same of rotation.
-    #[serde(default = "robot")]
-    pub residuals_rotation: Attribution,
-    /// Degrees of freedom of the residuals' variance, of position; null where their noise is stated.
-    #[serde(default)]
-    pub freedom_position: Option<f64>,
-    /// The same of rotations.
-    #[serde(default)]
-    pub freedom_rotation: Option<f64>,
+    /// Model error: standard deviation of each component, millimetres or degrees; of positions, rotations and what else was measured.
+    #[serde(flatten)]
+    pub discrepancy: Keyed<DiscrepancyKeys>,
+    /// Measurement noise in the residuals: standard deviation of each component, millimetres or degrees.
+    #[serde(flatten)]
+    pub noise: Keyed<NoiseKeys>,
+    /// Whether the residuals count as the robot's or the instrument's.
+    #[serde(flatten)]
+    pub residuals: Keyed<AttributionKeys, Attribution>,
+    /// Degrees of freedom of the residuals' variance; none where their noise is stated.
+    #[serde(flatten)]
+    pub freedom: Keyed<FreedomKeys>,
     /// Correlation of residuals of consecutive rows; null if not significant.
     #[serde(default)]
     pub lag_one_correlation: Option<f64>,
@@ -179,17 +167,12 @@ pub struct UncertaintyEntry {
     pub covariance_outside_m2: Option<Vec<f64>>,
 }
 
-fn robot() -> Attribution {
-    Attribution::Robot
-}
-
 impl LeftOutEntry {
     fn of(found: &LeftOut) -> Self {
         LeftOutEntry {
             left_out: found.name.clone(),
             rows: found.rows,
-            position_rms_mm: found.position_rms_m * 1e3,
-            rotation_rms_deg: found.rotation_rms_rad.map(f64::to_degrees),
+            rms: shown(|quantity| found.rms.get(quantity)),
         }
     }
 }
@@ -279,19 +262,18 @@ impl UncertaintyEntry {
         };
         let Discrepancy { scatter, extrapolation, standard_deviation, noise, attribution, freedom, lag_one } =
             found.discrepancy;
-        let freedom = freedom.map(|freedom| Some(freedom).filter(|it| it.is_finite()));
+        let measured = calibration.accuracy.training.calibrated;
+        let is_told = |quantity: Quantity| quantity.is_of_pose() || measured.get(quantity).is_some();
+        let told = |quantity: Quantity, si: f64| is_told(quantity).then_some(si);
+        let is_finite = |quantity: Quantity| is_told(quantity) && freedom[quantity].is_finite();
         let names = calibration.targets.iter();
         Some(UncertaintyEntry {
             inflation: scatter,
             extrapolation: Some(extrapolation).filter(|it| *it > scatter),
-            discrepancy_position_mm: standard_deviation[Position] * 1e3,
-            discrepancy_rotation_deg: standard_deviation[Rotation].to_degrees(),
-            noise_position_mm: noise[Position] * 1e3,
-            noise_rotation_deg: noise[Rotation].to_degrees(),
-            residuals_position: attribution[Position],
-            residuals_rotation: attribution[Rotation],
-            freedom_position: freedom[Position],
-            freedom_rotation: freedom[Rotation],
+            discrepancy: shown(|quantity| told(quantity, standard_deviation[quantity])),
+            noise: shown(|quantity| told(quantity, noise[quantity])),
+            residuals: Measured::of(|quantity| is_told(quantity).then_some(attribution[quantity])).into(),
+            freedom: Measured::of(|quantity| is_finite(quantity).then_some(freedom[quantity])).into(),
             lag_one_correlation: lag_one,
             measured: ExpectedEntry::of(trust.measured.as_ref()?),
             range: ExpectedEntry::of(trust.range.as_ref()?),
@@ -315,6 +297,35 @@ impl UncertaintyEntry {
             covariance_m2: upper(&found.covariance),
             covariance_outside_m2: found.covariance_outside.as_deref().map(upper),
         })
+    }
+}
+
+impl UncertaintyEntry {
+    /// Model error and noise. A quantity of which nothing is told has those of another of its unit.
+    fn model_error(&self) -> Discrepancy {
+        let teller = |quantity: Quantity| {
+            let is_told = |other: &Quantity| self.discrepancy.get(*other).is_some();
+            let like = |other: &Quantity| other.unit() == quantity.unit() && is_told(other);
+            Some(quantity)
+                .filter(is_told)
+                .or_else(|| Quantity::ALL.into_iter().find(like))
+                .unwrap_or(quantity)
+        };
+        let noise = |keyed: &Measured<f64>| {
+            let shown = |quantity: Quantity| keyed.get(teller(quantity)).unwrap_or_default();
+            ByQuantity::from_fn(|quantity| quantity.unit().from_shown(shown(quantity)))
+        };
+        let attribution = |quantity| self.residuals.get(teller(quantity)).unwrap_or(Attribution::Robot);
+        let freedom = |quantity| self.freedom.get(teller(quantity)).unwrap_or(f64::INFINITY);
+        Discrepancy {
+            scatter: self.inflation,
+            extrapolation: self.extrapolation.unwrap_or(self.inflation),
+            standard_deviation: noise(&self.discrepancy),
+            noise: noise(&self.noise),
+            attribution: ByQuantity::from_fn(attribution),
+            freedom: ByQuantity::from_fn(freedom),
+            lag_one: self.lag_one_correlation,
+        }
     }
 }
 
@@ -413,25 +424,13 @@ impl CalibrationFile {
         if !is_whole(&entry.covariance_m2) || !outside.is_none_or(is_whole) {
             return Err(bad("a covariance of another size than the unknowns make"));
         }
-        let known = |freedom: Option<f64>| freedom.unwrap_or(f64::INFINITY);
-        let noise =
-            |position_mm: f64, rotation_deg: f64| Noise::new(position_mm * 1e-3, rotation_deg.to_radians());
-        let discrepancy = Discrepancy {
-            scatter: entry.inflation,
-            extrapolation: entry.extrapolation.unwrap_or(entry.inflation),
-            standard_deviation: noise(entry.discrepancy_position_mm, entry.discrepancy_rotation_deg),
-            noise: noise(entry.noise_position_mm, entry.noise_rotation_deg),
-            attribution: by_unit(entry.residuals_position, entry.residuals_rotation),
-            freedom: by_unit(known(entry.freedom_position), known(entry.freedom_rotation)),
-            lag_one: entry.lag_one_correlation,
-        };
         let uncertainty = Uncertainty {
             estimate,
             layout,
             covariance: symmetric(&entry.covariance_m2, n),
             covariance_outside: outside.map(|upper| symmetric(upper, n)),
             sampled: self.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect(),
-            discrepancy,
+            discrepancy: entry.model_error(),
             length_m: entry.length_m,
         };
         Ok((uncertainty, indices))
@@ -470,12 +469,4 @@ fn symmetric(upper: &[f64], n: usize) -> Vec<f64> {
         matrix[j * n + i] = value;
     }
     matrix
-}
-
-/// One value for all lengths, one for all angles.
-fn by_unit<T: Copy>(of_lengths: T, of_angles: T) -> ByQuantity<T> {
-    ByQuantity::from_fn(|quantity| match quantity.unit() {
-        Unit::Metre => of_lengths,
-        Unit::Radian | Unit::One => of_angles,
-    })
 }

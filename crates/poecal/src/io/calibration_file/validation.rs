@@ -5,7 +5,7 @@ use crate::calibration::{
     CoverageCheck, Judgement, PartCoverage, PredictedUncertainty, Refitted, Subject, judge,
 };
 use crate::error::Result;
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Quantity};
 use crate::robot::Body;
 use crate::uncertainty::Uncertainty;
 
@@ -13,8 +13,8 @@ use crate::uncertainty::Uncertainty;
 const MOVED_DEVICE: f64 = 20.0;
 /// Share of errors inside their 95 % bound below which the bounds do not hold.
 const BROKEN: f64 = 0.75;
-/// Errors of exact data below this are rounding: a nanometre.
-const ROUNDING_MM: f64 = 1e-6;
+/// Errors of exact data below this are rounding: a nanometre, in millimetres; of angles in degrees.
+const ROUNDING: f64 = 1e-6;
 
 impl CalibrationFile {
     /// Judges the calibration by all rows of some measurements, with device frame and targets refitted as asked.
@@ -67,23 +67,23 @@ impl CalibrationFile {
     /// Contradiction between a judgement and the calibration, as a sentence.
     #[must_use]
     pub fn doubt(&self, judgement: &Judgement) -> Option<String> {
-        let own_mm = self.own_position_rms_mm().max(ROUNDING_MM);
-        let rms_mm = judgement.calibrated.lead().rms;
-        let check = judgement.promised.filter(|_| rms_mm > ROUNDING_MM);
+        let own = self.own_rms().max(ROUNDING);
+        let (leading, found) = judgement.calibrated.leading()?;
+        let (rms, unit) = (found.rms, leading.unit().symbol());
+        let check = judgement.promised.filter(|_| rms > ROUNDING);
         // Where most errors are inside their bounds, single rows are wrong, not the device.
         let mostly = check.is_some_and(|it| it.parts.lead().inside_bound95 > 0.5);
-        let is_far = rms_mm > MOVED_DEVICE * own_mm;
+        let is_far = rms > MOVED_DEVICE * own;
         if mostly && is_far {
             return Some(format!(
-                "most errors are inside their 95 % bounds, the largest is {:.2} mm: some measurements are gross errors",
-                judgement.calibrated.lead().max
+                "most errors are inside their 95 % bounds, the largest is {:.2} {unit}: some measurements are gross errors",
+                found.max
             ));
         }
         let refit_frame = judgement.refitted.contains(&Refitted::DeviceFrame);
         let broken = check.filter(|it| it.least_inside() < BROKEN);
         let Some(check) = broken else {
-            let times = rms_mm / own_mm;
-            return (check.is_none() && is_far && !refit_frame).then(|| moved_words(times, rms_mm, own_mm));
+            return (check.is_none() && is_far && !refit_frame).then(|| moved_words(leading, rms, own));
         };
         let exceeding = exceeding(&check);
         let Some(some) = &judgement.in_sampled_range else {
@@ -101,7 +101,7 @@ impl CalibrationFile {
             ));
         }
         if !refit_frame && is_far {
-            return Some(moved_words(rms_mm / own_mm, rms_mm, own_mm));
+            return Some(moved_words(leading, rms, own));
         }
         let place = if check.inside_sampled_range < 1.0 { " inside the sampled range" } else { "" };
         Some(format!(
@@ -122,9 +122,10 @@ fn exceeding(check: &CoverageCheck) -> String {
     words.collect::<Vec<_>>().join(" and ")
 }
 
-fn moved_words(times: f64, rms_mm: f64, own_mm: f64) -> String {
+fn moved_words(leading: Quantity, rms: f64, own: f64) -> String {
+    let (name, unit, times) = (leading.name(), leading.unit().symbol(), rms / own);
     format!(
-        "the position error is {times:.0} times that of the calibration itself ({rms_mm:.2e} mm, {own_mm:.2e} mm): \
+        "the {name} error is {times:.0} times that of the calibration itself ({rms:.2e} {unit}, {own:.2e} {unit}): \
          if the measuring device was moved, refit its frame with --refit-frame"
     )
 }

@@ -8,38 +8,79 @@ use std::convert::Infallible;
 use std::io::Write;
 
 use crate::calibration::Calibration;
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Measured, Quantity};
 use crate::robot::JointKind;
 use source::RowSource;
 pub use write::ResidualRows;
 use write::in_pieces;
 
-/// First columns of every file; a column for each joint reading follows.
-const COLUMNS: &str = "file,line,id,set,target,position_nominal[mm],position_registered[mm],position_calibrated[mm],x[mm],y[mm],z[mm],\
-     rotation_nominal[deg],rotation_registered[deg],rotation_calibrated[deg],rx[deg],ry[deg],rz[deg],\
-     weight,leverage,studentized,suspected";
+/// First columns of every file; those of each quantity follow.
+const FIRST: [&str; 5] = ["file", "line", "id", "set", "target"];
+
+/// Columns after those of the quantities; a column for each joint reading follows.
+const DIAGNOSTICS: [&str; 4] = ["weight", "leverage", "studentized", "suspected"];
+
+/// Models whose errors a row has.
+const MODELS: usize = 3;
 
 /// Last column, if there are several instruments.
 const INSTRUMENT: &str = "instrument";
 
-/// Errors of one row by the nominal, registered and calibrated model, and the calibrated model's residual by component in the device's
-/// axes.
+/// Errors of one quantity in one row by the nominal, registered and calibrated model, and the calibrated model's residual by component, of
+/// vectors in the device's axes. Millimetres or degrees.
 ///
 /// ```
-/// let errors = poecal::io::residuals::ModelErrors { models: [11.2, 10.4, 0.1], residual: [0.1, 0.0, 0.0] };
-/// assert_eq!(errors.models[2], errors.residual[0]);
+/// let errors = poecal::io::residuals::ModelErrors::new([11.2, 10.4, 0.1], &[0.1, 0.0, 0.0]);
+/// assert_eq!(errors.models[2], errors.residual()[0]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelErrors {
     /// Of the nominal, registered and calibrated model.
-    pub models: [f64; 3],
-    /// By component.
-    pub residual: [f64; 3],
+    pub models: [f64; MODELS],
+    /// By component, 0 beyond them.
+    residual: [f64; Quantity::MOST_COMPONENTS],
+    components: usize,
 }
 
 impl ModelErrors {
-    /// Of nothing measured.
-    pub(crate) const NONE: ModelErrors = ModelErrors { models: [f64::NAN; 3], residual: [f64::NAN; 3] };
+    /// Errors of the three models, and the residual by component, of which there are at most [`Quantity::MOST_COMPONENTS`].
+    #[must_use]
+    pub fn new(models: [f64; MODELS], residual: &[f64]) -> Self {
+        let mut all = [0.0; Quantity::MOST_COMPONENTS];
+        all.iter_mut().zip(residual).for_each(|(to, from)| *to = *from);
+        ModelErrors { models, residual: all, components: residual.len().min(all.len()) }
+    }
+
+    /// The error of the calibrated model.
+    #[must_use]
+    pub fn calibrated(&self) -> f64 {
+        self.models[2]
+    }
+
+    /// The calibrated model's residual by component.
+    #[must_use]
+    pub fn residual(&self) -> &[f64] {
+        self.residual.get(..self.components).unwrap_or_default()
+    }
+
+    /// All numbers, in the order of [`columns`].
+    pub fn numbers(&self) -> impl Iterator<Item = f64> {
+        self.models.iter().chain(self.residual()).copied()
+    }
+}
+
+/// Names of the columns of a quantity: errors of the three models, then the residual by component.
+///
+/// ```
+/// use poecal::{Quantity, io::residuals::columns};
+/// let names: Vec<String> = columns(Quantity::Rotation).collect();
+/// assert_eq!((&*names[0], &*names[3]), ("rotation_nominal[deg]", "rx[deg]"));
+/// ```
+pub fn columns(quantity: Quantity) -> impl Iterator<Item = String> {
+    let (name, unit) = (quantity.name(), quantity.unit().symbol());
+    let models = ["nominal", "registered", "calibrated"].map(|model| format!("{name}_{model}[{unit}]"));
+    let components = quantity.component_names().iter().map(move |component| format!("{component}[{unit}]"));
+    models.into_iter().chain(components)
 }
 
 /// Diagnostics of a row.
@@ -64,9 +105,11 @@ pub struct RowDiagnostics {
 ///
 /// ```
 /// use poecal::io::residuals::{ModelErrors, ResidualRow};
-/// let position_mm = ModelErrors { models: [11.2, 10.4, 0.1], residual: [0.1, 0.0, 0.0] };
-/// let row = ResidualRow { file: 0, line: 3, id: String::new(), held_out: true, target: 0, station: 0, position_mm, rotation_deg: None, judged: None };
-/// assert!(row.held_out);
+/// use poecal::{Measured, Quantity};
+/// let position = ModelErrors::new([11.2, 10.4, 0.1], &[0.1, 0.0, 0.0]);
+/// let errors = Measured::of(|quantity| (quantity == Quantity::Position).then_some(position));
+/// let row = ResidualRow { file: 0, line: 3, id: String::new(), held_out: true, target: 0, station: 0, errors, judged: None };
+/// assert_eq!(row.errors.leading(), Some((Quantity::Position, position)));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResidualRow {
@@ -82,10 +125,8 @@ pub struct ResidualRow {
     pub target: usize,
     /// Index of its instrument; 0 if there is only one.
     pub station: usize,
-    /// Errors of position, millimetres.
-    pub position_mm: ModelErrors,
-    /// Errors of rotation, degrees, where orientation was measured.
-    pub rotation_deg: Option<ModelErrors>,
+    /// Errors of each measured quantity, millimetres or degrees.
+    pub errors: Measured<ModelErrors>,
     /// Diagnostics.
     pub judged: Option<RowDiagnostics>,
 }
@@ -113,6 +154,9 @@ pub struct Residuals {
     pub stations: Vec<String>,
     /// Names of the joint readings, and whether each is a length (millimetres) or an angle (degrees).
     pub readings: Vec<(String, JointKind)>,
+    /// Quantities that were measured beside positions and rotations, which always have their columns; in the order of
+    /// [`Quantity::ALL`]. Errors of a quantity without columns are not written.
+    pub further: Vec<Quantity>,
     /// The rows.
     pub rows: Vec<ResidualRow>,
     /// The readings of all rows, one after the other, degrees or millimetres.
@@ -138,6 +182,27 @@ impl Residuals {
             },
         );
         all
+    }
+
+    /// The quantities that have columns: position, rotation, and those that were measured beside them.
+    pub fn quantities(&self) -> impl Iterator<Item = Quantity> {
+        Quantity::ALL.into_iter().filter(|quantity| quantity.is_of_pose() || self.further.contains(quantity))
+    }
+
+    /// The quantities that some row measured.
+    #[must_use]
+    pub fn measured(&self) -> Vec<Quantity> {
+        let has = |quantity: &Quantity| self.rows.iter().any(|row| row.errors.get(*quantity).is_some());
+        self.quantities().filter(has).collect()
+    }
+
+    /// The first quantity that some row measured, lengths before angles: that by which the calibration is judged.
+    #[must_use]
+    pub fn leading(&self) -> Option<Quantity> {
+        let measured = self.measured();
+        Measured::of(|quantity| measured.contains(&quantity).then_some(()))
+            .leading()
+            .map(|(quantity, ())| quantity)
     }
 
     /// The readings of a row, degrees or millimetres.

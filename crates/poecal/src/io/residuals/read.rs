@@ -3,11 +3,15 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use super::{COLUMNS, INSTRUMENT, ModelErrors, ResidualRow, Residuals, RowDiagnostics, unit};
+use super::{
+    DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, ResidualRow, Residuals, RowDiagnostics, columns,
+    unit,
+};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::measurements::{Cell, Separator, split};
 use crate::io::source::LARGEST_TABLE;
 use crate::io::source_text;
+use crate::measurement::{ByQuantity, Measured, Quantity};
 use crate::robot::JointKind;
 
 /// Advice for a file of another kind.
@@ -51,16 +55,17 @@ impl Residuals {
 
     /// Reads the header; returns whether the last column names the instrument.
     fn head(&mut self, cells: &[Cow<'_, str>], named: &mut bool) -> std::result::Result<(), Wrong> {
-        for (column, expected) in COLUMNS.split(',').enumerate() {
-            let cell = cells.get(column).map_or("", |cell| cell);
-            if cell != expected {
-                let message = format!(
-                    "found the column `{cell}`, expected `{expected}`, as in {EXPECTED}: calibrate again"
-                );
-                return Err(Wrong { cell: column, message });
+        let mut first = 0;
+        FIRST.into_iter().try_for_each(|column| expect(cells, &mut first, column))?;
+        for quantity in Quantity::ALL {
+            let stands =
+                columns(quantity).next().is_some_and(|column| cells.get(first) == Some(&column.into()));
+            if quantity.is_of_pose() || stands {
+                columns(quantity).try_for_each(|column| expect(cells, &mut first, &column))?;
+                self.further.extend((!quantity.is_of_pose()).then_some(quantity));
             }
         }
-        let first = COLUMNS.split(',').count();
+        DIAGNOSTICS.into_iter().try_for_each(|column| expect(cells, &mut first, column))?;
         let cells = match cells.split_last() {
             Some((last, rest)) if last == INSTRUMENT => {
                 *named = true;
@@ -95,8 +100,7 @@ impl Residuals {
             other => return Err(cells.wrong(other, "fit or held_out")),
         };
         let target = index_of(&mut self.targets, cells.text()?);
-        let position_mm = cells.errors()?.ok_or_else(|| cells.wrong("", "a number"))?;
-        let rotation_deg = cells.errors()?;
+        let errors = cells.errors(self.quantities())?;
         let judged = cells.judged()?;
         for _ in 0..self.readings.len() {
             self.values.push(cells.number()?);
@@ -106,19 +110,21 @@ impl Residuals {
             cells.next += 1;
             return Err(cells.wrong(extra, "no further cell"));
         }
-        self.rows.push(ResidualRow {
-            file,
-            line,
-            id,
-            held_out,
-            target,
-            station,
-            position_mm,
-            rotation_deg,
-            judged,
-        });
+        self.rows.push(ResidualRow { file, line, id, held_out, target, station, errors, judged });
         Ok(())
     }
+}
+
+/// Goes past a column that must be this one.
+fn expect(cells: &[Cow<'_, str>], next: &mut usize, expected: &str) -> std::result::Result<(), Wrong> {
+    let cell = cells.get(*next).map_or("", |cell| cell);
+    if cell != expected {
+        let message =
+            format!("found the column `{cell}`, expected `{expected}`, as in {EXPECTED}: calibrate again");
+        return Err(Wrong { cell: *next, message });
+    }
+    *next += 1;
+    Ok(())
 }
 
 /// Index of a name, which is added if new.
@@ -195,15 +201,33 @@ impl<'a> Cells<'a> {
         empty
     }
 
-    fn errors(&mut self) -> std::result::Result<Option<ModelErrors>, Wrong> {
-        if self.are_empty(6) {
+    /// Errors of the quantities that have columns, of at least one.
+    fn errors(
+        &mut self,
+        quantities: impl Iterator<Item = Quantity>,
+    ) -> std::result::Result<Measured<ModelErrors>, Wrong> {
+        let mut found: ByQuantity<Option<ModelErrors>> = ByQuantity::default();
+        for quantity in quantities {
+            found[quantity] = self.errors_of(quantity)?;
+        }
+        let errors = Measured::of(|quantity| found[quantity]);
+        if errors.leading().is_none() {
+            return Err(self.wrong("", "a number"));
+        }
+        Ok(errors)
+    }
+
+    fn errors_of(&mut self, quantity: Quantity) -> std::result::Result<Option<ModelErrors>, Wrong> {
+        let components = quantity.components();
+        let mut models = [0.0; MODELS];
+        if self.are_empty(models.len() + components) {
             return Ok(None);
         }
-        let mut errors = ModelErrors { models: [0.0; 3], residual: [0.0; 3] };
-        for value in errors.models.iter_mut().chain(&mut errors.residual) {
+        let mut residual = [0.0; Quantity::MOST_COMPONENTS];
+        for value in models.iter_mut().chain(residual.iter_mut().take(components)) {
             *value = self.number()?;
         }
-        Ok(Some(errors))
+        Ok(Some(ModelErrors::new(models, residual.get(..components).unwrap_or_default())))
     }
 
     fn judged(&mut self) -> std::result::Result<Option<RowDiagnostics>, Wrong> {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{ModelErrors, ResidualRow, Residuals, RowDiagnostics};
 use crate::calibration::{Calibration, RowError, RowInfluence};
 use crate::estimate::Estimate;
-use crate::measurement::{Dataset, Quantity};
+use crate::measurement::{Dataset, Measured, Quantity};
 use crate::robot::JointKind;
 
 /// Input for computing any row.
@@ -30,6 +30,7 @@ impl<'a> RowSource<'a> {
             targets: data.targets.iter().map(|name| name.clone().unwrap_or_default()).collect(),
             stations: stations(data),
             readings: readings.map(|name| (name.clone(), calibration.nominal.reading_kind(name))).collect(),
+            further: Quantity::ALL.into_iter().filter(|it| !it.is_of_pose() && data.has(*it)).collect(),
             ..Residuals::default()
         };
         RowSource { data, calibration, influence: RowInfluence::new(calibration, data), held_out, names }
@@ -55,8 +56,7 @@ impl<'a> RowSource<'a> {
                 held_out: self.held_out[row],
                 target: observation.target,
                 station: observation.station,
-                position_mm: errors_of(errors, Quantity::Position).unwrap_or(ModelErrors::NONE),
-                rotation_deg: errors_of(errors, Quantity::Rotation),
+                errors: Measured::of(|quantity| errors_of(errors, quantity)),
                 judged: robustness.rows.get(row).map(|found| RowDiagnostics {
                     weight: found.weight,
                     leverage: influences[at].leverage,
@@ -91,9 +91,10 @@ fn shown(kind: JointKind, value: f64) -> f64 {
 
 /// Errors of one quantity of the three models, in the unit in which people read it, if it was measured.
 fn errors_of(errors: [&RowError; 3], quantity: Quantity) -> Option<ModelErrors> {
-    let unit = quantity.unit();
+    let shown = |value: f64| quantity.unit().shown(value);
     errors[2].length(quantity)?;
-    let length = |error: &RowError| error.length(quantity).map_or(f64::NAN, |length| unit.shown(length));
-    let residual = errors[2].vector(quantity).map(|value| unit.shown(value));
-    Some(ModelErrors { models: errors.map(length), residual: residual.into() })
+    let length = |error: &RowError| error.length(quantity).map_or(f64::NAN, shown);
+    let residual = errors[2].vector(quantity).map(shown);
+    let components = residual.as_slice().get(..quantity.components()).unwrap_or_default();
+    Some(ModelErrors::new(errors.map(length), components))
 }

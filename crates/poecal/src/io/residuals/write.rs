@@ -5,11 +5,11 @@ use std::io::Write;
 use std::ops::Range;
 
 use super::source::RowSource;
-use super::{COLUMNS, INSTRUMENT, ModelErrors, Residuals, RowDiagnostics, unit};
+use super::{DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, Residuals, RowDiagnostics, columns, unit};
 use crate::calibration::Calibration;
 use crate::io::csv_text::cell;
 use crate::io::numbers::push_number;
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Measured, Quantity};
 use crate::threads;
 
 /// Rows of one work item.
@@ -90,7 +90,9 @@ pub(super) fn in_pieces<T: Send, E: Send>(
 
 /// The line of column names.
 fn head(residuals: &Residuals) -> String {
-    let mut text = COLUMNS.to_owned();
+    let quantities = residuals.quantities().flat_map(columns);
+    let names = FIRST.map(str::to_owned).into_iter().chain(quantities).chain(DIAGNOSTICS.map(str::to_owned));
+    let mut text = names.collect::<Vec<_>>().join(",");
     for (name, kind) in &residuals.readings {
         text.push(',');
         text.push_str(&cell(&format!("{name}[{}]", unit(*kind))));
@@ -108,6 +110,7 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
     let files: Vec<_> = residuals.files.iter().map(|name| cell(name)).collect();
     let targets: Vec<_> = residuals.targets.iter().map(|name| cell(name)).collect();
     let stations: Vec<_> = residuals.stations.iter().map(|name| cell(name)).collect();
+    let quantities: Vec<_> = residuals.quantities().collect();
     let mut text = String::with_capacity(range.len() * ROW);
     for (index, row) in range.clone().zip(residuals.rows.get(range).unwrap_or_default()) {
         text.push_str(files.get(row.file).map_or("", |name| name));
@@ -115,8 +118,7 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
         text.push_str(&cell(&row.id));
         text.push_str(if row.held_out { ",held_out," } else { ",fit," });
         text.push_str(targets.get(row.target).map_or("", |name| name));
-        push_errors(&mut text, Some(&row.position_mm));
-        push_errors(&mut text, row.rotation_deg.as_ref());
+        quantities.iter().for_each(|&quantity| push_errors(&mut text, quantity, &row.errors));
         match &row.judged {
             Some(RowDiagnostics { weight, leverage, studentized, suspected }) => {
                 [*weight, *leverage, *studentized]
@@ -136,12 +138,12 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
     text
 }
 
-fn push_errors(out: &mut String, errors: Option<&ModelErrors>) {
-    let Some(errors) = errors else {
-        out.push_str(",,,,,,");
-        return;
-    };
-    errors.models.iter().chain(&errors.residual).for_each(|&value| push_cell(out, value));
+/// The cells of a quantity, empty if it was not measured.
+fn push_errors(out: &mut String, quantity: Quantity, errors: &Measured<ModelErrors>) {
+    match errors.get(quantity) {
+        Some(errors) => errors.numbers().for_each(|value| push_cell(out, value)),
+        None => out.extend(std::iter::repeat_n(',', MODELS + quantity.components())),
+    }
 }
 
 fn push_cell(out: &mut String, number: f64) {

@@ -6,10 +6,12 @@ use std::cmp::Ordering;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
+use super::lead::{Lead, component_words, sign};
 use super::{reading_index, readings_of};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::{CalibrationFile, PoseEntry, ScrewEntry};
-use crate::io::residuals::{ModelErrors, ResidualRow, Residuals};
+use crate::io::residuals::{ResidualRow, Residuals};
+use crate::measurement::Quantity;
 use crate::robot::JointKind;
 use crate::text::visible;
 
@@ -31,7 +33,8 @@ struct Data<'a> {
     /// Names of the targets as they are shown, and their places in the tip frame, metres.
     targets: Vec<(Cow<'a, str>, [f64; 3])>,
     readings: Vec<ReadingData<'a>>,
-    sigma_position_mm: f64,
+    /// The error that is told of each row, in its unit.
+    lead: LeadData,
     rows: RowData,
     /// How many rows there are.
     count: usize,
@@ -52,6 +55,12 @@ struct JointData<'a> {
 }
 
 #[derive(Serialize)]
+struct LeadData {
+    name: String,
+    unit: &'static str,
+}
+
+#[derive(Serialize)]
 struct ReadingData<'a> {
     name: Cow<'a, str>,
     unit: &'static str,
@@ -68,13 +77,29 @@ struct RowData {
     even: Vec<u8>,
     suspected: Vec<u8>,
     target: Vec<usize>,
-    error_mm: Vec<f64>,
-    residual_mm: [Vec<f64>; 3],
-    /// Rotations, where any row has one.
-    residual_deg: Option<[Vec<Option<f64>>; 3]>,
+    /// The error that is told of each row, in the unit of `lead`: millimetres, unless no length was measured.
+    error_mm: Vec<Option<f64>>,
+    /// Residuals of the quantities that any row measured.
+    residuals: Vec<ResidualData>,
     leverage: Vec<Option<f64>>,
     studentized: Vec<Option<f64>>,
     values: Vec<Vec<f64>>,
+}
+
+/// Residuals of a quantity, by component; of vectors in the axes of the first instrument.
+#[derive(Serialize)]
+struct ResidualData {
+    #[serde(skip)]
+    quantity: Quantity,
+    name: &'static str,
+    unit: &'static str,
+    components: Vec<ComponentData>,
+}
+
+#[derive(Serialize)]
+struct ComponentData {
+    name: String,
+    values: Vec<Option<f64>>,
 }
 
 /// The data, safe within a script element.
@@ -96,6 +121,7 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
     });
     let place_of = |name: &String| file.targets.get(name).map_or([0.0; 3], |target| target.position_m);
     let turns = to_first(file, residuals);
+    let lead = Lead::of(residuals);
     let reading = |(_, name, unit)| ReadingData { name: visible(name), unit };
     let data = Data {
         joints: joints.collect(),
@@ -104,8 +130,8 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
         base_from_device: &file.measurement_frame.base_from_device,
         targets: residuals.targets.iter().map(|name| (visible(name), place_of(name))).collect(),
         readings: readings_of(residuals).map(reading).collect(),
-        sigma_position_mm: file.noise.sigma_position_mm,
-        rows: RowData::of(residuals, &turns),
+        lead: LeadData { name: lead.name(), unit: lead.unit() },
+        rows: RowData::of(residuals, &turns, &lead),
         count: residuals.rows.len(),
     };
     let text = serde_json::to_string(&data).map_err(|error| {
@@ -141,7 +167,8 @@ pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
         return (0..count).map(|row| (row, true)).collect();
     }
     let suspected = |row: usize| residuals.rows.get(row)?.judged.map(|judged| judged.suspected);
-    let error = |row: usize| residuals.rows.get(row).map_or(0.0, |row| row.position_mm.models[2]);
+    let lead = Lead::of(residuals);
+    let error = |row: usize| residuals.rows.get(row).and_then(|row| lead.error(row)).unwrap_or_default();
     let (mut worst, mut others): (Vec<usize>, Vec<usize>) =
         (0..count).partition(|&row| suspected(row) == Some(true));
     for (rows, most) in [(&mut worst, SUSPECTED), (&mut others, WORST)] {
@@ -158,13 +185,13 @@ pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
 }
 
 impl RowData {
-    fn of(residuals: &Residuals, turns: &[Matrix3<f64>]) -> Self {
-        let turned = residuals.rows.iter().any(|row| row.rotation_deg.is_some());
-        let mut rows = RowData { residual_deg: turned.then(Default::default), ..RowData::default() };
+    fn of(residuals: &Residuals, turns: &[Matrix3<f64>], lead: &Lead) -> Self {
+        let measured = residuals.measured().into_iter().map(ResidualData::new).collect();
+        let mut rows = RowData { residuals: measured, ..RowData::default() };
         rows.values = vec![Vec::new(); residuals.readings.len()];
         for (index, even) in drawn(residuals) {
             if let Some(row) = residuals.rows.get(index) {
-                rows.push(residuals, (index, row, even), turns.get(row.station));
+                rows.push(residuals, (index, row, even), turns.get(row.station), lead.error(row));
             }
         }
         rows
@@ -175,32 +202,43 @@ impl RowData {
         residuals: &Residuals,
         (index, row, even): (usize, &ResidualRow, bool),
         turn: Option<&Matrix3<f64>>,
+        error: Option<f64>,
     ) {
-        let turned = |residual: [f64; 3]| match turn {
-            Some(turn) => (turn * Vector3::from(residual)).into(),
-            None => residual,
-        };
         self.number.push(index + 1);
         self.place.push(visible(&place(residuals, index)).into_owned());
         self.held_out.push(u8::from(row.held_out));
         self.even.push(u8::from(even));
         self.suspected.push(u8::from(row.judged.is_some_and(|judged| judged.suspected)));
         self.target.push(row.target);
-        self.error_mm.push(rounded(row.position_mm.models[2]));
-        for (column, value) in self.residual_mm.iter_mut().zip(turned(row.position_mm.residual)) {
-            column.push(rounded(value));
-        }
-        if let Some(columns) = &mut self.residual_deg {
-            let turn = |errors: ModelErrors, k: usize| rounded(turned(errors.residual)[k]);
-            for (k, column) in columns.iter_mut().enumerate() {
-                column.push(row.rotation_deg.map(|errors| turn(errors, k)));
-            }
-        }
+        self.error_mm.push(error.map(rounded));
+        self.residuals.iter_mut().for_each(|residual| residual.push(row, turn));
         self.leverage.push(row.judged.map(|judged| rounded(judged.leverage)).filter(|it| it.is_finite()));
         self.studentized
             .push(row.judged.map(|judged| rounded(judged.studentized)).filter(|it| it.is_finite()));
         for (column, &value) in self.values.iter_mut().zip(residuals.values(index)) {
             column.push(rounded(value));
+        }
+    }
+}
+
+impl ResidualData {
+    fn new(quantity: Quantity) -> Self {
+        let components = (0..quantity.components())
+            .map(|k| ComponentData { name: component_words(quantity, k), values: Vec::new() });
+        let (name, unit) = (quantity.name(), sign(quantity.unit()));
+        ResidualData { quantity, name, unit, components: components.collect() }
+    }
+
+    fn push(&mut self, row: &ResidualRow, turn: Option<&Matrix3<f64>>) {
+        let errors = row.errors.get(self.quantity);
+        let residual = errors.as_ref().map(|errors| match (errors.residual(), turn) {
+            (&[x, y, z], Some(turn)) => (turn * Vector3::new(x, y, z)).as_slice().to_vec(),
+            (residual, _) => residual.to_vec(),
+        });
+        for (k, component) in self.components.iter_mut().enumerate() {
+            component
+                .values
+                .push(residual.as_ref().and_then(|residual| residual.get(k)).copied().map(rounded));
         }
     }
 }

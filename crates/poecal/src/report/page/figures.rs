@@ -2,8 +2,9 @@
 
 use maud::{Markup, PreEscaped};
 
+use super::lead::Lead;
 use crate::io::calibration_file::CalibrationFile;
-use crate::io::residuals::{ResidualRow, Residuals};
+use crate::io::residuals::Residuals;
 use crate::report::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
 use crate::robot::JointKind;
 use crate::threads;
@@ -15,16 +16,20 @@ const INTERVAL: f64 = 2.0;
 
 /// Which share of the rows is off by how much, for the three models.
 pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
+    let lead = Lead::of(residuals);
     let lines = ["nominal", "registered", "calibrated"].iter().enumerate().map(|(model, name)| {
         let rows = residuals.rows.iter().filter(|row| row.held_out == held_out);
-        let errors = rows.map(|row| row.position_mm.models.get(model).copied().unwrap_or(f64::NAN)).collect();
+        let errors = rows.filter_map(|row| lead.models(row)?.get(model).copied()).collect();
         // The same colours as the residuals of the calibrated model everywhere else.
         Line { name: (*name).to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
     });
+    let name = lead.name();
     let plot = LinePlot {
-        title: "Distribution of the position error".to_owned(),
-        description: "For each of the three models the share of the rows whose position error is below a value; the table beside has the figures.".to_owned(),
-        x: Axis::new("position error, mm (logarithmic)", Scale::Log),
+        title: format!("Distribution of the {name} error"),
+        description: format!(
+            "For each of the three models the share of the rows whose {name} error is below a value; the table beside has the figures."
+        ),
+        x: Axis::new(&format!("{name} error, {} (logarithmic)", lead.unit()), Scale::Log),
         y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
         lines: lines.collect(),
         mark: None,
@@ -34,25 +39,25 @@ pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
 
 /// Errors of the calibrated model on fitted rows and on those held out.
 pub(super) fn sets(residuals: &Residuals) -> Markup {
+    let lead = Lead::of(residuals);
     let of = |name: &str, style, held_out: bool| {
         let rows = residuals.rows.iter().filter(|row| row.held_out == held_out);
-        let errors: Vec<f64> = rows.map(calibrated).collect();
+        let errors: Vec<f64> = rows.filter_map(|row| lead.error(row)).collect();
         Line { name: name.to_owned(), style, points: distribution(errors) }
     };
     let lines = [of("fitted", 0, false), of("held out", 1, true)];
+    let name = lead.name();
     let plot = LinePlot {
         title: "Calibrated model: fitted against held-out rows".to_owned(),
-        description: "The share of fitted and of held-out rows whose position error is below a value; the table below has the figures.".to_owned(),
-        x: Axis::new("position error, mm", Scale::Linear).including(&[0.0]),
+        description: format!(
+            "The share of fitted and of held-out rows whose {name} error is below a value; the table below has the figures."
+        ),
+        x: Axis::new(&format!("{name} error, {}", lead.unit()), Scale::Linear).including(&[0.0]),
         y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
         lines: lines.into_iter().filter(|line| !line.points.is_empty()).collect(),
         mark: None,
     };
     PreEscaped(plot.svg())
-}
-
-fn calibrated(row: &ResidualRow) -> f64 {
-    row.position_mm.models[2]
 }
 
 /// Points (error, share in per cent) of the distribution of some errors.

@@ -4,6 +4,7 @@ use maud::{Markup, Render, html};
 
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
+use super::lead::{kinds_words, sign, spaced};
 use super::trust::direction_words;
 use crate::analysis::Direction;
 use crate::calibration::{Level, NoiseSource, SetAccuracy};
@@ -16,15 +17,19 @@ use crate::unit::Unit;
 
 /// A quantity's errors as a caption: `Position error on …, mm`.
 pub(super) fn error_words(quantity: Quantity, of: &str) -> String {
-    let name = quantity.name();
-    let (first, rest) = name.split_at(name.len().min(1));
     let unit = match quantity.unit() {
         Unit::Metre => ", mm",
         Unit::Radian => ", degrees",
         Unit::One => "",
     };
     let of = if of.is_empty() { String::new() } else { format!(" {of}") };
-    format!("{}{rest} error{of}{unit}", first.to_uppercase())
+    capital(&format!("{} error{of}{unit}", quantity.name()))
+}
+
+/// Words with a capital letter.
+pub(super) fn capital(words: &str) -> String {
+    let (first, rest) = words.split_at(words.len().min(1));
+    format!("{}{rest}", first.to_uppercase())
 }
 
 pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
@@ -50,10 +55,11 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             div {
                 @for table in &tables { (table) }
                 @if let (None, Some(found)) = (held_out, &file.cross_validation) {
-                    p.note {
-                        "Cross-validation: "
-                        (figure(found.random.position_rms_mm, "cross_validation.random.position_rms_mm"))
-                        " mm (RMS) on rows that were not fitted."
+                    @if let Some((quantity, key, rms)) = found.random.rms.leading_key() {
+                        p.note {
+                            "Cross-validation: " (figure(rms, format_args!("cross_validation.random.{key}"))) " " (sign(quantity.unit()))
+                            " (RMS) on rows that were not fitted."
+                        }
                     }
                 }
                 p.note {
@@ -169,14 +175,8 @@ fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str
             @if k > 0 { br; } (path(name, format_args!("inputs.measurements.{k}")))
         }
     };
-    let orientations = residuals.rows.iter().filter(|row| row.rotation_deg.is_some()).count();
-    let kinds = match (orientations, residuals.rows.len() - orientations) {
-        (poses, 0) => format!("{poses} poses"),
-        (0, points) => format!("{points} points"),
-        (poses, points) => format!("{poses} poses and {points} points"),
-    };
     let rows = html! {
-        (kinds) @if residuals.targets.len() > 1 { " of " (residuals.targets.len()) " targets" } ": "
+        (kinds_words(residuals)) @if residuals.targets.len() > 1 { " of " (residuals.targets.len()) " targets" } ": "
         (count(file.accuracy.training.count, "accuracy.training.count")) " fitted, "
         @if let Some(set) = &file.accuracy.held_out { (count(set.count, "accuracy.held_out.count")) } @else { "none" }
         " held out"
@@ -207,8 +207,10 @@ fn noise(file: &CalibrationFile) -> Markup {
         NoiseSource::Estimated => "estimated from the fit",
     };
     html! {
-        (figure(noise.sigma_position_mm, "noise.sigma_position_mm")) " mm"
-        @if let Some(sigma) = noise.sigma_rotation_deg { ", " (figure(sigma, "noise.sigma_rotation_deg")) "°" }
+        @for (k, (quantity, key, sigma)) in noise.sigma.keys().enumerate() {
+            @if k > 0 { ", " }
+            (figure(sigma, format_args!("noise.{key}"))) (spaced(quantity.unit()))
+        }
         " each component, " (source)
     }
 }

@@ -5,6 +5,7 @@ mod figures;
 mod first;
 mod html;
 mod joints;
+mod lead;
 mod method;
 mod rows;
 mod trust;
@@ -107,13 +108,16 @@ fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
             ));
         }
     }
-    let fitted = residuals.rows.iter().filter(|row| !row.held_out);
-    let found = Statistic::of(fitted.map(|row| row.position_mm.models[2]).collect()).map_or(0.0, |it| it.rms);
-    let expected = accuracy.training.calibrated.position_mm().rms;
-    if (found - expected).abs() > SAME * expected {
-        return refused(format!(
-            "of {found:.6} mm (RMS) on the fitted rows, expected {expected:.6} mm as in the calibration"
-        ));
+    for (quantity, expected) in accuracy.training.calibrated.iter() {
+        let fitted = residuals.rows.iter().filter(|row| !row.held_out);
+        let errors = fitted.filter_map(|row| Some(row.errors.get(quantity)?.calibrated())).collect();
+        let found = Statistic::of(errors).map_or(0.0, |it| it.rms);
+        let (expected, unit) = (expected.rms, quantity.unit().symbol());
+        if (found - expected).abs() > SAME * expected {
+            return refused(format!(
+                "of {found:.6} {unit} (RMS) on the fitted rows, expected {expected:.6} {unit} as in the calibration"
+            ));
+        }
     }
     Ok(())
 }

@@ -3,12 +3,14 @@
 use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place, short};
-use super::first::{error_table, error_words};
+use super::first::{capital, error_table, error_words};
 use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, plots, section};
+use super::lead::{Lead, component_words, sign, spaced};
 use super::{figures, readings_of};
 use crate::calibration::Statistic;
-use crate::io::calibration_file::{CalibrationFile, OutlierSet};
+use crate::io::calibration_file::{CalibrationFile, OutlierSet, RepeatabilityEntry};
 use crate::io::residuals::{ResidualRow, Residuals, RowDiagnostics};
+use crate::measurement::Quantity;
 use crate::report::table::number;
 use crate::threads;
 
@@ -24,6 +26,7 @@ pub(super) fn sections(file: &CalibrationFile, residuals: &Residuals) -> Markup 
 
 fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let (shown, all) = (drawn(residuals).len(), residuals.rows.len());
+    let lead = Lead::of(residuals).name();
     let content = html! {
         p { "Residual of each measurement: measured minus predicted by the calibrated model, in the axes of the measuring device." }
         @if shown < all {
@@ -43,12 +46,14 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         ))
         (folded("Errors by parts of each joint's values", &joint_table(residuals)))
         div.pair {
-            (chart("histogram", "How the errors are spread", "Position errors of fitted and held-out rows, each as shares of its own rows."))
+            (chart("histogram", "How the errors are spread", &format!("Errors of {lead} in fitted and held-out rows, each as shares of its own rows.")))
             (chart(
                 "normal",
                 "Normal plot of the components",
-                "Components of position, ordered, against where those of a normal distribution would be. On the line they are noise; ends that \
-                 bend away are gross errors or errors that the model does not describe.",
+                &format!(
+                    "Components of {lead}, ordered, against where those of a normal distribution would be. On the line they are noise; ends \
+                     that bend away are gross errors or errors that the model does not describe."
+                ),
             ))
         }
         h3 { "Fitted against held-out rows" }
@@ -99,30 +104,22 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
         2,
         &["component", "rows", "number", "mean", "RMS", "largest"],
     );
-    let turned = residuals.rows.iter().any(|row| row.rotation_deg.is_some());
-    let parts = if turned { 2 } else { 1 };
-    let rows = threads::map_parts_of(residuals.rows.len(), 6 * parts, |index| {
-        let (part, component, (set, held_out)) =
-            (index / 6, index / 2 % 3, [("fitted", false), ("held out", true)][index % 2]);
-        let of = |row: &ResidualRow| {
-            let errors = if part == 0 { Some(row.position_mm) } else { row.rotation_deg };
-            errors.map(|errors| errors.residual[component])
-        };
-        let name = [["x, mm", "y, mm", "z, mm"], ["about x, °", "about y, °", "about z, °"]][part][component];
+    let measured = residuals.measured().into_iter();
+    let components: Vec<(Quantity, usize)> = measured
+        .flat_map(|quantity| (0..quantity.components()).map(move |component| (quantity, component)))
+        .collect();
+    let rows = threads::map_parts_of(residuals.rows.len(), 2 * components.len(), |index| {
+        let (quantity, component) = *components.get(index / 2)?;
+        let (set, held_out) = [("fitted", false), ("held out", true)][index % 2];
+        let of = |row: &ResidualRow| row.errors.get(quantity)?.residual().get(component).copied();
+        let name = format!("{}, {}", component_words(quantity, component), sign(quantity.unit()));
         let values: Vec<f64> =
             residuals.rows.iter().filter(|row| row.held_out == held_out).filter_map(of).collect();
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let found = Statistic::of(values.iter().map(|value| value.abs()).collect())?;
         let sign = if mean < 0.0 { "−" } else { "" };
         let mean = format!("{sign}{}", number(mean.abs()));
-        Some([
-            name.to_owned(),
-            set.to_owned(),
-            values.len().to_string(),
-            mean,
-            number(found.rms),
-            number(found.max),
-        ])
+        Some([name, set.to_owned(), values.len().to_string(), mean, number(found.rms), number(found.max)])
     });
     rows.into_iter().flatten().for_each(|cells| table.cells(cells));
     table
@@ -130,11 +127,13 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
 
 /// Errors by equal parts of what was sampled of each joint.
 fn joint_table(residuals: &Residuals) -> HtmlTable {
-    let mut table = HtmlTable::new(
-        "Position error of the calibrated model, mm (RMS), and number of rows by parts of each reading",
-        1,
-        &["reading", "from", "to", "rows", "RMS"],
+    let lead = Lead::of(residuals);
+    let of = format!(
+        "of the calibrated model, {} (RMS), and number of rows by parts of each reading",
+        lead.unit()
     );
+    let caption = capital(&format!("{} error {of}", lead.name()));
+    let mut table = HtmlTable::new(&caption, 1, &["reading", "from", "to", "rows", "RMS"]);
     let readings: Vec<_> = readings_of(residuals).collect();
     let rows = threads::map_parts_of(residuals.rows.len(), readings.len(), |reading| {
         let (index, name, unit) = &readings[reading];
@@ -149,9 +148,9 @@ fn joint_table(residuals: &Residuals) -> HtmlTable {
         let mut sums = [(0usize, 0.0); PARTS];
         for (k, row) in residuals.rows.iter().enumerate() {
             let part = value(k).map(|value| (((value - least) / width) as usize).min(PARTS - 1));
-            if let Some(sum) = part.and_then(|part| sums.get_mut(part)) {
+            if let Some((sum, error)) = part.and_then(|part| sums.get_mut(part)).zip(lead.error(row)) {
                 sum.0 += 1;
-                sum.1 += row.position_mm.models[2].powi(2);
+                sum.1 += error.powi(2);
             }
         }
         let row = |(part, (rows, sum)): (usize, &(usize, f64))| {
@@ -225,20 +224,29 @@ fn suspects(file: &CalibrationFile, residuals: &Residuals) -> Markup {
 }
 
 fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
-    let turned = file.outliers.iter().any(|it| it.residual_deg.is_some());
-    let mut head = vec!["row", "set", "off by, mm"];
-    head.extend(turned.then_some("off by, °"));
-    head.extend(["studentised", "weight"]);
+    let is_measured =
+        |quantity: &Quantity| file.outliers.iter().any(|it| it.residual.get(*quantity).is_some());
+    let measured: Vec<Quantity> = Quantity::ALL.into_iter().filter(is_measured).collect();
+    let off_by: Vec<String> = measured
+        .iter()
+        .map(|quantity| format!("{} off by, {}", quantity.name(), sign(quantity.unit())))
+        .collect();
+    let words = |words: [&'static str; 2]| words.into_iter();
+    let head = words(["row", "set"])
+        .chain(off_by.iter().map(String::as_str))
+        .chain(words(["studentised", "weight"]));
+    let head: Vec<&str> = head.collect();
     let mut table = HtmlTable::new("Suspected outliers, the worst first", 2, &head);
     for (k, found) in file.outliers.iter().take(LISTED).enumerate() {
-        let figure = |value, name| figure_or(value, format_args!("outliers.{k}.{name}"), "–");
+        let figure = |value, name: &str| figure_or(value, format_args!("outliers.{k}.{name}"), "–");
         let set = match found.set {
             OutlierSet::Fit => "fitted",
             OutlierSet::HeldOut => "held out",
         };
         let place = named(residuals, &found.file, found.row, format_args!("outliers.{k}.row"));
-        let mut cells = vec![place, set.render(), figure(Some(found.residual_mm), "residual_mm")];
-        cells.extend(turned.then(|| figure(found.residual_deg, "residual_deg")));
+        let mut cells = vec![place, set.render()];
+        let residuals = measured.iter().map(|quantity| found.residual.named(*quantity));
+        cells.extend(residuals.map(|(key, residual)| figure(residual, &key)));
         cells.extend([figure(Some(found.studentized), "studentized"), figure(Some(found.weight), "weight")]);
         table.cells(cells);
     }
@@ -247,27 +255,13 @@ fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
 
 fn repeatability(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let Some(found) = &file.repeatability else { return Markup::default() };
-    let head = ["pose", "rows", "accuracy, nominal", "registered", "calibrated", "repeatability"];
-    let mut table = HtmlTable::new("Pose accuracy and repeatability, mm", 1, &head);
-    table.row(&[
-        &"mean of all",
-        &count(found.rows, "repeatability.rows"),
-        &figure(found.accuracy_nominal_mm, "repeatability.accuracy_nominal_mm"),
-        &figure(found.accuracy_registered_mm, "repeatability.accuracy_registered_mm"),
-        &figure(found.accuracy_calibrated_mm, "repeatability.accuracy_calibrated_mm"),
-        &figure(found.repeatability_mm, "repeatability.repeatability_mm"),
-    ]);
-    for (k, pose) in found.listed.iter().take(LISTED).enumerate() {
-        let figure = |value, name| figure(value, format_args!("repeatability.listed.{k}.{name}"));
-        table.row(&[
-            &named(residuals, &pose.file, pose.row, format_args!("repeatability.listed.{k}.row")),
-            &count(pose.rows, format_args!("repeatability.listed.{k}.rows")),
-            &figure(pose.accuracy_nominal_mm, "accuracy_nominal_mm"),
-            &figure(pose.accuracy_registered_mm, "accuracy_registered_mm"),
-            &figure(pose.accuracy_calibrated_mm, "accuracy_calibrated_mm"),
-            &figure(pose.repeatability_mm, "repeatability_mm"),
-        ]);
-    }
+    let tables =
+        found.mean.repeatability.keys().map(|(quantity, ..)| repeatability_table(found, residuals, quantity));
+    let tables: Vec<HtmlTable> = tables.collect();
+    let worst = found.worst_repeatability.keys().map(|(quantity, key, worst)| {
+        html! { (figure(worst, format_args!("repeatability.{key}"))) (spaced(quantity.unit())) }
+    });
+    let worst: Vec<Markup> = worst.collect();
     let content = html! {
         p {
             (count(found.poses, "repeatability.poses")) " poses were measured three times or more ("
@@ -276,11 +270,34 @@ fn repeatability(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             " the mean distance of these from their mean, and three standard deviations of it. ISO 9283 asks for 30 rows a pose, each \
              approached again; rows of a robot that stood still show the device's repeatability only."
         }
-        (table)
+        @for table in &tables { (table) }
         p.note {
-            "The worst repeatability is " (figure(found.worst_repeatability_mm, "repeatability.worst_repeatability_mm"))
-            " mm. A pose is named by its first row."
+            "The worst repeatability is " @for (k, worst) in worst.iter().enumerate() { @if k > 0 { ", " } (worst) }
+            ". A pose is named by its first row."
         }
     };
     section("repeatability", "Repeatability", &content)
+}
+
+/// Poses whose errors of this quantity were compared.
+fn repeatability_table(found: &RepeatabilityEntry, residuals: &Residuals, quantity: Quantity) -> HtmlTable {
+    let head = ["pose", "rows", "accuracy, nominal", "registered", "calibrated", "repeatability"];
+    let caption = format!("Pose accuracy and repeatability, {} ({})", sign(quantity.unit()), quantity.name());
+    let mut table = HtmlTable::new(&caption, 1, &head);
+    let is_all = found.mean.repeatability.keys().count() == 1;
+    let rows = if is_all { count(found.rows, "repeatability.rows") } else { Markup::default() };
+    let figures = |numbers: [(String, Option<f64>); 4], key: &str| {
+        numbers.map(|(own, value)| figure_or(value, format_args!("{key}.{own}"), "–"))
+    };
+    let mean = figures(found.mean.of(quantity), "repeatability");
+    table.cells(["mean of all".render(), rows].into_iter().chain(mean));
+    let listed = found.listed.iter().enumerate();
+    let listed = listed.filter(|(_, pose)| pose.own.repeatability.get(quantity).is_some());
+    for (k, pose) in listed.take(LISTED) {
+        let key = format!("repeatability.listed.{k}");
+        let place = named(residuals, &pose.file, pose.row, format_args!("{key}.row"));
+        let rows = count(pose.rows, format_args!("{key}.rows"));
+        table.cells([place, rows].into_iter().chain(figures(pose.own.of(quantity), &key)));
+    }
+    table
 }

@@ -4,16 +4,18 @@ use maud::{Markup, html};
 
 use super::figures;
 use super::html::{HtmlTable, count, decimal, figure, figure_or, list, plots, quoted, scaled, section};
+use super::lead::{sign, spaced};
 use crate::analysis::Direction;
 use crate::io::calibration_file::{
     CalibrationFile, CrossValidationEntry, LeftOutEntry, RangeEntry, UncertaintyEntry,
 };
+use crate::measurement::Quantity;
 use crate::robot::JointKind;
 use crate::uncertainty::Attribution;
 
 pub(super) fn sections(file: &CalibrationFile) -> Markup {
     let content = html! {
-        @if let Some(uncertainty) = &file.uncertainty { (expected(uncertainty)) }
+        @if let Some(uncertainty) = &file.uncertainty { (expected(file, uncertainty)) }
         @if let Some(found) = &file.cross_validation { (cross_validation(found)) }
         @if !file.coverage.is_empty() { (coverage(file)) }
         @if let Some(uncertainty) = file.uncertainty.as_ref().filter(|it| !it.parts.is_empty()) { (parts(file, uncertainty)) }
@@ -27,7 +29,7 @@ fn unit_of(file: &CalibrationFile, joint: &str) -> (f64, &'static str) {
     if slides { (1e3, " mm") } else { (1f64.to_degrees(), "°") }
 }
 
-fn expected(found: &UncertaintyEntry) -> Markup {
+fn expected(file: &CalibrationFile, found: &UncertaintyEntry) -> Markup {
     let head = ["configurations", "RMS", "95 % bound, mean", "95 % bound, worst"];
     let mut table = HtmlTable::new("Expected errors of predicted positions, mm", 1, &head);
     for (words, set, key) in
@@ -41,14 +43,17 @@ fn expected(found: &UncertaintyEntry) -> Markup {
             &figure(set.worst_bound95_position_mm, "worst_bound95_position_mm"),
         ]);
     }
+    let leading = file.accuracy.training.calibrated.leading().map(|(quantity, _)| quantity);
+    let source = leading.and_then(|leading| Some((leading, found.residuals.get(leading)?)));
     html! {
         (table)
-        p {
-            @match found.residuals_position {
+        @if let Some((leading, source)) = source { p {
+            @match source {
                 Attribution::Robot => {
-                    (figure(found.discrepancy_position_mm, "uncertainty.discrepancy_position_mm"))
-                    " mm per component of the residuals count as robot error in the figures above: nothing shows that they are \
-                     measurement noise. A stated noise (--sigma-position) that explains them, or repeated measurements, would."
+                    (figure_or(found.discrepancy.get(leading), format_args!("uncertainty.discrepancy_{}", leading.key()), "–"))
+                    (spaced(leading.unit()))
+                    " per component of the residuals count as robot error in the figures above: nothing shows that they are \
+                     measurement noise. A stated noise (--sigma-" (leading.name()) ") that explains them, or repeated measurements, would."
                 }
                 Attribution::StatedNoise => {
                     "The stated noise explains the residuals, so predictions are better than any single measurement."
@@ -58,7 +63,7 @@ fn expected(found: &UncertaintyEntry) -> Markup {
                      measurement."
                 }
             }
-        }
+        } }
         @if let Some(drawn) = &found.bootstrap {
             p {
                 "Block bootstrap, " (count(drawn.drawings, "uncertainty.bootstrap.drawings"))
@@ -72,19 +77,21 @@ fn expected(found: &UncertaintyEntry) -> Markup {
 }
 
 fn cross_validation(found: &CrossValidationEntry) -> Markup {
-    let turned = found.random.rotation_rms_deg.is_some();
-    let mut head = vec!["rows predicted", "rows", "position, mm (RMS)"];
-    head.extend(turned.then_some("rotation, ° (RMS)"));
+    let measured: Vec<(Quantity, String)> =
+        found.random.rms.keys().map(|(quantity, key, _)| (quantity, key)).collect();
+    let rms =
+        |(quantity, _): &(Quantity, String)| format!("{}, {} (RMS)", quantity.name(), sign(quantity.unit()));
+    let errors: Vec<String> = measured.iter().map(rms).collect();
+    let head: Vec<&str> =
+        ["rows predicted", "rows"].into_iter().chain(errors.iter().map(String::as_str)).collect();
     let mut table = HtmlTable::new("Fitted rows, predicted by fits of the others", 1, &head);
     let mut add = |entry: &LeftOutEntry, key: &str| {
         let mut cells = vec![
             quoted(&entry.left_out, format_args!("{key}.left_out")),
             count(entry.rows, format_args!("{key}.rows")),
-            figure(entry.position_rms_mm, format_args!("{key}.position_rms_mm")),
         ];
-        if turned {
-            cells.push(figure_or(entry.rotation_rms_deg, format_args!("{key}.rotation_rms_deg"), "–"));
-        }
+        let errors = measured.iter().map(|(quantity, own)| (entry.rms.get(*quantity), own));
+        cells.extend(errors.map(|(rms, own)| figure_or(rms, format_args!("{key}.{own}"), "–")));
         table.cells(cells);
     };
     add(&found.random, "cross_validation.random");

@@ -2,7 +2,7 @@
 
 use super::super::identify::coverage_table;
 use super::super::outliers;
-use super::super::table::{accuracy_table, joints_words, line, number};
+use super::super::table::{self, accuracy_table, joints_words, leading_words, line, number};
 use crate::calibration::{FormulationWords, NoiseSource};
 use crate::error::shown;
 use crate::io::calibration_file::CalibrationFile;
@@ -59,9 +59,7 @@ fn noise_words(file: &CalibrationFile) -> String {
         NoiseSource::Given => "as stated",
         NoiseSource::Estimated => "estimated from the fit",
     };
-    let rotation = file.noise.sigma_rotation_deg;
-    let rotation = rotation.map_or_else(String::new, |sigma| format!(", {} deg", number(sigma)));
-    format!("{} mm{rotation} each component, {source}", number(file.noise.sigma_position_mm))
+    format!("{}, {source}", table::noise_words(&file.noise.sigma))
 }
 
 fn solver_words(file: &CalibrationFile) -> String {
@@ -109,11 +107,11 @@ fn trust(out: &mut String, file: &CalibrationFile) {
         line(out, "expected", &words);
     }
     if let Some(found) = &file.cross_validation {
-        let worst = found.blocked.iter().max_by(|a, b| a.position_rms_mm.total_cmp(&b.position_rms_mm));
+        let worst = found.blocked.iter().max_by(|a, b| a.rms.lead().total_cmp(&b.rms.lead()));
         let worst = worst.map_or_else(String::new, |worst| {
-            format!("; worst block: {}, {} mm", worst.left_out, number(worst.position_rms_mm))
+            format!("; worst block: {}, {}", worst.left_out, leading_words(&worst.rms))
         });
-        let words = format!("{} mm (RMS) on random rows{worst}", number(found.random.position_rms_mm));
+        let words = format!("{} (RMS) on random rows{worst}", leading_words(&found.random.rms));
         line(out, "predicted", &format!("in cross-validation {words}"));
     }
     let mut joints: Vec<_> = file.corrections.iter().collect();

@@ -1,6 +1,6 @@
 //! The errors that count: of rows that were not fitted, before and after.
 
-use super::super::table::{STATISTICS, line, number, number_or_dash, row};
+use super::super::table::{STATISTICS, leading_words, line, number_or_dash, row};
 use crate::calibration::{DeviceFrameKnowledge, ModelAccuracy, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 
@@ -48,8 +48,8 @@ pub(super) fn table(out: &mut String, file: &CalibrationFile) {
     if !held_out {
         line(out, "", "no row was held out: these errors are of fitted rows");
         if let Some(found) = &file.cross_validation {
-            let rms = number(found.random.position_rms_mm);
-            line(out, "", &format!("cross-validation: {rms} mm (RMS) on rows that were not fitted"));
+            let rms = leading_words(&found.random.rms);
+            line(out, "", &format!("cross-validation: {rms} (RMS) on rows that were not fitted"));
         }
     }
 }

@@ -124,7 +124,10 @@ fn named<'a>(outlier: &'a OutlierEntry, last: &mut &'a str) -> String {
         format!("{}:{}", outlier.file, outlier.row)
     };
     *last = &outlier.file;
-    format!("{place} by {} mm", number(outlier.residual_mm))
+    match outlier.residual.leading() {
+        Some((quantity, residual)) => format!("{place} by {} {}", number(residual), quantity.unit().symbol()),
+        None => place,
+    }
 }
 
 /// What of the robot is undetermined or weakly determined; in few words where there are many joints to name.

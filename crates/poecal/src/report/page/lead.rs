@@ -1,0 +1,97 @@
+//! The one error that is told of each row, and words for quantities.
+
+use crate::io::residuals::{ModelErrors, ResidualRow, Residuals};
+use crate::measurement::Quantity;
+use crate::unit::Unit;
+
+/// Which error is told of each row: that of the first quantity that it measured in one unit, of lengths if any row measured one. It is
+/// the position of poses and points.
+pub(super) struct Lead {
+    quantities: Vec<Quantity>,
+    unit: Unit,
+}
+
+impl Lead {
+    pub(super) fn of(residuals: &Residuals) -> Self {
+        let unit = residuals.leading().map_or(Unit::Metre, Quantity::unit);
+        let mut lead = Lead { quantities: Vec::new(), unit };
+        let leads = |it: &Quantity| {
+            residuals.rows.iter().any(|row| lead.found(row).is_some_and(|(own, _)| own == *it))
+        };
+        lead.quantities = residuals.measured().into_iter().filter(leads).collect();
+        lead
+    }
+
+    fn found(&self, row: &ResidualRow) -> Option<(Quantity, ModelErrors)> {
+        row.errors.iter().find(|(quantity, _)| quantity.unit() == self.unit)
+    }
+
+    /// The errors of the three models in a row, if it measured something in this unit.
+    pub(super) fn models(&self, row: &ResidualRow) -> Option<[f64; 3]> {
+        self.found(row).map(|(_, errors)| errors.models)
+    }
+
+    /// The error of the calibrated model in a row.
+    pub(super) fn error(&self, row: &ResidualRow) -> Option<f64> {
+        self.found(row).map(|(_, errors)| errors.calibrated())
+    }
+
+    /// What it is an error of: `position`.
+    pub(super) fn name(&self) -> String {
+        let names: Vec<&str> = self.quantities.iter().map(|quantity| quantity.name()).collect();
+        if names.is_empty() { Quantity::Position.name().to_owned() } else { names.join(" or ") }
+    }
+
+    pub(super) fn unit(&self) -> &'static str {
+        sign(self.unit)
+    }
+}
+
+/// A unit as the page writes it.
+pub(super) fn sign(unit: Unit) -> &'static str {
+    match unit {
+        Unit::Metre => "mm",
+        Unit::Radian => "°",
+        Unit::One => "",
+    }
+}
+
+/// A unit behind a number.
+pub(super) fn spaced(unit: Unit) -> &'static str {
+    match unit {
+        Unit::Metre => " mm",
+        Unit::Radian => "°",
+        Unit::One => "",
+    }
+}
+
+/// A component as the page names it: `position x`, or the name of a quantity that is one number.
+pub(super) fn component_words(quantity: Quantity, component: usize) -> String {
+    let own = quantity.component_names().get(component).copied().unwrap_or_default();
+    if quantity.components() == 1 { quantity.name().to_owned() } else { format!("{} {own}", quantity.name()) }
+}
+
+/// How many rows measured what: poses, points, and others by the names of their quantities.
+pub(super) fn kinds_words(residuals: &Residuals) -> String {
+    let kind_of =
+        |row: &ResidualRow| -> Vec<Quantity> { row.errors.iter().map(|(quantity, _)| quantity).collect() };
+    let mut kinds: Vec<(Vec<Quantity>, usize)> = Vec::new();
+    for row in &residuals.rows {
+        let kind = kind_of(row);
+        match kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, count)) => *count += 1,
+            None => kinds.push((kind, 1)),
+        }
+    }
+    // Poses before points, before others.
+    kinds.sort_by_key(|(kind, _)| (!kind.iter().all(|it| it.is_of_pose()), std::cmp::Reverse(kind.len())));
+    let words = kinds.iter().map(|(kind, count)| match **kind {
+        [Quantity::Position, Quantity::Rotation] => format!("{count} poses"),
+        [Quantity::Position] => format!("{count} points"),
+        _ => {
+            let names: Vec<&str> = kind.iter().map(|quantity| quantity.name()).collect();
+            format!("{count} of {}", names.join(" and "))
+        }
+    });
+    words.collect::<Vec<_>>().join(" and ")
+}
