@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
-use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-use super::{reading_index, readings_of};
+use super::frames::{FrameData, Frames, draws_instruments};
+use super::{reading_index, readings_of, short};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::calibration_file::{CalibrationFile, PoseEntry, ScrewEntry};
-use crate::io::residuals::{ModelErrors, ResidualRow, Residuals};
+use crate::io::calibration_file::{CalibrationFile, ScrewEntry};
+use crate::io::residuals::{ResidualRow, Residuals};
 use crate::robot::JointKind;
 use crate::text::visible;
 
@@ -25,11 +25,10 @@ const EXACT: i32 = 22;
 #[derive(Serialize)]
 struct Data<'a> {
     joints: Vec<JointData<'a>>,
-    home: &'a PoseEntry,
-    nominal_home: &'a PoseEntry,
-    base_from_device: &'a PoseEntry,
-    /// Names of the targets as they are shown, and their places in the tip frame, metres.
-    targets: Vec<(Cow<'a, str>, [f64; 3])>,
+    tip: FrameData<'a>,
+    targets: Vec<FrameData<'a>>,
+    instruments: Vec<FrameData<'a>>,
+    draws_instruments: bool,
     readings: Vec<ReadingData<'a>>,
     sigma_position_mm: f64,
     rows: RowData,
@@ -41,6 +40,8 @@ struct Data<'a> {
 struct JointData<'a> {
     name: Cow<'a, str>,
     kind: JointKind,
+    /// The joint on whose link it stands; none for the base.
+    on: Option<usize>,
     screw: &'a ScrewEntry,
     nominal_screw: &'a ScrewEntry,
     origin_m: [f64; 3],
@@ -68,7 +69,11 @@ struct RowData {
     even: Vec<u8>,
     suspected: Vec<u8>,
     target: Vec<usize>,
+    /// None if there is only one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    instrument: Option<Vec<usize>>,
     error_mm: Vec<f64>,
+    /// In the axes of its instrument.
     residual_mm: [Vec<f64>; 3],
     /// Rotations, where any row has one.
     residual_deg: Option<[Vec<Option<f64>>; 3]>,
@@ -79,11 +84,13 @@ struct RowData {
 
 /// The data, safe within a script element.
 pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<String> {
-    let joints = file.joints.iter().map(|joint| {
+    let robot = file.robot()?;
+    let joints = file.joints.iter().enumerate().map(|(k, joint)| {
         let sampled = file.coverage.iter().find(|found| found.joint == joint.name);
         JointData {
             name: visible(&joint.name),
             kind: joint.kind,
+            on: robot.body_before(k).joint(),
             screw: &joint.screw,
             nominal_screw: &joint.nominal_screw,
             origin_m: joint.base_from_joint.position_m,
@@ -94,18 +101,17 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
             offset: joint.reading.offset,
         }
     });
-    let place_of = |name: &String| file.targets.get(name).map_or([0.0; 3], |target| target.position_m);
-    let turns = to_first(file, residuals);
+    let frames = Frames::of(file, &robot, residuals)?;
     let reading = |(_, name, unit)| ReadingData { name: visible(name), unit };
     let data = Data {
         joints: joints.collect(),
-        home: &file.robot.base_from_tip_at_zero,
-        nominal_home: &file.robot.nominal_base_from_tip_at_zero,
-        base_from_device: &file.measurement_frame.base_from_device,
-        targets: residuals.targets.iter().map(|name| (visible(name), place_of(name))).collect(),
+        tip: frames.tip,
+        targets: frames.targets,
+        instruments: frames.instruments,
+        draws_instruments: draws_instruments(file),
         readings: readings_of(residuals).map(reading).collect(),
         sigma_position_mm: file.noise.sigma_position_mm,
-        rows: RowData::of(residuals, &turns),
+        rows: RowData::of(residuals),
         count: residuals.rows.len(),
     };
     let text = serde_json::to_string(&data).map_err(|error| {
@@ -113,17 +119,6 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
     })?;
     // Within a script element, `</script` and `<!--` would be markup wherever they stand.
     Ok(text.replace('<', "\\u003c"))
-}
-
-/// What turns the axes of each instrument to those of the first, if there are several: the page draws all residuals in those.
-fn to_first(file: &CalibrationFile, residuals: &Residuals) -> Vec<Matrix3<f64>> {
-    let device = |pose: &PoseEntry| pose.pose().map_or_else(|_| Matrix3::identity(), |pose| pose.rotation);
-    let first = device(&file.measurement_frame.base_from_device).transpose();
-    let of = |name: &String| {
-        let found = file.stations.iter().find(|it| it.instrument.as_deref().unwrap_or_default() == name);
-        found.map_or_else(Matrix3::identity, |it| first * device(&it.base_from_device))
-    };
-    residuals.stations.iter().map(of).collect()
 }
 
 /// Keeps so many items that come first, in any order.
@@ -158,42 +153,39 @@ pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
 }
 
 impl RowData {
-    fn of(residuals: &Residuals, turns: &[Matrix3<f64>]) -> Self {
+    fn of(residuals: &Residuals) -> Self {
         let turned = residuals.rows.iter().any(|row| row.rotation_deg.is_some());
-        let mut rows = RowData { residual_deg: turned.then(Default::default), ..RowData::default() };
+        let mut rows = RowData {
+            residual_deg: turned.then(Default::default),
+            instrument: (!residuals.stations.is_empty()).then(Vec::new),
+            ..RowData::default()
+        };
         rows.values = vec![Vec::new(); residuals.readings.len()];
         for (index, even) in drawn(residuals) {
             if let Some(row) = residuals.rows.get(index) {
-                rows.push(residuals, (index, row, even), turns.get(row.station));
+                rows.push(residuals, (index, row, even));
             }
         }
         rows
     }
 
-    fn push(
-        &mut self,
-        residuals: &Residuals,
-        (index, row, even): (usize, &ResidualRow, bool),
-        turn: Option<&Matrix3<f64>>,
-    ) {
-        let turned = |residual: [f64; 3]| match turn {
-            Some(turn) => (turn * Vector3::from(residual)).into(),
-            None => residual,
-        };
+    fn push(&mut self, residuals: &Residuals, (index, row, even): (usize, &ResidualRow, bool)) {
         self.number.push(index + 1);
         self.place.push(visible(&place(residuals, index)).into_owned());
         self.held_out.push(u8::from(row.held_out));
         self.even.push(u8::from(even));
         self.suspected.push(u8::from(row.judged.is_some_and(|judged| judged.suspected)));
         self.target.push(row.target);
+        if let Some(instrument) = &mut self.instrument {
+            instrument.push(row.station);
+        }
         self.error_mm.push(rounded(row.position_mm.models[2]));
-        for (column, value) in self.residual_mm.iter_mut().zip(turned(row.position_mm.residual)) {
+        for (column, value) in self.residual_mm.iter_mut().zip(row.position_mm.residual) {
             column.push(rounded(value));
         }
         if let Some(columns) = &mut self.residual_deg {
-            let turn = |errors: ModelErrors, k: usize| rounded(turned(errors.residual)[k]);
             for (k, column) in columns.iter_mut().enumerate() {
-                column.push(row.rotation_deg.map(|errors| turn(errors, k)));
+                column.push(row.rotation_deg.map(|errors| rounded(errors.residual[k])));
             }
         }
         self.leverage.push(row.judged.map(|judged| rounded(judged.leverage)).filter(|it| it.is_finite()));
@@ -223,12 +215,4 @@ pub(super) fn place(residuals: &Residuals, index: usize) -> String {
         "" => format!("row {}", index + 1),
         file => format!("{}:{}", short(&residuals.files, file), row.line),
     }
-}
-
-/// A file's name without its folders, if no other file has that name.
-pub(super) fn short<'a>(files: &[String], file: &'a str) -> &'a str {
-    let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
-    let own = name(file);
-    let same = files.iter().filter(|other| name(other) == own).count();
-    if same == 1 { &file[file.len() - own.len()..] } else { file }
 }
