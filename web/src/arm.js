@@ -1,6 +1,6 @@
 // The arm in three dimensions with its controls.
 import { readingsOf, shown } from "./data.js";
-import { chain } from "./kinematics.js";
+import { CALIBRATED, NOMINAL, configure, subtract } from "./kinematics.js";
 import { withUnit } from "./plot.js";
 import { Scene } from "./scene.js";
 import { onColours } from "./theme.js";
@@ -14,10 +14,11 @@ export function showArm(place, data) {
     place.innerHTML = '<p class="note">This browser has no WebGL, which the picture needs. All figures are in the tables.</p>';
     return;
   }
-  const stage = element("div", "stage");
+  const stage = element("div", data.draws_instruments ? "stage stays" : "stage");
   const frame = element("div", "scene");
   frame.append(scene.canvas, scene.paper);
-  stage.append(frame, colourLine(), scaleLine(scene));
+  if (scene.instruments) frame.append(scene.instruments.names);
+  stage.append(frame, colourLine(data), scaleLine(scene));
   const panel = element("div", "panel");
   place.append(stage, panel);
   scene.follow(frame);
@@ -30,6 +31,7 @@ export function showArm(place, data) {
     scene.renderNow();
   });
   choose(view, 0);
+  if (data.draws_instruments) scene.look("oblique");
 }
 
 function element(name, className, text) {
@@ -98,10 +100,11 @@ function measurementControls(view) {
   return set;
 }
 
-function describe({ rows, targets, lead }, row) {
+function describe({ rows, targets, instruments, draws_instruments, lead }, row) {
   const set = rows.held_out[row] ? "held out" : "fitted";
-  const target = targets[rows.target[row]][0];
-  return `${rows.place[row]}, ${set}${target ? `, target ${target}` : ""}: off by ${withUnit(rows.error_mm[row], lead.unit)}`;
+  const target = targets[rows.target[row]].name;
+  const instrument = draws_instruments && instruments[rows.instrument[row]].name;
+  return `${rows.place[row]}, ${set}${target ? `, target ${target}` : ""}${instrument ? `, instrument ${instrument}` : ""}: off by ${withUnit(rows.error_mm[row], lead.unit)}`;
 }
 
 function slider(label, { min, max, step, value, spoken }, changedTo) {
@@ -199,6 +202,7 @@ function shownControls(view) {
   add("nominal arm", "nominal", true);
   add("residual arrows", "arrows", true);
   add("where it could reach but was not measured", "reach", true);
+  if (view.scene.instruments) add("instruments and names", "instruments", true);
   return set;
 }
 
@@ -211,24 +215,34 @@ function viewControls(view) {
   return set;
 }
 
-/** Where the tip is, in words that a screen reader hears when it has come to rest. */
+/** Where the arms end, in words that a screen reader hears when they have come to rest. */
 function stateText(view) {
+  const { data, state } = view;
   const text = element("p", "state");
   text.setAttribute("role", "status");
   text.id = "tip";
   view.listeners.push(() => {
-    const of = (model) => chain(view.data, view.state.readings, model).tip;
-    const [calibrated, nominal] = [of("screw"), of("nominal_screw")];
-    const apart = Math.hypot(...calibrated.map((value, k) => value - nominal[k]));
-    text.dataset.tip = calibrated.join(",");
-    text.textContent = `Tip at ${calibrated.map((value) => shown(1e3 * value, 5)).join(", ")} mm in the base; the tip of the nominal model is ${shown(1e3 * apart)} mm away.`;
+    const [calibrated, nominal] = [CALIBRATED, NOMINAL].map((model) => configure(data, state.readings, model));
+    const ends = data.ends.map((end) => {
+      const [place, other] = [calibrated, nominal].map((model) => model.at(end).t);
+      return { name: end.name, place, words: place.map((value) => shown(1e3 * value, 5)).join(", "), apart: shown(1e3 * Math.hypot(...subtract(place, other))) };
+    });
+    text.dataset.tip = calibrated.at(data.tip).t.join(",");
+    text.dataset.ends = JSON.stringify(ends.map(({ name, place }) => [name, place]));
+    const [{ words, apart }] = ends;
+    const isTip = data.ends.length === 1 && data.ends[0] === data.tip;
+    text.textContent = isTip
+      ? `Tip at ${words} mm in the base; the tip of the nominal model is ${apart} mm away.`
+      : `In the base: ${ends.map((end) => `${end.name} at ${end.words} mm, by the nominal model ${end.apart} mm away`).join("; ")}.`;
   });
   return text;
 }
 
-function colourLine() {
+function colourLine(data) {
   const line = element("ul", "keys");
-  for (const [text, name] of [["calibrated", "s0"], ["nominal", "soft"], ["axes of the joints", "s2"], ["chosen measurement", "alarm"]]) {
+  const keys = [["calibrated", "s0"], ["nominal", "soft"], ["axes of the joints", "s2"], ["chosen measurement", "alarm"]];
+  if (data.draws_instruments) keys.push(["instruments", "s3"]);
+  for (const [text, name] of keys) {
     const item = element("li");
     const sign = element("i");
     sign.style.setProperty("--key", `var(--${name})`);

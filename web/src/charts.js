@@ -161,7 +161,7 @@ function joint(cell, data, { believed, reading, k, text, values, unit, range }) 
   if (!order.length) {
     const text = document.createElement("p");
     text.className = "note";
-    text.textContent = "What was measured lies on this joint's axis, and does not move with it.";
+    text.textContent = "What was measured does not move with this joint, or lies on its axis.";
     cell.append(text);
     return;
   }

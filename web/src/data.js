@@ -1,26 +1,45 @@
 // The page's data, with what follows from them: where each row's target was predicted, and how its residual lies in the base frame.
-import { chain, poseOf, rotate } from "./kinematics.js";
+import { CALIBRATED, configure, motions, poseOf, rotate, subtract } from "./kinematics.js";
 
-/** Reads the data, and adds to each row its place and its residual in the base frame. */
 export function readData() {
-  const data = JSON.parse(document.getElementById("report-data").textContent);
+  return complete(JSON.parse(document.getElementById("report-data").textContent));
+}
+
+/** Adds to each row its place and its residual in the base frame, and to the robot the frames where its arms end. */
+export function complete(data) {
   data.factors = data.readings.map((reading) => (reading.unit === "mm" ? 1e-3 : Math.PI / 180));
-  data.home = poseOf(data.home);
-  data.nominal_home = poseOf(data.nominal_home);
-  data.base_from_device = poseOf(data.base_from_device);
-  const rows = data.rows;
+  const { rows, tip, targets, instruments } = data;
+  for (const frame of [tip, ...targets, ...instruments]) {
+    frame.pose = poseOf(frame.pose);
+    frame.nominal_pose = frame.nominal_pose && poseOf(frame.nominal_pose);
+  }
+  // Targets in the tip frame are none of these.
+  data.mounted = targets.filter((target) => target.nominal_pose);
+  const ends = [...data.mounted, ...instruments].filter((frame) => frame.on !== null);
+  const atTip = ({ on, pose }) => on === tip.on && Math.hypot(...subtract(pose.t, tip.pose.t)) < 1e-6;
+  data.ends = ends.length && (tip.on === null || ends.some(atTip)) ? ends : [tip, ...ends];
+  const reaching = new Map();
   rows.count = rows.number.length;
+  rows.instrument ??= rows.number.map(() => 0);
   rows.predicted = [];
+  rows.reached = [];
   rows.residual = [];
   rows.motion = data.readings.map(() => []);
   for (let row = 0; row < rows.count; row++) {
-    const found = chain(data, readingsOf(data, row), "screw", data.targets[rows.target[row]][1]);
+    const found = configure(data, readingsOf(data, row), CALIBRATED);
+    const [target, instrument] = [targets[rows.target[row]], instruments[rows.instrument[row]]];
+    const place = found.at(target).t;
     const shift = shiftOf(rows, row);
-    const residual = shift && rotate(data.base_from_device.r, shift);
-    rows.predicted.push(found.target);
+    const residual = shift && rotate(found.at(instrument).r, shift);
+    rows.predicted.push(place);
+    // A camera that looks at a target beside the robot is itself what moves.
+    const moving = target.on === null ? instrument : target;
+    if (!reaching.has(moving.on)) reaching.set(moving.on, moving);
+    rows.reached.push(found.at(moving).t);
     rows.residual.push(residual ?? [0, 0, 0]);
-    found.motion.forEach((motion, reading) => rows.motion[reading].push(along(residual, motion)));
+    motions(data, found, place, target, instrument).forEach((motion, reading) => rows.motion[reading].push(along(residual, motion)));
   }
+  data.reaching = [...reaching.values()];
   return data;
 }
 

@@ -1,5 +1,11 @@
 // Forward kinematics by the product of exponentials. A pose is { r, t }: a rotation by rows and a translation in metres.
 
+/** The models: the keys of a joint's screw and of a frame's pose at zero joint values. */
+export const CALIBRATED = { screw: "screw", pose: "pose" };
+export const NOMINAL = { screw: "nominal_screw", pose: "nominal_pose" };
+
+const STILL = { r: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], t: [0, 0, 0] };
+
 /** A pose from a position and a quaternion x, y, z, w. */
 export function poseOf({ position_m, quaternion_xyzw: [x, y, z, w] }) {
   const r = [
@@ -67,28 +73,37 @@ function pointOn({ v_m: v, w }, near) {
   return add(q, scale(w, dot(w, subtract(near, q))));
 }
 
-/**
- * Where the axes, the tip and a target are. `model` is "screw" or "nominal_screw". `motion` is how the target moves with each reading.
- */
-export function chain(data, readings, model, target = [0, 0, 0]) {
-  let pose = { r: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], t: [0, 0, 0] };
+/** Where a model has its axes at some readings, and where a frame `at` a body. A joint's body moves with the one on which it stands. */
+export function configure(data, readings, model) {
+  const bodies = [];
+  const motionOf = (body) => (body === null ? STILL : bodies[body]);
   const axes = data.joints.map((joint) => {
-    const screw = joint[model];
-    const turns = joint.kind === "revolute";
-    const axis = {
-      point: act(pose, pointOn(screw, joint.origin_m)),
-      direction: rotate(pose.r, turns ? screw.w : screw.v_m),
+    const screw = joint[model.screw];
+    const before = motionOf(joint.on);
+    bodies.push(compose(before, exponential(screw, joint.multiplier * readings[joint.reading] + joint.offset)));
+    return {
+      point: act(before, pointOn(screw, joint.origin_m)),
+      direction: rotate(before.r, joint.kind === "revolute" ? screw.w : screw.v_m),
     };
-    pose = compose(pose, exponential(screw, joint.multiplier * readings[joint.reading] + joint.offset));
-    return axis;
   });
-  const tip = compose(pose, model === "screw" ? data.home : data.nominal_home);
-  const place = act(tip, target);
+  return { axes, at: (frame) => compose(motionOf(frame.on), frame[model.pose]) };
+}
+
+/** Whether a joint moves a frame. */
+function moves(data, joint, frame) {
+  let on = frame.on;
+  while (on !== null && on > joint) on = data.joints[on].on;
+  return on === joint;
+}
+
+/** How a place on the target's body moves against the instrument with each reading: joints that move both do not count. */
+export function motions(data, { axes }, place, target, instrument) {
   const motion = data.readings.map(() => [0, 0, 0]);
   data.joints.forEach((joint, k) => {
-    const turns = joint.kind === "revolute";
-    const velocity = turns ? cross(axes[k].direction, subtract(place, axes[k].point)) : axes[k].direction;
-    motion[joint.reading] = add(motion[joint.reading], scale(velocity, joint.multiplier));
+    const turn = joint.multiplier * (moves(data, k, target) - moves(data, k, instrument));
+    const { direction, point } = axes[k];
+    const velocity = joint.kind === "revolute" ? cross(direction, subtract(place, point)) : direction;
+    if (turn) motion[joint.reading] = add(motion[joint.reading], scale(velocity, turn));
   });
-  return { axes, tip: tip.t, target: place, motion };
+  return motion;
 }

@@ -5,7 +5,8 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { readingsOf } from "./data.js";
-import { add, chain, scale, subtract } from "./kinematics.js";
+import { Instruments } from "./instruments.js";
+import { CALIBRATED, NOMINAL, add, configure, scale, subtract } from "./kinematics.js";
 import { dot, flat, solid } from "./materials.js";
 import { quantile } from "./statistics.js";
 import { colour } from "./theme.js";
@@ -56,10 +57,17 @@ export class Scene {
     const { count } = rows;
     const errors = rows.error_mm.slice().sort((a, b) => a - b);
     const ends = [[0, 0, 0], ...rows.predicted, ...elbows(this.data)];
-    const bounds = [0, 1, 2].map((k) => ends.reduce(([a, b], it) => [Math.min(a, it[k]), Math.max(b, it[k])], [0, 0]));
+    const bounds = boundsOf(ends);
     this.size = Math.max(Math.hypot(...bounds.map(([a, b]) => b - a)) * 0.6, 0.1);
-    this.centre = bounds.map(([a, b]) => (a + b) / 2);
-    this.bounds = bounds;
+    this.centre = middleOf(bounds);
+    const [xs, ys, zs] = bounds;
+    // What the views show: all of this, and the robot as it is drawn.
+    this.drawn = [];
+    this.fitted = xs.flatMap((x) => ys.flatMap((y) => zs.map((z) => [x, y, z])));
+    if (this.data.draws_instruments) {
+      this.fitted = [...ends, ...nearInstruments(this.data, this.centre, this.size)];
+      this.centre = middleOf(boundsOf(this.fitted));
+    }
     this.legend = { least: 0, most: quantile(errors, 0.95) || 1e-9, square: 0 };
     this.legend.square = 1e3 * [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01].find((it) => it <= this.size / 3 || it === 0.01);
     // Many arrows are shorter, so that they stay apart.
@@ -71,7 +79,7 @@ export class Scene {
   /** How far the axes of both models are apart, metres. */
   deviation() {
     const zero = this.data.readings.map(() => 0);
-    const [a, b] = ["screw", "nominal_screw"].map((model) => chain(this.data, zero, model));
+    const [a, b] = [CALIBRATED, NOMINAL].map((model) => configure(this.data, zero, model));
     const apart = a.axes.map((axis, k) => {
       const tilt = Math.hypot(...subtract(axis.direction, b.axes[k].direction)) * this.size * 0.12;
       return Math.max(tilt, Math.hypot(...subtract(axis.point, b.axes[k].point)));
@@ -85,6 +93,7 @@ export class Scene {
     this.buildArrows();
     this.buildReach();
     this.buildGrid();
+    this.buildInstruments();
     this.chosen = new Mesh(new SphereGeometry(this.size * 0.013, 16, 12), this.materials.chosen);
     this.world.add(this.parts.calibrated, this.parts.nominal, this.chosen);
     this.recolour();
@@ -101,6 +110,13 @@ export class Scene {
     this.parts.arrows.add(this.shafts, this.heads);
     this.headLength = width * 8;
     this.world.add(this.parts.arrows);
+  }
+
+  buildInstruments() {
+    if (!this.data.draws_instruments) return;
+    this.instruments = new Instruments(this.data, this.size);
+    this.parts.instruments = this.instruments.group;
+    this.world.add(this.parts.instruments);
   }
 
   /** Puts every arrow where its target was predicted. */
@@ -137,6 +153,8 @@ export class Scene {
     this.renderer.setClearColor(of("card"));
     const colours = { calibrated: "s0", nominal: "soft", axis: "s2", chosen: "alarm", grid: "rule", reach: "soft" };
     for (const [material, name] of Object.entries(colours)) this.materials[material].uniforms.tint.value = of(name);
+    const ofInstruments = { body: "s3", x: "alarm", y: "s2", z: "s0", sight: "alarm", plumb: "soft" };
+    for (const [material, name] of Object.entries(ofInstruments)) if (this.instruments) this.instruments.materials[material].uniforms.tint.value = of(name);
     // One hue, from near the page's colour to full: the larger the residual, the stronger.
     const [least, most] = [of("s1").lerp(of("card"), 0.7), of("s1").lerp(of("ink"), 0.15)];
     const root = document.documentElement.style;
@@ -163,35 +181,50 @@ export class Scene {
 
   /** Shows both arms at these readings (radians, metres), and the measurement that was chosen. */
   pose(readings, row) {
-    const target = row === null ? undefined : this.data.targets[this.data.rows.target[row]][1];
-    const nominal = chain(this.data, readings, "nominal_screw");
-    const calibrated = chain(this.data, readings, "screw", target);
+    const { rows, targets, instruments, mounted, tip } = this.data;
+    const nominal = configure(this.data, readings, NOMINAL);
+    const calibrated = configure(this.data, readings, CALIBRATED);
     const apart = (a, b) => add(b, scale(subtract(a, b), this.axisScale));
     const axes = calibrated.axes.map((axis, k) => {
       const direction = new Vector3(...apart(axis.direction, nominal.axes[k].direction)).normalize().toArray();
       return { point: apart(axis.point, nominal.axes[k].point), direction };
     });
-    // The tool is no error of the arm: it stands at the last axis as it is.
-    const last = axes.length - 1;
-    const shift = subtract(axes[last].point, calibrated.axes[last].point);
-    const ends = [calibrated.tip, ...(target ? [calibrated.target] : [])].map((place) => add(place, shift));
-    this.fill(this.parts.calibrated, axes, ends, this.materials.calibrated, this.materials.axis);
-    this.fill(this.parts.nominal, nominal.axes, [nominal.tip], this.materials.nominal, this.materials.nominal);
+    // Tools and instruments are no error of the arm: they stand at the last axis as it is.
+    const moved = (frame) => {
+      const { r, t } = calibrated.at(frame);
+      return { r, t: frame.on === null ? t : add(t, subtract(axes[frame.on].point, calibrated.axes[frame.on].point)) };
+    };
+    const links = this.links(axes, (frame) => moved(frame).t);
+    const target = targets[rows.target[row]];
+    if (target && !target.nominal_pose) links.push([moved(tip).t, moved(target).t]);
+    for (const { on, pose } of mounted) if (on === null) links.push([pose.t, pose.t]);
+    if (this.data.draws_instruments) this.drawn = links.flat();
+    this.fill(this.parts.calibrated, axes, links, this.materials.calibrated, this.materials.axis);
+    const nominalLinks = this.links(nominal.axes, (frame) => nominal.at(frame).t);
+    this.fill(this.parts.nominal, nominal.axes, nominalLinks, this.materials.nominal, this.materials.nominal);
+    const seen = row === null ? null : rows.predicted[row];
     this.chosen.visible = row !== null;
-    if (row !== null) this.chosen.position.set(...this.data.rows.predicted[row]);
+    if (seen) this.chosen.position.set(...seen);
+    this.instruments?.pose(instruments.map(moved), mounted.map((frame) => moved(frame).t), rows.instrument[row], seen);
     if (this.placedScale !== this.arrowScale) this.placeArrows();
     this.render();
   }
 
-  /** Links from axis to axis and the axes as rods, in place of what was there. */
-  fill(group, axes, ends, linkMaterial, axisMaterial) {
+  /** Links from the axis of each body to those of the joints that stand on it, and to where its arm ends. */
+  links(axes, placeOf) {
+    const from = (on) => (on === null ? [0, 0, 0] : axes[on].point);
+    const { joints, ends } = this.data;
+    return [...joints.map((joint, k) => [from(joint.on), axes[k].point]), ...ends.map((end) => [from(end.on), placeOf(end)])];
+  }
+
+  /** Links and the axes as rods, in place of what was there. */
+  fill(group, axes, links, linkMaterial, axisMaterial) {
     for (const child of group.children) child.geometry.dispose();
     group.clear();
-    const places = [[0, 0, 0], ...axes.map((axis) => axis.point), ...ends];
-    for (let k = 1; k < places.length; k++) {
-      rod(group, places[k - 1], places[k], this.size * 0.009, linkMaterial);
+    for (const [from, to] of links) {
+      rod(group, from, to, this.size * 0.009, linkMaterial);
       const joint = new Mesh(new SphereGeometry(this.size * 0.0125, 12, 8), linkMaterial);
-      joint.position.set(...places[k]);
+      joint.position.set(...to);
       group.add(joint);
     }
     for (const { point, direction } of axes) {
@@ -201,29 +234,40 @@ export class Scene {
   }
 
   show(part, on) {
-    this.parts[part].visible = on;
+    if (part === "instruments") this.instruments.show(on);
+    else this.parts[part].visible = on;
     this.render();
   }
 
   look(name) {
     const directions = { oblique: [1, -1.25, 0.75], front: [0, -1.7, 0.02], side: [1.7, 0, 0.02], top: [0.001, -0.02, 1.7] };
-    const centre = new Vector3(...this.centre);
     const direction = new Vector3(...directions[name]).normalize();
-    this.camera.position.copy(centre).addScaledVector(direction, this.distance(direction));
+    const { centre, distance } = this.fit(direction);
+    this.camera.position.copy(centre).addScaledVector(direction, distance);
     this.controls.target.copy(centre);
     this.controls.update();
     this.render();
   }
 
-  /** How far away everything is seen from a direction. */
-  distance(direction) {
+  /** From how far away, and about which centre, everything is seen from a direction. */
+  fit(direction) {
     const right = new Vector3(0, 0, 1).cross(direction).normalize();
     const up = direction.clone().cross(right);
     const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const [xs, ys, zs] = this.bounds;
-    const corners = xs.flatMap((x) => ys.flatMap((y) => zs.map((z) => new Vector3(...subtract([x, y, z], this.centre)))));
-    const needed = corners.map((corner) => corner.dot(direction) + Math.max(Math.abs(corner.dot(up)) / half, (Math.abs(corner.dot(right)) * ASPECT) / half));
-    return 1.02 * Math.max(...needed);
+    const centre = new Vector3(...this.centre);
+    const places = [...this.fitted, ...this.drawn].map((place) => new Vector3(...place).sub(centre));
+    const room = this.data.draws_instruments ? 1.15 : 1.02;
+    const distance = () => room * Math.max(...places.map((at) => at.dot(direction) + Math.max(Math.abs(at.dot(up)), Math.abs(at.dot(right)) * ASPECT) / half));
+    if (!this.data.draws_instruments) return { centre, distance: distance() };
+    // As much room on the left as on the right, and below as above.
+    for (const side of [right, up, right, up, right, up]) {
+      const from = distance();
+      const parts = places.map((at) => at.dot(side) / (from - at.dot(direction)));
+      const shift = side.clone().multiplyScalar((from * (Math.min(...parts) + Math.max(...parts))) / 2);
+      centre.add(shift);
+      for (const at of places) at.sub(shift);
+    }
+    return { centre, distance: distance() };
   }
 
   zoom(factor) {
@@ -284,15 +328,36 @@ export class Scene {
 
   /** Draws at once. */
   renderNow() {
-    if (this.begun) this.renderer.render(this.world, this.camera);
+    if (!this.begun) return;
+    this.renderer.render(this.world, this.camera);
+    this.instruments?.write(this.camera, this.canvas.clientWidth, this.canvas.clientHeight);
   }
 }
 
-/** Where the joints are in some of the rows. */
+/** The least and the largest coordinate of places and the origin, by axis. */
+function boundsOf(places) {
+  return [0, 1, 2].map((k) => places.reduce(([a, b], it) => [Math.min(a, it[k]), Math.max(b, it[k])], [0, 0]));
+}
+
+function middleOf(bounds) {
+  return bounds.map(([a, b]) => (a + b) / 2);
+}
+
+/** Where joints, and what is mounted on them, are in some of the rows. */
 function elbows(data) {
   const step = Math.ceil(data.rows.count / 60);
   const rows = data.rows.number.map((_, row) => row).filter((row) => row % step === 0);
-  return rows.flatMap((row) => chain(data, readingsOf(data, row), "screw").axes.map((axis) => axis.point));
+  const mounted = data.ends.filter((end) => end !== data.tip);
+  return rows.flatMap((row) => {
+    const found = configure(data, readingsOf(data, row), CALIBRATED);
+    return [...found.axes.map((axis) => axis.point), ...mounted.map((end) => found.at(end).t)];
+  });
+}
+
+/** Instruments beside the robot that the picture has room for: of those farther away, it shows the direction. */
+function nearInstruments({ draws_instruments, instruments }, centre, size) {
+  const places = instruments.filter((it) => draws_instruments && it.on === null).map((it) => it.pose.t);
+  return places.filter((place) => Math.hypot(...subtract(place, centre)) < 2.5 * size);
 }
 
 function rod(group, from, to, radius, material) {
@@ -322,13 +387,13 @@ function generator(seed) {
   };
 }
 
-/** Places of the first target in random configurations within the limits, without those near to a measurement. */
+/** Places of what moves in random configurations within the limits, without those near to where it was measured. */
 function unsampled(data, size) {
   const next = generator(1);
   const cell = size / 7;
   const key = (place) => place.map((value) => Math.floor(value / cell)).join(",");
   const sampled = new Set();
-  for (const place of data.rows.predicted) {
+  for (const place of data.rows.reached) {
     for (const dx of [-1, 0, 1]) for (const dy of [-1, 0, 1]) for (const dz of [-1, 0, 1]) sampled.add(key(add(place, [dx * cell, dy * cell, dz * cell])));
   }
   const ranges = data.readings.map((_, k) => {
@@ -336,9 +401,9 @@ function unsampled(data, size) {
     const limits = joint.limits && joint.limits[1] - joint.limits[0] < 100 ? joint.limits : joint.sampled ?? [0, 0];
     return limits.map((limit) => (limit - joint.offset) / joint.multiplier);
   });
-  const places = Array.from({ length: REACH_POINTS }, () => {
+  const places = Array.from({ length: REACH_POINTS }, (_, k) => {
     const readings = ranges.map(([a, b]) => a + (b - a) * next());
-    return chain(data, readings, "screw", data.targets[0]?.[1]).target;
+    return configure(data, readings, CALIBRATED).at(data.reaching[k % data.reaching.length]).t;
   });
   return places.filter((place) => !sampled.has(key(place)));
 }

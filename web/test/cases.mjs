@@ -57,6 +57,47 @@ function simulated(name, ...words) {
   return join(out, "measurements.csv");
 }
 
+/** Where the program says that the tip is, or what the words name. */
+export function predicted(out, readings, values, ...words) {
+  const table = join(folder, "joints.csv");
+  const columns = readings.map(({ name, unit }) => `"${name}[${unit === "mm" ? "mm" : "deg"}]"`);
+  writeFileSync(table, `${columns.join(",")}\n${values.join(",")}\n`);
+  const [, row] = poecal("predict", join(out, "calibration.json"), table, ...words, "--quiet").split("\n");
+  return row.split(",").slice(0, 3).map(Number);
+}
+
+/** A session of a robot with named links, calibrated: noise shows in which axes a residual is. */
+function mounted(name, named, ...words) {
+  const model = join(ROOT, "crates/poecal/tests/data/torso.urdf");
+  return calibrate(name, model, simulated(name, model, ...named, ...words, "--noise", "2mm,0.1deg"), ...named);
+}
+
+/** The example's points in the frames of two trackers, in turn. */
+function fromTwoPlaces() {
+  const path = join(folder, "two.csv");
+  const session = simulated("two", join(ELBOW, "robot.urdf"), "--kind", "point", "--frame", "base", "--noise", "0.1mm,0.01deg");
+  const lines = readFileSync(session, "utf8").split("\n").filter((line) => line && !line.startsWith("#"));
+  const x = lines[0].split(",").findIndex((column) => column.startsWith("x["));
+  const moved = (line, k) => {
+    const cells = line.split(",");
+    const [px, py, pz] = cells.slice(x, x + 3).map(Number);
+    const place = k % 2 ? [py - 1500, 1000 - px, pz - 900] : [px - 1600, py + 1200, pz - 600];
+    return [...cells.slice(0, x), ...place, ...cells.slice(x + 3), k % 2 ? "B" : "A"].join(",");
+  };
+  writeFileSync(path, `${lines[0]},instrument\n${lines.slice(1).map(moved).join("\n")}\n`);
+  return calibrate("two", join(ELBOW, "robot.urdf"), path);
+}
+
+/** Robots with branches, or with several instruments: a function that gives the folder with the results of each. */
+export const TREES = {
+  "a torso with two arms": () => {
+    const named = ["--instrument", "eyes=head_camera", "--instrument", "chest=torso", "--target", "left=left_hand", "--target", "right=right_hand"];
+    return mounted("torso", named, "--count", "300", "--errors", "0.5deg,2mm");
+  },
+  "a camera in the hand": () => mounted("hand", ["--instrument", "camera=right_hand", "--target", "board=base_link"], "--count", "120"),
+  "two trackers": fromTwoPlaces,
+};
+
 /** Every case: its name, a function that gives the folder with its results, and whether it is looked at in one width only. */
 export const CASES = [
   ["the paper's elbow", () => calibrate("elbow", join(ELBOW, "robot.urdf"), join(ELBOW, "points.csv"))],

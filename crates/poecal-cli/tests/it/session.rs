@@ -45,13 +45,12 @@ pub(crate) fn write_measurements(
         let pose = observation.measurement.pose();
         let [x, y, z]: [f64; 3] = pose.translation.into();
         write!(text, ",{x:?},{y:?},{z:?}").unwrap();
-        match observation.measurement {
-            Measurement::Pose(_) => {
-                for part in pose.quaternion_xyzw() {
-                    write!(text, ",{part:?}").unwrap();
-                }
+        if observation.measurement.sees_orientation() {
+            for part in pose.quaternion_xyzw() {
+                write!(text, ",{part:?}").unwrap();
             }
-            Measurement::Point(_) => text.push_str(",,,,"),
+        } else {
+            text.push_str(",,,,");
         }
         text.push('\n');
     }

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, calibrate};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::residuals::Residuals;
+use poecal::io::urdf::{ChainSelection, UrdfDocument};
 use poecal::lie::{Pose, Screw};
 use poecal::measurement::{Dataset, Measurement, Set};
 use poecal::report::calibration_page;
@@ -67,6 +68,12 @@ fn figures(page: &str) -> Vec<(String, f64, String)> {
     found.collect()
 }
 
+/// What the page's script works on.
+fn data_of(page: &str) -> Value {
+    let data = page.split_once("id=\"report-data\">").unwrap().1.split_once("</script>").unwrap().0;
+    serde_json::from_str(data).unwrap()
+}
+
 fn value_of<'a>(file: &'a Value, key: &str) -> &'a Value {
     key.split('.').fold(file, |value, part| match part.parse::<usize>() {
         Ok(index) if value.is_array() => &value[index],
@@ -127,6 +134,41 @@ fn every_figure_is_that_of_the_calibration_file() {
     assert!(session.page().contains("since none was held out"));
 }
 
+/// The script draws all arms, and every instrument and target on its body.
+#[test]
+fn robots_with_branches_are_drawn_with_their_instruments() {
+    let pairs = |pairs: [(&str, &str); 2]| pairs.map(|(name, link)| (name.to_owned(), link.to_owned()));
+    let selection = ChainSelection {
+        instruments: pairs([("eyes", "head_camera"), ("chest", "torso")]).into(),
+        targets: pairs([("left", "left_hand"), ("right", "right_hand")]).into(),
+        ..ChainSelection::default()
+    };
+    let document = UrdfDocument::parse(include_str!("../data/torso.urdf"), "torso.urdf", &selection).unwrap();
+    let session = Session::new(document.robot(), Kind::Pose, 200);
+    check_figures("torso", &session);
+    let page = session.page();
+    assert!(page.contains("<td class=\"word\">link of torso2</td>"));
+    let data = data_of(&page);
+    let on = |list: &str| -> Vec<Value> {
+        data[list].as_array().unwrap().iter().map(|it| it["on"].clone()).collect()
+    };
+    let expected = [Value::Null, 0.into(), 1.into(), 2.into(), 3.into(), 4.into(), 5.into(), 6.into()];
+    assert_eq!(on("joints")[..8], expected);
+    assert_eq!((&on("joints")[8], &on("joints")[9]), (&Value::from(1), &Value::from(1)));
+    assert_eq!(on("instruments"), [8, 1].map(Value::from));
+    assert_eq!(on("targets"), [7, 14].map(Value::from));
+    let stations = session.file.stations.iter().map(|it| &it.base_from_device.position_m);
+    for (place, drawn) in stations.zip(data["instruments"].as_array().unwrap()) {
+        for k in 0..3 {
+            assert!((place[k] - drawn["pose"]["position_m"][k].as_f64().unwrap()).abs() < 1e-12);
+        }
+    }
+    assert_eq!(data["rows"]["instrument"].as_array().unwrap().len(), 200);
+    // Of a single instrument beside a robot without branches nothing is drawn.
+    let data = data_of(&Session::new(&elbow(), Kind::Pose, 60).page());
+    assert_eq!((&data["draws_instruments"], &data["rows"]["instrument"]), (&false.into(), &Value::Null));
+}
+
 #[test]
 fn repeated_configurations_are_stated_with_accuracy_and_repeatability() {
     let session = Session::of(&elbow(), repeated());
@@ -177,10 +219,9 @@ fn names_are_no_markup() {
         assert_eq!(odd.matches(markup).count(), usual.matches(markup).count(), "{markup}");
     }
     assert!(!odd.contains("alert(\"1\")"));
-    let data = odd.split_once("id=\"report-data\">").unwrap().1.split_once("</script>").unwrap().0;
-    let data: Value = serde_json::from_str(data).unwrap();
+    let data = data_of(&odd);
     assert_eq!(
-        (&data["joints"][0]["name"], &data["targets"][0][0]),
+        (&data["joints"][0]["name"], &data["targets"][0]["name"]),
         (&Value::from(name), &Value::from(name))
     );
 }
@@ -192,8 +233,7 @@ fn pages_are_small_and_long_sessions_are_thinned_and_said_so() {
         let session = Session::new(&elbow(), Kind::Pose, count);
         let page = session.page();
         sizes.push(page.len());
-        let data = page.split_once("id=\"report-data\">").unwrap().1.split_once("</script>").unwrap().0;
-        let data: Value = serde_json::from_str(data).unwrap();
+        let data = data_of(&page);
         let drawn = data["rows"]["number"].as_array().unwrap().len();
         println!("{count} rows: {} bytes, {drawn} rows drawn", page.len());
         assert_eq!((data["count"].as_u64(), drawn <= 4000), (Some(count as u64), true));

@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
-use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
+use super::frames::{FrameData, Frames, draws_instruments};
 use super::lead::{Lead, component_words, sign};
-use super::{reading_index, readings_of};
+use super::{reading_index, readings_of, short};
 use crate::error::{Error, ErrorKind, Result};
-use crate::io::calibration_file::{CalibrationFile, PoseEntry, ScrewEntry};
+use crate::io::calibration_file::{CalibrationFile, ScrewEntry};
 use crate::io::residuals::{ResidualRow, Residuals};
 use crate::measurement::Quantity;
 use crate::robot::JointKind;
@@ -27,11 +27,10 @@ const EXACT: i32 = 22;
 #[derive(Serialize)]
 struct Data<'a> {
     joints: Vec<JointData<'a>>,
-    home: &'a PoseEntry,
-    nominal_home: &'a PoseEntry,
-    base_from_device: &'a PoseEntry,
-    /// Names of the targets as they are shown, and their places in the tip frame, metres.
-    targets: Vec<(Cow<'a, str>, [f64; 3])>,
+    tip: FrameData<'a>,
+    targets: Vec<FrameData<'a>>,
+    instruments: Vec<FrameData<'a>>,
+    draws_instruments: bool,
     readings: Vec<ReadingData<'a>>,
     /// The error that is told of each row, in its unit.
     lead: LeadData,
@@ -44,6 +43,8 @@ struct Data<'a> {
 struct JointData<'a> {
     name: Cow<'a, str>,
     kind: JointKind,
+    /// The joint on whose link it stands; none for the base.
+    on: Option<usize>,
     screw: &'a ScrewEntry,
     nominal_screw: &'a ScrewEntry,
     origin_m: [f64; 3],
@@ -77,16 +78,19 @@ struct RowData {
     even: Vec<u8>,
     suspected: Vec<u8>,
     target: Vec<usize>,
+    /// None if there is only one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    instrument: Option<Vec<usize>>,
     /// The error that is told of each row, in the unit of `lead`: millimetres, unless no length was measured.
     error_mm: Vec<Option<f64>>,
-    /// Residuals of the quantities that any row measured.
+    /// Residuals of the quantities that any row measured, in the axes of the row's instrument.
     residuals: Vec<ResidualData>,
     leverage: Vec<Option<f64>>,
     studentized: Vec<Option<f64>>,
     values: Vec<Vec<f64>>,
 }
 
-/// Residuals of a quantity, by component; of vectors in the axes of the first instrument.
+/// Residuals of a quantity, by component; of vectors in the axes of the row's instrument.
 #[derive(Serialize)]
 struct ResidualData {
     #[serde(skip)]
@@ -104,11 +108,13 @@ struct ComponentData {
 
 /// The data, safe within a script element.
 pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<String> {
-    let joints = file.joints.iter().map(|joint| {
+    let robot = file.robot()?;
+    let joints = file.joints.iter().enumerate().map(|(k, joint)| {
         let sampled = file.coverage.iter().find(|found| found.joint == joint.name);
         JointData {
             name: visible(&joint.name),
             kind: joint.kind,
+            on: robot.body_before(k).joint(),
             screw: &joint.screw,
             nominal_screw: &joint.nominal_screw,
             origin_m: joint.base_from_joint.position_m,
@@ -119,19 +125,18 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
             offset: joint.reading.offset,
         }
     });
-    let place_of = |name: &String| file.targets.get(name).map_or([0.0; 3], |target| target.position_m);
-    let turns = to_first(file, residuals);
+    let frames = Frames::of(file, &robot, residuals)?;
     let lead = Lead::of(residuals);
     let reading = |(_, name, unit)| ReadingData { name: visible(name), unit };
     let data = Data {
         joints: joints.collect(),
-        home: &file.robot.base_from_tip_at_zero,
-        nominal_home: &file.robot.nominal_base_from_tip_at_zero,
-        base_from_device: &file.measurement_frame.base_from_device,
-        targets: residuals.targets.iter().map(|name| (visible(name), place_of(name))).collect(),
+        tip: frames.tip,
+        targets: frames.targets,
+        instruments: frames.instruments,
+        draws_instruments: draws_instruments(file),
         readings: readings_of(residuals).map(reading).collect(),
         lead: LeadData { name: lead.name(), unit: lead.unit() },
-        rows: RowData::of(residuals, &turns, &lead),
+        rows: RowData::of(residuals, &lead),
         count: residuals.rows.len(),
     };
     let text = serde_json::to_string(&data).map_err(|error| {
@@ -139,17 +144,6 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
     })?;
     // Within a script element, `</script` and `<!--` would be markup wherever they stand.
     Ok(text.replace('<', "\\u003c"))
-}
-
-/// What turns the axes of each instrument to those of the first, if there are several: the page draws all residuals in those.
-fn to_first(file: &CalibrationFile, residuals: &Residuals) -> Vec<Matrix3<f64>> {
-    let device = |pose: &PoseEntry| pose.pose().map_or_else(|_| Matrix3::identity(), |pose| pose.rotation);
-    let first = device(&file.measurement_frame.base_from_device).transpose();
-    let of = |name: &String| {
-        let found = file.stations.iter().find(|it| it.instrument.as_deref().unwrap_or_default() == name);
-        found.map_or_else(Matrix3::identity, |it| first * device(&it.base_from_device))
-    };
-    residuals.stations.iter().map(of).collect()
 }
 
 /// Keeps so many items that come first, in any order.
@@ -185,13 +179,16 @@ pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
 }
 
 impl RowData {
-    fn of(residuals: &Residuals, turns: &[Matrix3<f64>], lead: &Lead) -> Self {
-        let measured = residuals.measured().into_iter().map(ResidualData::new).collect();
-        let mut rows = RowData { residuals: measured, ..RowData::default() };
+    fn of(residuals: &Residuals, lead: &Lead) -> Self {
+        let mut rows = RowData {
+            residuals: residuals.measured().into_iter().map(ResidualData::new).collect(),
+            instrument: (!residuals.stations.is_empty()).then(Vec::new),
+            ..RowData::default()
+        };
         rows.values = vec![Vec::new(); residuals.readings.len()];
         for (index, even) in drawn(residuals) {
             if let Some(row) = residuals.rows.get(index) {
-                rows.push(residuals, (index, row, even), turns.get(row.station), lead.error(row));
+                rows.push(residuals, (index, row, even), lead.error(row));
             }
         }
         rows
@@ -201,7 +198,6 @@ impl RowData {
         &mut self,
         residuals: &Residuals,
         (index, row, even): (usize, &ResidualRow, bool),
-        turn: Option<&Matrix3<f64>>,
         error: Option<f64>,
     ) {
         self.number.push(index + 1);
@@ -210,8 +206,11 @@ impl RowData {
         self.even.push(u8::from(even));
         self.suspected.push(u8::from(row.judged.is_some_and(|judged| judged.suspected)));
         self.target.push(row.target);
+        if let Some(instrument) = &mut self.instrument {
+            instrument.push(row.station);
+        }
         self.error_mm.push(error.map(rounded));
-        self.residuals.iter_mut().for_each(|residual| residual.push(row, turn));
+        self.residuals.iter_mut().for_each(|residual| residual.push(row));
         self.leverage.push(row.judged.map(|judged| rounded(judged.leverage)).filter(|it| it.is_finite()));
         self.studentized
             .push(row.judged.map(|judged| rounded(judged.studentized)).filter(|it| it.is_finite()));
@@ -229,16 +228,11 @@ impl ResidualData {
         ResidualData { quantity, name, unit, components: components.collect() }
     }
 
-    fn push(&mut self, row: &ResidualRow, turn: Option<&Matrix3<f64>>) {
+    fn push(&mut self, row: &ResidualRow) {
         let errors = row.errors.get(self.quantity);
-        let residual = errors.as_ref().map(|errors| match (errors.residual(), turn) {
-            (&[x, y, z], Some(turn)) => (turn * Vector3::new(x, y, z)).as_slice().to_vec(),
-            (residual, _) => residual.to_vec(),
-        });
         for (k, component) in self.components.iter_mut().enumerate() {
-            component
-                .values
-                .push(residual.as_ref().and_then(|residual| residual.get(k)).copied().map(rounded));
+            let value = errors.as_ref().and_then(|errors| errors.residual().get(k)).copied();
+            component.values.push(value.map(rounded));
         }
     }
 }
@@ -261,12 +255,4 @@ pub(super) fn place(residuals: &Residuals, index: usize) -> String {
         "" => format!("row {}", index + 1),
         file => format!("{}:{}", short(&residuals.files, file), row.line),
     }
-}
-
-/// A file's name without its folders, if no other file has that name.
-pub(super) fn short<'a>(files: &[String], file: &'a str) -> &'a str {
-    let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
-    let own = name(file);
-    let same = files.iter().filter(|other| name(other) == own).count();
-    if same == 1 { &file[file.len() - own.len()..] } else { file }
 }

@@ -4,9 +4,10 @@ use maud::{Markup, html};
 use nalgebra::Vector3;
 
 use super::figures;
+use super::frames::draws_instruments;
 use super::html::{HtmlTable, decimal, figure, figure_or, folded, plots, quoted, section};
 use crate::io::calibration_file::{CalibrationFile, JointEntry, ScrewEntry};
-use crate::robot::JointKind;
+use crate::robot::{Body, JointKind};
 
 pub(super) fn sections(file: &CalibrationFile) -> Markup {
     html! { (view(file)) (corrections(file)) }
@@ -24,27 +25,20 @@ fn view(file: &CalibrationFile) -> Markup {
         axis(&mut table, (k, joint), ("calibrated", &joint.screw, "screw"));
     }
     let content = html! {
-        @if is_drawn(file) {
-            p {
-                "The arm as lines along its joints' axes: nominal in grey, calibrated in colour. Arrows go from the place \
-                 of a target by the calibrated model to its measured place."
+        p {
+            "The " (if draws_instruments(file) { "robot" } else { "arm" }) " as lines along its joints' axes: nominal in grey, calibrated in colour. Arrows go from the place \
+             of a target by the calibrated model to its measured place."
+            @if draws_instruments(file) {
+                " Instruments are drawn as their frames: x in red, y in green, z in blue. A dashed line goes from the instrument of the \
+                 chosen measurement to its target."
             }
-            div #arm.arm {}
-            noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
-        } @else {
-            p.note { "There is no picture of a robot with branches, or with instruments on it. All figures are in the tables." }
-            // The script draws into it, unseen.
-            div #arm.arm hidden {}
         }
+        div #arm.arm {}
+        noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
         (folded("The axes as numbers", &table))
+        @if let Some(table) = stands(file) { (folded("What stands where", &table)) }
     };
     section("view", "In 3D", &content)
-}
-
-/// Whether the page can draw the robot: a serial chain before instruments that stand beside it.
-fn is_drawn(file: &CalibrationFile) -> bool {
-    let is_chain = file.joints.iter().all(|joint| joint.on.is_none()) && file.robot.tip_on.is_none();
-    is_chain && file.instruments.is_empty() && file.targets.values().all(|target| target.on.is_none())
 }
 
 /// A joint's axis in one of the models.
@@ -61,6 +55,41 @@ fn axis(
     let point = point.map(|it| if turns { decimal(1e3 * it, 3) } else { "–".to_owned() });
     let name = quoted(&joint.name, format_args!("joints.{k}.name"));
     table.row(&[&name, &joint.kind.word(), &model, &x, &y, &z, &point[0], &point[1], &point[2]]);
+}
+
+/// On which body instruments, targets and the first joints of branches stand, where the picture has them.
+fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
+    let robot = file.robot().ok().filter(|_| draws_instruments(file))?;
+    let mut table = HtmlTable::new(
+        "What stands on which body, and where in the base frame with all joints at zero",
+        3,
+        &["name", "kind", "stands on", "x, mm", "y, mm", "z, mm"],
+    );
+    let mut row = |name: &str, kind: &str, body: Body, place: Vector3<f64>| {
+        let on = match body.joint().and_then(|joint| robot.joints.get(joint)) {
+            Some(joint) => format!("link of {}", joint.name),
+            None => "base".to_owned(),
+        };
+        let [x, y, z] = <[f64; 3]>::from(place).map(|it| decimal(1e3 * it, 3));
+        table.row(&[&name, &kind, &on, &x, &y, &z]);
+    };
+    for (k, joint) in robot.joints.iter().enumerate().filter(|(_, joint)| joint.stands_on.is_some()) {
+        row(&joint.name, "joint", robot.body_before(k), joint.frame.translation);
+    }
+    for (mounts, kind) in [(&robot.instruments, "instrument"), (&robot.mounted, "target")] {
+        for mount in mounts {
+            row(&mount.name, kind, mount.body, robot.base_from(mount).translation);
+        }
+    }
+    let beside = file.stations.iter().map(|it| (it.instrument.as_deref(), &it.base_from_device));
+    let only = file.stations.is_empty().then_some((None, &file.measurement_frame.base_from_device));
+    for (name, pose) in beside.chain(only) {
+        let name = name.unwrap_or("instrument");
+        if !file.instruments.contains_key(name) {
+            row(name, "instrument", Body::Base, pose.position_m.into());
+        }
+    }
+    Some(table)
 }
 
 fn corrections(file: &CalibrationFile) -> Markup {

@@ -3,6 +3,7 @@
 mod data;
 mod figures;
 mod first;
+mod frames;
 mod html;
 mod joints;
 mod lead;
@@ -138,4 +139,12 @@ fn unit(kind: JointKind) -> &'static str {
         JointKind::Revolute => "°",
         JointKind::Prismatic => "mm",
     }
+}
+
+/// A file's name without its folders, if no other file has that name.
+fn short<'a>(files: &[String], file: &'a str) -> &'a str {
+    let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+    let own = name(file);
+    let same = files.iter().filter(|other| name(other) == own).count();
+    if same == 1 { &file[file.len() - own.len()..] } else { file }
 }

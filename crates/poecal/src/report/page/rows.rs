@@ -2,11 +2,11 @@
 
 use maud::{Markup, Render, html};
 
-use super::data::{MOST_ROWS, drawn, keep_first, place, short};
+use super::data::{MOST_ROWS, drawn, keep_first, place};
 use super::first::{capital, error_table, error_words};
 use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, plots, section};
 use super::lead::{Lead, component_words, sign, spaced};
-use super::{figures, readings_of};
+use super::{figures, readings_of, short};
 use crate::calibration::Statistic;
 use crate::io::calibration_file::{CalibrationFile, OutlierSet, RepeatabilityEntry};
 use crate::io::residuals::{ResidualRow, Residuals, RowDiagnostics};
