@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use poecal::io::calibration_file::CalibrationFile;
 use poecal::io::model::Model;
-use poecal::measurement::Measurement;
 use poecal::simulate::{Kind, Simulation};
 
 use crate::folder::Folder;
