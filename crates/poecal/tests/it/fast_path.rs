@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, fit_screws};
 use poecal::estimate::{self, Estimate, Packed, delivered};
 use poecal::lie::{Pose, rotation};
-use poecal::measurement::{Dataset, Measurement, Noise, Quantity};
+use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity, Seen};
 use poecal::parameters::{DeviceFrame, Parameter, ScrewAxis, TargetFrame, TargetPlace, ValueTerm};
 use poecal::problem::{Problem, Refit, SimdLevel, simd_levels};
 use poecal::robot::Robot;
@@ -314,10 +314,14 @@ fn refits_have_the_same_optimum() {
             let mut data = made.data.clone();
             for observation in &mut data.observations {
                 let shift = random::normal_vector(&mut generator) * (scale * NOISE[Quantity::Position]);
-                match &mut observation.measurement {
-                    Measurement::Point(seen) => seen.position += shift,
-                    Measurement::Pose(seen) => seen.pose.translation += shift,
-                }
+                observation.measurement = match observation.measurement.seen() {
+                    Seen::Point(place) => Measurement::Point(PointMeasurement { position: place + shift }),
+                    Seen::Frame(&pose) => {
+                        let pose = Pose::new(pose.rotation, pose.translation + shift);
+                        Measurement::Pose(PoseMeasurement { pose })
+                    }
+                    Seen::Other(_) => observation.measurement,
+                };
             }
             let measured: Vec<Measurement> = data.observations.iter().map(|seen| seen.measurement).collect();
             let (quick, _, summary) = refit.fit(&measured);

@@ -153,8 +153,8 @@ pub struct UncertaintyEntry {
     pub axes: Vec<PoseEntry>,
     /// Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. The tip has an empty name.
     pub targets: Vec<(String, bool)>,
-    /// Names of the unknowns, in the order of the covariance; empty in older files.
-    #[serde(default)]
+    /// Names of the unknowns, in the order of the covariance; missing in older files.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknowns: Vec<String>,
     /// Point of the device frame about which its unknowns turn, metres, where the frame is among them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
