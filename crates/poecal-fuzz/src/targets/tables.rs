@@ -39,7 +39,8 @@ pub(crate) fn sound(file: &MeasurementFile, text: &str) {
     file.warnings.iter().for_each(|warning| one_line(warning));
     assert!(!file.data.is_empty() && file.understood.len() == 1);
     for understood in &file.understood {
-        assert_eq!(understood.points + understood.poses, file.data.len());
+        let others: usize = understood.others.values().sum();
+        assert_eq!(understood.points + understood.poses + others, file.data.len());
         assert!(understood.rows <= file.data.len());
     }
     let lines = text.split(['\n', '\r']).count();

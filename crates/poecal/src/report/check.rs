@@ -291,7 +291,10 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
         DecimalSign::Comma => "comma",
     };
     line(out, "file", &file.path.display().to_string());
-    line(out, "rows", &format!("{}: {}", file.rows, kinds_words(file.poses, file.points)));
+    let others = file.others.iter().map(|(name, count)| format!("{count} of {name}"));
+    let poses = (file.poses + file.points > 0).then(|| kinds_words(file.poses, file.points));
+    let kinds: Vec<String> = poses.into_iter().chain(others).collect();
+    line(out, "rows", &format!("{}: {}", file.rows, kinds.join(" and ")));
     if let Some(lost) = file.lost.words() {
         line(out, "skipped", &lost);
     }

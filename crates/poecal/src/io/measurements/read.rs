@@ -1,6 +1,7 @@
 //! Reads measurement files.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::builder::TargetLayout;
@@ -19,7 +20,7 @@ use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
-use crate::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Set, Source};
+use crate::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Seen, Set, Source};
 use crate::robot::{Robot, check_name};
 use crate::text::visible;
 
@@ -151,7 +152,14 @@ impl<'a> Reader<'a> {
         scale::check_positions(path, self.robot, &layout, slides_m, new_rows)?;
         spread::check(path, &table.header, self.robot, &layout, &self.found.data, first)?;
         let poses = new_rows.iter().filter(|row| row.measurement.sees_orientation()).count();
-        let points = new_rows.len() - poses;
+        let mut others = BTreeMap::new();
+        for row in new_rows {
+            if let Seen::Other(model) = row.measurement.seen() {
+                let name = model.channels().first().map_or("", |channel| channel.quantity.name());
+                *others.entry(name).or_default() += 1;
+            }
+        }
+        let points = new_rows.len() - poses - others.values().sum::<usize>();
         if !self.found.data.ids.is_empty() {
             self.found.data.ids.resize(self.found.data.len(), String::new());
         }
@@ -163,6 +171,7 @@ impl<'a> Reader<'a> {
             rows,
             points,
             poses,
+            others,
             lost,
             separator: table.separator,
             separator_line: table.separator_line,

@@ -1,5 +1,6 @@
 //! How a file was read, for the user to check.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use serde::Serialize;
@@ -48,6 +49,9 @@ pub struct FileUnderstanding {
     pub points: usize,
     /// Number of measurements with orientation.
     pub poses: usize,
+    /// Number of other measurements, by their quantity.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub others: BTreeMap<&'static str, usize>,
     /// Lost beams: measurements without a position, which were omitted.
     pub lost: LostBeams,
     /// Separator of cells.
