@@ -3,6 +3,7 @@
 
 mod configurations;
 mod dataset;
+mod distance;
 mod observe;
 mod other_pose;
 mod point;
@@ -11,6 +12,7 @@ mod quantity;
 
 pub(crate) use configurations::MANY as MANY_ROWS;
 pub use dataset::{Dataset, Observation, Set, Source};
+pub use distance::DistanceMeasurement;
 pub use observe::{Channel, NUMBERS, Observe, Sensitivity};
 pub use other_pose::PoseResidual;
 pub(crate) use other_pose::Written;
@@ -38,6 +40,8 @@ pub enum Measurement {
     Point(PointMeasurement),
     /// Position and orientation of a frame.
     Pose(PoseMeasurement),
+    /// Distance of a point from the instrument.
+    Distance(DistanceMeasurement),
 }
 
 /// What a measurement shows of the target itself: for all that moves or draws measured places and orientations.
@@ -65,6 +69,7 @@ impl Measurement {
         match self {
             Measurement::Point(point) => point,
             Measurement::Pose(pose) => pose,
+            Measurement::Distance(distance) => distance,
         }
     }
 
@@ -74,6 +79,7 @@ impl Measurement {
         match self {
             Measurement::Point(PointMeasurement { position }) => Seen::Point(position),
             Measurement::Pose(PoseMeasurement { pose }) => Seen::Frame(pose),
+            Measurement::Distance(distance) => Seen::Other(distance),
         }
     }
 

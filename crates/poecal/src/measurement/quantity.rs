@@ -65,6 +65,8 @@ pub enum Quantity {
     Position = ("position", Metre, ["x", "y", "z"]),
     /// Orientation of a target.
     Rotation = ("rotation", Radian, ["rx", "ry", "rz"]),
+    /// Distance of a target from the instrument.
+    Distance = ("distance", Metre, ["distance"]),
 }
 }
 

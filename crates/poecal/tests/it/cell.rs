@@ -8,7 +8,7 @@ use poecal::analysis::{Setup, identifiability};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use poecal::lie::{Pose, Screw, rotation};
 use poecal::measurement::{
-    Dataset, Measurement, NUMBERS, Noise, Observation, PointMeasurement, PoseMeasurement,
+    Dataset, DistanceMeasurement, Measurement, NUMBERS, Noise, Observation, PointMeasurement, PoseMeasurement,
 };
 use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
 use poecal::problem::Problem;
@@ -28,7 +28,11 @@ const POINT: Function = |pose| Measurement::Point(PointMeasurement { position: p
 const POSE: Function = |pose| Measurement::Pose(PoseMeasurement { pose: *pose });
 
 /// What can be measured, with the number of unknowns that one target and its first instrument add to those of the axes.
-const FUNCTIONS: [(&str, Function, usize); 2] = [("poses", POSE, 6), ("points", POINT, 3)];
+const FUNCTIONS: [(&str, Function, usize); 3] = [
+    ("poses", POSE, 6),
+    ("points", POINT, 3),
+    ("distances", |pose| Measurement::Distance(DistanceMeasurement { distance: pose.translation.norm() }), 0),
+];
 
 /// Something that an instrument sees, by their names; in two configurations if `apart`.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use super::inputs::InputReader;
 use super::table::Row;
 use super::units::Dimension;
 use crate::error::Result;
-use crate::measurement::{Measurement, Quantity};
+use crate::measurement::{DistanceMeasurement, Measurement, Quantity};
 use crate::unit::Unit;
 
 /// A kind of measurement: its numbers are in the columns that [`Quantity::component_names`] names, their standard deviation is in `sigma_` and the
@@ -16,7 +16,12 @@ pub(super) struct Kind {
 }
 
 /// All of them. A new one is a line here.
-pub(super) const KINDS: [Kind; 0] = [];
+pub(super) const KINDS: [Kind; 1] = [Kind {
+    quantity: Quantity::Distance,
+    of: |numbers| {
+        Measurement::Distance(DistanceMeasurement { distance: numbers.first().copied().unwrap_or(f64::NAN) })
+    },
+}];
 
 impl Kind {
     /// Names of its columns.

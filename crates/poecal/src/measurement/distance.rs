@@ -1,0 +1,47 @@
+//! Distance of a target from the instrument's origin: a draw-wire, a ball bar to a socket.
+
+use super::{Channel, Observe, Quantity, Sensitivity};
+use crate::lie::Pose;
+
+/// Measured distance, `e = d - |p|`, `S = [pᵀ/|p| 0]`. It shows where its instrument is, and not how it is turned (theory.md §4 (15a)).
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::lie::Pose;
+/// use poecal::measurement::{DistanceMeasurement, Observe};
+/// let mut e = [0.0];
+/// DistanceMeasurement { distance: 5.5 }.residual(&Pose::from_translation(Vector3::new(3.0, 0.0, 4.0)), &mut e);
+/// assert_eq!(e, [0.5]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct DistanceMeasurement {
+    /// Distance, metres.
+    pub distance: f64,
+}
+
+impl Observe for DistanceMeasurement {
+    fn channels(&self) -> &'static [Channel] {
+        &[Channel { name: "distance", quantity: Quantity::Distance }]
+    }
+
+    fn residual(&self, predicted: &Pose, out: &mut [f64]) {
+        out[0] = self.distance - predicted.translation.norm();
+    }
+
+    fn sensitivity(&self, predicted: &Pose, out: &mut [Sensitivity]) {
+        let direction = predicted.translation.try_normalize(0.0).unwrap_or_default();
+        out[0] = [direction.x, direction.y, direction.z, 0.0, 0.0, 0.0];
+    }
+
+    fn range(&self) -> Option<f64> {
+        Some(self.distance)
+    }
+
+    fn sees_device_axes(&self) -> bool {
+        false
+    }
+
+    fn is_finite(&self) -> bool {
+        self.distance.is_finite()
+    }
+}
