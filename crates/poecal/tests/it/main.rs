@@ -31,6 +31,7 @@ mod measurement_errors;
 mod measurement_forms;
 mod measurement_long;
 mod mistakes;
+mod mixed_cell;
 mod model_convert;
 mod model_errors;
 mod modern_robotics;
