@@ -11,7 +11,7 @@ use poecal::calibration::{CalibrationOptions, calibrate};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::residuals::Residuals;
 use poecal::io::robot_toml;
-use poecal::measurement::{Dataset, Measurement};
+use poecal::measurement::Dataset;
 use poecal::robot::Robot;
 use poecal::simulate::{Kind, Simulation, elbow, gantry, scara};
 use poecal_fuzz::BETWEEN;
@@ -117,12 +117,11 @@ fn table(data: &Dataset) -> String {
         let pose = seen.measurement.pose();
         let [x, y, z]: [f64; 3] = pose.translation.into();
         write!(text, "{x:.6},{y:.6},{z:.6}").unwrap();
-        match seen.measurement {
-            Measurement::Point(_) => text.push_str(",,,,\n"),
-            _ => {
-                let [a, b, c, d] = pose.quaternion_xyzw();
-                writeln!(text, ",{a:.8},{b:.8},{c:.8},{d:.8}").unwrap();
-            }
+        if seen.measurement.sees_orientation() {
+            let [a, b, c, d] = pose.quaternion_xyzw();
+            writeln!(text, ",{a:.8},{b:.8},{c:.8},{d:.8}").unwrap();
+        } else {
+            text.push_str(",,,,\n");
         }
     }
     text
