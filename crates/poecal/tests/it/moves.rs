@@ -23,9 +23,10 @@ fn changed(made: &Simulated, motion: impl Fn(usize) -> Pose) -> Dataset {
     let mut data = made.data.clone();
     for (row, observation) in data.observations.iter_mut().enumerate() {
         let pose = motion(row) * observation.measurement.pose();
-        observation.measurement = match observation.measurement {
-            Measurement::Point(_) => Measurement::Point(PointMeasurement { position: pose.translation }),
-            _ => Measurement::Pose(PoseMeasurement { pose }),
+        observation.measurement = if observation.measurement.sees_orientation() {
+            Measurement::Pose(PoseMeasurement { pose })
+        } else {
+            Measurement::Point(PointMeasurement { position: pose.translation })
         };
     }
     data
@@ -160,9 +161,10 @@ fn with_targets(made: &Simulated, names: &[&str], knocked: impl Fn(usize, usize)
         let tip = made.device_from_base * made.actual.forward_kinematics(made.data.readings(row));
         let pose = observation.measurement.pose();
         let pose = Pose::new(pose.rotation, pose.translation + tip.rotation * arm);
-        observation.measurement = match observation.measurement {
-            Measurement::Point(_) => Measurement::Point(PointMeasurement { position: pose.translation }),
-            _ => Measurement::Pose(PoseMeasurement { pose }),
+        observation.measurement = if observation.measurement.sees_orientation() {
+            Measurement::Pose(PoseMeasurement { pose })
+        } else {
+            Measurement::Point(PointMeasurement { position: pose.translation })
         };
     }
     data

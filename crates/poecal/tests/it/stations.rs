@@ -17,11 +17,11 @@ fn moved(station: usize) -> Pose {
 
 /// The measurement as the device sees it from another place.
 fn seen_from(place: &Pose, measurement: &Measurement) -> Measurement {
-    match measurement {
-        Measurement::Point(seen) => {
-            Measurement::Point(PointMeasurement { position: place.act(&seen.position) })
-        }
-        other => Measurement::Pose(PoseMeasurement { pose: *place * other.pose() }),
+    let pose = *place * measurement.pose();
+    if measurement.sees_orientation() {
+        Measurement::Pose(PoseMeasurement { pose })
+    } else {
+        Measurement::Point(PointMeasurement { position: pose.translation })
     }
 }
 
