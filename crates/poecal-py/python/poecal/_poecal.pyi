@@ -679,19 +679,19 @@ class Residuals:
         """Instrument of each row; None where there is only one."""
     @property
     def position_mm(self) -> _Array:
-        """Residual of position by component, shape (m, 3), millimetres."""
+        """Residual of position by component, shape (m, 3), millimetres; NaN where no position was measured."""
     @property
     def rotation_deg(self) -> _Array:
         """Residual of rotation by component, shape (m, 3), degrees; NaN where no orientation was measured."""
     @property
     def position_nominal_mm(self) -> _Array:
-        """Error of position of the nominal model, shape (m,), millimetres."""
+        """Error of position of the nominal model, shape (m,), millimetres; NaN where no position was measured."""
     @property
     def position_registered_mm(self) -> _Array:
-        """Error of position of the registered model, shape (m,), millimetres."""
+        """Error of position of the registered model, shape (m,), millimetres; NaN where no position was measured."""
     @property
     def position_calibrated_mm(self) -> _Array:
-        """Error of position of the calibrated model, shape (m,), millimetres."""
+        """Error of position of the calibrated model, shape (m,), millimetres; NaN where no position was measured."""
     @property
     def rotation_nominal_deg(self) -> _Array:
         """Error of rotation of the nominal model, shape (m,), degrees; NaN where no orientation was measured."""
@@ -748,10 +748,10 @@ class Covariance:
     """
     @property
     def names(self) -> list[str]:
-        """Name of each of the k unknowns: a joint or target and its motion, as "joint1.shift_x" or "tip.turn_z".
+        """Name of each of the k unknowns: a block and a motion, as "joint1.axis.x" or "target.rz".
 
-        A revolute joint has shifts along x and y and turns about x and y of its frame in `axes`, a prismatic one turns about x and y; a
-        target has shifts along its own axes, and turns about them if its orientation was measured.
+        A revolute joint has shifts x and y along and turns rx and ry about the axes of its frame in `axes`, a prismatic one turns; a target
+        has shifts along its own axes, and turns about them if its orientation was measured.
         """
     @property
     def units(self) -> list[Literal["m", "rad"]]:
@@ -862,7 +862,8 @@ class Calibration:
     def covariance(self) -> Covariance:
         """Covariance of the unknowns; an error if there are no more residuals than unknowns."""
     def plot(self, axes: Sequence[Axes] | NDArray[Any] | None = None) -> Figure:
-        """Draws the errors of position before and after, and those of each row. Needs matplotlib.
+        """Draws the errors before and after, and those of each row: of position, or of the first other quantity where none was measured.
+        Needs matplotlib.
 
         Parameters
         ----------
@@ -1099,6 +1100,10 @@ def calibrate(
     tolerance_deg_mm
         Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
         decides where the measurements determine nothing.
+    fix
+        Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * stands for any letters.
+    free
+        Blocks to fit, also those that are usually held, like "joint2.offset", and after `fix`.
     held_out
         Share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row.
     seed
