@@ -1,8 +1,8 @@
 // Forward kinematics by the product of exponentials. A pose is { r, t }: a rotation by rows and a translation in metres.
 
 /** The models: the keys of a joint's screw and of a frame's pose at zero joint values. */
-export const CALIBRATED = { screw: "screw", pose: "pose" };
-export const NOMINAL = { screw: "nominal_screw", pose: "nominal_pose" };
+export const CALIBRATED = { screw: "screw", pose: "pose", terms: "terms" };
+export const NOMINAL = { screw: "nominal_screw", pose: "nominal_pose", terms: "nominal_terms" };
 
 const STILL = { r: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], t: [0, 0, 0] };
 
@@ -80,7 +80,9 @@ export function configure(data, readings, model) {
   const axes = data.joints.map((joint) => {
     const screw = joint[model.screw];
     const before = motionOf(joint.on);
-    bodies.push(compose(before, exponential(screw, joint.multiplier * readings[joint.reading] + joint.offset)));
+    const [factor, shift] = joint[model.terms] ?? [1, 0];
+    const value = factor * (joint.multiplier * readings[joint.reading] + joint.offset) + shift;
+    bodies.push(compose(before, exponential(screw, value)));
     return {
       point: act(before, pointOn(screw, joint.origin_m)),
       direction: rotate(before.r, joint.kind === "revolute" ? screw.w : screw.v_m),

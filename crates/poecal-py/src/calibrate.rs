@@ -198,7 +198,7 @@ fn warn_of_residual(py: Python<'_>, data: &Dataset, residual: Residual) -> PyRes
     let words = residual.word();
     crate::warn(
         py,
-        &[format!("residual {words} has no effect: it is about measured frames, and there are points only")],
+        &[format!("residual {words} has no effect: it is about measured frames, and there are none")],
     )
 }
 

@@ -36,7 +36,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
     if arguments.residual != Residual::default() && !poses {
         console.warning(format!(
-            "--residual {} has no effect: it is about measured frames, and there are points only",
+            "--residual {} has no effect: it is about measured frames, and there are none",
             arguments.residual.word()
         ));
     }

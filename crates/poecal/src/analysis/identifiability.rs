@@ -7,7 +7,7 @@ use super::direction::{Cause, Direction};
 use super::excitation::Excitation;
 use super::observability::Observability;
 use super::setup::Setup;
-use super::spectrum::{ROUNDING, Spectrum, WEAK, rounding};
+use super::spectrum::{PLAUSIBLE, ROUNDING, Spectrum, WEAK, rounding};
 use crate::linalg;
 use crate::parameters::Parameter;
 use crate::robot::{Joint, JointKind};
@@ -72,8 +72,10 @@ pub fn effective_unknowns(normal: &Normal, part: &Normal) -> f64 {
 pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identifiability {
     let n = setup.layout.dim();
     // Motions of the base without any effect are no unknowns: they count as known.
-    let base = setup.layout.base_motions(setup.estimate, setup.session.data, setup.rows);
-    let gram = &with_known(gram, n, &base);
+    let motions = setup.layout.motions_without_effect(setup.estimate, setup.session.data, setup.rows);
+    let base = motions.directions;
+    let least = variance / (PLAUSIBLE * setup.session.length_m).powi(2);
+    let gram = &with_known(gram, n, &base, least);
     let spectrum = Spectrum::new(gram, n, variance, setup.session.length_m);
     let values = &spectrum.values;
     let largest = values.last().copied().unwrap_or(0.0);
@@ -90,26 +92,28 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
     let unidentifiable = explain(setup, &excitation, &spectrum, Degree::Undetermined);
     let mut hardly = explain(setup, &excitation, &spectrum, Degree::Weak(weak));
     hardly.extend(excitation.seen_once(setup));
+    let rank = (n - spectrum.undetermined).saturating_sub(base.len());
     Identifiability {
         parameters: n - base.len(),
-        rank: n - base.len() - spectrum.undetermined,
-        effective_unknowns: (n - base.len() - spectrum.undetermined) as f64,
+        rank,
+        effective_unknowns: rank as f64,
         condition,
         unidentifiable,
         weak: hardly,
-        structural: structural(setup, base.len()),
+        structural: structural(setup, motions.of_base, base.len() - motions.of_base),
         observability: Observability::new(&singular, setup.rows.len()),
         spectrum,
     }
 }
 
-/// The information with more of it along some directions, as much as the measurements give of any unknown.
-fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>]) -> Cow<'a, [f64]> {
+/// The information with more of it along some directions, as much as the measurements give of any unknown, and more than the least that
+/// determines one.
+fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>], least: f64) -> Cow<'a, [f64]> {
     let mut gram = Cow::Borrowed(gram);
     if directions.is_empty() {
         return gram;
     }
-    let most = (0..n).map(|k| gram[k * n + k]).fold(0.0, f64::max);
+    let most = (0..n).map(|k| gram[k * n + k]).fold(2.0 * least, f64::max);
     for direction in directions {
         for (k, value) in gram.to_mut().iter_mut().enumerate() {
             *value += most * direction[k / n] * direction[k % n];
@@ -120,7 +124,7 @@ fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>]) -> Cow<'a,
 
 /// The structural kernel, known before anything is measured: theory.md §7 (35). So many motions of the base have no effect though some
 /// things are held.
-fn structural(setup: &Setup<'_>, base_motions: usize) -> Vec<Direction> {
+fn structural(setup: &Setup<'_>, base_motions: usize, offsets: usize) -> Vec<Direction> {
     let unknowns = setup.session.unknowns;
     let joints = setup.session.robot.joints.iter().enumerate();
     let joints: Vec<&Joint> =
@@ -152,6 +156,9 @@ fn structural(setup: &Setup<'_>, base_motions: usize) -> Vec<Direction> {
     }
     let base = "base frame: the held axes and targets leave motions of it that are the same as moving the device: chosen nearest to the model";
     add(Cause::BaseFrame, base_motions, &[], base);
+    let free = "joint offsets: motions of free axes, targets or the device have the same effect as some of them together: chosen nearest to the \
+                model; hold axes (--fix joints) to find offsets";
+    add(Cause::JointOffsets, offsets, &[], free);
     let zeros = "joint offsets: later axes and the tool have the same effect: kept as read";
     // Beside held axes or targets an offset is no other unknown.
     if unknowns.are_usual() {

@@ -84,7 +84,8 @@ fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
     let is_meant = |block: &Block| match (word, block) {
         ("joints", Block::Axis(_)) | ("targets", Block::Target(_)) | ("frames", Block::Frame(_)) => true,
         (_, Block::Axis(joint)) => {
-            names.joints.get(*joint).is_some_and(|name| name == word) || pattern.matches(&names.of(*block))
+            let is_joint = names.joints.get(*joint).is_some_and(|name| name == word);
+            is_joint && !["targets", "frames"].contains(&word) || pattern.matches(&names.of(*block))
         }
         (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => pattern.matches(&names.of(*block)),
     };

@@ -36,6 +36,10 @@ pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
     let devices = (first..data.station_count()).filter(|&at| unknowns.moves_frame(at));
     let devices: usize = devices.map(|at| of_device(data, at, fit_rows)).sum();
     let needed = screws + targets + devices;
+    if needed == 0 {
+        let message = "found nothing that is unknown, expected at least one block to fit: fix fewer, or leave --frame base out";
+        return Err(Error::new(ErrorKind::Option, message));
+    }
     if needed > MOST_UNKNOWNS {
         return Err(Error::new(
             ErrorKind::Problem,

@@ -269,7 +269,10 @@ impl Task<'_> {
         }
         let layout = self.problem(&estimate, noise).layout().clone();
         let offsets = |(parameter, _): (&Parameter, _)| matches!(parameter, Parameter::ValueTerm(_));
-        report.joint_offsets = layout.parameters().any(offsets).then(|| estimate.offsets());
+        // Terms that were asked for are the robot's.
+        let is_of_formulation = self.options.formulation != Formulation::default();
+        report.joint_offsets =
+            (is_of_formulation && layout.parameters().any(offsets)).then(|| estimate.offsets());
         Ok(Fitted { estimate, normal, layout, noise, noise_source: source, report })
     }
 

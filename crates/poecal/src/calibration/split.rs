@@ -49,14 +49,12 @@ pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u
 fn refuse_copies(data: &Dataset, held_out: &[bool], held_out_count: usize) -> Result<()> {
     // Numbers converted from another unit differ in the last digits.
     const SAME: f64 = 1e-9;
-    let pose = |row: u32| data.observations[row as usize].measurement.pose();
+    let seen = |row: u32| &data.observations[row as usize].measurement;
     let is_held_out = |row: &u32| held_out[*row as usize];
     let is_copy = |row: u32, other: u32| {
-        let (a, b) = (pose(row), pose(other));
+        let apart = seen(row).apart(seen(other));
         let targets = [row, other].map(|row| data.observations[row as usize].target);
-        targets[0] == targets[1]
-            && (a.translation - b.translation).amax() < SAME
-            && (a.rotation - b.rotation).amax() < SAME
+        targets[0] == targets[1] && apart.is_some_and(|(apart, turned)| apart < SAME && turned < SAME)
     };
     let mut copies: Vec<(u32, u32)> = Vec::new();
     for group in data.alike(&data.all_rows(), SAME, 2, |_| 0) {

@@ -169,6 +169,7 @@ impl<'a> Prepared<'a> {
             noise: &noise_doubts,
             reach_m: 3.0 * length_m,
             mistakes: &mistakes,
+            moves_joints: self.session.unknowns.moves_joints(nominal.joints.len()),
         });
         if verdict.level == Level::DoNotUse || diagnosis.iter().any(Diagnosis::is_of_input) {
             // Mistakes in the input are not the fault of a joint.
@@ -267,7 +268,7 @@ impl<'a> Prepared<'a> {
         let prior =
             PriorInformation::new(self.prior.as_ref(), &models.calibrated, &layout, self.session.length_m)
                 .with_chosen(
-                    &layout.base_motions(&models.calibrated, self.session.data, kept),
+                    &layout.motions_without_effect(&models.calibrated, self.session.data, kept).directions,
                     self.session.length_m,
                 );
         let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();

@@ -98,6 +98,8 @@ pub(super) struct Grounds<'a> {
     pub(super) reach_m: f64,
     /// Mistakes in the input, a sentence each.
     pub(super) mistakes: &'a [String],
+    /// Whether an axis or a term of a joint is unknown.
+    pub(super) moves_joints: bool,
 }
 
 /// The verdict.
@@ -135,7 +137,7 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
     let of = |model: &ModelAccuracy| model.get(leading).unwrap_or_default().rms;
     let (registered, calibrated) = (of(&set.registered), of(&set.calibrated));
     let (what, unit) = (leading.name(), leading.unit().symbol());
-    if calibrated > (1.0 - WORTH) * registered {
+    if grounds.moves_joints && calibrated > (1.0 - WORTH) * registered {
         reasons.push(format!(
             "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
         ));

@@ -56,6 +56,12 @@ impl Unknowns {
         !self.held_frames.contains(&station)
     }
 
+    /// Whether the axis or a term of any of so many joints is unknown.
+    #[must_use]
+    pub fn moves_joints(&self, joints: usize) -> bool {
+        !self.terms.is_empty() || (0..joints).any(|joint| self.moves_axis(joint))
+    }
+
     /// Whether nothing stands in the base frame, so that any motion of it is one of the device (theory.md §8 (37)).
     #[must_use]
     pub fn base_is_free(&self) -> bool {

@@ -30,7 +30,7 @@ struct MeasuredOrientation {
 pub(super) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<Hypothesis> {
     let mut points = like(data);
     for (row, seen) in data.observations.iter().enumerate() {
-        let position = seen.measurement.pose().translation;
+        let Some(position) = seen.measurement.observe().position() else { continue };
         let measurement = Measurement::Point(PointMeasurement { position });
         push(&mut points, data.readings(row), Observation { measurement, ..*seen });
     }

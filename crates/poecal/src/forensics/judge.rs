@@ -64,7 +64,10 @@ pub(super) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) ->
 fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Dataset) -> Vec<Hypothesis> {
     let turned = sample.observations.iter().any(|row| row.measurement.sees_orientation());
     let mut all = joint_units(columns);
-    all.extend(position_units());
+    let placed = sample.observations.iter().any(|row| row.measurement.observe().position().is_some());
+    if placed {
+        all.extend(position_units());
+    }
     all.extend(joint_signs(columns));
     all.extend(joint_exchanges(columns));
     all.extend(joint_couplings(columns));
@@ -72,7 +75,9 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
         all.extend(pose_forms());
         all.extend(conventions(fitter, sample));
     }
-    all.extend(mirrors(fitter.device_free, turned));
+    if placed {
+        all.extend(mirrors(fitter.device_free, turned));
+    }
     all.extend(row_shifts(sample.targets.len()));
     all.extend(joint_zeros(fitter, columns, sample));
     all

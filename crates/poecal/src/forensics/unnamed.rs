@@ -6,7 +6,6 @@ use super::fitter::Fitter;
 use super::judge::short;
 use super::{Diagnosis, DiagnosisKind};
 use crate::distributions::median;
-use crate::lie::rotation;
 use crate::measurement::{Dataset, Measurement};
 
 /// Distance (share of the reach) and angle (radians) above which rows of one configuration contradict each other: a hundred times a robot's
@@ -120,11 +119,8 @@ fn usual(mut numbers: Vec<usize>) -> Option<usize> {
     numbers.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first().copied()
 }
 
-/// Distance of two measurements of one configuration, metres, if it exceeds a robot's repeatability.
+/// Distance of two measurements of one kind in one configuration, metres, if it exceeds a robot's repeatability.
 pub(super) fn contradiction_m(fitter: &Fitter<'_>, a: &Measurement, b: &Measurement) -> Option<f64> {
-    let (first, second) = (a.pose(), b.pose());
-    let apart_m = (first.translation - second.translation).norm();
-    let both = a.sees_orientation() && b.sees_orientation();
-    let turn = if both { rotation::log(&(first.rotation * second.rotation.transpose())).norm() } else { 0.0 };
+    let (apart_m, turn) = a.apart(b)?;
     (apart_m > CONTRADICTION_SHARE * fitter.reach_m() || turn > CONTRADICTION_RAD).then_some(apart_m)
 }

@@ -22,7 +22,7 @@ pub use quantity::{ByQuantity, Measured, Noise, Quantity};
 
 use nalgebra::Vector3;
 
-use crate::lie::Pose;
+use crate::lie::{Pose, rotation};
 
 /// One measurement of a target in the measuring device's frame.
 ///
@@ -80,6 +80,27 @@ impl Measurement {
             Measurement::Point(PointMeasurement { position }) => Seen::Point(position),
             Measurement::Pose(PoseMeasurement { pose }) => Seen::Frame(pose),
             Measurement::Distance(distance) => Seen::Other(distance),
+        }
+    }
+
+    /// How far apart two measurements of one kind are: metres, and radians of orientations. `None` of different kinds.
+    #[must_use]
+    pub fn apart(&self, other: &Measurement) -> Option<(f64, f64)> {
+        let place = |seen: Seen<'_>| match seen {
+            Seen::Point(position) => Some((*position, None)),
+            Seen::Frame(pose) => Some((pose.translation, Some(pose.rotation))),
+            Seen::Other(_) => None,
+        };
+        match (place(self.seen()), place(other.seen())) {
+            (Some((a, turned)), Some((b, other))) => {
+                let turn = turned.zip(other).map(|(a, b)| rotation::log(&(a * b.transpose())).norm());
+                Some(((a - b).norm(), turn.unwrap_or(0.0)))
+            }
+            (None, None) => {
+                let (a, b) = (self.observe().range()?, other.observe().range()?);
+                Some(((a - b).abs(), 0.0))
+            }
+            (Some(_), None) | (None, Some(_)) => None,
         }
     }
 

@@ -186,6 +186,7 @@ pub struct Explanation {
 /// [`ErrorKind::Option`] if the robots do not have the same joints (number, names in order, kinds and readings), or have branches.
 pub fn explain(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Result<Explanation> {
     check_same_joints(nominal, actual)?;
+    let (nominal, actual) = (&nominal.without_offsets(), &actual.without_offsets());
     let comparison = Comparison::new(nominal, actual, options);
     let found = comparison.best();
     let unmoved = comparison.best_without_offsets();

@@ -1,6 +1,5 @@
 //! Rows × columns: the only place where measurements and parameters meet. Assembly of the normal equations, no algorithms.
 
-mod base_motions;
 mod column_map;
 mod curvature;
 mod fast;
@@ -10,6 +9,7 @@ mod refit;
 mod row_block;
 mod row_group;
 mod scatter;
+mod without_effect;
 
 pub use crate::lanes::{SimdLevel, simd_levels};
 pub use layout::Layout;

@@ -1,6 +1,9 @@
 //! Fits of some blocks of unknowns only: what is held stays to the bit, and the rest is found.
 
-use poecal::calibration::{BlockChoice, Calibration, CalibrationOptions, calibrate};
+use poecal::analysis::{Cause, Direction};
+use poecal::calibration::{
+    BlockChoice, Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, calibrate,
+};
 use poecal::estimate::Packed;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
@@ -230,4 +233,31 @@ fn terms_of_joint_values_are_found_and_written() {
         let lost = !found.robot.without_offsets().terms.is_empty();
         assert_eq!(urdf.notes.iter().any(|note| note.contains(&name)), lost, "{:?}", urdf.notes);
     }
+}
+
+#[test]
+fn a_fit_without_unknowns_is_refused_and_registration_alone_is_judged_by_its_errors() {
+    let (built, data) = exact(Kind::Point, 0.0);
+    let blocks = choice(&["joints", "targets"], &[]);
+    let options = CalibrationOptions { blocks, frame: DeviceFrameKnowledge::Base, ..Default::default() };
+    let message = calibrate(&built, &data, &options).unwrap_err().to_string();
+    println!("{message}");
+    assert!(message.starts_with("found nothing that is unknown"));
+
+    let made = Simulation { error_rotation_rad: 0.0, error_position_m: 0.0, ..Simulation::default() };
+    let made = made.run(&aside(), Kind::Point).unwrap();
+    let found = fitted(&made.nominal, &made.data, choice(&["joints"], &[]), true);
+    println!("{:?}", found.verdict);
+    assert_ne!(found.verdict.level, Level::DoNotUse);
+}
+
+#[test]
+fn offsets_beside_free_axes_are_no_unknowns_of_their_own() {
+    let made = Simulation { count: 80, ..Simulation::default() }.run(&aside(), Kind::Pose).unwrap();
+    let found = fitted(&made.nominal, &made.data, choice(&[], &["*.offset"]), true);
+    let Identified { parameters, rank } = identified(&found);
+    println!("{parameters} {rank} {:?}", found.identifiability.structural.last());
+    assert_eq!((parameters, rank), (30, 30));
+    let told = |it: &Direction| it.cause == Cause::JointOffsets && it.directions == 6;
+    assert!(found.identifiability.structural.iter().any(told));
 }

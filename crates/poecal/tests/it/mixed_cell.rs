@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 use poecal::Quantity;
-use poecal::calibration::{CalibrationOptions, Level, calibrate};
+use poecal::calibration::{BlockChoice, CalibrationOptions, Level, calibrate};
+use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{ReadOptions, parse};
 use poecal::lie::Pose;
 use poecal::robot::Robot;
@@ -134,4 +135,56 @@ fn distances_alone_give_a_robot_that_predicts_distances() {
     assert!(calibrated < 1.3e3 * WIRE_M && registered > 5.0 * calibrated);
     // 24 of the axes and 3 of the point, less the turns about the anchor, which no distance sees.
     assert_eq!((found.identifiability.rank, found.identifiability.parameters), (24, 24));
+}
+
+/// Distances of one wire, as a file with these changes of its lines.
+fn wire(rows: usize, seed: u64, change: impl Fn(usize, f64) -> f64) -> (Robot, Robot, String) {
+    let (actual, nominal) = robots();
+    let rows = text(&actual, 3 * rows, &mut ChaCha8Rng::seed_from_u64(seed));
+    let mut lines = rows.lines().filter(|line| !line.contains("tracker,") && !line.contains("camera,"));
+    let mut text = lines.next().unwrap().to_owned() + "\n";
+    for (row, line) in lines.enumerate() {
+        let (rest, distance) = line.rsplit_once(',').unwrap();
+        writeln!(text, "{rest},{:?}", change(row, distance.parse().unwrap())).unwrap();
+    }
+    (actual, nominal, text)
+}
+
+#[test]
+fn a_gross_error_of_a_distance_is_one_suspected_row() {
+    let (_, nominal, text) = wire(200, 3, |row, distance| if row == 7 { distance + 50.0 } else { distance });
+    let file = parse(&text, "wire.csv", &nominal, &ReadOptions::default()).unwrap();
+    let found = calibrate(&nominal, &file.data, &CalibrationOptions::default()).unwrap();
+    let suspected: Vec<usize> = (0..200).filter(|&row| found.robustness.rows[row].suspected).collect();
+    println!("{suspected:?} {:?} {:?}", found.verdict.level, found.diagnosis);
+    assert_eq!(suspected, [7]);
+    assert!(found.diagnosis.is_empty() && found.verdict.level != Level::DoNotUse, "{:?}", found.verdict);
+}
+
+#[test]
+fn distances_of_another_unit_or_below_zero_are_refused() {
+    let refused = |change: fn(usize, f64) -> f64, from: &str, to: &str| {
+        let (_, nominal, text) = wire(60, 5, change);
+        parse(&text.replace(from, to), "wire.csv", &nominal, &ReadOptions::default()).unwrap_err().to_string()
+    };
+    let message = refused(|_, distance| distance, "distance[mm]", "distance");
+    println!("{message}");
+    assert!(message.contains("expected another unit, most likely mm"));
+    let message = refused(|row, distance| if row == 3 { -distance } else { distance }, "?", "?");
+    println!("{message}");
+    assert!(message.starts_with("wire.csv:5:") && message.contains("expected a distance above 0"));
+}
+
+#[test]
+fn a_calibration_by_distances_with_held_blocks_is_read_back() {
+    let (_, nominal, text) = wire(200, 6, |_, distance| distance);
+    let file = parse(&text, "wire.csv", &nominal, &ReadOptions::default()).unwrap();
+    let fix = vec!["joint2".to_owned()];
+    let blocks = BlockChoice { fix, ..BlockChoice::default() };
+    let options = CalibrationOptions { blocks, ..CalibrationOptions::default() };
+    let found = calibrate(&nominal, &file.data, &options).unwrap();
+    let written = CalibrationFile::new(&found, &file.data, Inputs::default());
+    let read = CalibrationFile::parse(&written.to_text().unwrap(), "calibration.json").unwrap();
+    assert!(read.uncertainty(&[None]).is_ok());
+    assert!(read.unknowns().unwrap().contains(&"frame.wire.x".to_owned()));
 }

@@ -338,6 +338,19 @@ impl CalibrationFile {
         self.uncertainty_from(targets, &self.robot()?, Body::Base)
     }
 
+    /// Standard deviation of a joint's term by its name, radians, metres or by value; `None` if it is no unknown.
+    pub(crate) fn sigma(&self, term: &str) -> Option<f64> {
+        let entry = self.uncertainty.as_ref()?;
+        let at = entry.unknowns.iter().position(|name| name == term)?;
+        let (joint, name) = term.rsplit_once('.')?;
+        let kind = self.joints.iter().find(|entry| entry.name == joint)?.kind;
+        let term = Term::ALL.into_iter().find(|it| it.model().name() == name)?;
+        let n = entry.unknowns.len();
+        // The diagonal of an upper triangle by rows.
+        let variance = entry.covariance_m2.get(at * n - at * at.saturating_sub(1) / 2)?;
+        Some(variance.max(0.0).sqrt() / term.model().unit(kind).metres(entry.length_m))
+    }
+
     /// Names of the unknowns, in the order of the covariance.
     ///
     /// # Errors
@@ -402,8 +415,7 @@ impl CalibrationFile {
         if !entry.unknowns.is_empty() {
             let names = entry.names(robot, self.first_station());
             let is_unknown = |parameter: &Parameter| {
-                let own = names.of_unknowns(parameter);
-                own.first().is_some_and(|name| entry.unknowns.contains(name))
+                names.of_unknowns(parameter).iter().all(|name| entry.unknowns.contains(name))
             };
             free.retain(is_unknown);
         }
@@ -440,7 +452,10 @@ impl CalibrationFile {
 impl UncertaintyEntry {
     /// Parameters of the first device frame and the joints that may be among the unknowns, in the order of a fit.
     fn joint_parameters(&self, robot: &Robot) -> Vec<Parameter> {
-        let frame = self.frame_about_m.map(|about| Parameter::DeviceFrame(DeviceFrame::new(0, about.into())));
+        let turns = self.unknowns.iter().any(|name| name.starts_with("frame") && name.ends_with(".rx"));
+        let of =
+            |about: [f64; 3]| if turns { DeviceFrame::new(0, about.into()) } else { DeviceFrame::anchor(0) };
+        let frame = self.frame_about_m.map(|about| Parameter::DeviceFrame(of(about)));
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
         let terms = kinds.iter().enumerate().flat_map(|(joint, &kind)| {
             let terms = Term::ALL.into_iter().filter(|_| !self.unknowns.is_empty());

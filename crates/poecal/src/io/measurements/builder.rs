@@ -263,11 +263,11 @@ impl<'a> Builder<'a> {
         };
         let orientation = match &target.orientation {
             Some(spec) => Some(self.mapped_orientation(&prefix, spec)?),
-            None if is_only => self.default_orientation()?,
+            None if is_only && position.is_some() => self.default_orientation()?,
             None => None,
         };
         let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
-            self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only)
+            self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only && position.is_some())
         };
         let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Dimension::Length)?;
         let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Dimension::Angle)?;

@@ -11,6 +11,8 @@ use crate::unit::Unit;
 /// quantity's name.
 pub(super) struct Kind {
     pub(super) quantity: Quantity,
+    /// Whether its numbers are above 0; then 0 is a lost beam.
+    pub(super) is_above_zero: bool,
     /// The measurement from its numbers, metres and radians.
     pub(super) of: fn(&[f64]) -> Measurement,
 }
@@ -18,6 +20,7 @@ pub(super) struct Kind {
 /// All of them. A new one is a line here.
 pub(super) const KINDS: [Kind; 1] = [Kind {
     quantity: Quantity::Distance,
+    is_above_zero: true,
     of: |numbers| {
         Measurement::Distance(DistanceMeasurement { distance: numbers.first().copied().unwrap_or(f64::NAN) })
     },
@@ -69,6 +72,12 @@ impl KindColumns {
         self.numbers.iter().any(|&input| inputs.value(input).is_some())
     }
 
+    /// Whether its numbers in a row are those of a lost beam.
+    pub(super) fn is_lost(&self, inputs: &InputReader<'_>) -> bool {
+        let is_above_zero = KINDS.get(self.kind).is_some_and(|kind| kind.is_above_zero);
+        is_above_zero && self.numbers.iter().all(|&input| inputs.value(input) == Some(0.0))
+    }
+
     /// The measurement of a row, with its quantity and stated standard deviation; `None` if all its cells are empty.
     pub(super) fn measurement(
         &self,
@@ -80,7 +89,13 @@ impl KindColumns {
         for &input in &self.numbers {
             let expected = "all numbers of a measurement, or none";
             let missing = || inputs.error(row, input, "found an empty cell", expected);
-            numbers.push(inputs.value(input).ok_or_else(missing)?);
+            let number = inputs.value(input).ok_or_else(missing)?;
+            if kind.is_above_zero && number <= 0.0 {
+                let text = row.cells.get(inputs.column(input)).map_or("", |cell| cell.raw);
+                let expected = format!("a {} above 0", kind.quantity.name());
+                return Err(inputs.error(row, input, &format!("found `{text}`"), &expected));
+            }
+            numbers.push(number);
         }
         Ok(Some(((kind.of)(&numbers), kind.quantity, inputs.sigma(row, self.sigma)?)))
     }

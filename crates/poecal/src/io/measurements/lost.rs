@@ -63,10 +63,11 @@ impl LostBeams {
                 Beam::Seen => seen = true,
                 // With several targets in a row, some may not have been measured.
                 Beam::Empty => {}
-                Beam::Zero if strict => return Err(refused(row, target, inputs, "the position 0, 0, 0")),
+                Beam::Zero if strict => return Err(refused(row, target, inputs, zero_words(target))),
                 Beam::Zero => {
                     self.add(row.line);
                     inputs.forget(target.position.as_ref().map_or(&[][..], |position| position));
+                    target.kinds.iter().for_each(|kind| inputs.forget(kind.numbers()));
                     inputs.forget(target.orientation.as_ref().map_or(&[], |(_, parts)| parts));
                 }
             }
@@ -115,8 +116,9 @@ pub(super) fn named_lines(count: usize, first_lines: &[usize]) -> String {
 
 /// State of a target in the current row.
 fn beam(target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
-    if target.kinds.iter().any(|kind| kind.is_measured(inputs)) {
-        return Beam::Seen;
+    let mut measured = target.kinds.iter().filter(|kind| kind.is_measured(inputs));
+    if let Some(first) = measured.next() {
+        return if first.is_lost(inputs) && target.position.is_none() { Beam::Zero } else { Beam::Seen };
     }
     let position = target.position.map_or([None; 3], |position| inputs.all(position));
     let orientation =
@@ -137,6 +139,11 @@ fn beam(target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
         form.and_then(|form| form.rotation(values).ok()) == Some(Matrix3::identity())
     };
     if is_none || is_identity() { Beam::Zero } else { Beam::Seen }
+}
+
+/// What a target at zero has.
+fn zero_words(target: &TargetLayout) -> &'static str {
+    if target.position.is_some() { "the position 0, 0, 0" } else { "0" }
 }
 
 fn refused(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>, found: &str) -> Error {

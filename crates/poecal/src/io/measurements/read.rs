@@ -150,6 +150,7 @@ impl<'a> Reader<'a> {
         let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
         let slides_m = watch.unlimited_slides_m(&inputs.ranges);
         scale::check_positions(path, self.robot, &layout, slides_m, new_rows)?;
+        scale::check_ranges(path, self.robot, slides_m, new_rows)?;
         spread::check(path, &table.header, self.robot, &layout, &self.found.data, first)?;
         let poses = new_rows.iter().filter(|row| row.measurement.sees_orientation()).count();
         let mut others = BTreeMap::new();

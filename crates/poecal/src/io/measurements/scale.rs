@@ -9,7 +9,7 @@ use super::layout::ColumnLayout;
 use super::lost::{NAMED_LINES, named_lines};
 use super::table::Row;
 use super::units::{Dimension, Unit, UnitSource};
-use crate::distributions::median_point;
+use crate::distributions::{median, median_point};
 use crate::error::{Error, ErrorKind, Result};
 use crate::measurement::Observation;
 use crate::robot::{Joint, JointKind, Limits, Robot};
@@ -202,6 +202,27 @@ impl OneJoint<'_> {
             named_lines(self.beyond, &self.first_lines)
         )
     }
+}
+
+/// Refuses distances that differ by more than the robot reaches, from which their unit must be smaller.
+pub(super) fn check_ranges(path: &Path, robot: &Robot, slides_m: f64, rows: &[Observation]) -> Result<()> {
+    let ranged = || rows.iter().filter_map(|row| Some((row.measurement.observe().range()?, row)));
+    let Some(middle) = median(ranged().map(|(range, _)| range)) else { return Ok(()) };
+    let reach = robot.reach_m() + slides_m;
+    let far = |range: f64| (range - middle).abs() > 2.0 * reach;
+    let count = ranged().filter(|(range, _)| far(*range)).count();
+    let furthest = ranged().max_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
+    let Some((range, row)) = furthest else { return Ok(()) };
+    if !far(range) || (count as f64) < SHARE * ranged().count() as f64 {
+        return Ok(());
+    }
+    let message = format!(
+        "found distances up to {} m from their middle, where the robot reaches {} m, expected another unit, most likely mm; write \
+         the unit in the header, as `distance[mm]`",
+        short((range - middle).abs()),
+        short(reach)
+    );
+    Err(Error::new(ErrorKind::Unit, message).at_line(path, row.source.line as usize))
 }
 
 /// Refuses positions whose spread shows that their unit must be smaller.

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 
@@ -12,7 +13,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::{CalibrationFile, ScrewEntry};
 use crate::io::residuals::{ResidualRow, Residuals};
 use crate::measurement::Quantity;
-use crate::robot::JointKind;
+use crate::robot::{JointKind, Term};
 use crate::text::visible;
 
 /// Rows that charts draw at most; how many of them are chosen for being suspected, and for being far off.
@@ -53,6 +54,11 @@ struct JointData<'a> {
     reading: usize,
     multiplier: f64,
     offset: f64,
+    /// Factor and shift of the joint's value by its terms, of the calibrated and the nominal model; missing without terms.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    terms: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nominal_terms: Option<[f64; 2]>,
 }
 
 #[derive(Serialize)]
@@ -123,6 +129,8 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
             reading: reading_index(residuals, &joint.reading.name).unwrap_or_default(),
             multiplier: joint.reading.multiplier,
             offset: joint.reading.offset,
+            terms: straight(&joint.terms),
+            nominal_terms: straight(&joint.nominal_terms),
         }
     });
     let frames = Frames::of(file, &robot, residuals)?;
@@ -235,6 +243,14 @@ impl ResidualData {
             component.values.push(value.map(rounded));
         }
     }
+}
+
+/// Factor and shift of a joint's value by its terms, as a straight line through the values at 0 and 1.
+fn straight(terms: &BTreeMap<Term, f64>) -> Option<[f64; 2]> {
+    let at = |value: f64| -> f64 {
+        value + terms.iter().map(|(term, c)| c * term.model().basis(0, &[value])).sum::<f64>()
+    };
+    (!terms.is_empty()).then(|| [at(1.0) - at(0.0), at(0.0)])
 }
 
 /// As many digits as a picture can show. A whole number of that many digits over a power of ten that is exact rounds as text does, in

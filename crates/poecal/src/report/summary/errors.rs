@@ -17,7 +17,14 @@ pub(in crate::report) fn leading(file: &CalibrationFile) -> (&SetAccuracy, Vec<M
         Some(set) => (set, "held_out", &robust.held_out_without_suspected, robust.suspected_held_out),
         None => (&accuracy.training, "training", &robust.training_without_suspected, robust.suspected_fit),
     };
+    let holds = |kind: &str| {
+        let is_of = |name: &String| name == kind || name.starts_with(&format!("{kind}."));
+        file.blocks.as_ref().is_some_and(|blocks| blocks.held.iter().any(is_of))
+    };
     let nominal = match file.measurement_frame.known {
+        DeviceFrameKnowledge::Unknown | DeviceFrameKnowledge::Base if holds("target") || holds("frame") => {
+            "nominal, registered by what is free"
+        }
         DeviceFrameKnowledge::Unknown => "nominal, tool and device fitted",
         DeviceFrameKnowledge::Base => "nominal, tool fitted",
     };

@@ -174,8 +174,18 @@ pub(super) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, Str
             let (model, name) = (term.model(), &joint.name);
             let unit = model.unit(joint.kind);
             let sign = if coefficient < 0.0 { "-" } else { "" };
-            let value = format!("{sign}{} {}", number(unit.shown(coefficient.abs())), unit.symbol());
-            (format!("{name}.{}", model.name()), value.trim_end().to_owned())
+            let name = format!("{name}.{}", model.name());
+            let value = format!("{sign}{}", number(unit.shown(coefficient.abs())));
+            // The prior alone tells as much as half its own width.
+            let (spread, open) = match file.sigma(&name) {
+                Some(sigma) if sigma > 0.5 * model.deviation(joint.kind) => {
+                    (String::new(), " (not determined)")
+                }
+                Some(sigma) => (format!(" ± {}", number(unit.shown(sigma))), ""),
+                None => (String::new(), ""),
+            };
+            let symbol = if unit.symbol().is_empty() { String::new() } else { format!(" {}", unit.symbol()) };
+            (name, format!("{value}{spread}{symbol}{open}"))
         })
     })
 }
