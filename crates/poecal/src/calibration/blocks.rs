@@ -2,6 +2,7 @@
 
 use wildmatch::WildMatch;
 
+use super::{CalibrationOptions, DeviceFrameKnowledge};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Unknowns;
 use crate::measurement::Dataset;
@@ -75,6 +76,27 @@ impl BlockChoice {
             return Err(Error::new(ErrorKind::Option, message));
         }
         Ok(unknowns)
+    }
+}
+
+/// Refuses frames that are to be fitted and are known at once.
+pub(super) fn check_frames(options: &CalibrationOptions, robot: &Robot, data: &Dataset) -> Result<()> {
+    let names = names(robot, data);
+    let blocks = names.blocks();
+    let frees = |word: &&String| {
+        let chosen = chosen(&names, &blocks, word);
+        // A star that means everything means frames by the way.
+        let others = chosen.iter().zip(&blocks).any(|(is, block)| *is && !matches!(block, Block::Frame(_)));
+        !others && chosen.contains(&true)
+    };
+    match options.blocks.free.iter().find(frees) {
+        Some(word) if options.frame == DeviceFrameKnowledge::Base => {
+            let message = format!(
+                "found `{word}` to be fitted beside measurements in the base frame (--frame base), expected one of the two: leave one out"
+            );
+            Err(Error::new(ErrorKind::Option, message))
+        }
+        Some(_) | None => Ok(()),
     }
 }
 

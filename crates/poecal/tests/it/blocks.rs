@@ -244,6 +244,11 @@ fn a_fit_without_unknowns_is_refused_and_registration_alone_is_judged_by_its_err
     println!("{message}");
     assert!(message.starts_with("found nothing that is unknown"));
 
+    let blocks = choice(&[], &["frames"]);
+    let options = CalibrationOptions { blocks, frame: DeviceFrameKnowledge::Base, ..Default::default() };
+    let message = calibrate(&built, &data, &options).unwrap_err().to_string();
+    assert!(message.starts_with("found `frames` to be fitted beside measurements in the base"), "{message}");
+
     let made = Simulation { error_rotation_rad: 0.0, error_position_m: 0.0, ..Simulation::default() };
     let made = made.run(&aside(), Kind::Point).unwrap();
     let found = fitted(&made.nominal, &made.data, choice(&["joints"], &[]), true);
