@@ -20,6 +20,9 @@ const DOCUMENT: &str = include_str!("../../../docs/file-formats.md");
 const URDF: &str = include_str!("../../../examples/elbow/robot.urdf");
 const TOML: &str = include_str!("../../../examples/elbow/robot.toml");
 const POINTS: &str = include_str!("../../../examples/elbow/points.csv");
+/// Of an earlier schema: poses and points, suspected and repeated rows.
+const EARLIER: &str = include_str!("../../poecal/tests/data/calibration_schema_1.json");
+const EARLIER_ROWS: &str = include_str!("../../poecal/tests/data/calibration_schema_1.csv");
 const UR10_MAP: &str = include_str!("../../../validation/ur10_raw_columns.toml");
 /// A follower, a fixed joint within the chain, a comment, entities.
 const MIMIC: &str = r#"<?xml version="1.0"?>
@@ -93,6 +96,8 @@ fn main() {
         put("residuals", name, &residuals);
         put("report", name, &both(&json, &residuals));
     }
+    put("calibration", "schema_1", EARLIER);
+    put("report", "schema_1", &both(EARLIER, EARLIER_ROWS));
     let two = two_targets(&gantry());
     put("pipeline", "two_targets", &both(&robot_toml::write(&gantry()), &two));
     let twelve = POINTS.lines().take(31).map(|line| format!("{line}\n")).collect::<String>();

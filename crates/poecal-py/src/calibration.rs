@@ -162,8 +162,7 @@ impl Calibration {
         Covariance::of(self.file())
     }
 
-    /// Draws the errors before and after, and those of each row: of position, or of the first other quantity where none was measured.
-    /// Needs matplotlib.
+    /// Draws the errors before and after, and those of each row: of position, if it was measured. Needs matplotlib.
     ///
     /// Parameters
     /// ----------

@@ -54,6 +54,18 @@ def test_arrays_of_residuals_fit_together(calibrations):
     for model in ["nominal", "registered", "calibrated"]:
         errors = getattr(residuals, f"position_{model}_mm")[residuals.held_out]
         assert np.isclose(np.sqrt((errors**2).mean()), getattr(of_set, model).position_mm.rms)
+    # By the names of quantities the same, and in the order by which a calibration is judged.
+    assert list(residuals.quantities.items()) == [("position", "mm"), ("rotation", "deg")]
+    for quantity, unit in residuals.quantities.items():
+        assert np.array_equal(residuals.components(quantity), getattr(residuals, f"{quantity}_{unit}"), equal_nan=True)
+        assert np.array_equal(residuals.errors(quantity), getattr(residuals, f"{quantity}_calibrated_{unit}"), equal_nan=True)
+        nominal = residuals.errors(quantity, model="nominal")
+        assert np.array_equal(nominal, getattr(residuals, f"{quantity}_nominal_{unit}"), equal_nan=True)
+    assert list(calibrations["point"].residuals.quantities) == ["position"]
+    with pytest.raises(poecal.OptionError, match="quantity: found `positon`, expected one of position, rotation, distance; did you mean `position`"):
+        residuals.components("positon")
+    with pytest.raises(poecal.OptionError, match="model: found `best`, expected one of nominal, registered, calibrated"):
+        residuals.errors("position", model="best")
     for name in DIAGNOSTICS:
         assert getattr(residuals, name).shape == (80,)
     assert residuals.suspected.dtype == bool and not residuals.suspected.any()

@@ -702,6 +702,37 @@ class Residuals:
     def rotation_calibrated_deg(self) -> _Array:
         """Error of rotation of the calibrated model, shape (m,), degrees; NaN where no orientation was measured."""
     @property
+    def quantities(self) -> dict[str, str]:
+        """Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged."""
+    def components(self, quantity: str) -> _Array:
+        """Residual of any quantity by component.
+
+        Parameters
+        ----------
+        quantity
+            Its name, as in `quantities`.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m, n), millimetres or degrees; NaN where it was not measured.
+        """
+    def errors(self, quantity: str, *, model: Literal["nominal", "registered", "calibrated"] = "calibrated") -> _Array:
+        """Error of any quantity of a model.
+
+        Parameters
+        ----------
+        quantity
+            Its name, as in `quantities`.
+        model
+            "nominal", "registered" or "calibrated".
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (m,), millimetres or degrees; NaN where it was not measured.
+        """
+    @property
     def weight(self) -> _Array:
         """Weight of each row in the fit, shape (m,); of a held-out row the weight that it would have had."""
     @property
@@ -862,8 +893,7 @@ class Calibration:
     def covariance(self) -> Covariance:
         """Covariance of the unknowns; an error if there are no more residuals than unknowns."""
     def plot(self, axes: Sequence[Axes] | NDArray[Any] | None = None) -> Figure:
-        """Draws the errors before and after, and those of each row: of position, or of the first other quantity where none was measured.
-        Needs matplotlib.
+        """Draws the errors before and after, and those of each row: of position, if it was measured. Needs matplotlib.
 
         Parameters
         ----------

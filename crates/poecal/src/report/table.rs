@@ -106,9 +106,16 @@ pub(super) fn leading_words(numbers: &Measured<f64>) -> String {
     numbers.leading().map_or_else(|| "-".to_owned(), words)
 }
 
+/// What is said behind a number of a quantity that is no part of a pose, since its unit does not tell which it is.
+pub(super) fn further_words(quantity: Quantity) -> String {
+    if quantity.is_of_pose() { String::new() } else { format!(" of {}", quantity.name()) }
+}
+
 /// The noise of each measured quantity, with its unit.
 pub(super) fn noise_words(sigma: &Measured<f64>) -> String {
-    let words = sigma.iter().map(|(quantity, it)| format!("{} {}", number(it), quantity.unit().symbol()));
+    let words = sigma.iter().map(|(quantity, it)| {
+        format!("{} {}{}", number(it), quantity.unit().symbol(), further_words(quantity))
+    });
     format!("{} each component", words.collect::<Vec<_>>().join(", "))
 }
 

@@ -140,10 +140,15 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
 
 /// The cells of a quantity, empty if it was not measured.
 fn push_errors(out: &mut String, quantity: Quantity, errors: &Measured<ModelErrors>) {
-    match errors.get(quantity) {
-        Some(errors) => errors.numbers().for_each(|value| push_cell(out, value)),
-        None => out.extend(std::iter::repeat_n(',', MODELS + quantity.components())),
+    let cells = MODELS + quantity.components();
+    let mut empty = cells;
+    if let Some(errors) = errors.get(quantity) {
+        for value in errors.numbers().take(cells) {
+            push_cell(out, value);
+            empty -= 1;
+        }
     }
+    out.extend(std::iter::repeat_n(',', empty));
 }
 
 fn push_cell(out: &mut String, number: f64) {

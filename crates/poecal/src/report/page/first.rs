@@ -12,7 +12,7 @@ use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::measurement::Quantity;
 use crate::report::summary::{ModelRow, Place, Point, expected, leading, look_at};
-use crate::report::table::{MODELS, STATISTICS, joints_words};
+use crate::report::table::{MODELS, STATISTICS, further_words, joints_words};
 use crate::unit::Unit;
 
 /// A quantity's errors as a caption: `Position error on …, mm`.
@@ -209,7 +209,7 @@ fn noise(file: &CalibrationFile) -> Markup {
     html! {
         @for (k, (quantity, key, sigma)) in noise.sigma.keys().enumerate() {
             @if k > 0 { ", " }
-            (figure(sigma, format_args!("noise.{key}"))) (spaced(quantity.unit()))
+            (figure(sigma, format_args!("noise.{key}"))) (spaced(quantity.unit())) (further_words(quantity))
         }
         " each component, " (source)
     }

@@ -89,9 +89,18 @@ pub(super) fn kinds_words(residuals: &Residuals) -> String {
         [Quantity::Position, Quantity::Rotation] => format!("{count} poses"),
         [Quantity::Position] => format!("{count} points"),
         _ => {
-            let names: Vec<&str> = kind.iter().map(|quantity| quantity.name()).collect();
-            format!("{count} of {}", names.join(" and "))
+            let names: Vec<String> = kind.iter().map(|quantity| quantity.name().to_owned()).collect();
+            format!("{count} rows of {}", listed(&names))
         }
     });
-    words.collect::<Vec<_>>().join(" and ")
+    listed(&words.collect::<Vec<_>>())
+}
+
+/// `a, b and c`.
+fn listed(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => only.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
 }

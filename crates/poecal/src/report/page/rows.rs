@@ -11,7 +11,7 @@ use crate::calibration::Statistic;
 use crate::io::calibration_file::{CalibrationFile, OutlierSet, RepeatabilityEntry};
 use crate::io::residuals::{ResidualRow, Residuals, RowDiagnostics};
 use crate::measurement::Quantity;
-use crate::report::table::number;
+use crate::report::table::{further_words, number};
 use crate::threads;
 
 /// Suspected rows, rows of large leverage and repeated poses that a table lists at most.
@@ -36,7 +36,7 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             }
         }
         (chart("rows", "By row", "A dot for each row in the order read. A drift or a step shows a change during the session: a tool knocked, a device moved."))
-        (chart("components", "By component", "Residuals along the device's axes. A mean away from zero in held-out rows shows a frame that moved."))
+        (chart("components", "By component", "Residuals of positions along the device's axes, of rotations about them. A mean away from zero in held-out rows shows a frame that moved."))
         (folded("The components as numbers", &component_table(residuals)))
         (chart(
             "joints",
@@ -259,7 +259,7 @@ fn repeatability(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         found.mean.repeatability.keys().map(|(quantity, ..)| repeatability_table(found, residuals, quantity));
     let tables: Vec<HtmlTable> = tables.collect();
     let worst = found.worst_repeatability.keys().map(|(quantity, key, worst)| {
-        html! { (figure(worst, format_args!("repeatability.{key}"))) (spaced(quantity.unit())) }
+        html! { (figure(worst, format_args!("repeatability.{key}"))) (spaced(quantity.unit())) (further_words(quantity)) }
     });
     let worst: Vec<Markup> = worst.collect();
     let content = html! {
