@@ -120,7 +120,7 @@ fn a_residual_of_poses_says_that_points_have_none() {
     let folder = session(Kind::Point);
     let run = folder.run("calibrate robot.urdf measurements.csv --residual spatial --verbose");
     assert_eq!(run.code, 0, "{run:?}");
-    let words = "--residual spatial has no effect: it is about measured frames, and there are points only";
+    let words = "--residual spatial has no effect: it is about measured frames, and there are none";
     assert!(run.err.contains(words), "{}", run.err);
     assert!(!run.out.contains("residual of poses"), "{}", run.out);
     let out = folder

@@ -72,7 +72,7 @@ pub fn effective_unknowns(normal: &Normal, part: &Normal) -> f64 {
 pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identifiability {
     let n = setup.layout.dim();
     // Motions of the base without any effect are no unknowns: they count as known.
-    let motions = setup.layout.motions_without_effect(setup.estimate, setup.session.data, setup.rows);
+    let motions = setup.layout.motions_without_effect(setup.estimate, &setup.session, setup.rows);
     let base = motions.directions;
     let least = variance / (PLAUSIBLE * setup.session.length_m).powi(2);
     let gram = &with_known(gram, n, &base, least);

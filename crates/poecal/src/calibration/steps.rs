@@ -268,7 +268,7 @@ impl<'a> Prepared<'a> {
         let prior =
             PriorInformation::new(self.prior.as_ref(), &models.calibrated, &layout, self.session.length_m)
                 .with_chosen(
-                    &layout.motions_without_effect(&models.calibrated, self.session.data, kept).directions,
+                    &layout.motions_without_effect(&models.calibrated, &self.session, kept).directions,
                     self.session.length_m,
                 );
         let free: Vec<Parameter> = layout.parameters().map(|(parameter, _)| *parameter).collect();

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::Layout;
-use crate::estimate::{Estimate, Stand};
+use crate::estimate::{Estimate, Session, Stand};
 use crate::lie::{Pose, Twist};
 use crate::linalg;
 use crate::measurement::Dataset;
@@ -36,11 +36,14 @@ impl Layout {
     pub(crate) fn motions_without_effect(
         &self,
         estimate: &Estimate,
-        data: &Dataset,
+        session: &Session<'_>,
         rows: &[u32],
     ) -> WithoutEffect {
+        let data = session.data;
         let base = base_motions(self.length_m());
-        let offsets = self.offset_motions(estimate);
+        // Those of a formulation are what it is compared by.
+        let offsets =
+            if session.unknowns.terms.is_empty() { Vec::new() } else { self.offset_motions(estimate) };
         let is_held = |station: usize| {
             let of_it =
                 |(parameter, _): (&Parameter, _)| parameter.model().subject() == Subject::Instrument(station);
