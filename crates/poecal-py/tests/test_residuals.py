@@ -98,9 +98,9 @@ def test_residuals_that_are_not_there_are_an_error(calibrations, tmp_path):
 def moved(calibration, name, step) -> poecal.Robot:
     """The calibrated robot with one unknown changed, by the book (docs/theory.md §5 (18))."""
     robot, covariance = calibration.robot, calibration.covariance
-    group, _, motion = name.rpartition(".")
+    group, _, motion = name.replace(".axis.", ".").rpartition(".")
     twist = np.zeros(6)
-    twist["xyz".index(motion[-1]) + (0 if motion.startswith("shift") else 3)] = step
+    twist["xyz".index(motion[-1]) + (3 if motion.startswith("r") else 0)] = step
     screws, home = robot.screws, robot.home
     if group in robot.joint_names:
         joint = robot.joint_names.index(group)

@@ -1106,6 +1106,8 @@ def calibrate(
     sigma_position_mm: float | None = None,
     sigma_rotation_deg: float | None = None,
     tolerance_deg_mm: tuple[float, float] | None = ...,
+    fix: Sequence[str] | None = None,
+    free: Sequence[str] | None = None,
     held_out: float | None = None,
     seed: int | None = None,
     robust: Literal["auto", "off", "huber", "cauchy", "tukey"] = "auto",
