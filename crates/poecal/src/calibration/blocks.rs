@@ -2,7 +2,6 @@
 
 use wildmatch::WildMatch;
 
-use super::{CalibrationOptions, DeviceFrameKnowledge};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Unknowns;
 use crate::measurement::Dataset;
@@ -79,8 +78,8 @@ impl BlockChoice {
     }
 }
 
-/// Refuses frames that are to be fitted and are known at once.
-pub(super) fn check_frames(options: &CalibrationOptions, robot: &Robot, data: &Dataset) -> Result<()> {
+/// Refuses frames that are to be fitted although measurements are in the base frame.
+pub(super) fn refuse_frames(choice: &BlockChoice, robot: &Robot, data: &Dataset) -> Result<()> {
     let names = names(robot, data);
     let blocks = names.blocks();
     let frees = |word: &&String| {
@@ -89,14 +88,14 @@ pub(super) fn check_frames(options: &CalibrationOptions, robot: &Robot, data: &D
         let others = chosen.iter().zip(&blocks).any(|(is, block)| *is && !matches!(block, Block::Frame(_)));
         !others && chosen.contains(&true)
     };
-    match options.blocks.free.iter().find(frees) {
-        Some(word) if options.frame == DeviceFrameKnowledge::Base => {
+    match choice.free.iter().find(frees) {
+        Some(word) => {
             let message = format!(
                 "found `{word}` to be fitted beside measurements in the base frame (--frame base), expected one of the two: leave one out"
             );
             Err(Error::new(ErrorKind::Option, message))
         }
-        Some(_) | None => Ok(()),
+        None => Ok(()),
     }
 }
 

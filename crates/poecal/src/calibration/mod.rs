@@ -103,7 +103,9 @@ pub fn calibrate_with_progress(
 ) -> Result<Calibration> {
     let (data, rows) = (&written(data, options.formulation.pose_residual), data.len());
     let packed = Arc::new(threads::in_pool(rows, || Packed::of(robot, data)));
-    blocks::check_frames(options, robot, data)?;
+    if options.frame == DeviceFrameKnowledge::Base {
+        blocks::refuse_frames(&options.blocks, robot, data)?;
+    }
     let unknowns = options.blocks.unknowns(robot, data)?;
     let device_free = options.frame == DeviceFrameKnowledge::Unknown
         && (0..data.station_count()).any(|station| unknowns.moves_frame(station));

@@ -65,6 +65,7 @@ pub enum Seen<'a> {
 impl Measurement {
     /// What was measured, by its type.
     #[must_use]
+    #[inline]
     pub fn observe(&self) -> &dyn Observe {
         match self {
             Measurement::Point(point) => point,
@@ -75,6 +76,7 @@ impl Measurement {
 
     /// What it shows of the target itself.
     #[must_use]
+    #[inline]
     pub fn seen(&self) -> Seen<'_> {
         match self {
             Measurement::Point(PointMeasurement { position }) => Seen::Point(position),
@@ -106,14 +108,24 @@ impl Measurement {
 
     /// Whether it depends on the target's orientation, so that the target is a frame and not only a point.
     #[must_use]
+    #[inline]
     pub fn sees_orientation(&self) -> bool {
-        self.observe().sees_orientation()
+        match self.seen() {
+            Seen::Point(_) => false,
+            Seen::Frame(_) => true,
+            Seen::Other(model) => model.sees_orientation(),
+        }
     }
 
     /// Whether a number of this quantity was measured.
     #[must_use]
+    #[inline]
     pub fn has(&self, quantity: Quantity) -> bool {
-        self.observe().channels().iter().any(|channel| channel.quantity == quantity)
+        match self.seen() {
+            Seen::Point(_) => quantity == Quantity::Position,
+            Seen::Frame(_) => quantity.is_of_pose(),
+            Seen::Other(model) => model.channels().iter().any(|channel| channel.quantity == quantity),
+        }
     }
 
     /// The measured `device_from_target`, with the identity for what was not measured.

@@ -31,7 +31,7 @@ use crate::robot::{Joint, JointKind, JointTerm, Limits, Robot, Term};
 use nalgebra::Vector3;
 use refusal::refusal;
 
-/// Version of the files that are written. Readers take those of [`EARLIER`] too, and refuse others.
+/// Version of the files that are written. Readers take those of version 1 too, and refuse others.
 pub const SCHEMA: &str = "poecal-calibration-2";
 
 /// Version without quantities beside position and rotation, but otherwise the same.
