@@ -32,9 +32,7 @@ impl Session<'_> {
                 Written::Usual(_) => error,
                 Written::Other(pose) => RowError::new(&pose, &predicted()),
             };
-            let squares =
-                ByQuantity::from_fn(|quantity| (error.square(quantity), error.part(quantity).len()));
-            each(observation, squares)
+            each(observation, error.squares())
         })
     }
 

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::Pose;
-use crate::measurement::{Channel, Measurement, NUMBERS, Observe, PointMeasurement, Quantity};
+use crate::measurement::{ByQuantity, Channel, Measurement, NUMBERS, Observe, PointMeasurement, Quantity};
 use crate::unit::Unit;
 
 /// Error of one row: measured minus predicted, in the device's axes; `y - p` and `log(Y Rᵀ)` of theory.md §4 (16). One number for each
@@ -73,6 +73,17 @@ impl RowError {
     #[must_use]
     pub fn square(&self, quantity: Quantity) -> f64 {
         squared(self.part(quantity))
+    }
+
+    /// Squared length of the error of each quantity, and how many numbers it has.
+    pub(crate) fn squares(&self) -> ByQuantity<(f64, usize)> {
+        let mut squares: ByQuantity<(f64, usize)> = ByQuantity::default();
+        for (channel, value) in self.numbers() {
+            let (sum, count) = &mut squares[channel.quantity];
+            *sum += value * value;
+            *count += 1;
+        }
+        squares
     }
 
     /// The first three numbers of a quantity as a vector, zero beyond them.
