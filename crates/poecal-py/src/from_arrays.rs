@@ -78,7 +78,7 @@ pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult
             },
             measurement,
             from: None,
-            stated,
+            stated: stated.into(),
             set: sets.get(row).copied().flatten(),
             source: Source::default(),
         };

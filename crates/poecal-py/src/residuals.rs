@@ -44,7 +44,7 @@ impl Residuals {
     /// A value of each row.
     fn each<T>(&self, of: impl Fn(&Rows, &ResidualRow) -> T) -> PyResult<Vec<T>> {
         let rows = self.rows()?;
-        Ok(rows.rows.iter().map(|row| of(rows, row)).collect())
+        Ok(rows.rows().iter().map(|row| of(rows, row)).collect())
     }
 
     /// A number of each row, NaN where there is none.
@@ -124,7 +124,7 @@ fn named(name: &str) -> Option<String> {
 #[pymethods]
 impl Residuals {
     fn __len__(&self) -> PyResult<usize> {
-        Ok(self.rows()?.rows.len())
+        Ok(self.rows()?.rows().len())
     }
 
     /// File of each row; None where it came from memory.
@@ -315,7 +315,7 @@ impl Residuals {
         columns.set_item("suspected", self.suspected(py)?)?;
         for (at, (name, kind)) in rows.readings.iter().enumerate() {
             let values =
-                (0..rows.rows.len()).map(|row| rows.values(row).get(at).copied().unwrap_or(f64::NAN));
+                (0..rows.rows().len()).map(|row| rows.values(row).get(at).copied().unwrap_or(f64::NAN));
             let unit = match kind {
                 JointKind::Revolute => "deg",
                 JointKind::Prismatic => "mm",
@@ -349,7 +349,7 @@ impl Residuals {
     }
 
     fn __repr__(&self) -> PyResult<String> {
-        let rows = &self.rows()?.rows;
+        let rows = self.rows()?.rows();
         let held_out = rows.iter().filter(|row| row.held_out).count();
         Ok(format!("<poecal.Residuals of {} rows, {held_out} held out>", rows.len()))
     }

@@ -67,7 +67,7 @@ pub(crate) fn page(file: &CalibrationFile, residuals: &Residuals) -> bool {
     let [head, body, _, data, ..] = page.as_slice() else { panic!("{} pieces", page.len()) };
     // A leverage that is none is told as such.
     let unfit = residuals
-        .rows
+        .rows()
         .iter()
         .filter_map(|row| row.judged)
         .any(|it| !(it.leverage + it.studentized).is_finite());

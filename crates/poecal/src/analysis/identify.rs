@@ -12,7 +12,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Chain, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
 use crate::measurement::{
-    ByQuantity, Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Source,
+    Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Source, Stated,
 };
 use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
 use crate::problem::{MOST_UNKNOWNS, Problem};
@@ -194,7 +194,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
             station,
             from: None,
             measurement,
-            stated: ByQuantity::default(),
+            stated: Stated::default(),
             set: None,
             source: Source::default(),
         };

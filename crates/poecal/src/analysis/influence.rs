@@ -155,7 +155,7 @@ mod tests {
         data.targets = vec![Some("a".to_owned()), Some("b".to_owned())];
         for (row, observation) in data.observations.iter_mut().enumerate() {
             observation.target = row % 2;
-            observation.stated[Quantity::Position] = (row % 4 == 0).then_some(1e-4 * (1 + row % 5) as f64);
+            observation.stated.set(Quantity::Position, (row % 4 == 0).then_some(1e-4 * (1 + row % 5) as f64));
             if let Measurement::Pose(seen) = &mut observation.measurement {
                 let turn = rotation::exp(&(Vector3::new(0.6, -0.48, 0.64) * turned_rad));
                 seen.pose.rotation = turn * seen.pose.rotation;

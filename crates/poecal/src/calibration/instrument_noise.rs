@@ -32,7 +32,7 @@ pub(super) fn noise_ratios(session: &Session<'_>, rows: &[u32], fit: &RobustFit)
         let noise = session.noise_of(observation, fit.fitted.noise);
         for (quantity, sum) in sums[station].values_mut() {
             let (square, count) = squares[quantity];
-            if observation.stated[quantity].is_none() && count > 0 {
+            if observation.stated.get(quantity).is_none() && count > 0 {
                 sum.squares += square / (noise[quantity] * noise[quantity]);
                 sum.count += count;
             }

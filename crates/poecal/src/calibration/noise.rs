@@ -33,7 +33,7 @@ const REDUNDANT: f64 = 6.0;
 /// The stated noise; otherwise 1 mm and 1 mrad to begin with.
 pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Noise, NoiseSource) {
     let by_rows = |row: &Observation| {
-        Quantity::ALL.into_iter().all(|it| !row.measurement.has(it) || row.stated[it].is_some())
+        Quantity::ALL.into_iter().all(|it| !row.measurement.has(it) || row.stated.get(it).is_some())
     };
     let by_option = |quantity: Quantity| options.sigma[quantity].is_some() || !data.has(quantity);
     let is_given = Quantity::ALL.into_iter().all(by_option);
@@ -51,7 +51,8 @@ pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
     if source == NoiseSource::Rows {
         // No row uses this; it is the value that users see.
         for (quantity, noise) in noise.values_mut() {
-            let stated: Vec<f64> = data.observations.iter().filter_map(|row| row.stated[quantity]).collect();
+            let stated: Vec<f64> =
+                data.observations.iter().filter_map(|row| row.stated.get(quantity)).collect();
             let squares: f64 = stated.iter().map(|sigma| sigma * sigma).sum();
             if !stated.is_empty() {
                 *noise = (squares / stated.len() as f64).sqrt();
@@ -64,7 +65,7 @@ pub(super) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
 /// Of each quantity, whether its noise is stated, by the options or by every row that has it.
 pub(super) fn is_stated(data: &Dataset, options: &CalibrationOptions) -> ByQuantity<bool> {
     ByQuantity::from_fn(|quantity| {
-        let by_row = |row: &Observation| row.stated[quantity].is_some() || !row.measurement.has(quantity);
+        let by_row = |row: &Observation| row.stated.get(quantity).is_some() || !row.measurement.has(quantity);
         options.sigma[quantity].is_some() || !data.is_empty() && data.observations.iter().all(by_row)
     })
 }
@@ -92,7 +93,7 @@ pub fn estimate_noise(
         for (quantity, share) in shares.values_mut() {
             let (squares, count) = squares[quantity];
             let observation = session.observation(row);
-            if observation.stated[quantity].is_some() {
+            if observation.stated.get(quantity).is_some() {
                 stated += count;
             } else {
                 let ratio = session.usual_noise(observation.station, ONE)[quantity];

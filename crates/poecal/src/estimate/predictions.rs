@@ -177,12 +177,17 @@ impl<'a> SideBySide<'a> {
         for (lane, &row) in rows.iter().enumerate() {
             let observation = session.observation(row);
             let Observation { target, measurement, station, .. } = observation;
-            let seen = measurement.pose();
-            // Measurements from further stations are compared in the device frame of the first.
-            let from_first =
-                self.linkage.station_from_first(*station).map(|station| station.inverse() * seen);
-            put(&mut self.measured, lane, &from_first.unwrap_or(seen));
-            framed |= measurement.sees_orientation();
+            let seen = measurement.seen();
+            match (self.linkage.station_from_first(*station), &seen) {
+                // Measurements from further stations are compared in the device frame of the first.
+                (Some(station), _) => {
+                    put(&mut self.measured, lane, &(station.inverse() * measurement.pose()));
+                }
+                (None, Seen::Frame(pose)) => put(&mut self.measured, lane, pose),
+                (None, Seen::Point(position)) => put_place(&mut self.measured, lane, position),
+                (None, Seen::Other(_)) => {}
+            }
+            framed |= matches!(seen, Seen::Frame(_));
             if self.targets[lane] != Some(*target) {
                 self.targets[lane] = Some(*target);
                 let (_, end) = self.linkage.frames(Sight::from(observation));
@@ -239,7 +244,16 @@ fn put(frames: &mut Frames, lane: usize, pose: &Pose) {
     for (wide, column) in rotation.iter_mut().flatten().zip(pose.rotation.as_slice()) {
         wide.0[lane] = *column;
     }
-    for (wide, number) in place.iter_mut().zip(pose.translation.as_slice()) {
+    put_row(place, lane, &pose.translation);
+}
+
+/// Writes the place of one lane.
+fn put_place([.., place]: &mut Frames, lane: usize, position: &Vector3<f64>) {
+    put_row(place, lane, position);
+}
+
+fn put_row(row: &mut [Wide; 3], lane: usize, vector: &Vector3<f64>) {
+    for (wide, number) in row.iter_mut().zip(vector.as_slice()) {
         wide.0[lane] = *number;
     }
 }

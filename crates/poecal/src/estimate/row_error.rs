@@ -3,7 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::Pose;
-use crate::measurement::{ByQuantity, Channel, Measurement, NUMBERS, Observe, PointMeasurement, Quantity};
+use crate::measurement::{
+    ByQuantity, Channel, Channels, Measurement, NUMBERS, Observe, PointMeasurement, Quantity,
+};
 use crate::unit::Unit;
 
 /// Error of one row: measured minus predicted, in the device's axes; `y - p` and `log(Y Rᵀ)` of theory.md §4 (16). One number for each
@@ -17,7 +19,7 @@ use crate::unit::Unit;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowError {
-    channels: &'static [Channel],
+    channels: &'static Channels,
     values: [f64; NUMBERS],
 }
 
@@ -55,11 +57,9 @@ impl RowError {
 
     /// The numbers of one quantity, none if it was not measured.
     #[must_use]
+    #[inline]
     pub fn part(&self, quantity: Quantity) -> &[f64] {
-        let is_of = |channel: &Channel| channel.quantity == quantity;
-        let first = self.channels.iter().position(is_of).unwrap_or(self.channels.len());
-        let count = self.channels.iter().filter(|channel| is_of(channel)).count();
-        &self.values[first..first + count]
+        &self.values[self.channels.of(quantity)]
     }
 
     /// Length of the error of one quantity, metres or radians, if it was measured.
@@ -77,13 +77,10 @@ impl RowError {
 
     /// Squared length of the error of each quantity, and how many numbers it has.
     pub(crate) fn squares(&self) -> ByQuantity<(f64, usize)> {
-        let mut squares: ByQuantity<(f64, usize)> = ByQuantity::default();
-        for (channel, value) in self.numbers() {
-            let (sum, count) = &mut squares[channel.quantity];
-            *sum += value * value;
-            *count += 1;
-        }
-        squares
+        ByQuantity::from_fn(|quantity| {
+            let part = self.part(quantity);
+            (part.iter().map(|value| value * value).sum(), part.len())
+        })
     }
 
     /// The first three numbers of a quantity as a vector, zero beyond them.
@@ -103,7 +100,7 @@ impl RowError {
     /// The error of a measured orientation, a rotation vector in radians.
     #[must_use]
     pub fn rotation_rad(&self) -> Option<Vector3<f64>> {
-        self.length(Quantity::Rotation).map(|_| self.vector(Quantity::Rotation))
+        self.channels.has(Quantity::Rotation).then(|| self.vector(Quantity::Rotation))
     }
 
     /// The first quantity, by which rows of one kind are compared.
@@ -136,7 +133,8 @@ impl RowError {
 
     /// Whether a number is an angle.
     pub(crate) fn has_angle(&self) -> bool {
-        self.channels.iter().any(|channel| channel.quantity.unit() == Unit::Radian)
+        let is_angle = |quantity: Quantity| quantity.unit() == Unit::Radian && self.channels.has(quantity);
+        Quantity::ALL.into_iter().any(is_angle)
     }
 
     fn square_of(&self, unit: Unit) -> f64 {
@@ -147,12 +145,9 @@ impl RowError {
     /// The same error in other axes, turned by a rotation; a quantity that is no vector stays.
     pub(crate) fn turned(mut self, turn: &Matrix3<f64>) -> Self {
         for quantity in Quantity::ALL {
-            let part = self.part(quantity);
-            if let [x, y, z] = *part {
-                let first =
-                    self.channels.iter().position(|channel| channel.quantity == quantity).unwrap_or(0);
-                let turned = turn * Vector3::new(x, y, z);
-                self.values[first..first + 3].copy_from_slice(turned.as_slice());
+            if let [x, y, z] = &mut self.values[self.channels.of(quantity)] {
+                let turned = turn * Vector3::new(*x, *y, *z);
+                (*x, *y, *z) = (turned.x, turned.y, turned.z);
             }
         }
         self

@@ -4,7 +4,7 @@ use super::change::{like, push};
 use crate::estimate::{Estimate, Packed, RowError, Session, delivered, sample_rows};
 use crate::gauge;
 use crate::lie::{Pose, Screw};
-use crate::measurement::{ByQuantity, Dataset, Noise, Observation};
+use crate::measurement::{Dataset, Noise, Observation, Stated};
 use crate::parameters::{DeviceFrame, Parameter, ScrewAxis, ValueTerm};
 use crate::problem::Problem;
 use crate::robot::Term;
@@ -226,7 +226,7 @@ pub(super) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
     let mut taken = like(data);
     for &row in rows {
         let observation = data.observations[row as usize];
-        let plain = Observation { stated: ByQuantity::default(), ..observation };
+        let plain = Observation { stated: Stated::default(), ..observation };
         push(&mut taken, data.readings(row as usize), plain);
     }
     taken

@@ -237,14 +237,11 @@ impl Batch<'_> {
             let (cosine, sine) = (Lanes::load(simd, cosine, part), Lanes::load(simd, sine, part));
             let (slide, own_sine) = (weight * cosine * per_length, weight * sine);
             let versine = weight - weight * cosine;
+            let mut along = Vectors([Lanes::splat(simd, 0.0); 3]);
             for (k, row) in link.0.iter_mut().enumerate() {
                 let still = if index == 0 { *row } else { turned(simd, *row, step) };
                 let [x, y, z, origin] = still;
-                let (first, end) = (joint.terms.0, joint.terms.0 + joint.terms.1);
-                for (term, factor) in self.terms[first..end].iter_mut().zip(&factors[first..end]) {
-                    let factor = Lanes::load(simd, factor, part);
-                    (z * factor * weight).store(&mut term.direction[k], part);
-                }
+                along.0[k] = z;
                 *row = moved(still, joint.turns, cosine, sine);
                 let (a, b) = if joint.turns {
                     (y.times_from(own_sine, x * versine), x.times_plus(own_sine, y * versine))
@@ -254,6 +251,16 @@ impl Batch<'_> {
                 a.store(&mut axis.shifts[0][k], part);
                 b.store(&mut axis.shifts[1][k], part);
                 origin.store(&mut axis.origin[k], part);
+            }
+            if joint.terms.1 == 0 {
+                continue;
+            }
+            let terms = joint.terms.0..joint.terms.0 + joint.terms.1;
+            for (term, factor) in self.terms[terms.clone()].iter_mut().zip(&factors[terms]) {
+                let factor = Lanes::load(simd, factor, part);
+                for (z, out) in along.0.into_iter().zip(&mut term.direction) {
+                    (z * factor * weight).store(out, part);
+                }
             }
         }
         link

@@ -41,20 +41,32 @@ impl Dataset {
         class: impl Fn(u32) -> C,
     ) -> Vec<Vec<u32>> {
         let readings = |row: u32| self.readings(row as usize);
-        // Rows of equal readings are neighbours in the order of any weighted sum; with these weights other rows seldom are.
+        // Rows of equal readings are neighbours in the order of any weighted sum; with these weights other rows seldom are, and hardly
+        // ever in that of two such sums.
         let weight = |k: usize| 1.0 + 0.618_033_988_749_895 * (k as f64).sqrt();
-        let key =
-            |row: u32| readings(row).iter().enumerate().map(|(k, value)| weight(k) * value).sum::<f64>();
+        let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let keys = |row: u32| {
+            readings(row).iter().enumerate().fold((0.0, 0.0), |(sum, other), (k, value)| {
+                let value = weight(k) * value;
+                (sum + value, other + sign(k) * value)
+            })
+        };
         let window = same * (0..self.reading_names().len()).map(weight).sum::<f64>();
-        let mut order: Vec<(C, f64, u32)> = rows.iter().map(|&row| (class(row), key(row), row)).collect();
-        threads::sort_by(&mut order, |a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let mut order: Vec<(C, (f64, f64), u32)> =
+            rows.iter().map(|&row| (class(row), keys(row), row)).collect();
+        threads::sort_by(&mut order, |a, b| a.0.cmp(&b.0).then(a.1.0.total_cmp(&b.1.0)).then(a.2.cmp(&b.2)));
         let is_same =
             |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= same);
-        // Places of the rows like that at `first`, from there on.
+        // Both sums of rows that are alike differ by no more than the window, but for rounding.
+        let wide = window * (1.0 + 1e-6);
+        // Places of the rows like that at `first`, which is the first.
         let like = |first: usize| {
-            let (class, key, row) = order[first];
-            let near = order[first..].iter().take_while(move |it| it.0 == class && it.1 - key <= window);
-            (first..).zip(near).filter(move |(_, it)| is_same(row, it.2)).map(|(place, _)| place)
+            let (class, (key, other), row) = order[first];
+            let rest = order.get(first + 1..).unwrap_or_default();
+            let near = rest.iter().take_while(move |it| it.0 == class && it.1.0 - key <= window);
+            let near = (first + 1..).zip(near).filter(move |(_, it)| (it.1.1 - other).abs() <= wide);
+            let others = near.filter(move |(_, it)| is_same(row, it.2)).map(|(place, _)| place);
+            std::iter::once(first).chain(others)
         };
         // Hardly any row has enough of them, unless robots were sent back on purpose.
         let firsts = threads::map_parts(order.len().div_ceil(CHUNK), |chunk| {

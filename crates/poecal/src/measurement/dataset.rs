@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::{ByQuantity, Measurement, Noise, PoseResidual, Quantity};
+use super::{ByQuantity, Measurement, Noise, PoseResidual, Quantity, Stated};
 use crate::error::{Error, ErrorKind, Result};
 
 /// Set of a row: training or held out.
@@ -59,7 +59,7 @@ pub struct Observation {
     /// The measurement.
     pub measurement: Measurement,
     /// Standard deviations of each component, metres or radians, where the row states them.
-    pub stated: ByQuantity<Option<f64>>,
+    pub stated: Stated,
     /// Set of the row, if it states it.
     pub set: Option<Set>,
     /// File and line.
@@ -75,7 +75,7 @@ impl Observation {
             station: 0,
             from: None,
             measurement,
-            stated: ByQuantity::default(),
+            stated: Stated::default(),
             set: None,
             source: Source::default(),
         }
@@ -84,7 +84,7 @@ impl Observation {
     /// The noise that the row states; `usual` for a standard deviation that it does not state.
     #[must_use]
     pub fn noise_or(&self, usual: Noise) -> Noise {
-        ByQuantity::from_fn(|quantity| self.stated[quantity].unwrap_or(usual[quantity]))
+        ByQuantity::from_fn(|quantity| self.stated.get(quantity).unwrap_or(usual[quantity]))
     }
 }
 
@@ -233,6 +233,9 @@ impl Dataset {
     /// Those of some rows that were measured from one station, in their order.
     #[must_use]
     pub fn seen_from(&self, station: usize, rows: &[u32]) -> Vec<u32> {
+        if station == 0 && self.station_count() == 1 {
+            return rows.to_vec();
+        }
         rows.iter().copied().filter(|&row| self.observations[row as usize].station == station).collect()
     }
 

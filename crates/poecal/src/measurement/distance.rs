@@ -1,6 +1,6 @@
 //! Distance of a target from the instrument's origin: a draw-wire, a ball bar to a socket.
 
-use super::{Channel, Observe, Quantity, Sensitivity};
+use super::{Channel, Channels, Observe, Quantity, Sensitivity};
 use crate::lie::Pose;
 
 /// Measured distance, `e = d - |p|`, `S = [pᵀ/|p| 0]`. It shows where its instrument is, and not how it is turned (theory.md §4 (15a)).
@@ -19,9 +19,11 @@ pub struct DistanceMeasurement {
     pub distance: f64,
 }
 
+const DISTANCE: Channels = Channels::new(&[Channel { name: "distance", quantity: Quantity::Distance }]);
+
 impl Observe for DistanceMeasurement {
-    fn channels(&self) -> &'static [Channel] {
-        &[Channel { name: "distance", quantity: Quantity::Distance }]
+    fn channels(&self) -> &'static Channels {
+        &DISTANCE
     }
 
     fn residual(&self, predicted: &Pose, out: &mut [f64]) {

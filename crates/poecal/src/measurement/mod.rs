@@ -13,12 +13,12 @@ mod quantity;
 pub(crate) use configurations::MANY as MANY_ROWS;
 pub use dataset::{Dataset, Observation, Set, Source};
 pub use distance::DistanceMeasurement;
-pub use observe::{Channel, NUMBERS, Observe, Sensitivity};
+pub use observe::{Channel, Channels, NUMBERS, Observe, Sensitivity};
 pub use other_pose::PoseResidual;
 pub(crate) use other_pose::Written;
 pub use point::PointMeasurement;
 pub use pose::PoseMeasurement;
-pub use quantity::{ByQuantity, Measured, Noise, Quantity};
+pub use quantity::{ByQuantity, Measured, Noise, Quantity, Stated};
 
 use nalgebra::Vector3;
 
@@ -124,7 +124,7 @@ impl Measurement {
         match self.seen() {
             Seen::Point(_) => quantity == Quantity::Position,
             Seen::Frame(_) => quantity.is_of_pose(),
-            Seen::Other(model) => model.channels().iter().any(|channel| channel.quantity == quantity),
+            Seen::Other(model) => model.channels().has(quantity),
         }
     }
 

@@ -1,8 +1,10 @@
 //! The contract of every measurement type: its channels, residual, and sensitivity of the prediction.
 
+use std::ops::{Deref, Range};
+
 use nalgebra::{Matrix3, Vector3};
 
-use super::Quantity;
+use super::{ByQuantity, Quantity};
 use crate::lie::Pose;
 
 /// Most numbers of one measurement.
@@ -19,8 +21,78 @@ pub const NUMBERS: usize = 6;
 pub struct Channel {
     /// Name of the number in columns of files.
     pub name: &'static str,
-    /// Its quantity. Channels of one quantity follow one another.
+    /// Its quantity.
     pub quantity: Quantity,
+}
+
+/// The numbers of a measurement type, and where those of each quantity are.
+///
+/// ```
+/// use poecal::measurement::{Observe, PointMeasurement};
+/// use poecal::Quantity;
+/// let channels = PointMeasurement { position: nalgebra::Vector3::zeros() }.channels();
+/// assert_eq!((channels.len(), channels.of(Quantity::Position), channels.of(Quantity::Rotation)), (3, 0..3, 0..0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Channels {
+    all: &'static [Channel],
+    /// First place of each quantity, and how many follow.
+    parts: ByQuantity<(u8, u8)>,
+}
+
+impl Channels {
+    /// The channels of a type.
+    ///
+    /// # Panics
+    /// With more than [`NUMBERS`] channels, or those of one quantity not one after the other: a constant of these does not compile.
+    #[must_use]
+    pub const fn new(all: &'static [Channel]) -> Self {
+        assert!(all.len() <= NUMBERS, "a measurement has at most six numbers");
+        let mut parts = [(0, 0); Quantity::ALL.len()];
+        let mut k = 0;
+        while k < all.len() {
+            let (first, count) = &mut parts[all[k].quantity as usize];
+            if *count == 0 {
+                *first = k as u8;
+            }
+            assert!((*first + *count) as usize == k, "channels of one quantity follow one another");
+            *count += 1;
+            k += 1;
+        }
+        Channels { all, parts: ByQuantity::of_values(parts) }
+    }
+
+    /// Places of the numbers of a quantity; empty if it is not measured.
+    #[must_use]
+    #[inline]
+    pub fn of(&self, quantity: Quantity) -> Range<usize> {
+        let (first, count) = self.parts[quantity];
+        usize::from(first)..usize::from(first + count)
+    }
+
+    /// Whether a number of this quantity is measured.
+    #[must_use]
+    #[inline]
+    pub fn has(&self, quantity: Quantity) -> bool {
+        self.parts[quantity].1 > 0
+    }
+}
+
+impl IntoIterator for &Channels {
+    type Item = &'static Channel;
+    type IntoIter = std::slice::Iter<'static, Channel>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.all.iter()
+    }
+}
+
+impl Deref for Channels {
+    type Target = [Channel];
+
+    fn deref(&self) -> &[Channel] {
+        self.all
+    }
 }
 
 /// Change of a predicted number by a motion of the target: by its translation, then by its rotation about its own origin, device axes.
@@ -29,8 +101,8 @@ pub type Sensitivity = [f64; 6];
 /// Interface of a measurement type: residual `e = measured ⊖ predicted` and sensitivity S of the *prediction*, which moves by `S · twist`
 /// under a target twist (theory.md §4 (14) to (17)). Neither is whitened.
 pub trait Observe {
-    /// The numbers of the measurement, at most [`NUMBERS`].
-    fn channels(&self) -> &'static [Channel];
+    /// The numbers of the measurement.
+    fn channels(&self) -> &'static Channels;
 
     /// Writes the residual for the predicted `device_from_target`, metres and radians.
     fn residual(&self, predicted: &Pose, out: &mut [f64]);

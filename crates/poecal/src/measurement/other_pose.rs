@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use nalgebra::{Matrix3, Vector3};
 
 use super::pose::POSE;
-use super::{Channel, Measurement, Observe, PoseMeasurement, Seen, Sensitivity};
+use super::{Channels, Measurement, Observe, PoseMeasurement, Seen, Sensitivity};
 use crate::lie::Pose;
 
 /// Formulation of the residuals of measured frames as six numbers, of position and rotation. It holds for all frames of a data set
@@ -58,7 +58,7 @@ pub(crate) struct OtherPose {
 }
 
 impl Observe for OtherPose {
-    fn channels(&self) -> &'static [Channel] {
+    fn channels(&self) -> &'static Channels {
         &POSE
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Channel, Observe, Quantity, Sensitivity};
+use super::{Channel, Channels, Observe, Quantity, Sensitivity};
 use crate::lie::Pose;
 
 /// Measured position of a target point, `e = y - p`, `S = [I 0]` in target-centred form (theory.md §4 (15)).
@@ -23,14 +23,16 @@ pub struct PointMeasurement {
 }
 
 /// The channels of a position.
-pub(super) const POSITION: [Channel; 3] = [
+pub(super) const XYZ: [Channel; 3] = [
     Channel { name: "x", quantity: Quantity::Position },
     Channel { name: "y", quantity: Quantity::Position },
     Channel { name: "z", quantity: Quantity::Position },
 ];
 
+const POSITION: Channels = Channels::new(&XYZ);
+
 impl Observe for PointMeasurement {
-    fn channels(&self) -> &'static [Channel] {
+    fn channels(&self) -> &'static Channels {
         &POSITION
     }
 

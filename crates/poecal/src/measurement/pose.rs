@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::point::POSITION;
-use super::{Channel, Observe, Quantity, Sensitivity};
+use super::point::XYZ;
+use super::{Channel, Channels, Observe, Quantity, Sensitivity};
 use crate::lie::{Pose, hat, rotation, series};
 
 /// Measured frame, `e = [y - p; log(Y Rᵀ)]` at the target and in the device's axes (theory.md §4 (16)).
@@ -25,17 +25,17 @@ pub struct PoseMeasurement {
 }
 
 /// The channels of a pose: position, then rotation vector.
-pub(super) const POSE: [Channel; 6] = [
-    POSITION[0],
-    POSITION[1],
-    POSITION[2],
+pub(super) const POSE: Channels = Channels::new(&[
+    XYZ[0],
+    XYZ[1],
+    XYZ[2],
     Channel { name: "rx", quantity: Quantity::Rotation },
     Channel { name: "ry", quantity: Quantity::Rotation },
     Channel { name: "rz", quantity: Quantity::Rotation },
-];
+]);
 
 impl Observe for PoseMeasurement {
-    fn channels(&self) -> &'static [Channel] {
+    fn channels(&self) -> &'static Channels {
         &POSE
     }
 

@@ -140,12 +140,20 @@ impl Quantity {
 pub struct ByQuantity<T>([T; Quantity::ALL.len()]);
 
 impl<T> ByQuantity<T> {
+    /// These values, in the order of [`Quantity::ALL`].
+    pub(super) const fn of_values(values: [T; Quantity::ALL.len()]) -> Self {
+        ByQuantity(values)
+    }
+
     /// The value that `of` gives for each quantity.
-    pub fn from_fn(of: impl FnMut(Quantity) -> T) -> Self {
-        ByQuantity(Quantity::ALL.map(of))
+    #[inline]
+    pub fn from_fn(mut of: impl FnMut(Quantity) -> T) -> Self {
+        // Unlike `map`, this is inlined.
+        ByQuantity(std::array::from_fn(|k| of(Quantity::ALL[k])))
     }
 
     /// What `to` gives for each value.
+    #[inline]
     pub fn map<U>(self, to: impl FnMut(T) -> U) -> ByQuantity<U> {
         ByQuantity(self.0.map(to))
     }
@@ -224,6 +232,54 @@ impl Noise {
             Unit::Metre => length_m,
             Unit::Radian | Unit::One => self[quantity],
         })
+    }
+}
+
+/// A positive number for each quantity of which it is stated: kept for every row, so that it is small.
+///
+/// ```
+/// use poecal::{Quantity, measurement::Stated};
+/// let mut stated = Stated::default();
+/// stated.set(Quantity::Position, Some(5e-5));
+/// assert_eq!((stated.get(Quantity::Position), stated.get(Quantity::Rotation)), (Some(5e-5), None));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "ByQuantity<Option<f64>>", into = "ByQuantity<Option<f64>>")]
+pub struct Stated {
+    /// Zero where nothing is stated.
+    values: ByQuantity<f64>,
+}
+
+impl Stated {
+    /// The number of a quantity.
+    #[must_use]
+    #[inline]
+    pub fn get(&self, quantity: Quantity) -> Option<f64> {
+        Some(self.values[quantity]).filter(|value| *value != 0.0)
+    }
+
+    /// States the number of a quantity; zero is none.
+    pub fn set(&mut self, quantity: Quantity, value: Option<f64>) {
+        self.values[quantity] = value.unwrap_or(0.0);
+    }
+}
+
+impl Default for Stated {
+    /// Nothing stated.
+    fn default() -> Self {
+        Stated { values: ByQuantity([0.0; Quantity::ALL.len()]) }
+    }
+}
+
+impl From<ByQuantity<Option<f64>>> for Stated {
+    fn from(values: ByQuantity<Option<f64>>) -> Self {
+        Stated { values: values.map(|value| value.unwrap_or(0.0)) }
+    }
+}
+
+impl From<Stated> for ByQuantity<Option<f64>> {
+    fn from(stated: Stated) -> Self {
+        ByQuantity::from_fn(|quantity| stated.get(quantity))
     }
 }
 

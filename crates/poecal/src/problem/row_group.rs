@@ -2,7 +2,7 @@
 
 use super::Problem;
 use crate::estimate::Sight;
-use crate::measurement::{Noise, Observation, Quantity, Seen};
+use crate::measurement::{Measurement, Noise, Observation, Quantity, Seen};
 use crate::threads;
 
 /// Rows that one thread groups at a time.
@@ -47,10 +47,12 @@ impl RowGroup {
         let mut groups: Vec<RowGroup> = Vec::new();
         let usual =
             |observation: &Observation| problem.session.usual_noise(observation.station, problem.noise);
+        let own = |row: u32| problem.measurement(row as usize);
+        let (is_other, residual) = (problem.layout.has_other_screws(), problem.session.data.pose_residual);
         let mut at = 0;
         for (position, &row) in (0..).zip(rows) {
             let observation = problem.session.observation(row);
-            let form = Form::of(problem, row);
+            let form = Form::of(own(row), !is_other, residual.is_none());
             let sight = Sight::from(observation);
             // Most rows are like the one before.
             if !groups.get(at).is_some_and(|group| group.holds(sight, form)) {
@@ -86,13 +88,12 @@ pub(super) enum Form {
 }
 
 impl Form {
-    fn of(problem: &Problem<'_>, row: u32) -> Self {
-        let is_other = problem.layout.has_other_screws();
-        let measured = problem.measurement(row as usize);
-        match (measured.seen(), problem.session.data.pose_residual) {
-            (Seen::Point(_), _) if !is_other => Form::Point,
-            (Seen::Frame(_), None) if !is_other => Form::Pose,
-            (Seen::Point(_) | Seen::Frame(_) | Seen::Other(_), _) => {
+    /// Of a measurement; whether the kernels have the columns of all screws, and the residual of poses.
+    fn of(measured: &Measurement, have_screws: bool, have_residual: bool) -> Self {
+        match measured.seen() {
+            Seen::Point(_) if have_screws => Form::Point,
+            Seen::Frame(_) if have_screws && have_residual => Form::Pose,
+            Seen::Point(_) | Seen::Frame(_) | Seen::Other(_) => {
                 Form::Shaped(measured.observe().dim(), measured.sees_orientation())
             }
         }
@@ -145,7 +146,7 @@ impl Whitening {
     /// Whitening of a row, which may state its own noise; `self` is the whitening by the `usual` noise.
     #[inline(always)]
     pub(super) fn of(self, observation: &Observation, usual: Noise) -> Self {
-        match (observation.stated[Quantity::Position], observation.stated[Quantity::Rotation]) {
+        match (observation.stated.get(Quantity::Position), observation.stated.get(Quantity::Rotation)) {
             (None, None) => self,
             _ => Whitening::new(observation.noise_or(usual)),
         }

@@ -16,7 +16,7 @@ use rand_core::SeedableRng;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::measurement::{
-    ByQuantity, Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Source,
+    Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Source, Stated,
 };
 use crate::robot::{Body, Mount, Robot};
 
@@ -217,7 +217,7 @@ impl Simulation {
                 station,
                 from: None,
                 measurement,
-                stated: ByQuantity::default(),
+                stated: Stated::default(),
                 set: None,
                 source: Source::default(),
             };

@@ -302,7 +302,7 @@ fn determined_by_rotations(
     let n = layout.dim();
     let mut unmeasured = *view;
     unmeasured.noise = unmeasured.noise.without_lengths(UNMEASURED_M);
-    let states = |quantity: Quantity, row: u32| view.session.observation(row).stated[quantity].is_some();
+    let states = |quantity: Quantity, row: u32| view.session.observation(row).stated.get(quantity).is_some();
     let mut lengths = Quantity::ALL.into_iter().filter(|quantity| quantity.unit() == Unit::Metre);
     let stated = lengths.any(|quantity| view.rows.iter().any(|&row| states(quantity, row)));
     let part = unmeasured.problem(view.rows.to_vec()).normal(view.estimate);

@@ -61,7 +61,7 @@ fn the_row_of_three_reflectors_gives_a_point_for_each_seen() {
     let targets: Vec<usize> = file.data.observations.iter().map(|row| row.target).collect();
     assert_eq!(targets, [0, 1, 2, 0, 2]);
     assert_eq!(file.data.readings(0)[2], 1.25);
-    assert!((file.data.observations[0].stated[poecal::Quantity::Position].unwrap() - 3e-5).abs() < 1e-19);
+    assert!((file.data.observations[0].stated.get(poecal::Quantity::Position).unwrap() - 3e-5).abs() < 1e-19);
     assert_eq!(file.data.ids, ["1", "1", "1", "2", "2"]);
 }
 

@@ -107,8 +107,8 @@ impl Session {
             if case.stated && !is_early {
                 let position_m = 1e-5 * (1 + row % 4) as f64;
                 let ratio = if case.any_ratio { 1.0 + (row % 3) as f64 } else { 2.0 };
-                observation.stated[Quantity::Position] = Some(position_m);
-                observation.stated[Quantity::Rotation] = Some(position_m * ratio);
+                observation.stated.set(Quantity::Position, Some(position_m));
+                observation.stated.set(Quantity::Rotation, Some(position_m * ratio));
             }
             if let Measurement::Pose(seen) = &mut observation.measurement
                 && row > 20

@@ -61,7 +61,10 @@ fn a_mapping_names_columns_units_targets_and_sets() {
     assert_eq!(file.data.readings(0), [PI, 0.25, PI / 2.0]);
     assert_eq!(pose(&file.data, 0).translation, Vector3::new(0.1, 0.2, 0.3));
     let row = file.data.observations[0];
-    assert_eq!((row.stated[Quantity::Position], row.set, row.source.line), (Some(5e-5), Some(Set::Fit), 4));
+    assert_eq!(
+        (row.stated.get(Quantity::Position), row.set, row.source.line),
+        (Some(5e-5), Some(Set::Fit), 4)
+    );
     assert_eq!(file.data.observations[1].set, Some(Set::HeldOut));
     assert_eq!(file.data.ids, ["7", "8"]);
     assert_eq!(file.data.targets, [Some("smr1".to_owned())]);
@@ -96,7 +99,12 @@ fn a_mapping_reads_several_targets_of_a_row() {
         .observations
         .iter()
         .map(|row| {
-            (row.target, row.source.line, row.measurement.sees_orientation(), row.stated[Quantity::Position])
+            (
+                row.target,
+                row.source.line,
+                row.measurement.sees_orientation(),
+                row.stated.get(Quantity::Position),
+            )
         })
         .collect();
     assert_eq!(

@@ -38,7 +38,10 @@ fn units_stand_in_the_header_or_are_si() {
     assert_eq!(file.data.readings(0), [PI / 2.0, 0.25, 0.5]);
     assert!((pose(&file.data, 0).translation - Vector3::new(0.1, 0.2, 0.3)).norm() < ROUNDING);
     let row = file.data.observations[0];
-    assert_eq!((row.stated[Quantity::Position], row.stated[Quantity::Rotation]), (Some(5e-5), Some(2e-3)));
+    assert_eq!(
+        (row.stated.get(Quantity::Position), row.stated.get(Quantity::Rotation)),
+        (Some(5e-5), Some(2e-3))
+    );
     let units: Vec<_> = file.understood[0].columns.iter().map(|column| column.unit.unwrap()).collect();
     assert_eq!(units, ["deg", "mm", "rad", "mm", "cm", "um", "um", "mrad"]);
     assert_eq!(file.understood[0].columns[2].unit_from, Some(UnitSource::Si));
@@ -178,7 +181,7 @@ fn one_file_mixes_points_and_poses() {
     assert_eq!(kinds, [false, true]);
     assert_eq!((file.understood[0].points, file.understood[0].poses), (1, 1));
     assert_eq!(file.data.targets, [None]);
-    assert_eq!(file.data.observations[0].stated[Quantity::Rotation], None);
+    assert_eq!(file.data.observations[0].stated.get(Quantity::Rotation), None);
 }
 
 #[test]

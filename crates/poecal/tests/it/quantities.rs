@@ -82,7 +82,7 @@ fn rows_without_a_position_are_read_and_reported_by_what_they_have() {
     let mixed = text(&rows);
     let residuals = Residuals::parse(&mixed, "residuals.csv").unwrap();
     assert_eq!(residuals.text(), mixed);
-    let leading: Vec<_> = residuals.rows.iter().map(|row| row.errors.leading().unwrap().0).collect();
+    let leading: Vec<_> = residuals.rows().iter().map(|row| row.errors.leading().unwrap().0).collect();
     assert_eq!(leading.iter().filter(|it| **it == Quantity::Position).count(), points);
 
     // A row of nothing is none.
@@ -103,7 +103,7 @@ fn rows_without_a_position_are_read_and_reported_by_what_they_have() {
     assert_eq!(residuals.measured(), [Quantity::Rotation]);
     let mut value = without_positions(&serde_json::from_str(EARLIER).unwrap());
     for (set, held_out) in [("training", false), ("held_out", true)] {
-        let own = residuals.rows.iter().filter(|row| row.held_out == held_out);
+        let own = residuals.rows().iter().filter(|row| row.held_out == held_out);
         let errors: Vec<f64> = own.map(|row| row.errors.rotation_deg().unwrap().calibrated()).collect();
         let rms = (errors.iter().map(|it| it * it).sum::<f64>() / errors.len() as f64).sqrt();
         value["accuracy"][set]["calibrated"]["rotation_deg"]["rms"] = rms.into();

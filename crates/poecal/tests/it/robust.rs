@@ -215,8 +215,8 @@ fn weights_scale_the_noise_and_zero_leaves_a_row_out() {
     let weighted = Problem::new(seen, data.all_rows(), free(), noise).with_weights(&weights).normal(&start);
     let kept: Vec<u32> = data.all_rows().into_iter().filter(|row| row % 4 != 0).collect();
     for (row, weight) in data.observations.iter_mut().zip(&weights) {
-        row.stated[Quantity::Position] = Some(noise[Quantity::Position] / weight.sqrt());
-        row.stated[Quantity::Rotation] = Some(noise[Quantity::Rotation] / weight.sqrt());
+        row.stated.set(Quantity::Position, Some(noise[Quantity::Position] / weight.sqrt()));
+        row.stated.set(Quantity::Rotation, Some(noise[Quantity::Rotation] / weight.sqrt()));
     }
     let seen = Session::new(&robot, &data, &packed, true).with_length(0.5);
     let stated = Problem::new(seen, kept, free(), noise).normal(&start);

@@ -238,7 +238,7 @@ fn the_noise_of_each_instrument_is_found() {
     // With one noise for both the better instrument is hardly heard.
     let unseen = unseen_m(&simulation, &made, Kind::Pose, &found);
     let mut stated = data.clone();
-    stated.observations.iter_mut().for_each(|row| row.stated[Quantity::Position] = Some(0.36e-3));
+    stated.observations.iter_mut().for_each(|row| row.stated.set(Quantity::Position, Some(0.36e-3)));
     let together = unseen_m(&simulation, &made, Kind::Pose, &fit(&made.nominal, &stated));
     println!("unseen {:.4} mm, with one noise for both {:.4} mm", 1e3 * unseen, 1e3 * together);
     assert!(unseen < 0.5 * together);

@@ -25,7 +25,7 @@ pub(super) fn parts(session: &Session<'_>, rows: &[u32], estimate: &Estimate, no
         ByQuantity::from_fn(|quantity| RowPart {
             squares: whitened[quantity],
             components: squares[quantity].1,
-            stated: observation.stated[quantity].is_some(),
+            stated: observation.stated.get(quantity).is_some(),
         })
     })
 }

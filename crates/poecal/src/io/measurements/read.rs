@@ -20,7 +20,7 @@ use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
-use crate::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Seen, Set, Source};
+use crate::measurement::{Dataset, Measurement, Observation, Quantity, Seen, Set, Source, Stated};
 use crate::robot::{Robot, check_name};
 use crate::text::visible;
 
@@ -208,15 +208,15 @@ impl<'a> Reader<'a> {
         for target in &layout.targets {
             let may_be_missing = layout.targets.len() > 1;
             if let Some(measurement) = measurement(row, target, layout.pose, inputs, may_be_missing)? {
-                let mut stated: ByQuantity<Option<f64>> = ByQuantity::default();
-                stated[Quantity::Position] = inputs.sigma(row, target.sigma_position)?;
-                stated[Quantity::Rotation] = inputs.sigma(row, target.sigma_rotation)?;
+                let mut stated = Stated::default();
+                stated.set(Quantity::Position, inputs.sigma(row, target.sigma_position)?);
+                stated.set(Quantity::Rotation, inputs.sigma(row, target.sigma_rotation)?);
                 self.observation(row, layout, (target, set), (measurement, stated), inputs)?;
             }
             for kind in &target.kinds {
                 if let Some((measurement, quantity, sigma)) = kind.measurement(row, inputs)? {
-                    let mut stated: ByQuantity<Option<f64>> = ByQuantity::default();
-                    stated[quantity] = sigma;
+                    let mut stated = Stated::default();
+                    stated.set(quantity, sigma);
                     self.observation(row, layout, (target, set), (measurement, stated), inputs)?;
                 }
             }
@@ -230,7 +230,7 @@ impl<'a> Reader<'a> {
         row: &Row<'_>,
         layout: &ColumnLayout,
         (target, set): (&TargetLayout, Option<Set>),
-        (measurement, stated): (Measurement, ByQuantity<Option<f64>>),
+        (measurement, stated): (Measurement, Stated),
         inputs: &InputReader<'_>,
     ) -> Result<()> {
         let observation = Observation {

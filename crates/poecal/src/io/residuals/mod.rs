@@ -158,7 +158,9 @@ pub struct Residuals {
     /// [`Quantity::ALL`]. Errors of a quantity without columns are not written.
     pub further: Vec<Quantity>,
     /// The rows.
-    pub rows: Vec<ResidualRow>,
+    rows: Vec<ResidualRow>,
+    /// How many rows measured which quantities, in the order of the first row of each kind.
+    kinds: Vec<(Measured<()>, usize)>,
     /// The readings of all rows, one after the other, degrees or millimetres.
     values: Vec<f64>,
 }
@@ -178,6 +180,7 @@ impl Residuals {
             |some| {
                 all.rows.extend(some.rows);
                 all.values.extend(some.values);
+                some.kinds.into_iter().for_each(|(kind, count)| all.count(kind, count));
                 Ok(())
             },
         );
@@ -189,11 +192,37 @@ impl Residuals {
         Quantity::ALL.into_iter().filter(|quantity| quantity.is_of_pose() || self.further.contains(quantity))
     }
 
+    /// The rows.
+    #[must_use]
+    pub fn rows(&self) -> &[ResidualRow] {
+        &self.rows
+    }
+
+    /// Adds a row; its readings are apart.
+    fn push(&mut self, row: ResidualRow) {
+        self.count(row.errors.map(|_, _| ()), 1);
+        self.rows.push(row);
+    }
+
+    /// Counts rows that measured the same quantities.
+    fn count(&mut self, kind: Measured<()>, count: usize) {
+        match self.kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, all)) => *all += count,
+            None => self.kinds.push((kind, count)),
+        }
+    }
+
+    /// How many rows measured which quantities.
+    #[must_use]
+    pub fn kinds(&self) -> &[(Measured<()>, usize)] {
+        &self.kinds
+    }
+
     /// The quantities that some row measured.
     #[must_use]
     pub fn measured(&self) -> Vec<Quantity> {
-        let has = |quantity: &Quantity| self.rows.iter().any(|row| row.errors.get(*quantity).is_some());
-        self.quantities().filter(has).collect()
+        let has = |quantity: &Quantity| self.kinds.iter().any(|(kind, _)| kind.get(*quantity).is_some());
+        Quantity::ALL.into_iter().filter(has).collect()
     }
 
     /// The first quantity that some row measured, lengths before angles: that by which the calibration is judged.

@@ -110,7 +110,7 @@ impl Residuals {
             cells.next += 1;
             return Err(cells.wrong(extra, "no further cell"));
         }
-        self.rows.push(ResidualRow { file, line, id, held_out, target, station, errors, judged });
+        self.push(ResidualRow { file, line, id, held_out, target, station, errors, judged });
         Ok(())
     }
 }

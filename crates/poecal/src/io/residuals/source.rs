@@ -67,11 +67,10 @@ impl<'a> RowSource<'a> {
         };
         let readings = indices.iter().flat_map(|&row| self.data.readings(row as usize));
         let kinds = self.names.readings.iter().map(|(_, kind)| *kind).cycle();
-        Residuals {
-            rows: indices.iter().enumerate().map(row).collect(),
-            values: readings.zip(kinds).map(|(&value, kind)| shown(kind, value)).collect(),
-            ..self.names.clone()
-        }
+        let values = readings.zip(kinds).map(|(&value, kind)| shown(kind, value)).collect();
+        let mut found = Residuals { rows: Vec::with_capacity(indices.len()), values, ..self.names.clone() };
+        indices.iter().enumerate().map(row).for_each(|row| found.push(row));
+        found
     }
 }
 

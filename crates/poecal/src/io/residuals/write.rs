@@ -138,6 +138,10 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
     text
 }
 
+/// Empty cells, as many as a quantity has at most.
+const EMPTY: &str = ",,,,,,";
+const _: () = assert!(EMPTY.len() == MODELS + Quantity::MOST_COMPONENTS);
+
 /// The cells of a quantity, empty if it was not measured.
 fn push_errors(out: &mut String, quantity: Quantity, errors: &Measured<ModelErrors>) {
     let cells = MODELS + quantity.components();
@@ -148,7 +152,7 @@ fn push_errors(out: &mut String, quantity: Quantity, errors: &Measured<ModelErro
             empty -= 1;
         }
     }
-    out.extend(std::iter::repeat_n(',', empty));
+    out.push_str(EMPTY.get(..empty).unwrap_or_default());
 }
 
 fn push_cell(out: &mut String, number: f64) {

@@ -145,7 +145,7 @@ pub(super) fn json(file: &CalibrationFile, residuals: &Residuals) -> Result<Stri
         readings: readings_of(residuals).map(reading).collect(),
         lead: LeadData { name: lead.name(), unit: lead.unit() },
         rows: RowData::of(residuals, &lead),
-        count: residuals.rows.len(),
+        count: residuals.rows().len(),
     };
     let text = serde_json::to_string(&data).map_err(|error| {
         Error::new(ErrorKind::Export, format!("the report's data cannot be written: {error}"))
@@ -164,13 +164,13 @@ pub(super) fn keep_first<T>(items: &mut Vec<T>, most: usize, compare: impl FnMut
 
 /// The rows that are drawn, in order, and whether each is one of the evenly chosen.
 pub(super) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
-    let count = residuals.rows.len();
+    let count = residuals.rows().len();
     if count <= MOST_ROWS {
         return (0..count).map(|row| (row, true)).collect();
     }
-    let suspected = |row: usize| residuals.rows.get(row)?.judged.map(|judged| judged.suspected);
+    let suspected = |row: usize| residuals.rows().get(row)?.judged.map(|judged| judged.suspected);
     let lead = Lead::of(residuals);
-    let error = |row: usize| residuals.rows.get(row).and_then(|row| lead.error(row)).unwrap_or_default();
+    let error = |row: usize| residuals.rows().get(row).and_then(|row| lead.error(row)).unwrap_or_default();
     let (mut worst, mut others): (Vec<usize>, Vec<usize>) =
         (0..count).partition(|&row| suspected(row) == Some(true));
     for (rows, most) in [(&mut worst, SUSPECTED), (&mut others, WORST)] {
@@ -195,7 +195,7 @@ impl RowData {
         };
         rows.values = vec![Vec::new(); residuals.readings.len()];
         for (index, even) in drawn(residuals) {
-            if let Some(row) = residuals.rows.get(index) {
+            if let Some(row) = residuals.rows().get(index) {
                 rows.push(residuals, (index, row, even), lead.error(row));
             }
         }
@@ -266,7 +266,7 @@ fn rounded(value: f64) -> f64 {
 
 /// The place of a row: its file and line, or its number.
 pub(super) fn place(residuals: &Residuals, index: usize) -> String {
-    let Some(row) = residuals.rows.get(index) else { return String::new() };
+    let Some(row) = residuals.rows().get(index) else { return String::new() };
     match residuals.file(row) {
         "" => format!("row {}", index + 1),
         file => format!("{}:{}", short(&residuals.files, file), row.line),

@@ -18,7 +18,7 @@ const INTERVAL: f64 = 2.0;
 pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
     let lead = Lead::of(residuals);
     let lines = ["nominal", "registered", "calibrated"].iter().enumerate().map(|(model, name)| {
-        let rows = residuals.rows.iter().filter(|row| row.held_out == held_out);
+        let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
         let errors = rows.filter_map(|row| lead.models(row)?.get(model).copied()).collect();
         // The same colours as the residuals of the calibrated model everywhere else.
         Line { name: (*name).to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
@@ -41,7 +41,7 @@ pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
 pub(super) fn sets(residuals: &Residuals) -> Markup {
     let lead = Lead::of(residuals);
     let of = |name: &str, style, held_out: bool| {
-        let rows = residuals.rows.iter().filter(|row| row.held_out == held_out);
+        let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
         let errors: Vec<f64> = rows.filter_map(|row| lead.error(row)).collect();
         Line { name: name.to_owned(), style, points: distribution(errors) }
     };

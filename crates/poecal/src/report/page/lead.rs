@@ -1,7 +1,7 @@
 //! The one error that is told of each row, and words for quantities.
 
 use crate::io::residuals::{ModelErrors, ResidualRow, Residuals};
-use crate::measurement::Quantity;
+use crate::measurement::{Measured, Quantity};
 use crate::unit::Unit;
 
 /// Which error is told of each row: that of the first quantity that it measured in one unit, of lengths if any row measured one. It is
@@ -14,16 +14,15 @@ pub(super) struct Lead {
 impl Lead {
     pub(super) fn of(residuals: &Residuals) -> Self {
         let unit = residuals.leading().map_or(Unit::Metre, Quantity::unit);
-        let mut lead = Lead { quantities: Vec::new(), unit };
         let leads = |it: &Quantity| {
-            residuals.rows.iter().any(|row| lead.found(row).is_some_and(|(own, _)| own == *it))
+            residuals.kinds().iter().any(|(kind, _)| leading(kind, unit).is_some_and(|(own, ())| own == *it))
         };
-        lead.quantities = residuals.measured().into_iter().filter(leads).collect();
-        lead
+        let quantities = residuals.measured().into_iter().filter(leads).collect();
+        Lead { quantities, unit }
     }
 
     fn found(&self, row: &ResidualRow) -> Option<(Quantity, ModelErrors)> {
-        row.errors.iter().find(|(quantity, _)| quantity.unit() == self.unit)
+        leading(&row.errors, self.unit)
     }
 
     /// The errors of the three models in a row, if it measured something in this unit.
@@ -45,6 +44,11 @@ impl Lead {
     pub(super) fn unit(&self) -> &'static str {
         sign(self.unit)
     }
+}
+
+/// The first quantity of a unit.
+fn leading<T: Copy>(measured: &Measured<T>, unit: Unit) -> Option<(Quantity, T)> {
+    measured.iter().find(|(quantity, _)| quantity.unit() == unit)
 }
 
 /// A unit as the page writes it.
@@ -73,16 +77,10 @@ pub(super) fn component_words(quantity: Quantity, component: usize) -> String {
 
 /// How many rows measured what: poses, points, and others by the names of their quantities.
 pub(super) fn kinds_words(residuals: &Residuals) -> String {
-    let kind_of =
-        |row: &ResidualRow| -> Vec<Quantity> { row.errors.iter().map(|(quantity, _)| quantity).collect() };
-    let mut kinds: Vec<(Vec<Quantity>, usize)> = Vec::new();
-    for row in &residuals.rows {
-        let kind = kind_of(row);
-        match kinds.iter_mut().find(|(known, _)| *known == kind) {
-            Some((_, count)) => *count += 1,
-            None => kinds.push((kind, 1)),
-        }
-    }
+    let of = |(kind, count): &(Measured<()>, usize)| {
+        (kind.iter().map(|(quantity, ())| quantity).collect(), *count)
+    };
+    let mut kinds: Vec<(Vec<Quantity>, usize)> = residuals.kinds().iter().map(of).collect();
     // Poses before points, before others.
     kinds.sort_by_key(|(kind, _)| (!kind.iter().all(|it| it.is_of_pose()), std::cmp::Reverse(kind.len())));
     let words = kinds.iter().map(|(kind, count)| match **kind {

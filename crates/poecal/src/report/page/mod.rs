@@ -91,8 +91,8 @@ fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
         let message = format!("found residuals {words}: name the residuals.csv that was written with it");
         Err(Error::new(ErrorKind::Problem, message))
     };
-    let held_out = residuals.rows.iter().filter(|row| row.held_out).count();
-    let found = (residuals.rows.len() - held_out, held_out);
+    let held_out = residuals.rows().iter().filter(|row| row.held_out).count();
+    let found = (residuals.rows().len() - held_out, held_out);
     let accuracy = &file.accuracy;
     let expected = (accuracy.training.count, accuracy.held_out.as_ref().map_or(0, |set| set.count));
     if found != expected {
@@ -110,7 +110,7 @@ fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
         }
     }
     for (quantity, expected) in accuracy.training.calibrated.iter() {
-        let fitted = residuals.rows.iter().filter(|row| !row.held_out);
+        let fitted = residuals.rows().iter().filter(|row| !row.held_out);
         let errors = fitted.filter_map(|row| Some(row.errors.get(quantity)?.calibrated())).collect();
         let found = Statistic::of(errors).map_or(0.0, |it| it.rms);
         let (expected, unit) = (expected.rms, quantity.unit().symbol());

@@ -25,7 +25,7 @@ pub(super) fn sections(file: &CalibrationFile, residuals: &Residuals) -> Markup 
 }
 
 fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
-    let (shown, all) = (drawn(residuals).len(), residuals.rows.len());
+    let (shown, all) = (drawn(residuals).len(), residuals.rows().len());
     let lead = Lead::of(residuals).name();
     let content = html! {
         p { "Residual of each measurement: measured minus predicted by the calibrated model, in the axes of the measuring device." }
@@ -108,13 +108,13 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
     let components: Vec<(Quantity, usize)> = measured
         .flat_map(|quantity| (0..quantity.components()).map(move |component| (quantity, component)))
         .collect();
-    let rows = threads::map_parts_of(residuals.rows.len(), 2 * components.len(), |index| {
+    let rows = threads::map_parts_of(residuals.rows().len(), 2 * components.len(), |index| {
         let (quantity, component) = *components.get(index / 2)?;
         let (set, held_out) = [("fitted", false), ("held out", true)][index % 2];
         let of = |row: &ResidualRow| row.errors.get(quantity)?.residual().get(component).copied();
         let name = format!("{}, {}", component_words(quantity, component), sign(quantity.unit()));
         let values: Vec<f64> =
-            residuals.rows.iter().filter(|row| row.held_out == held_out).filter_map(of).collect();
+            residuals.rows().iter().filter(|row| row.held_out == held_out).filter_map(of).collect();
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let found = Statistic::of(values.iter().map(|value| value.abs()).collect())?;
         let sign = if mean < 0.0 { "−" } else { "" };
@@ -135,10 +135,10 @@ fn joint_table(residuals: &Residuals) -> HtmlTable {
     let caption = capital(&format!("{} error {of}", lead.name()));
     let mut table = HtmlTable::new(&caption, 1, &["reading", "from", "to", "rows", "RMS"]);
     let readings: Vec<_> = readings_of(residuals).collect();
-    let rows = threads::map_parts_of(residuals.rows.len(), readings.len(), |reading| {
+    let rows = threads::map_parts_of(residuals.rows().len(), readings.len(), |reading| {
         let (index, name, unit) = &readings[reading];
         let value = |row: usize| residuals.values(row).get(*index).copied();
-        let values = || (0..residuals.rows.len()).filter_map(value);
+        let values = || (0..residuals.rows().len()).filter_map(value);
         let (least, most) =
             values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
         let width = (most - least) / PARTS as f64;
@@ -146,7 +146,7 @@ fn joint_table(residuals: &Residuals) -> HtmlTable {
             return Vec::new();
         }
         let mut sums = [(0usize, 0.0); PARTS];
-        for (k, row) in residuals.rows.iter().enumerate() {
+        for (k, row) in residuals.rows().iter().enumerate() {
             let part = value(k).map(|value| (((value - least) / width) as usize).min(PARTS - 1));
             if let Some((sum, error)) = part.and_then(|part| sums.get_mut(part)).zip(lead.error(row)) {
                 sum.0 += 1;
@@ -173,7 +173,7 @@ fn named(residuals: &Residuals, file: &str, row: u32, key: impl Render) -> Marku
 }
 
 fn leverage_table(residuals: &Residuals) -> Option<HtmlTable> {
-    let judged = residuals.rows.iter().enumerate().filter_map(|(k, row)| Some((k, row.judged?)));
+    let judged = residuals.rows().iter().enumerate().filter_map(|(k, row)| Some((k, row.judged?)));
     let mut judged: Vec<_> = judged.filter(|(_, found)| found.leverage.is_finite()).collect();
     let larger = |a: &(usize, RowDiagnostics), b: &(usize, RowDiagnostics)| {
         b.1.leverage.total_cmp(&a.1.leverage).then(a.0.cmp(&b.0))
@@ -186,7 +186,8 @@ fn leverage_table(residuals: &Residuals) -> Option<HtmlTable> {
         &["row", "set", "leverage", "studentised residual", "weight"],
     );
     for (k, found) in &judged {
-        let set = if residuals.rows.get(*k).is_some_and(|row| row.held_out) { "held out" } else { "fitted" };
+        let set =
+            if residuals.rows().get(*k).is_some_and(|row| row.held_out) { "held out" } else { "fitted" };
         let numbers = [found.leverage, found.studentized, found.weight].map(number);
         table.row(&[&place(residuals, *k), &set, &numbers[0], &numbers[1], &numbers[2]]);
     }
