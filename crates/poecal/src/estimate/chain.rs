@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::packing::Bases;
 use super::{Estimate, Packed, Passed, Sight, Tree};
 use crate::lanes::FixedMotion;
 use crate::lie::Pose;
-use crate::robot::{JointKind, JointTerm};
+use crate::robot::{JointKind, JointTerm, Term};
 
 /// An estimate as frames relative to the frame before. A row's prediction `X T_n M Z` of theory.md §4 (13) is then a product of one fixed
 /// pose and one elementary motion for each joint.
@@ -34,8 +35,8 @@ pub struct Linkage {
     /// Of each sight, its first step, or the device frame if no joint moves between the two; and the target after the last step.
     ends: Vec<(Pose, Pose)>,
     first_device: Pose,
-    /// Terms of the joints' values, if there are any.
-    terms: Vec<JointTerm>,
+    /// Terms of the value of each joint, with their places among all; empty if there are none.
+    terms: Vec<Vec<(usize, JointTerm)>>,
 }
 
 impl Linkage {
@@ -80,7 +81,9 @@ impl Linkage {
         let ends = ends.collect();
         let base_from_first = first.inverse();
         let further_from_first = devices.iter().skip(1).map(|&device| device * base_from_first).collect();
-        let terms = if estimate.has_terms() { terms.clone() } else { Vec::new() };
+        let of = |joint: usize| terms.iter().copied().enumerate().filter(move |(_, it)| it.joint == joint);
+        let joints = if estimate.has_terms() { tree.kinds().len() } else { 0 };
+        let terms = (0..joints).map(|joint| of(joint).collect()).collect();
         Linkage { tree: Arc::clone(tree), steps, further_from_first, ends, first_device: first, terms }
     }
 
@@ -133,6 +136,7 @@ impl Linkage {
 
     /// `(θ, cos θ or θ, sin θ or 0)` of a joint passed on a route, terms included: `θ ← θ + δ` of theory.md §5 (26), and `-θ` of one that
     /// is passed backward.
+    #[inline]
     pub(crate) fn joint_value(
         &self,
         passed: Passed,
@@ -144,16 +148,17 @@ impl Linkage {
         let from = from.filter(|_| passed.backward);
         let (value, (c, s)) = packed.at(row, from, joint);
         let kind = self.tree.kinds()[joint];
-        let (value, c, s) = if self.terms.is_empty() {
-            (value, c, s)
-        } else {
-            let more = JointTerm::sum(&self.terms, joint, packed.values_at(row, from));
-            match kind {
-                JointKind::Revolute => {
-                    let (sine, cosine) = more.sin_cos();
-                    (value + more, c * cosine - s * sine, s * cosine + c * sine)
+        let (value, c, s) = match self.terms.get(joint) {
+            None => (value, c, s),
+            Some(terms) => {
+                let more = packed.bases_at(row, from).sum(terms);
+                match kind {
+                    JointKind::Revolute => {
+                        let (sine, cosine) = more.sin_cos();
+                        (value + more, c * cosine - s * sine, s * cosine + c * sine)
+                    }
+                    JointKind::Prismatic => (value + more, c + more, 0.0),
                 }
-                JointKind::Prismatic => (value + more, c + more, 0.0),
             }
         };
         match (passed.backward, kind) {
@@ -204,8 +209,12 @@ pub struct Chain {
     pub station: usize,
     /// The target whose frame is the device's frame, if there is one.
     pub shared: Option<usize>,
-    /// Joint values without terms, of the row and of the instrument's own configuration.
-    values: [Vec<f64>; 2],
+    /// Whether the instrument was in another configuration than the target.
+    in_two: bool,
+    /// The packed terms.
+    terms: Arc<[(usize, Term)]>,
+    /// Their functions and the joint values without terms, of the row and of the instrument's own configuration.
+    bases: [(Vec<f64>, Vec<f64>); 2],
 }
 
 impl Default for Chain {
@@ -216,7 +225,9 @@ impl Default for Chain {
             target: Pose::identity(),
             station: 0,
             shared: None,
-            values: Default::default(),
+            in_two: false,
+            terms: Arc::default(),
+            bases: Default::default(),
         }
     }
 }
@@ -230,9 +241,17 @@ impl Chain {
         self.joints.clear();
         self.station = sight.station;
         self.shared = tree.shared(sight.station);
-        for (values, from) in self.values.iter_mut().zip([None, sight.from]) {
+        if !Arc::ptr_eq(&self.terms, packed.terms()) {
+            self.terms = Arc::clone(packed.terms());
+        }
+        self.in_two = sight.from.is_some();
+        let configurations = if self.in_two { 2 } else { 1 };
+        for ((own, values), from) in self.bases.iter_mut().zip([None, sight.from]).take(configurations) {
+            let found = packed.bases_at(row, from);
+            own.clear();
+            own.extend_from_slice(found.packed());
             values.clear();
-            values.extend_from_slice(packed.values_at(row, from));
+            values.extend_from_slice(found.values());
         }
         let mut moved = linkage.still(sight).copied().unwrap_or_else(Pose::identity);
         let (steps, end) = linkage.frames(sight);
@@ -273,10 +292,13 @@ impl Chain {
         self.target = moved * *end;
     }
 
-    /// Values of all joints, without terms, in the configuration in which a joint is seen.
+    /// The function b of a term of a joint in the configuration in which the joint is seen.
     #[must_use]
-    pub fn values(&self, view: &JointView) -> &[f64] {
-        &self.values[usize::from(view.backward)]
+    pub fn basis(&self, view: &JointView, term: Term) -> f64 {
+        // Without a configuration of its own the instrument was in that of the target.
+        let [target, instrument] = &self.bases;
+        let (own, values) = if view.backward && self.in_two { instrument } else { target };
+        Bases::new(&self.terms, own, values).of(view.joint, term)
     }
 
     /// The views of one joint: none if the target's motion does not depend on it, two if it moved between two configurations of a row.

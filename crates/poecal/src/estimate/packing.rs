@@ -1,10 +1,13 @@
 //! Joint values of every row with their sines and cosines, computed once and not in each iteration.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use crate::lanes::{self, SimdLevel};
 use crate::measurement::Dataset;
-use crate::robot::{JointKind, Robot};
+use crate::robot::{JointKind, JointTerm, Moments, Robot, Situation, Statics, Term};
+use crate::threads;
 
 /// Rows that one thread takes at a time.
 const CHUNK: usize = 1024;
@@ -29,6 +32,9 @@ pub struct Packed {
     kinds: Vec<JointKind>,
     values: Vec<(f64, f64)>,
     angles: Vec<f64>,
+    /// The terms of the robot, and their functions b in each row.
+    terms: Arc<[(usize, Term)]>,
+    bases: Vec<f64>,
     /// Configurations of instruments that differ from those of the targets, in rows of their own.
     further: Option<Box<Packed>>,
 }
@@ -105,7 +111,9 @@ impl Packed {
             let chunks = angles.par_chunks_mut(len).zip(values.par_chunks_mut(len)).enumerate();
             chunks.with_max_len(1).for_each(|(chunk, (angles, values))| fill(chunk * CHUNK, angles, values));
         }
-        Packed { joints, kinds, values, angles, further: None }
+        let bases = bases(robot, &angles);
+        let terms = robot.terms.iter().map(|it| (it.joint, it.term)).collect();
+        Packed { joints, kinds, values, angles, terms, bases, further: None }
     }
 
     /// The value of a joint in a row, or in a further configuration in place of it: θ, and `(cos θ, sin θ)` or `(θ, 0)`.
@@ -118,12 +126,28 @@ impl Packed {
         (packed.angles[at], packed.values[at])
     }
 
-    /// Joint values of a row, or of a further configuration in place of it, radians or metres.
-    pub(crate) fn values_at(&self, row: usize, further: Option<u32>) -> &[f64] {
-        match (&self.further, further) {
-            (Some(packed), Some(further)) => packed.joint_values(further as usize),
-            _ => self.joint_values(row),
+    /// The terms whose functions are packed.
+    pub(super) fn terms(&self) -> &Arc<[(usize, Term)]> {
+        &self.terms
+    }
+
+    /// Functions b of the packed terms in a row, or in a further configuration in place of it, and its joint values.
+    pub(super) fn bases_at(&self, row: usize, further: Option<u32>) -> Bases<'_> {
+        let (packed, row) = match (&self.further, further) {
+            (Some(packed), Some(row)) => (&**packed, row as usize),
+            _ => (self, row),
+        };
+        let count = packed.terms.len();
+        Bases {
+            terms: &packed.terms,
+            bases: &packed.bases[row * count..(row + 1) * count],
+            values: packed.joint_values(row),
         }
+    }
+
+    /// The function b of a term of a joint in a row, or in a further configuration in place of it.
+    pub(crate) fn basis(&self, row: usize, further: Option<u32>, joint: usize, term: Term) -> f64 {
+        self.bases_at(row, further).of(joint, term)
     }
 
     /// Whether each joint is revolute.
@@ -154,6 +178,72 @@ impl Packed {
     pub fn row(&self, row: usize) -> &[(f64, f64)] {
         &self.values[row * self.joints..(row + 1) * self.joints]
     }
+}
+
+/// Functions b of terms in one configuration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bases<'a> {
+    terms: &'a [(usize, Term)],
+    bases: &'a [f64],
+    values: &'a [f64],
+}
+
+impl<'a> Bases<'a> {
+    /// Of these terms, with their functions, and of others by the joint values.
+    pub(super) fn new(terms: &'a [(usize, Term)], bases: &'a [f64], values: &'a [f64]) -> Self {
+        Bases { terms, bases, values }
+    }
+
+    /// The function of a term of a joint; one that is not among the robot's is a function of the joint values alone.
+    pub(super) fn of(&self, joint: usize, term: Term) -> f64 {
+        let at = self.terms.iter().position(|it| *it == (joint, term));
+        at.and_then(|at| self.bases.get(at))
+            .copied()
+            .unwrap_or_else(|| term.model().basis(joint, &Situation { values: self.values, moments: None }))
+    }
+
+    /// The sum of terms of a joint, each with its place among the robot's terms, if it is there.
+    pub(super) fn sum(&self, terms: &[(usize, JointTerm)]) -> f64 {
+        let own = |&(at, it): &(usize, JointTerm)| {
+            let known = self.terms.get(at).is_some_and(|known| *known == (it.joint, it.term));
+            let basis = if known { self.bases[at] } else { self.of(it.joint, it.term) };
+            it.coefficient * basis
+        };
+        terms.iter().map(own).sum()
+    }
+
+    /// The packed functions.
+    pub(super) fn packed(&self) -> &'a [f64] {
+        self.bases
+    }
+
+    /// Joint values of the configuration, radians or metres.
+    pub(super) fn values(&self) -> &'a [f64] {
+        self.values
+    }
+}
+
+/// Functions b of all terms of a robot at joint values, one row after the other.
+fn bases(robot: &Robot, angles: &[f64]) -> Vec<f64> {
+    if robot.terms.is_empty() {
+        return Vec::new();
+    }
+    let joints = robot.joints.len().max(1);
+    let rows: Vec<&[f64]> = angles.chunks_exact(joints).collect();
+    let statics = Statics::new(robot);
+    threads::concat_chunks(&rows, CHUNK, |_, rows| {
+        let mut moments = Moments::default();
+        let mut found = Vec::with_capacity(rows.len() * robot.terms.len());
+        for values in rows {
+            if let Some(statics) = &statics {
+                statics.evaluate(values, &mut moments);
+            }
+            let own = robot.own_values(values);
+            let at = Situation { values: &own, moments: statics.as_ref().map(|_| &moments) };
+            found.extend(robot.terms.iter().map(|it| it.term.model().basis(it.joint, &at)));
+        }
+        found
+    })
 }
 
 /// A subsample of `count` rows, or all if there are no more. The rows are spread evenly but not periodically, since a fixed stride could

@@ -51,7 +51,7 @@ impl Columns for ValueTerm {
     fn target_twists(&self, chain: &Chain, _: usize, out: &mut [TargetTwist]) {
         out[0] = (Vector3::zeros(), Vector3::zeros());
         for view in chain.of_joint(self.joint) {
-            let basis = self.term.model().basis(self.joint, chain.values(view));
+            let basis = chain.basis(view, self.term);
             let z = view.z * if view.backward { -basis } else { basis };
             let (moved, turned) = match self.kind {
                 JointKind::Revolute => (z.cross(&(chain.target.translation - view.origin)), z),

@@ -282,8 +282,7 @@ pub(super) fn pack(
         |at, term| {
             let (passed, term, scale) = terms[term];
             let from = session.observation(rows[at]).from.filter(|_| passed.backward);
-            let values = session.packed.values_at(rows[at] as usize, from);
-            let basis = scale * term.model().basis(passed.joint, values);
+            let basis = scale * session.packed.basis(rows[at] as usize, from, passed.joint, term);
             if passed.backward { -basis } else { basis }
         },
     );

@@ -146,6 +146,10 @@ pub struct Joint {
     /// The body on which it stands, if that is not the link of the joint before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stands_on: Option<Body>,
+    /// Index of the joint whose bearing or link gives, of a give: a joint without a reading of its own, which stands at the values of its
+    /// terms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub give_of: Option<usize>,
 }
 
 impl Joint {
@@ -172,6 +176,7 @@ impl Joint {
             reading: Reading::own(name),
             tolerance: None,
             stands_on: None,
+            give_of: None,
         }
     }
 }

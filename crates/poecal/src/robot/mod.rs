@@ -2,19 +2,28 @@
 
 mod body;
 mod dh;
+mod give;
+mod gravity;
+mod harmonic;
 mod joint;
 mod kinematics;
 mod offset;
 mod ratio;
+mod sag;
+mod statics;
 mod term;
 mod term_model;
 mod zeros;
 
 pub use body::{Body, Mount};
 pub use dh::{DhConvention, DhRow};
+pub use gravity::{Gravity, Weight};
+pub use harmonic::Harmonic;
 pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
+pub use sag::Sag;
+pub use statics::{Moments, Statics};
 pub use term::{JointTerm, Term};
-pub use term_model::TermModel;
+pub use term_model::{Situation, TermModel};
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -66,6 +75,9 @@ pub struct Robot {
     /// Terms of the joints' values beyond their readings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub terms: Vec<JointTerm>,
+    /// Gravity and the weights that bend the robot, if terms depend on them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<Gravity>,
     /// Instruments on the robot; all others stand beside it, on its base.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub instruments: Vec<Mount>,
@@ -111,6 +123,7 @@ impl Robot {
             targets: Vec::new(),
             mounted: Vec::new(),
             terms: Vec::new(),
+            gravity: None,
             instruments: Vec::new(),
         })
     }

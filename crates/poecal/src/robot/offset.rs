@@ -1,25 +1,24 @@
 //! Joint offset.
 
+use std::borrow::Cow;
+
 use super::joint::JointKind;
-use super::term_model::TermModel;
+use super::term_model::{Situation, TermModel, unit_of_value};
 use crate::unit::Unit;
 
 /// Where the reading of a joint is zero, `θ ← θ + c` (lou2009: Δθ).
 pub(super) struct Offset;
 
 impl TermModel for Offset {
-    fn name(&self) -> &'static str {
-        "offset"
+    fn name(&self) -> Cow<'static, str> {
+        "offset".into()
     }
 
     fn unit(&self, kind: JointKind) -> Unit {
-        match kind {
-            JointKind::Revolute => Unit::Radian,
-            JointKind::Prismatic => Unit::Metre,
-        }
+        unit_of_value(kind)
     }
 
-    fn basis(&self, _: usize, _: &[f64]) -> f64 {
+    fn basis(&self, _: usize, _: &Situation<'_>) -> f64 {
         1.0
     }
 

@@ -1,49 +1,112 @@
 //! Terms of joint values: what a joint really turns or slides beyond its reading.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::fmt;
+use std::str::FromStr;
 
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::harmonic::Harmonic;
 use super::offset::Offset;
 use super::ratio::Ratio;
-use super::term_model::TermModel;
+use super::sag::Sag;
+use super::term_model::{Situation, TermModel};
 
-/// A term of a joint's value, `θ ← θ + c b(θ)` with a known function b of the joint values and a coefficient c (theory.md §3). A new term is
-/// one file with [`TermModel`], one variant here and its line in [`Term::ALL`].
+/// A term of a joint's value, `θ ← θ + c b(q)` with a known function b of the configuration and a coefficient c (theory.md §3). A new term is
+/// one file with [`TermModel`], one variant here and its name.
 ///
 /// ```
-/// use poecal::robot::Term;
+/// use poecal::robot::{Situation, Term};
 /// let offset = Term::Offset.model();
-/// assert_eq!((offset.name(), offset.basis(0, &[0.7])), ("offset", 1.0));
+/// assert_eq!((offset.name().as_ref(), offset.basis(0, &Situation { values: &[0.7], moments: None })), ("offset", 1.0));
+/// assert_eq!("cos2".parse::<Term>().map(|term| term.to_string()), Ok("cos2".to_owned()));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Term {
     /// Joint offset: 1.
     Offset,
     /// Error of the gear's ratio: the joint's value.
     Ratio,
+    /// A harmonic of the joint's value.
+    Harmonic(Harmonic),
+    /// What the joint gives under a weight.
+    Sag(Sag),
 }
 
 impl Term {
-    /// All terms.
+    /// Terms that need nothing but a joint's value, and that a model may state.
     pub const ALL: [Term; 2] = [Term::Offset, Term::Ratio];
 
     /// What the term is.
     #[must_use]
-    pub fn model(self) -> &'static dyn TermModel {
+    pub fn model(&self) -> &dyn TermModel {
         match self {
             Term::Offset => &Offset,
             Term::Ratio => &Ratio,
+            Term::Harmonic(harmonic) => harmonic,
+            Term::Sag(sag) => sag,
         }
+    }
+}
+
+impl fmt::Display for Term {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.model().name())
+    }
+}
+
+impl FromStr for Term {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let numbered = |prefix: &str| name.strip_prefix(prefix)?.parse::<u8>().ok().filter(|it| *it > 0);
+        let harmonic = |order: u8, cosine: bool| Term::Harmonic(Harmonic { order, cosine });
+        let found = Term::ALL.into_iter().find(|term| term.model().name() == name);
+        found
+            .or_else(|| Some(harmonic(numbered("sin")?, false)))
+            .or_else(|| Some(harmonic(numbered("cos")?, true)))
+            .or_else(|| Some(Term::Sag(Sag { weight: usize::from(numbered("sag")?) - 1 })))
+            .ok_or_else(|| {
+                format!("found the term `{name}`, expected offset, ratio, sin1, cos1, … or sag1, …")
+            })
+    }
+}
+
+impl Serialize for Term {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Term {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name: Cow<'de, str> = Deserialize::deserialize(deserializer)?;
+        name.parse().map_err(D::Error::custom)
+    }
+}
+
+impl JsonSchema for Term {
+    fn schema_name() -> Cow<'static, str> {
+        "Term".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        schemars::json_schema!({
+            "type": "string",
+            "pattern": "^(offset|ratio|(sin|cos|sag)[1-9][0-9]*)$",
+            "description": "A term of a joint's value.",
+        })
     }
 }
 
 /// A term of a joint with its coefficient.
 ///
 /// ```
-/// use poecal::robot::{JointTerm, Term};
+/// use poecal::robot::{JointTerm, Situation, Term};
 /// let late = JointTerm { joint: 1, term: Term::Offset, coefficient: 0.02 };
-/// assert_eq!(JointTerm::sum(&[late], 1, &[0.0, 0.5]), 0.02);
+/// assert_eq!(JointTerm::sum(&[late], 1, &Situation { values: &[0.0, 0.5], moments: None }), 0.02);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointTerm {
@@ -56,10 +119,10 @@ pub struct JointTerm {
 }
 
 impl JointTerm {
-    /// The sum of all terms of a joint, radians or metres, from the values of all joints without terms.
+    /// The sum of all terms of a joint, radians or metres.
     #[must_use]
-    pub fn sum(terms: &[JointTerm], joint: usize, values: &[f64]) -> f64 {
+    pub fn sum(terms: &[JointTerm], joint: usize, at: &Situation<'_>) -> f64 {
         let own = terms.iter().filter(|it| it.joint == joint);
-        own.map(|it| it.coefficient * it.term.model().basis(joint, values)).sum()
+        own.map(|it| it.coefficient * it.term.model().basis(joint, at)).sum()
     }
 }

@@ -1,19 +1,45 @@
 //! The contract of every term of joint values.
 
+use std::borrow::Cow;
+
 use super::joint::JointKind;
+use super::statics::Moments;
 use crate::unit::Unit;
 
-/// Interface of a term: the function b of the joint values, and what its coefficient c is.
+/// One configuration, as terms of joint values depend on it.
+///
+/// ```
+/// use poecal::robot::{Situation, Term};
+/// let at = Situation { values: &[0.7], moments: None };
+/// assert_eq!(Term::Ratio.model().basis(0, &at), 0.7);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    /// Values of all joints without terms, radians or metres.
+    pub values: &'a [f64],
+    /// Moments of the weights that the robot carries, if it has any.
+    pub moments: Option<&'a Moments>,
+}
+
+/// Interface of a term: the function b of a configuration, and what its coefficient c is.
 pub trait TermModel {
     /// Its name.
-    fn name(&self) -> &'static str;
+    fn name(&self) -> Cow<'static, str>;
 
     /// Unit of the coefficient for a joint of this kind.
     fn unit(&self, kind: JointKind) -> Unit;
 
-    /// The function b of a joint, from the values of all joints without terms, radians or metres.
-    fn basis(&self, joint: usize, values: &[f64]) -> f64;
+    /// The function b of a joint.
+    fn basis(&self, joint: usize, at: &Situation<'_>) -> f64;
 
     /// Standard deviation of the coefficient over robots, its prior, in the unit of the coefficient.
     fn deviation(&self, kind: JointKind) -> f64;
+}
+
+/// The unit of a joint's value.
+pub(super) fn unit_of_value(kind: JointKind) -> Unit {
+    match kind {
+        JointKind::Revolute => Unit::Radian,
+        JointKind::Prismatic => Unit::Metre,
+    }
 }

@@ -20,6 +20,7 @@ fn robot(name: &str, joints: Vec<Joint>, home: Pose) -> Robot {
         targets: Vec::new(),
         mounted: Vec::new(),
         terms: Vec::new(),
+        gravity: None,
         instruments: Vec::new(),
     }
 }

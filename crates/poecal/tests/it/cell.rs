@@ -12,7 +12,7 @@ use poecal::measurement::{
 };
 use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
 use poecal::problem::Problem;
-use poecal::robot::{Body, Joint, JointKind, Mount, Robot, Term};
+use poecal::robot::{Body, Gravity, Harmonic, Joint, JointKind, JointTerm, Mount, Robot, Sag, Statics, Term};
 use poecal::simulate::random;
 use poecal::solve::LeastSquares as _;
 use rand_chacha::ChaCha8Rng;
@@ -178,6 +178,7 @@ impl Measured {
                 robot
                     .joints
                     .iter()
+                    .filter(|joint| joint.give_of.is_none())
                     .map(|joint| span(joint) * (2.0 * random::uniform(&mut generator) - 1.0))
                     .collect()
             };
@@ -220,57 +221,105 @@ impl Measured {
     }
 }
 
+/// The same cell whose joints sag, wobble and tilt, with coefficients that are not zero.
+fn deviating(cell: &Cell) -> Cell {
+    let all: Vec<usize> = (0..cell.robot.joints.len()).collect();
+    let (mut robot, _) = cell.robot.giving(&all);
+    let gravity = Gravity::of_unit_weights(&robot, Vector3::new(0.2, -0.1, -0.9));
+    let weights = gravity.weights.len();
+    robot.gravity = Some(gravity);
+    let statics = Statics::new(&robot).unwrap();
+    let harmonics =
+        (1..3).flat_map(|order| [false, true].map(|cosine| Term::Harmonic(Harmonic { order, cosine })));
+    let mut terms = Vec::new();
+    for (joint, it) in robot.joints.iter().enumerate() {
+        let sags = (0..weights).filter(|&weight| statics.is_carried(joint, weight));
+        let sags = sags.map(|weight| Term::Sag(Sag { weight }));
+        let ratio = it.give_of.is_none().then_some(Term::Ratio);
+        for (k, term) in harmonics.clone().chain(sags).chain(ratio).enumerate() {
+            terms.push(JointTerm { joint, term, coefficient: 1e-3 * (1 + (joint + 3 * k) % 5) as f64 });
+        }
+    }
+    robot.terms = terms;
+    Cell { name: cell.name, robot, sees: cell.sees.clone(), rank: cell.rank }
+}
+
+/// Unknowns of a cell, with these terms, and the first device as well.
+fn with_terms(made: &Measured, terms: impl Iterator<Item = (usize, Term)>) -> Vec<Parameter> {
+    let kinds = made.estimate.kinds();
+    let mut free = made.free.clone();
+    free.extend(
+        terms.map(|(joint, term)| Parameter::ValueTerm(ValueTerm { joint, kind: kinds[joint], term })),
+    );
+    if made.estimate.tree.shared(0).is_none() {
+        free.insert(0, device(&made.data, 0, Vector3::new(0.2, 0.1, 0.0)));
+    }
+    free
+}
+
 /// The gradient of the kernels is the derivative of their own cost by every unknown, for every way from instrument to target; and their
 /// products are those of the formulas row by row.
 #[test]
 fn sensitivities_of_every_way_are_those_of_differences() {
     for cell in cells() {
         let made = Measured::new(&cell, 24, 0.05);
-        let mut free = made.free.clone();
         // Terms of every joint's value, at coefficients that are not zero.
         let mut estimate = made.estimate.clone();
-        for (joint, it) in made.robot.joints.iter().enumerate() {
-            for (k, term) in Term::ALL.into_iter().enumerate() {
-                free.push(Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term }));
-                *estimate.coefficient_mut(joint, term) = 0.02 * (1 + joint + k) as f64;
-            }
+        let joints = 0..made.robot.joints.len();
+        let terms: Vec<_> = joints.flat_map(|joint| Term::ALL.map(|term| (joint, term))).collect();
+        for &(joint, term) in &terms {
+            let k = usize::from(term == Term::Ratio);
+            *estimate.coefficient_mut(joint, term) = 0.02 * (1 + joint + k) as f64;
         }
-        // The first device as well.
-        if made.estimate.tree.shared(0).is_none() {
-            free.insert(0, device(&made.data, 0, Vector3::new(0.2, 0.1, 0.0)));
-        }
-        let problem = made.problem(free);
-        let normal = problem.normal(&estimate);
-        let n = problem.dim();
-        let (mut worst, mut size) = (0.0, 0.0);
-        for unknown in 0..n {
-            // Central differences of fourth order: at 2e-4 of a radian or metre truncation is 1e-15, rounding of the cost 1e-12 of it.
-            const STEP: f64 = 2e-4;
-            let cost = |by: f64| {
-                let mut step = vec![0.0; n];
-                step[unknown] = by * STEP;
-                problem.normal(&problem.retract(&estimate, &step)).cost
-            };
-            let difference = (8.0 * (cost(1.0) - cost(-1.0)) - (cost(2.0) - cost(-2.0))) / (12.0 * STEP);
-            // The gradient is that of the residuals' sign: `Jᵀe` with J of the prediction.
-            worst = larger(worst, (difference + normal.gradient[unknown]).abs());
-            size = larger(size, normal.gradient[unknown].abs());
-        }
-        println!("{:22} {n:3} unknowns: {:.1e} of the gradient", cell.name, worst / size);
-        assert!(worst < 1e-8 * size, "{}: {:e}", cell.name, worst / size);
+        compare(&made, &estimate, with_terms(&made, terms.into_iter()), cell.name);
+    }
+}
 
-        let by_rows = reference::normal(&problem, &estimate);
-        let largest = (0..n).map(|k| by_rows.gram[k * n + k]).fold(0.0, larger);
-        let scale = |k: usize| by_rows.gram[k * n + k].sqrt().max(1e-9);
-        for (a, b) in (0..n).flat_map(|a| (a..n).map(move |b| (a, b))) {
-            let apart = (normal.gram[a * n + b] - by_rows.gram[a * n + b]).abs();
-            // A column that cancels, such as of the first joint's zero in two configurations, leaves the rounding of its parts.
-            assert!(
-                apart < 1e-11 * scale(a) * scale(b) + 1e-15 * largest,
-                "{}: {a}, {b}: {apart:e}",
-                cell.name
-            );
-        }
+/// The same for joints that sag, wobble and tilt: of gives only their terms are unknown.
+#[test]
+fn sensitivities_of_what_joints_do_are_those_of_differences() {
+    // Of the torso, whose terms are hundreds, the case that has all ways.
+    let all_ways = |cell: &Cell| cell.robot.is_serial() || cell.name == "floor and chest";
+    for cell in cells().into_iter().filter(all_ways) {
+        let made = Measured::new(&deviating(&cell), 24, 0.05);
+        let terms = made.robot.terms.iter().map(|it| (it.joint, it.term));
+        let mut free = with_terms(&made, terms);
+        free.retain(|parameter| match parameter {
+            Parameter::ScrewAxis(axis) => made.robot.joints[axis.joint].give_of.is_none(),
+            _ => true,
+        });
+        compare(&made, &made.estimate, free, cell.name);
+    }
+}
+
+fn compare(made: &Measured, estimate: &Estimate, free: Vec<Parameter>, name: &str) {
+    let problem = made.problem(free);
+    let normal = problem.normal(estimate);
+    let n = problem.dim();
+    let (mut worst, mut size) = (0.0, 0.0);
+    for unknown in 0..n {
+        // Central differences of fourth order: at 2e-4 of a radian or metre truncation is 1e-15, rounding of the cost 1e-12 of it.
+        const STEP: f64 = 2e-4;
+        let cost = |by: f64| {
+            let mut step = vec![0.0; n];
+            step[unknown] = by * STEP;
+            problem.normal(&problem.retract(estimate, &step)).cost
+        };
+        let difference = (8.0 * (cost(1.0) - cost(-1.0)) - (cost(2.0) - cost(-2.0))) / (12.0 * STEP);
+        // The gradient is that of the residuals' sign: `Jᵀe` with J of the prediction.
+        worst = larger(worst, (difference + normal.gradient[unknown]).abs());
+        size = larger(size, normal.gradient[unknown].abs());
+    }
+    println!("{name:22} {n:3} unknowns: {:.1e} of the gradient", worst / size);
+    assert!(worst < 1e-8 * size, "{name}: {:e}", worst / size);
+
+    let by_rows = reference::normal(&problem, estimate);
+    let largest = (0..n).map(|k| by_rows.gram[k * n + k]).fold(0.0, larger);
+    let scale = |k: usize| by_rows.gram[k * n + k].sqrt().max(1e-9);
+    for (a, b) in (0..n).flat_map(|a| (a..n).map(move |b| (a, b))) {
+        let apart = (normal.gram[a * n + b] - by_rows.gram[a * n + b]).abs();
+        // A column that cancels, such as of the first joint's zero in two configurations, leaves the rounding of its parts.
+        assert!(apart < 1e-11 * scale(a) * scale(b) + 1e-15 * largest, "{name}: {a}, {b}: {apart:e}");
     }
 }
 

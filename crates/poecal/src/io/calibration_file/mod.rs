@@ -284,6 +284,7 @@ impl JointEntry {
             reading: self.reading.clone(),
             tolerance: None,
             stands_on: None,
+            give_of: None,
         })
     }
 }

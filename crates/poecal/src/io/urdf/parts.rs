@@ -120,6 +120,7 @@ fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_j
         reading: read_reading(tree, joint)?,
         tolerance: None,
         stands_on: None,
+        give_of: None,
     })
 }
 

@@ -1,0 +1,126 @@
+//! Moments of weights about joints.
+
+use nalgebra::Vector3;
+
+use super::{Body, Gravity, JointKind, Robot};
+use crate::lie::Pose;
+
+/// Longest lever below which a weight has no moment, metres.
+const LEAST_LEVER_M: f64 = 1e-3;
+
+/// Moments of the weights of a robot in any configuration, by its screws.
+///
+/// ```
+/// use poecal::robot::{Gravity, Moments, Statics};
+/// let mut robot = poecal::simulate::elbow();
+/// robot.gravity = Some(Gravity::of_unit_weights(&robot, -nalgebra::Vector3::z()));
+/// let mut moments = Moments::default();
+/// Statics::new(&robot).unwrap().evaluate(&[0.0; 6], &mut moments);
+/// // Nothing hangs from a vertical axis.
+/// assert!(moments.of(0, 5).abs() < 1e-15);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Statics<'a> {
+    robot: &'a Robot,
+    gravity: &'a Gravity,
+    /// Of each joint, whether each weight is carried by it, and 1 over the longest lever.
+    shares: Vec<f64>,
+}
+
+/// Moments in one configuration: of each weight about each joint, over the largest that it can have.
+#[derive(Clone, Debug, Default)]
+pub struct Moments {
+    weights: usize,
+    values: Vec<f64>,
+    links: Vec<Pose>,
+}
+
+impl Moments {
+    /// The moment of a weight about a joint.
+    #[must_use]
+    pub fn of(&self, joint: usize, weight: usize) -> f64 {
+        if weight >= self.weights {
+            return 0.0;
+        }
+        self.values.get(joint * self.weights + weight).copied().unwrap_or_default()
+    }
+}
+
+impl<'a> Statics<'a> {
+    /// The statics of a robot, if it has gravity.
+    #[must_use]
+    pub fn new(robot: &'a Robot) -> Option<Self> {
+        let gravity = robot.gravity.as_ref()?;
+        let mut shares = Vec::with_capacity(robot.joints.len() * gravity.weights.len());
+        for joint in 0..robot.joints.len() {
+            for weight in &gravity.weights {
+                let lever = longest_lever(robot, joint, weight.body, &weight.place);
+                shares.push(match robot.joints[joint].kind {
+                    JointKind::Revolute => lever.filter(|it| *it > LEAST_LEVER_M).map_or(0.0, |it| 1.0 / it),
+                    JointKind::Prismatic => lever.map_or(0.0, |_| 1.0),
+                });
+            }
+        }
+        Some(Statics { robot, gravity, shares })
+    }
+
+    /// Whether a weight has a moment about a joint in any configuration.
+    #[must_use]
+    pub fn is_carried(&self, joint: usize, weight: usize) -> bool {
+        self.shares.get(joint * self.gravity.weights.len() + weight).is_some_and(|share| *share > 0.0)
+    }
+
+    /// Moments at these values of all joints, without terms.
+    pub fn evaluate(&self, values: &[f64], out: &mut Moments) {
+        let weights = &self.gravity.weights;
+        out.weights = weights.len();
+        out.links.clear();
+        for (index, (joint, &value)) in self.robot.joints.iter().zip(values).enumerate() {
+            let before = self.robot.body_before(index);
+            let link = match before.joint().and_then(|before| out.links.get(before)) {
+                _ if joint.give_of.is_some() && value == 0.0 => body_of(&out.links, before),
+                Some(before) => *before * joint.screw.exp(value),
+                None => joint.screw.exp(value),
+            };
+            out.links.push(link);
+        }
+        out.values.clear();
+        let places: Vec<Vector3<f64>> =
+            weights.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
+        for (index, joint) in self.robot.joints.iter().enumerate() {
+            let moving = body_of(&out.links, self.robot.body_before(index));
+            let axis = moving.rotation * joint.screw.direction();
+            let origin = moving.act(&joint.frame.translation);
+            let shares = &self.shares[index * weights.len()..];
+            out.values.extend(places.iter().zip(shares).map(|(place, share)| {
+                if *share == 0.0 {
+                    return 0.0;
+                }
+                share
+                    * match joint.kind {
+                        JointKind::Revolute => axis.dot(&(place - origin).cross(&self.gravity.direction)),
+                        JointKind::Prismatic => axis.dot(&self.gravity.direction),
+                    }
+            }));
+        }
+    }
+}
+
+fn body_of(links: &[Pose], body: Body) -> Pose {
+    body.joint().and_then(|joint| links.get(joint)).copied().unwrap_or_else(Pose::identity)
+}
+
+/// The longest lever of a weight about a joint that carries it: the path from joint to joint, metres.
+fn longest_lever(robot: &Robot, joint: usize, body: Body, place: &Vector3<f64>) -> Option<f64> {
+    let path = robot.joints_to(body);
+    let first = path.iter().position(|&other| other == joint)?;
+    let turning = path[first..].iter().filter(|&&other| robot.joints[other].kind == JointKind::Revolute);
+    let mut at = robot.joints[joint].frame.translation;
+    let mut lever = 0.0;
+    for &other in turning {
+        let next = robot.joints[other].screw.nearest_point(&at);
+        lever += (next - at).norm();
+        at = next;
+    }
+    Some(lever + (place - at).norm())
+}
