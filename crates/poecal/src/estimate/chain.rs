@@ -303,6 +303,10 @@ impl Chain {
 
     /// The views of one joint: none if the target's motion does not depend on it, two if it moved between two configurations of a row.
     pub fn of_joint(&self, joint: usize) -> impl Iterator<Item = &JointView> {
-        self.joints.iter().filter(move |view| view.joint == joint)
+        // On a serial chain it has its own place; before that place no joint is a later one.
+        let first = self.joints.get(joint).filter(|view| view.joint == joint && !self.in_two);
+        let start = if first.is_some() { joint } else { 0 };
+        let views = self.joints[start..].iter().filter(move |view| view.joint == joint);
+        views.take(if self.in_two { 2 } else { 1 })
     }
 }

@@ -20,7 +20,7 @@ pub(crate) use row_block::RowBlock;
 use crate::estimate::{Estimate, Session};
 use crate::lanes::ShapedRow;
 use crate::lie::Pose;
-use crate::measurement::{Measurement, Noise, Written};
+use crate::measurement::{Measurement, Noise, Seen, Written};
 use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
 use fast::{Accumulate, Fast};
@@ -79,9 +79,13 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub fn new(session: Session<'a>, rows: Vec<u32>, free: Vec<Parameter>, noise: Noise) -> Self {
         // A few roundings of about the largest number: the distance from the device.
-        let position = |&row: &u32| session.observation(row).measurement.pose().translation;
+        let farthest = |&row: &u32| match session.observation(row).measurement.seen() {
+            Seen::Point(position) => position.amax(),
+            Seen::Frame(pose) => pose.translation.amax(),
+            Seen::Other(_) => 0.0,
+        };
         let some = rows.iter().step_by(rows.len().div_ceil(SEEN).max(1));
-        let farthest = some.map(|row| position(row).amax());
+        let farthest = some.map(farthest);
         let rounding_m = 4.0 * f64::EPSILON * farthest.fold(1.0, f64::max);
         Problem {
             session,
