@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod blocks;
+mod corrections;
 mod count;
 mod coverage_check;
 mod doubts;
@@ -27,6 +28,7 @@ mod verdict;
 pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
 pub use blocks::BlockChoice;
 pub(crate) use blocks::names;
+pub use corrections::{Correction, CorrectionModel, Sizes, TermGroup, correct};
 pub use coverage_check::{CoverageCheck, InSampledRange, PartCoverage, PredictedUncertainty};
 pub use fit::fit_screws;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};

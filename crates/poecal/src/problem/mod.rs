@@ -13,7 +13,7 @@ mod without_effect;
 
 pub use crate::lanes::{SimdLevel, simd_levels};
 pub use layout::Layout;
-pub use prior::Prior;
+pub use prior::{Prior, TermPrior};
 pub use refit::Refit;
 pub(crate) use row_block::RowBlock;
 

@@ -7,7 +7,7 @@ use crate::estimate::Estimate;
 use crate::lie::{Pose, Twist};
 use crate::linalg::{self, Factor6};
 use crate::parameters::ValueTerm;
-use crate::robot::{JointTerm, Robot, Tolerance};
+use crate::robot::{JointTerm, Robot, Term, Tolerance};
 use crate::solve::Normal;
 
 /// Most Gauss-Newton iterations for the motion of the base, which converge quadratically.
@@ -42,6 +42,24 @@ pub struct Prior {
     axes: Vec<Nominal>,
     base_free: bool,
     terms: Vec<JointTerm>,
+    term_priors: Vec<TermPrior>,
+}
+
+/// Prior standard deviation of a term of a joint's value, in the unit of its coefficient.
+///
+/// ```
+/// use poecal::{problem::TermPrior, robot::Term};
+/// let zeros = TermPrior { joint: 0, term: Term::Offset, deviation: 0.01 };
+/// assert!(zeros.deviation > 0.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TermPrior {
+    /// Index of the joint.
+    pub joint: usize,
+    /// The term.
+    pub term: Term,
+    /// Standard deviation.
+    pub deviation: f64,
 }
 
 /// A nominal axis.
@@ -104,7 +122,14 @@ impl Prior {
             turns: !joint.screw.is_prismatic(),
             tolerance: joint.tolerance.unwrap_or(common),
         });
-        Prior { axes: axes.collect(), base_free, terms: robot.terms.clone() }
+        Prior { axes: axes.collect(), base_free, terms: robot.terms.clone(), term_priors: Vec::new() }
+    }
+
+    /// The same with these priors of terms; others have those of their types ([`crate::robot::TermModel::deviation`]).
+    #[must_use]
+    pub fn with_terms(mut self, term_priors: Vec<TermPrior>) -> Self {
+        self.term_priors = term_priors;
+        self
     }
 
     /// `½ min_G Σ |u|²`: theory.md §6 (27a) for weight 1.
@@ -154,7 +179,8 @@ impl Prior {
         for (parameter, places) in layout.parameters() {
             let Some(&ValueTerm { joint, kind, term }) = parameter.value_term() else { continue };
             let nominal = self.terms.iter().find(|it| it.joint == joint && it.term == term);
-            let sigma = term.model().deviation(kind);
+            let own = self.term_priors.iter().find(|it| it.joint == joint && it.term == term);
+            let sigma = own.map_or_else(|| term.model().deviation(kind), |it| it.deviation);
             let value =
                 (estimate.coefficient(joint, term) - nominal.map_or(0.0, |it| it.coefficient)) / sigma;
             normal.cost += 0.5 * weight * value * value;

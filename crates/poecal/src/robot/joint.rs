@@ -110,6 +110,11 @@ pub struct Tolerance {
     pub length_m: f64,
 }
 
+impl Tolerance {
+    /// So wide that the measurements alone decide: 30° and 0.3 m.
+    pub const WIDE: Tolerance = Tolerance { angle_rad: 0.5, length_m: 0.3 };
+}
+
 impl Default for Tolerance {
     /// Half a degree and 5 mm: wider than machining, so that the prior hardly matters where the data determine the axis.
     fn default() -> Self {

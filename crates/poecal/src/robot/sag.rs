@@ -6,9 +6,8 @@ use super::joint::JointKind;
 use super::term_model::{Situation, TermModel, unit_of_value};
 use crate::unit::Unit;
 
-/// What a joint gives under the moment of one weight about its axis, as a share of the largest that this weight can have:
-/// `θ ← θ + c z·((p - o) × ĝ)/ℓ` with the axis z through o, the weight at p and its longest lever ℓ; of a prismatic joint `c z·ĝ`. A weight
-/// that the joint does not carry has no moment.
+/// What a joint gives under the moment of one weight about its axis: `θ ← θ + c z·((p - o) × ĝ)/ℓ` with the axis z through o, the weight at p
+/// and ℓ the longest lever of all weights of that joint; of a prismatic joint `c z·ĝ`. A weight that the joint does not carry has no moment.
 ///
 /// ```
 /// use poecal::robot::{Sag, Situation, TermModel};

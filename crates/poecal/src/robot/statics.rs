@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Body, Gravity, JointKind, Robot};
+use super::{Body, Gravity, JointKind, Robot, Weight};
 use crate::lie::Pose;
 
 /// Longest lever below which a weight has no moment, metres.
@@ -23,11 +23,11 @@ const LEAST_LEVER_M: f64 = 1e-3;
 pub struct Statics<'a> {
     robot: &'a Robot,
     gravity: &'a Gravity,
-    /// Of each joint, whether each weight is carried by it, and 1 over the longest lever.
+    /// Of each joint and weight, 1 over the joint's longest lever; 0 of a weight that it does not carry.
     shares: Vec<f64>,
 }
 
-/// Moments in one configuration: of each weight about each joint, over the largest that it can have.
+/// Moments in one configuration: of each weight about each joint, over the joint's longest lever.
 #[derive(Clone, Debug, Default)]
 pub struct Moments {
     weights: usize,
@@ -53,11 +53,14 @@ impl<'a> Statics<'a> {
         let gravity = robot.gravity.as_ref()?;
         let mut shares = Vec::with_capacity(robot.joints.len() * gravity.weights.len());
         for joint in 0..robot.joints.len() {
+            let lever = |weight: &Weight| longest_lever(robot, joint, weight.body, &weight.place);
+            let longest = gravity.weights.iter().filter_map(lever).fold(0.0, f64::max);
             for weight in &gravity.weights {
-                let lever = longest_lever(robot, joint, weight.body, &weight.place);
                 shares.push(match robot.joints[joint].kind {
-                    JointKind::Revolute => lever.filter(|it| *it > LEAST_LEVER_M).map_or(0.0, |it| 1.0 / it),
-                    JointKind::Prismatic => lever.map_or(0.0, |_| 1.0),
+                    JointKind::Revolute => {
+                        lever(weight).filter(|it| *it > LEAST_LEVER_M).map_or(0.0, |_| 1.0 / longest)
+                    }
+                    JointKind::Prismatic => lever(weight).map_or(0.0, |_| 1.0),
                 });
             }
         }
