@@ -290,7 +290,7 @@ impl Task<'_> {
     }
 
     /// The free parameters.
-    fn free(&self, estimate: &Estimate) -> Vec<Parameter> {
+    pub(super) fn free(&self, estimate: &Estimate) -> Vec<Parameter> {
         let joints = (self.options.formulation.joint_parameters)(estimate.kinds());
         free_parameters(&self.session, estimate, self.rows, joints)
     }

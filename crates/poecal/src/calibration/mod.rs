@@ -28,7 +28,7 @@ mod verdict;
 pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
 pub use blocks::BlockChoice;
 pub(crate) use blocks::names;
-pub use corrections::{Correction, CorrectionModel, Sizes, TermGroup, correct};
+pub use corrections::{Correction, CorrectionModel, Sizes, TermGroup, TriedSizes, correct};
 pub use coverage_check::{CoverageCheck, InSampledRange, PartCoverage, PredictedUncertainty};
 pub use fit::fit_screws;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};

@@ -43,6 +43,8 @@ pub struct Prior {
     base_free: bool,
     terms: Vec<JointTerm>,
     term_priors: Vec<TermPrior>,
+    /// Whether terms have a prior.
+    terms_count: bool,
 }
 
 /// Prior standard deviation of a term of a joint's value, in the unit of its coefficient.
@@ -122,13 +124,26 @@ impl Prior {
             turns: !joint.screw.is_prismatic(),
             tolerance: joint.tolerance.unwrap_or(common),
         });
-        Prior { axes: axes.collect(), base_free, terms: robot.terms.clone(), term_priors: Vec::new() }
+        Prior {
+            axes: axes.collect(),
+            base_free,
+            terms: robot.terms.clone(),
+            term_priors: Vec::new(),
+            terms_count: true,
+        }
     }
 
     /// The same with these priors of terms; others have those of their types ([`crate::robot::TermModel::deviation`]).
     #[must_use]
     pub fn with_terms(mut self, term_priors: Vec<TermPrior>) -> Self {
         self.term_priors = term_priors;
+        self
+    }
+
+    /// The same without a prior of terms.
+    #[must_use]
+    pub fn without_terms(mut self) -> Self {
+        self.terms_count = false;
         self
     }
 
@@ -199,7 +214,9 @@ impl Prior {
         let (deviations, base) = self.at_best_base(estimate);
         let n = layout.dim();
         let is_wanted = !normal.gram.is_empty();
-        self.add_terms(estimate, layout, weight, normal);
+        if self.terms_count {
+            self.add_terms(estimate, layout, weight, normal);
+        }
         // Products of each unknown's column with those of the base.
         let mut shared: Vec<(usize, Vector6<f64>)> = Vec::with_capacity(n);
         for (parameter, places) in layout.parameters() {

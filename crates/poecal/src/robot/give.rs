@@ -1,5 +1,6 @@
 //! Joints whose bearings and links give.
 
+use super::gravity::axes;
 use super::{Body, Joint, JointKind, Mount, Reading, Robot, Weight};
 use crate::lie::{Screw, rotation};
 
@@ -40,6 +41,9 @@ impl Robot {
         mounts.for_each(|mount: &mut Mount| mount.body = moved(mount.body));
         let weights = robot.gravity.iter_mut().flat_map(|gravity| &mut gravity.weights);
         weights.for_each(|weight: &mut Weight| weight.body = moved(weight.body));
+        if let Some(gravity) = &mut robot.gravity {
+            gravity.axes = axes(&robot.joints);
+        }
         for term in &mut robot.terms {
             term.joint = places.get(term.joint).copied().unwrap_or(term.joint);
         }

@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::{Body, Robot};
+use super::{Body, Joint, Robot};
+use crate::lie::Screw;
 
 /// Direction of gravity, and the weights whose moments bend the robot. How heavy they are is not known: only products of mass, lever and
 /// give show (theory.md §3, *Sag*).
@@ -20,6 +21,8 @@ pub struct Gravity {
     pub direction: Vector3<f64>,
     /// The weights.
     pub weights: Vec<Weight>,
+    /// Screw and origin of each joint by which moments are counted, at zero joint values: those of the drawing, whatever is found.
+    pub axes: Vec<(Screw, Vector3<f64>)>,
 }
 
 /// A weight on the robot.
@@ -52,6 +55,12 @@ impl Gravity {
         });
         let tip =
             Weight { name: robot.tip_name.clone(), body: robot.tip_body(), place: robot.home.translation };
-        Gravity { direction: direction.normalize(), weights: at_joints.chain([tip]).collect() }
+        let weights = at_joints.chain([tip]).collect();
+        Gravity { direction: direction.normalize(), weights, axes: axes(&robot.joints) }
     }
+}
+
+/// Screws and origins of joints.
+pub(super) fn axes(joints: &[Joint]) -> Vec<(Screw, Vector3<f64>)> {
+    joints.iter().map(|joint| (joint.screw, joint.frame.translation)).collect()
 }

@@ -8,7 +8,7 @@ use crate::lie::Pose;
 /// Longest lever below which a weight has no moment, metres.
 const LEAST_LEVER_M: f64 = 1e-3;
 
-/// Moments of the weights of a robot in any configuration, by its screws.
+/// Moments of the weights of a robot in any configuration, by the screws of its drawing.
 ///
 /// ```
 /// use poecal::robot::{Gravity, Moments, Statics};
@@ -53,7 +53,7 @@ impl<'a> Statics<'a> {
         let gravity = robot.gravity.as_ref()?;
         let mut shares = Vec::with_capacity(robot.joints.len() * gravity.weights.len());
         for joint in 0..robot.joints.len() {
-            let lever = |weight: &Weight| longest_lever(robot, joint, weight.body, &weight.place);
+            let lever = |weight: &Weight| longest_lever(robot, gravity, joint, weight);
             let longest = gravity.weights.iter().filter_map(lever).fold(0.0, f64::max);
             for weight in &gravity.weights {
                 shares.push(match robot.joints[joint].kind {
@@ -78,22 +78,23 @@ impl<'a> Statics<'a> {
         let weights = &self.gravity.weights;
         out.weights = weights.len();
         out.links.clear();
-        for (index, (joint, &value)) in self.robot.joints.iter().zip(values).enumerate() {
+        let joints = || self.robot.joints.iter().zip(&self.gravity.axes);
+        for (index, ((joint, (screw, _)), &value)) in joints().zip(values).enumerate() {
             let before = self.robot.body_before(index);
             let link = match before.joint().and_then(|before| out.links.get(before)) {
                 _ if joint.give_of.is_some() && value == 0.0 => body_of(&out.links, before),
-                Some(before) => *before * joint.screw.exp(value),
-                None => joint.screw.exp(value),
+                Some(before) => *before * screw.exp(value),
+                None => screw.exp(value),
             };
             out.links.push(link);
         }
         out.values.clear();
         let places: Vec<Vector3<f64>> =
             weights.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
-        for (index, joint) in self.robot.joints.iter().enumerate() {
+        for (index, (joint, (screw, place))) in joints().enumerate() {
             let moving = body_of(&out.links, self.robot.body_before(index));
-            let axis = moving.rotation * joint.screw.direction();
-            let origin = moving.act(&joint.frame.translation);
+            let axis = moving.rotation * screw.direction();
+            let origin = moving.act(place);
             let shares = &self.shares[index * weights.len()..];
             out.values.extend(places.iter().zip(shares).map(|(place, share)| {
                 if *share == 0.0 {
@@ -114,16 +115,16 @@ fn body_of(links: &[Pose], body: Body) -> Pose {
 }
 
 /// The longest lever of a weight about a joint that carries it: the path from joint to joint, metres.
-fn longest_lever(robot: &Robot, joint: usize, body: Body, place: &Vector3<f64>) -> Option<f64> {
-    let path = robot.joints_to(body);
+fn longest_lever(robot: &Robot, gravity: &Gravity, joint: usize, weight: &Weight) -> Option<f64> {
+    let path = robot.joints_to(weight.body);
     let first = path.iter().position(|&other| other == joint)?;
     let turning = path[first..].iter().filter(|&&other| robot.joints[other].kind == JointKind::Revolute);
-    let mut at = robot.joints[joint].frame.translation;
+    let mut at = gravity.axes.get(joint)?.1;
     let mut lever = 0.0;
     for &other in turning {
-        let next = robot.joints[other].screw.nearest_point(&at);
+        let next = gravity.axes.get(other)?.0.nearest_point(&at);
         lever += (next - at).norm();
         at = next;
     }
-    Some(lever + (place - at).norm())
+    Some(lever + (weight.place - at).norm())
 }

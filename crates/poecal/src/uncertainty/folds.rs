@@ -96,6 +96,20 @@ pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
     Some(CrossValidation { random: random.result(name), blocked, sampled })
 }
 
+/// Parts of a subsample of the rows, of at most so many, that are left out in turn: the ends of every joint's range, each file and each
+/// repeated `id`, clusters of neighbouring configurations, and random folds. Beside them the subsample.
+pub(crate) fn parts_to_leave_out(view: &View<'_>, most: usize, seed: u64) -> (Vec<u32>, Vec<Vec<u32>>) {
+    let sample = sample_rows(view.rows, most);
+    let few = View { rows: &sample, ..*view };
+    let mut parts: Vec<Vec<u32>> = blocks(&few, &sample).into_iter().map(|fold| fold.rows).collect();
+    parts.extend(clusters(&few, FOLDS));
+    parts.extend(random_folds(&few, &sample, seed).into_iter().map(|fold| fold.rows));
+    parts.retain(|rows| {
+        !rows.is_empty() && 2 * rows.len() < sample.len() && leaves_all_stations(view, &sample, rows)
+    });
+    (sample, parts)
+}
+
 fn random_folds(view: &View<'_>, sample: &[u32], seed: u64) -> Vec<Fold> {
     // Rows of one configuration are left out together: a copy in the training rows would make its prediction trivial.
     let mut configurations = view.session.data.configurations(sample);
@@ -125,15 +139,15 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
             view.session.data.ids.get(row as usize).map(|id| format!("the rows of id {id}"))
         }));
     }
-    folds.retain(|fold| leaves_all_stations(view, sample, fold));
+    folds.retain(|fold| leaves_all_stations(view, sample, &fold.rows));
     folds
 }
 
 /// Whether the rows outside a fold still determine the device frame of each of several stations.
-fn leaves_all_stations(view: &View<'_>, sample: &[u32], fold: &Fold) -> bool {
+fn leaves_all_stations(view: &View<'_>, sample: &[u32], fold: &[u32]) -> bool {
     let stations = view.session.data.station_count();
     let count = |rows: &[u32], station| view.session.data.seen_from(station, rows).len();
-    stations == 1 || (0..stations).all(|it| count(sample, it) >= count(&fold.rows, it) + FEWEST_OF_STATION)
+    stations == 1 || (0..stations).all(|it| count(sample, it) >= count(fold, it) + FEWEST_OF_STATION)
 }
 
 /// Rows grouped by name, if the names define groups.

@@ -15,6 +15,7 @@ mod view;
 
 pub use bootstrap::{Bootstrap, bootstrap};
 pub use discrepancy::{Discrepancy, discrepancy};
+pub(crate) use folds::parts_to_leave_out;
 pub use folds::{CrossValidation, LeftOut, cross_validate, leave_clusters_out};
 pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, Quantile, bound};

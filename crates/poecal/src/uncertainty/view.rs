@@ -35,6 +35,12 @@ impl PriorInformation {
         PriorInformation { normal, is_fitted: prior.is_some() }
     }
 
+    /// No information of `n` unknowns.
+    #[must_use]
+    pub(crate) fn none(n: usize) -> Self {
+        PriorInformation { normal: Normal::new(n), is_fitted: false }
+    }
+
     /// The same with directions that are a choice, such as motions of the base without effect: as if they were known.
     #[must_use]
     pub fn with_chosen(mut self, directions: &[Vec<f64>], length_m: f64) -> Self {

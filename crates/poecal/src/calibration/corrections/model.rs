@@ -102,6 +102,11 @@ impl CorrectionModel {
         kept
     }
 
+    /// Share of each term's variance in that of its group and joint.
+    pub(super) fn shares(&self) -> impl Iterator<Item = f64> {
+        self.shares.iter().copied()
+    }
+
     /// The joints and terms of the groups.
     pub fn terms(&self) -> impl Iterator<Item = (usize, Term)> {
         self.robot.terms.iter().skip(self.own).map(|it| (it.joint, it.term))
