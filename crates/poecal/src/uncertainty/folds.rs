@@ -20,6 +20,8 @@ use crate::solve::LeastSquares;
 const SAMPLE: usize = 2000;
 /// Number of random folds. An end of a joint's range has as many rows as one of them.
 const FOLDS: usize = 5;
+/// Number of clusters, and of random folds, where sizes of terms are chosen.
+const NEIGHBOURHOODS: usize = 8;
 /// An id column defines groups if it has at most [`MOST_GROUPS`] values with [`LEAST_ROWS`] rows each on average; otherwise its values
 /// name single rows.
 const MOST_GROUPS: usize = 30;
@@ -84,7 +86,7 @@ pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
     }
     let downdated = Downdated::new(view, &sample)?;
     let mut random = ErrorSums::default();
-    for fold in random_folds(view, &sample, seed) {
+    for fold in random_folds(view, &sample, FOLDS, seed) {
         random.add(&downdated.errors_without(&fold.rows)?);
     }
     let name = format!("random, {FOLDS} folds");
@@ -102,19 +104,20 @@ pub(crate) fn parts_to_leave_out(view: &View<'_>, most: usize, seed: u64) -> (Ve
     let sample = sample_rows(view.rows, most);
     let few = View { rows: &sample, ..*view };
     let mut parts: Vec<Vec<u32>> = blocks(&few, &sample).into_iter().map(|fold| fold.rows).collect();
-    parts.extend(clusters(&few, FOLDS));
-    parts.extend(random_folds(&few, &sample, seed).into_iter().map(|fold| fold.rows));
+    let configurations = view.session.data.configurations(&sample).len();
+    parts.extend(clusters(&few, NEIGHBOURHOODS.min(configurations / 4).max(1)));
+    parts.extend(random_folds(&few, &sample, NEIGHBOURHOODS, seed).into_iter().map(|fold| fold.rows));
     parts.retain(|rows| {
         !rows.is_empty() && 2 * rows.len() < sample.len() && leaves_all_stations(view, &sample, rows)
     });
     (sample, parts)
 }
 
-fn random_folds(view: &View<'_>, sample: &[u32], seed: u64) -> Vec<Fold> {
+fn random_folds(view: &View<'_>, sample: &[u32], count: usize, seed: u64) -> Vec<Fold> {
     // Rows of one configuration are left out together: a copy in the training rows would make its prediction trivial.
     let mut configurations = view.session.data.configurations(sample);
     random::shuffle(&mut ChaCha8Rng::seed_from_u64(seed ^ 0xf01d), &mut configurations);
-    let part = configurations.len().div_ceil(FOLDS);
+    let part = configurations.len().div_ceil(count);
     configurations.chunks(part).map(|part| Fold { name: String::new(), rows: part.concat() }).collect()
 }
 

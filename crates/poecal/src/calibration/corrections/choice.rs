@@ -11,35 +11,45 @@ use crate::solve::{LeastSquares, Normal};
 use crate::threads;
 
 /// Sizes that are tried, radians; those of moments reach farther.
-const OF_MOMENTS: [f64; 5] = [0.0, 3e-4, 1e-3, 3e-3, 1e-2];
-const OF_VALUES: [f64; 5] = [0.0, 3e-5, 1e-4, 3e-4, 1e-3];
+const OF_MOMENTS: &[f64] = &[0.0, 3e-4, 1e-3, 3e-3, 1e-2];
+const OF_VALUES: &[f64] = &[0.0, 3e-5, 1e-4, 3e-4, 1e-3];
+/// Groups whose sizes are chosen in turn; those of gravity are of one size.
+const CHOSEN: [(&[TermGroup], &[f64]); 4] = [
+    (&[TermGroup::Sag, TermGroup::Tilt], OF_MOMENTS),
+    (&[TermGroup::Ratio], OF_VALUES),
+    (&[TermGroup::Harmonics], OF_VALUES),
+    (&[TermGroup::Wobble], OF_VALUES),
+];
 /// Rounds of choosing each group's size in turn.
 const SWEEPS: usize = 2;
 /// Weight of the squared distance of a size from the common one, in decades: the prior of the choice.
 const PULL: f64 = 0.1;
-/// What leaving a group out counts, as if it were so far from common; taking one in that is commonly left out counts more.
-const LEFT_OUT: f64 = 0.01;
+/// What leaving a group out counts at most, and what taking in one counts that is commonly left out.
+const LEFT_OUT: f64 = 0.1;
 const TAKEN_IN: f64 = 0.02;
 /// What geometry alone may lose and is taken still.
 const GEOMETRY: f64 = 0.03;
+/// Fewest configurations from which sizes are chosen.
+const FEWEST: usize = 8;
 /// Rounding of the information that elimination leaves, as a share of the largest.
 const ROUNDING: f64 = 1e-13;
 /// Configurations of which the information of all counts half: what rows share beyond the terms does not average out.
 pub(super) const HALF: f64 = 500.0;
 
-/// Sizes that were tried, with their score: the mean over the parts that were left out of the logarithm of their mean squared residual,
-/// and the prior of the choice.
+/// Sizes that were tried.
 ///
 /// ```
 /// use poecal::calibration::{Sizes, TriedSizes};
-/// let tried = TriedSizes { sizes: Sizes::COMMON, score: -0.1 };
-/// assert!(tried.score.is_finite());
+/// let tried = TriedSizes { sizes: Sizes::COMMON, left_out: -0.1, score: -0.1 };
+/// assert_eq!(tried.left_out, tried.score);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriedSizes {
     /// The sizes.
     pub sizes: Sizes,
-    /// The score: less is better.
+    /// Mean over the parts that were left out of the logarithm of their mean squared whitened residual.
+    pub left_out: f64,
+    /// The same with the prior of the choice: less is better.
     pub score: f64,
 }
 
@@ -50,46 +60,57 @@ pub(crate) struct Choice {
     pub(crate) tried: Vec<TriedSizes>,
 }
 
-/// Chooses sizes by leaving parts of the rows out; the common ones where nothing can be left out. `estimate` is a fit with all groups.
+/// Chooses sizes by leaving parts of the rows out; the common ones where nothing can be left out, none of very few configurations.
+/// `estimate` is a fit with all groups.
 pub(crate) fn choose(
     task: &Task<'_>,
     model: &CorrectionModel,
     (estimate, noise): (&Estimate, Noise),
     (sample, parts): &(Vec<u32>, Vec<Vec<u32>>),
 ) -> Choice {
+    let configurations = task.session.data.configurations(sample).len();
+    if configurations < FEWEST {
+        return Choice { sizes: Sizes::NONE, tried: Vec::new() };
+    }
     let Some(shared) = Shared::new(task, model, estimate, noise, sample, parts) else {
         return Choice { sizes: Sizes::COMMON, tried: Vec::new() };
     };
+    let few = 1.0 / configurations as f64;
     let mut tried: Vec<TriedSizes> = Vec::new();
-    let mut score = |sizes: Sizes| {
-        if let Some(known) = tried.iter().find(|it| it.sizes == sizes) {
-            return known.score;
+    let mut score = |sizes: Sizes| match tried.iter().find(|it| it.sizes == sizes) {
+        Some(known) => *known,
+        None => {
+            let left_out = shared.left_out(&sizes);
+            tried.push(TriedSizes { sizes, left_out, score: left_out + distance(&sizes, 6.0 * few) });
+            tried[tried.len() - 1]
         }
-        let score = shared.score(&sizes);
-        tried.push(TriedSizes { sizes, score });
-        score
     };
-    let mut best = Sizes::COMMON;
-    let mut least = score(best);
+    let common = score(Sizes::COMMON);
+    let mut best = common;
     for _ in 0..SWEEPS {
-        for group in TermGroup::ALL {
-            let sizes =
-                if matches!(group, TermGroup::Sag | TermGroup::Tilt) { OF_MOMENTS } else { OF_VALUES };
-            for size in sizes {
-                let mut other = best;
-                other[group] = size;
+        let before = best.sizes;
+        for (groups, sizes) in CHOSEN {
+            for &size in sizes {
+                let mut other = best.sizes;
+                groups.iter().for_each(|&group| other[group] = size);
                 let found = score(other);
-                if found < least {
-                    (best, least) = (other, found);
+                if found.score < best.score {
+                    best = found;
                 }
             }
         }
+        if best.sizes == before {
+            break;
+        }
     }
-    // Measurements without noise leave nothing to choose by.
-    if least.is_finite() && score(Sizes::NONE) <= least + GEOMETRY {
-        best = Sizes::NONE;
+    let geometry = score(Sizes::NONE);
+    // Terms that visibly harm where nothing is to be found, and are not missed. Measurements without noise leave nothing to choose by.
+    let loses_little = geometry.left_out <= best.left_out + GEOMETRY.max(1.5 * few);
+    let is_harmed = common.left_out > geometry.left_out + 3.0 * few;
+    if best.score.is_finite() && loses_little && is_harmed {
+        best = geometry;
     }
-    Choice { sizes: best, tried }
+    Choice { sizes: best.sizes, tried }
 }
 
 /// Information of the terms with all other unknowns eliminated, of each part that is left out.
@@ -185,7 +206,8 @@ impl Shared {
         (!parts.is_empty()).then_some(Shared { parts, terms })
     }
 
-    fn score(&self, sizes: &Sizes) -> f64 {
+    /// Mean over the parts of the logarithm of their mean squared residual.
+    fn left_out(&self, sizes: &Sizes) -> f64 {
         let logs = threads::map_parts(self.parts.len(), |at| {
             let part = self.parts.get(at)?;
             let square = 2.0 * part.cost_without(&self.terms, sizes)? / part.numbers.max(1) as f64;
@@ -193,17 +215,16 @@ impl Shared {
         });
         let count = logs.len() as f64;
         // A system that is not positive definite is no choice.
-        let mean: Option<f64> = logs.into_iter().sum::<Option<f64>>().map(|sum| sum / count);
-        mean.map_or(f64::INFINITY, |mean| mean + distance(sizes))
+        logs.into_iter().sum::<Option<f64>>().map_or(f64::INFINITY, |sum| sum / count)
     }
 }
 
 /// Prior of the choice.
-fn distance(sizes: &Sizes) -> f64 {
+fn distance(sizes: &Sizes, of_none: f64) -> f64 {
     let of = |group: TermGroup| match (sizes[group], Sizes::COMMON[group]) {
         (0.0, 0.0) => 0.0,
-        (0.0, _) => LEFT_OUT,
-        (_, 0.0) => TAKEN_IN,
+        (0.0, _) => PULL * LEFT_OUT.min(of_none),
+        (size, 0.0) => TAKEN_IN + PULL * (size / Sizes::ALL[group]).log10().powi(2),
         (size, common) => PULL * (size / common).log10().powi(2),
     };
     TermGroup::ALL.into_iter().map(of).sum()

@@ -55,7 +55,7 @@ impl Sizes {
     /// No term at all: geometry alone.
     pub const NONE: Sizes = Sizes([0.0; TermGroup::ALL.len()]);
     /// Sizes with which all terms are fitted before a choice.
-    pub(super) const ALL: Sizes = Sizes([1e-3, 1e-3, 1e-4, 1e-4, 3e-5]);
+    pub(super) const ALL: Sizes = Sizes([1e-3, 1e-3, 1e-4, 1e-4, 1e-4]);
     /// Sizes that are common among industrial robots.
     pub const COMMON: Sizes = Sizes([1e-3, 1e-3, 1e-4, 1e-4, 0.0]);
 }
