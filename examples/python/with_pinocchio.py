@@ -30,7 +30,7 @@ with tempfile.TemporaryDirectory() as folder:
 
 lower, upper = robot.limits.T
 joints = np.random.default_rng(1).uniform(lower, upper, (1000, len(lower)))
-predicted = calibration.predict(joints)
+predicted = calibration.predict(joints, model="calibrated")
 for name, model in models.items():
     data = model.createData()
     base, tip = model.getFrameId(robot.base_link), model.getFrameId(robot.tip_link)

@@ -26,7 +26,7 @@ with tempfile.TemporaryDirectory() as folder:
 
 joints = np.random.default_rng(1).uniform(-1.5, 1.5, (100, 6))
 worst = 0.0
-for values, pose in zip(joints, calibration.predict(joints), strict=True):
+for values, pose in zip(joints, calibration.predict(joints, model="calibrated"), strict=True):
     loaded.update_cfg(dict(zip(robot.joint_names, values, strict=True)))
     seen = loaded.get_transform(robot.tip_link, robot.base_link)
     worst = max(worst, float(np.linalg.norm(seen[:3, 3] - pose[:3, 3])))

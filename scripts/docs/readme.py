@@ -15,14 +15,16 @@ ROOT = Path(__file__).resolve().parents[2]
 COMMAND = re.compile(r"```sh\ncargo run --release -- (.*)\n```")
 OUTPUT = re.compile(r"```text\n.*?```", re.DOTALL)
 TABLE = re.compile(r"(\| robot \| rows fitted.*\n\|[-|]+\n)((?:\|.*\n)*)")
-RESULT = re.compile(r"\| (?P<robot>[^|]+) \| (?P<rows>\d+ / \d+) \| (?P<registered>[\d.]+)[^|]* \| \*\*(?P<calibrated>[\d.]+)\*\*")
+RESULT = re.compile(
+    r"\| (?P<robot>[^|]+) \| (?P<rows>\d+ / \d+) \| (?P<registered>[\d.]+)[^|]* \| (?P<calibrated>[\d.]+)[^|]* \| \*\*(?P<corrected>[\d.]+)\*\*"
+)
 
 
 def real_robots(results: str) -> str:
     """The rows of the README's table, from the text of validation/RESULTS.md."""
     rows = (RESULT.match(line) for line in results.splitlines())
     return "".join(
-        f"| {row['robot']} | {row['rows']} | {row['registered']} | **{row['calibrated']}** |\n"
+        f"| {row['robot']} | {row['rows']} | {row['registered']} | {row['calibrated']} | **{row['corrected']}** |\n"
         for row in rows
         if row and not row["robot"].startswith("the same")
     )

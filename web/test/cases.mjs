@@ -57,12 +57,12 @@ function simulated(name, ...words) {
   return join(out, "measurements.csv");
 }
 
-/** Where the program says that the tip is, or what the words name. */
+/** Where the program says that the tip is, or what the words name, by the calibrated axes that the arm is drawn with. */
 export function predicted(out, readings, values, ...words) {
   const table = join(folder, "joints.csv");
   const columns = readings.map(({ name, unit }) => `"${name}[${unit === "mm" ? "mm" : "deg"}]"`);
   writeFileSync(table, `${columns.join(",")}\n${values.join(",")}\n`);
-  const [, row] = poecal("predict", join(out, "calibration.json"), table, ...words, "--quiet").split("\n");
+  const [, row] = poecal("predict", join(out, "calibration.json"), table, "--model", "calibrated", ...words, "--quiet").split("\n");
   return row.split(",").slice(0, 3).map(Number);
 }
 

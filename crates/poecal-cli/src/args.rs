@@ -18,6 +18,7 @@ pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
+pub(crate) use words::PredictedModel;
 
 use std::path::PathBuf;
 
@@ -28,7 +29,7 @@ use poecal::io::predictions::PredictionFrame;
 
 use crate::quantity::threads;
 use shared::{ChainArgs, ColumnArgs, Meaning, OutFile, Reading};
-use words::{FORM, FRAME, PREDICT_IN, REQUIRED_LEVEL, one_of};
+use words::{FORM, FRAME, PREDICT_IN, PREDICTED_MODEL, REQUIRED_LEVEL, one_of};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
@@ -56,7 +57,7 @@ pub(crate) enum Command {
     /// Write a project folder to start from: the model, an empty measurement file, settings
     Init(Init),
     /// Calibrate a robot from measurements
-    Calibrate(Calibrate),
+    Calibrate(Box<Calibrate>),
     /// Simulate a robot with errors and its measurements, for tests and for learning
     Simulate(Simulate),
     /// Write the report of a calibration again
@@ -140,6 +141,9 @@ pub(crate) struct Predict {
     /// Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json)
     #[arg(long)]
     pub(crate) with_uncertainty: bool,
+    /// Which model of a calibration predicts: the corrected one, if there is one, or the calibrated one, which a URDF holds
+    #[arg(long = "model", value_parser = one_of(PREDICTED_MODEL), default_value = "corrected")]
+    pub(crate) of: PredictedModel,
     /// Predict this target of the model instead of the tip; of a URDF, with its link
     #[arg(long, value_name = "NAME|NAME=LINK")]
     pub(crate) target: Option<String>,

@@ -133,6 +133,13 @@ impl Console {
         messages.iter().for_each(|message| self.warning(message));
     }
 
+    /// What a result is made of, on standard error, unless `--quiet` suppresses it.
+    pub(crate) fn remark(&self, message: impl Display) {
+        if !self.quiet {
+            tell("note:", style::WARNING, &message.to_string());
+        }
+    }
+
     /// A line about the run itself, which was asked for and is never suppressed.
     pub(crate) fn note(&self, line: impl Display) {
         let line = visible(&line.to_string()).into_owned();

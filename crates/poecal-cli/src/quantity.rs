@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use poecal::io::measurements::{Dimension, Unit};
-use poecal::robot::Tolerance;
+use poecal::robot::{Corrections, GravityDirection, Sizes, Tolerance};
 use poecal::{Error, ErrorKind, MOST_THREADS, Result};
 
 /// A number with its unit, in SI: metres for a length, radians for an angle.
@@ -87,23 +87,30 @@ impl FromStr for LengthAndAngle {
     }
 }
 
-/// Tolerance of the prior, or `none`.
+/// Tolerance of the prior, `none`, or `auto`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct BelievedTolerance(pub(crate) Option<Tolerance>);
+pub(crate) enum BelievedTolerance {
+    None,
+    Auto,
+    Given(Tolerance),
+}
 
 impl FromStr for BelievedTolerance {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        if text == "none" {
-            return Ok(BelievedTolerance(None));
+        match text {
+            "none" => return Ok(BelievedTolerance::None),
+            "auto" => return Ok(BelievedTolerance::Auto),
+            _ => {}
         }
         let LengthAndAngle { length_m, angle_rad, .. } = text.parse()?;
         if length_m > 0.0 && angle_rad > 0.0 {
-            return Ok(BelievedTolerance(Some(Tolerance { angle_rad, length_m })));
+            return Ok(BelievedTolerance::Given(Tolerance { angle_rad, length_m }));
         }
-        let message =
-            format!("found `{text}`, expected an angle and a length above 0, like 0.5deg,5mm, or none");
+        let message = format!(
+            "found `{text}`, expected an angle and a length above 0, like 0.5deg,5mm, or none, or auto"
+        );
         Err(Error::new(ErrorKind::Option, message))
     }
 }
@@ -131,6 +138,23 @@ pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
     match text.parse() {
         Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
         _ => Err(format!("found `{text}`, expected a number from 0 to below 1")),
+    }
+}
+
+/// Parser of a direction for clap: three numbers, not all of them 0.
+pub(crate) fn direction(text: &str) -> std::result::Result<[f64; 3], String> {
+    match text.parse()? {
+        GravityDirection::Known(direction) => Ok(direction.into()),
+        GravityDirection::Found => Err("found `find`, expected a direction, like 0,0,-1".to_owned()),
+    }
+}
+
+/// Parser of sizes of terms for clap.
+pub(crate) fn terms(text: &str) -> std::result::Result<Sizes, String> {
+    match text.parse()? {
+        Corrections::Off => Ok(Sizes::NONE),
+        Corrections::Sizes(sizes) => Ok(sizes),
+        Corrections::Auto => Err(format!("found `{text}`, expected off, or groups like sag=1e-3,ratio")),
     }
 }
 

@@ -97,7 +97,7 @@ impl From<calibration::ModelAccuracy> for ModelAccuracy {
     }
 }
 
-/// Errors of the nominal, registered and calibrated model on one set of rows.
+/// Errors of the nominal, registered, calibrated and corrected model on one set of rows.
 #[pyclass(frozen, eq, get_all, module = "poecal", name = "SetAccuracy")]
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct SetAccuracy {
@@ -109,6 +109,8 @@ pub(crate) struct SetAccuracy {
     registered: ModelAccuracy,
     /// Screws fitted too.
     calibrated: ModelAccuracy,
+    /// Screws and terms of the joints fitted together; None if no terms were asked for.
+    corrected: Option<ModelAccuracy>,
 }
 
 #[pymethods]
@@ -116,8 +118,10 @@ impl SetAccuracy {
     fn __repr__(&self) -> String {
         let [nominal, registered, calibrated] =
             [self.nominal, self.registered, self.calibrated].map(|it| it.leading());
+        let corrected =
+            self.corrected.map_or_else(String::new, |model| format!(", corrected {}", model.leading()));
         format!(
-            "<poecal.SetAccuracy of {} rows: nominal {nominal}, registered {registered}, calibrated {calibrated} {} RMS>",
+            "<poecal.SetAccuracy of {} rows: nominal {nominal}, registered {registered}, calibrated {calibrated}{corrected} {} RMS>",
             self.count,
             self.calibrated.unit()
         )
@@ -131,6 +135,7 @@ impl From<calibration::SetAccuracy> for SetAccuracy {
             nominal: found.nominal.into(),
             registered: found.registered.into(),
             calibrated: found.calibrated.into(),
+            corrected: found.corrected.map(Into::into),
         }
     }
 }

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::PathBuf;
 
+use poecal::calibration::Corrections;
 use poecal::io::urdf::ChainSelection;
+use poecal::robot::GravityDirection;
 use poecal::text::visible;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt, PyString};
@@ -30,10 +32,10 @@ macro_rules! named {
 }
 
 named! {
-    actual angle_unit angular_first base base_link columns convention count error_position_mm error_rotation_deg experiment fit_where fix folder
-    force formulation frame frames free held_out held_out_count ids ignore_sets instruments kind kinds length_unit level measure measurements method
+    actual angle_unit angular_first base base_link columns convention corrections count error_position_mm error_rotation_deg experiment fit_where fix folder
+    force formulation frame frames free gravity harmonics held_out held_out_count ids ignore_sets instruments kind kinds length_unit level measure measurements method
     model name names noise_position_mm noise_rotation_deg nominal offset out parts path paths progress quantity refit_frame refit_tool report residual
-    residuals robot robust seed sets sigma_position_mm sigma_rotation_deg starts strict target targets text tip tip_link to tolerance_deg_mm
+    residuals robot robust seed sets sigma_position_mm sigma_rotation_deg starts strict target targets terms text tip tip_link to tolerance_deg_mm
     trials validate with_uncertainty
 }
 
@@ -151,6 +153,60 @@ impl<'a, 'py> Argument<'a, 'py> for (f64, f64) {
             [first, second] => Ok((*first, *second)),
             _ => Err(unexpected(name, value, "two numbers")),
         }
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for [f64; 3] {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if value.try_iter().is_err() {
+            return Err(unexpected(name, value, "three numbers"));
+        }
+        match Vec::<f64>::of(value, name)?.as_slice() {
+            [x, y, z] => Ok([*x, *y, *z]),
+            found => Err(argument(name, format!("found {} numbers, expected three", found.len()))),
+        }
+    }
+}
+
+/// Tolerance of the prior: none, chosen by cross-validation, or degrees and millimetres.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Believed {
+    None,
+    Auto,
+    Given((f64, f64)),
+}
+
+impl<'a, 'py> Argument<'a, 'py> for Believed {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        match value.cast::<PyString>().ok().map(|text| text.to_string_lossy().into_owned()) {
+            Some(text) if text == "auto" => Ok(Believed::Auto),
+            Some(_) => Err(unexpected(name, value, "two numbers, \"auto\", or None")),
+            None if value.is_none() => Ok(Believed::None),
+            None => <(f64, f64)>::of(value, name).map(Believed::Given),
+        }
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for GravityDirection {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if value.is_instance_of::<PyString>() {
+            return String::of(value, name)?.parse().map_err(|message: String| argument(name, message));
+        }
+        crate::words::direction(<[f64; 3]>::of(value, name)?).map(GravityDirection::Known)
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for Corrections {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        let words = if value.is_instance_of::<PyString>() {
+            String::of(value, name)?
+        } else if value.is_instance_of::<PyDict>() {
+            let sizes = BTreeMap::<String, f64>::of(value, name)?;
+            sizes.iter().map(|(group, size)| format!("{group}={size:e}")).collect::<Vec<_>>().join(",")
+        } else {
+            return Err(unexpected(name, value, "a text, or a dict of groups of terms and their sizes"));
+        };
+        words.parse().map_err(|message: String| argument(name, message))
     }
 }
 

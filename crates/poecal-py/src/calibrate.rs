@@ -4,18 +4,20 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use poecal::calibration::{BlockChoice, CalibrationOptions, Stage, calibrate_with_progress, settle_sets};
+use poecal::calibration::{
+    BlockChoice, CalibrationOptions, Corrections, Stage, calibrate_with_progress, settle_sets,
+};
 use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
-use poecal::robot::Tolerance;
+use poecal::robot::{GravityDirection, Tolerance};
 use poecal::{Error, ErrorKind};
 use poecal_lou2009::{Formulation, Method, Residual, formulated};
 use pyo3::prelude::*;
 
-use crate::arguments::{self as arg, Function};
+use crate::arguments::{self as arg, Believed, Function};
 use crate::calibration::Calibration;
-use crate::errors::raise;
+use crate::errors::{argument, raise};
 use crate::measurements::Measurements;
 use crate::robot::Robot;
 use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, sigma};
@@ -34,7 +36,14 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     Standard deviation of each measured component, default estimated from the data.
 /// tolerance_deg_mm
 ///     Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
-///     decides where the measurements determine nothing.
+///     decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation.
+/// corrections
+///     What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "off" none; or groups of terms,
+///     "sag,tilt,ratio,harmonics,wobble", or a dict of their sizes in radians.
+/// harmonics
+///     Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
+/// gravity
+///     Where gravity pulls, in the robot's base frame, default (0, 0, -1), or "find": where the terms leave the least noise.
 /// fix
 ///     Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * stands for any letters.
 /// free
@@ -70,8 +79,9 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 /// SolverError
 ///     No finite result is reached.
 #[pyfunction]
-#[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Some((0.5, 5.0)),
-                    fix=None, free=None, held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, progress=None))]
+#[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Believed::Given((0.5, 5.0)),
+                    corrections=None, harmonics=2, gravity=None, fix=None, free=None, held_out=None, seed=None, robust="auto", formulation="adjoint", residual="tool", method=None, validate=None, progress=None),
+        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, held_out=None, seed=None, robust='auto', formulation='adjoint', residual='tool', method=None, validate=None, progress=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
@@ -80,7 +90,10 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::frame)] frame: &str,
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
-    #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Option<(f64, f64)>,
+    #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
+    #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,
+    #[pyo3(from_py_with = arg::harmonics)] harmonics: u32,
+    #[pyo3(from_py_with = arg::gravity)] gravity: Option<GravityDirection>,
     #[pyo3(from_py_with = arg::fix)] fix: Option<Vec<String>>,
     #[pyo3(from_py_with = arg::free)] free: Option<Vec<String>>,
     #[pyo3(from_py_with = arg::held_out)] held_out: Option<f64>,
@@ -107,7 +120,15 @@ pub(crate) fn calibrate(
         sigma: ByQuantity::default()
             .with(Quantity::Position, sigma_position_m.transpose()?)
             .with(Quantity::Rotation, sigma_rotation_rad.transpose()?),
-        tolerance: tolerance_deg_mm.map(tolerance).transpose()?,
+        tolerance: match tolerance_deg_mm {
+            Believed::Given(given) => Some(tolerance(given)?),
+            Believed::None => None,
+            Believed::Auto => usual.tolerance,
+        },
+        chooses_tolerance: tolerance_deg_mm == Believed::Auto,
+        corrections: corrections.unwrap_or_default(),
+        harmonics: orders(harmonics)?,
+        gravity: gravity.unwrap_or(usual.gravity),
         held_out: held_out.unwrap_or(usual.held_out),
         seed: seed.unwrap_or(usual.seed),
         robust: robust_word(robust)?,
@@ -212,6 +233,14 @@ fn inputs(robot: &Robot, measurements: &Measurements, validate: Option<&Measurem
         measurements: sources().flat_map(|source| source.names.clone()).collect(),
         sha256,
         command: None,
+    }
+}
+
+/// The highest order of harmonics.
+fn orders(harmonics: u32) -> PyResult<u8> {
+    match u8::try_from(harmonics) {
+        Ok(orders @ 1..=8) => Ok(orders),
+        _ => Err(argument("harmonics", format!("found {harmonics}, expected 1 to 8"))),
     }
 }
 

@@ -88,13 +88,25 @@ impl Calibration {
         Ok(self.calibrated()?.clone())
     }
 
+    /// The corrected robot, with gives and terms beside its joints; None if no terms were asked for.
+    #[getter]
+    fn corrected_robot(&self) -> PyResult<Option<Robot>> {
+        Ok(self.corrected()?.cloned())
+    }
+
+    /// Screws and terms of the joints, fitted together: `corrected` of calibration.json; None if no terms were asked for.
+    #[getter(corrected)]
+    fn corrected_model<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        part(py, &self.file().corrected)
+    }
+
     /// The nominal robot.
     #[getter]
     fn nominal(&self) -> Robot {
         self.nominal.clone()
     }
 
-    /// Errors of the nominal, registered and calibrated model on fitted and held-out rows.
+    /// Errors of the nominal, registered, calibrated and corrected model on fitted and held-out rows.
     #[getter]
     fn accuracy(&self) -> Accuracy {
         self.errors().into()
@@ -288,7 +300,7 @@ impl Calibration {
         py.detach(|| place.write(report::calibration_page(file, residuals)?)).map_err(raise)
     }
 
-    /// Poses of the calibrated tip, or of a target.
+    /// Poses of the tip, or of a target.
     ///
     /// Parameters
     /// ----------
@@ -300,12 +312,14 @@ impl Calibration {
     ///     Frame of the poses: "base" or "device".
     /// target
     ///     Name of a target, default the tip.
+    /// model
+    ///     Which model predicts: "corrected", where there is one, or "calibrated", geometry alone.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray or Prediction
     ///     Poses of shape (m, 4, 4), or (4, 4) for one configuration; with `with_uncertainty` a `Prediction`, always of m poses.
-    #[pyo3(signature = (joints, *, with_uncertainty=false, frame="base", target=None))]
+    #[pyo3(signature = (joints, *, with_uncertainty=false, frame="base", target=None, model="corrected"))]
     fn predict<'py>(
         &self,
         py: Python<'py>,
@@ -313,10 +327,13 @@ impl Calibration {
         #[pyo3(from_py_with = arg::with_uncertainty)] with_uncertainty: bool,
         #[pyo3(from_py_with = arg::frame)] frame: &str,
         #[pyo3(from_py_with = arg::target)] target: Option<&str>,
+        #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let is_corrected = chosen("model", model, &[("corrected", true), ("calibrated", false)])?;
+        let corrected = if is_corrected { self.corrected()? } else { None };
         let frame =
             chosen("frame", frame, &[("base", PredictionFrame::Base), ("device", PredictionFrame::Device)])?;
-        let model = &self.calibrated()?.model;
+        let model = &corrected.map_or_else(|| self.calibrated(), Ok)?.model;
         let joints = Joints::of(joints, &model.robot)?;
         let found = py
             .detach(|| predicted(model, &joints.readings, frame, target, with_uncertainty))

@@ -3,7 +3,6 @@
 use numpy::{PyArray1, PyArray2};
 use poecal::io::residuals::{ModelErrors, ResidualRow, Residuals as Rows, RowDiagnostics, columns as names};
 use poecal::measurement::Quantity;
-use poecal::robot::JointKind;
 use pyo3::exceptions::PyModuleNotFoundError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -28,6 +27,7 @@ enum OfModel {
     Nominal,
     Registered,
     Calibrated,
+    Corrected,
 }
 
 impl Residuals {
@@ -92,10 +92,11 @@ impl Residuals {
 }
 
 impl OfModel {
-    const ALL: [(&'static str, OfModel); 3] = [
+    const ALL: [(&'static str, OfModel); 4] = [
         ("nominal", OfModel::Nominal),
         ("registered", OfModel::Registered),
         ("calibrated", OfModel::Calibrated),
+        ("corrected", OfModel::Corrected),
     ];
 
     fn of(self, errors: &ModelErrors) -> f64 {
@@ -104,6 +105,7 @@ impl OfModel {
             OfModel::Nominal => nominal,
             OfModel::Registered => registered,
             OfModel::Calibrated => calibrated,
+            OfModel::Corrected => errors.corrected.unwrap_or(f64::NAN),
         }
     }
 }
@@ -205,6 +207,18 @@ impl Residuals {
         self.errors_of(py, Quantity::Rotation, OfModel::Registered)
     }
 
+    /// Error of position of the corrected model, shape (m,), millimetres; NaN without such a model, or where no position was measured.
+    #[getter]
+    fn position_corrected_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.errors_of(py, Quantity::Position, OfModel::Corrected)
+    }
+
+    /// Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or where no orientation was measured.
+    #[getter]
+    fn rotation_corrected_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.errors_of(py, Quantity::Rotation, OfModel::Corrected)
+    }
+
     /// Error of rotation of the calibrated model, shape (m,), degrees; NaN where no orientation was measured.
     #[getter]
     fn rotation_calibrated_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
@@ -248,7 +262,7 @@ impl Residuals {
     /// quantity
     ///     Its name, as in `quantities`.
     /// model
-    ///     "nominal", "registered" or "calibrated".
+    ///     "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
     ///
     /// Returns
     /// -------
@@ -304,7 +318,7 @@ impl Residuals {
         columns.set_item("set", self.each(|_, row| if row.held_out { "held_out" } else { "fit" })?)?;
         columns.set_item("target", self.targets()?)?;
         for quantity in rows.quantities() {
-            for (at, name) in names(quantity).enumerate() {
+            for (at, name) in names(quantity, rows.has_corrected).enumerate() {
                 columns
                     .set_item(name, self.numbers(py, |row| row.errors.get(quantity)?.numbers().nth(at))?)?;
             }
@@ -316,10 +330,7 @@ impl Residuals {
         for (at, (name, kind)) in rows.readings.iter().enumerate() {
             let values =
                 (0..rows.rows().len()).map(|row| rows.values(row).get(at).copied().unwrap_or(f64::NAN));
-            let unit = match kind {
-                JointKind::Revolute => "deg",
-                JointKind::Prismatic => "mm",
-            };
+            let unit = kind.symbol();
             columns.set_item(format!("{name}[{unit}]"), PyArray1::from_vec(py, values.collect()))?;
         }
         if !rows.stations.is_empty() {

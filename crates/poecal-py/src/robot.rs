@@ -317,6 +317,23 @@ impl Robot {
         self.robot().joints.iter().map(|joint| joint.name.clone()).collect()
     }
 
+    /// The same robot with further columns of the measurements on which terms of its joints may depend, like temperature.
+    ///
+    /// "approach" or "approach_JOINT" says from which side joints came, 1 or -1. They are readings behind those of the joints.
+    ///
+    /// Parameters
+    /// ----------
+    /// names
+    ///     Names of the columns.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///     The robot.
+    fn with_factors(&self, names: Vec<String>) -> PyResult<Self> {
+        Ok(self.with_robot(self.robot().with_factors(&names).map_err(raise)?))
+    }
+
     /// Names of the readings that a configuration consists of: those of the joints but for mimic joints, which follow another.
     #[getter]
     fn reading_names(&self) -> Vec<String> {

@@ -6,6 +6,7 @@ use numpy::PyArray2;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, SimulatedSession};
+use poecal::robot::{Corrections, Sizes, TermGroup};
 use poecal::simulate::{self as simulated, Kind, Simulated};
 use poecal::text::visible;
 use pyo3::prelude::*;
@@ -16,7 +17,7 @@ use crate::errors::raise;
 use crate::measurements::Measurements;
 use crate::places::reserved_folder;
 use crate::robot::Robot;
-use crate::words::{frame as frame_word, from_mm, kind as kind_word, size};
+use crate::words::{direction, frame as frame_word, from_mm, kind as kind_word, size};
 
 /// Most rows of a simulation, as by the program.
 const MOST: usize = 10_000_000;
@@ -126,6 +127,11 @@ impl Simulation {
 ///     The measuring device's frame: "unknown" or "base".
 /// held_out_count
 ///     Number of further measurements, free of noise, to judge a calibration by.
+/// terms
+///     What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians, as a dict
+///     or "sag=1e-3,ratio=1e-4".
+/// gravity
+///     Where gravity pulls, in the robot's base frame, default (0, 0, -1).
 ///
 /// Returns
 /// -------
@@ -133,7 +139,8 @@ impl Simulation {
 ///     Both robots, and the measurements of the actual one.
 #[pyfunction]
 #[pyo3(signature = (robot, *, kind="pose", count=50, seed=1, error_position_mm=2.0, error_rotation_deg=1.0, noise_position_mm=0.05,
-                    noise_rotation_deg=0.01, frame="unknown", held_out_count=0))]
+                    noise_rotation_deg=0.01, frame="unknown", held_out_count=0, terms=None, gravity=None),
+        text_signature = "(robot, *, kind='pose', count=50, seed=1, error_position_mm=2.0, error_rotation_deg=1.0, noise_position_mm=0.05, noise_rotation_deg=0.01, frame='unknown', held_out_count=0, terms='off', gravity=(0, 0, -1))")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn simulate(
     py: Python<'_>,
@@ -147,6 +154,8 @@ pub(crate) fn simulate(
     #[pyo3(from_py_with = arg::noise_rotation_deg)] noise_rotation_deg: f64,
     #[pyo3(from_py_with = arg::frame)] frame: &str,
     #[pyo3(from_py_with = arg::held_out_count)] held_out_count: usize,
+    #[pyo3(from_py_with = arg::terms)] terms: Option<Corrections>,
+    #[pyo3(from_py_with = arg::gravity)] gravity: Option<[f64; 3]>,
 ) -> PyResult<Simulation> {
     for (name, number, least) in [("count", count, 1), ("held_out_count", held_out_count, 0)] {
         if !(least..=MOST).contains(&number) {
@@ -161,6 +170,17 @@ pub(crate) fn simulate(
         count,
         seed,
         device_anywhere: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
+        terms: match terms {
+            None | Some(Corrections::Off) => Sizes::NONE,
+            Some(Corrections::Sizes(sizes)) => sizes,
+            Some(Corrections::Auto) => {
+                return Err(crate::errors::argument(
+                    "terms",
+                    "found auto, expected off, or groups with sizes",
+                ));
+            }
+        },
+        gravity: direction(gravity.unwrap_or([0.0, 0.0, -1.0]))?,
     };
     let kind = kind_word(kind)?;
     let nominal = &robot.model.robot;
@@ -180,5 +200,17 @@ pub(crate) fn simulate(
         visible(&robot.model.path.display().to_string()),
         kind.word()
     );
-    Ok(Simulation { nominal: robot.clone(), simulation, kind, made, held_out, command })
+    let command = if simulation.terms == Sizes::NONE {
+        command
+    } else {
+        let used = TermGroup::ALL.into_iter().filter(|&group| simulation.terms[group] > 0.0);
+        let used: Vec<String> =
+            used.map(|group| format!("{}={:e}", group.name(), simulation.terms[group])).collect();
+        let [x, y, z]: [f64; 3] = simulation.gravity.into();
+        let command = command.trim_end_matches(')');
+        format!("{command}, terms=\"{}\", gravity=({x:?}, {y:?}, {z:?}))", used.join(","))
+    };
+    // With the factors of its terms.
+    let nominal = robot.with_robot(made.nominal.clone());
+    Ok(Simulation { nominal, simulation, kind, made, held_out, command })
 }

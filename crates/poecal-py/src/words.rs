@@ -1,5 +1,6 @@
 //! Arguments that are one of a few words, and numbers with a unit in their name.
 
+use nalgebra::Vector3;
 use poecal::calibration::{DeviceFrameKnowledge, Loss, Robust};
 use poecal::measurement::Quantity;
 use poecal::nearest;
@@ -66,4 +67,13 @@ pub(crate) fn size(name: &str, value: f64, to_si: fn(f64) -> f64) -> PyResult<f6
         return Ok(to_si(value));
     }
     Err(argument(name, format!("found {value}, expected a finite number not below 0")))
+}
+
+/// A direction of gravity.
+pub(crate) fn direction(numbers: [f64; 3]) -> PyResult<Vector3<f64>> {
+    let direction = Vector3::from(numbers);
+    if direction.norm() > 0.0 && direction.norm().is_finite() {
+        return Ok(direction);
+    }
+    Err(argument("gravity", format!("found {numbers:?}, expected a direction, like (0, 0, -1)")))
 }

@@ -9,7 +9,9 @@
 mod trials;
 
 use divan::{Bencher, black_box};
-use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered, fit_screws};
+use poecal::calibration::{
+    CalibrationOptions, Corrections, DeviceFrameKnowledge, Sizes, calibrate, delivered, fit_screws,
+};
 use poecal::estimate::{Packed, Session};
 use poecal::forensics::{self, diagnose};
 use poecal::measurement::{Measurement, Quantity};
@@ -105,12 +107,28 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// Everything `calibrate` does: starts, noise estimation, fit, gauge, rank, accuracy; device frame unknown, nothing held out.
+/// Everything `calibrate` does for geometry alone: starts, noise estimation, fit, gauge, rank, accuracy; device frame unknown, nothing held
+/// out.
 #[divan::bench(args = ROWS)]
 fn calibrate_poses(bencher: Bencher<'_, '_>, rows: usize) {
-    let made = session(rows, Kind::Pose);
-    let options =
-        CalibrationOptions { held_out: 0.0, frame: DeviceFrameKnowledge::Unknown, ..Default::default() };
+    calibrated(bencher, rows, Corrections::Off);
+}
+
+/// The same with the corrected model of a robot that sags.
+#[divan::bench(args = ROWS)]
+fn correct_poses(bencher: Bencher<'_, '_>, rows: usize) {
+    calibrated(bencher, rows, Corrections::Auto);
+}
+
+fn calibrated(bencher: Bencher<'_, '_>, rows: usize, corrections: Corrections) {
+    let terms = match "sag=1e-3,harmonics=1e-4".parse() {
+        Ok(Corrections::Sizes(sizes)) => sizes,
+        _ => Sizes::NONE,
+    };
+    let simulation = Simulation { terms, ..simulation(rows) };
+    let made = simulation.run(&elbow(), Kind::Pose).expect("a simulation of a finite robot");
+    let frame = DeviceFrameKnowledge::Unknown;
+    let options = CalibrationOptions { held_out: 0.0, frame, corrections, ..Default::default() };
     bencher.bench_local(|| black_box(calibrate(&made.nominal, &made.data, &options)));
 }
 

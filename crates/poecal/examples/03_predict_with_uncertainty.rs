@@ -33,8 +33,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let truth = simulation.held_out(&made, Kind::Pose, 1000)?;
     let calibration = calibrate(&nominal, &made.data, &CalibrationOptions::default())?;
 
-    // A calibration as its file says it: robot, device and covariance.
+    // A calibration as its file says it: robot, device and covariance, those of the corrected model.
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+    let file = file.corrected().unwrap_or(file);
     let model = Model {
         robot: file.robot()?,
         source: ModelSource::Calibration(Box::new(file)),

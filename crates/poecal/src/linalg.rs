@@ -100,6 +100,9 @@ pub(crate) fn combination(columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f6
 
 /// Eigenvalues (ascending) and eigenvectors (columns) of the symmetric matrix given by its upper triangle.
 pub(crate) fn symmetric_eigen(upper: &[f64], n: usize) -> (Vec<f64>, DMatrix<f64>) {
+    if n == 0 {
+        return (Vec::new(), DMatrix::zeros(0, 0));
+    }
     let matrix = DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)]);
     let eigen = matrix.symmetric_eigen();
     let mut order: Vec<usize> = (0..n).collect();

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal::calibration::{DeviceFrameKnowledge, Level, Robust};
+use poecal::calibration::{Corrections, DeviceFrameKnowledge, Level, Robust};
 use poecal::io::output::Existing;
+use poecal::robot::GravityDirection;
 use poecal_lou2009::{Formulation, Method, Residual};
 
 use super::report::ReportPlace;
@@ -36,9 +37,24 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
     pub(crate) sigma_rotation: Option<f64>,
     /// Prior: deviation of each axis from nominal, as standard deviations, or none. It decides where the measurements determine
-    /// nothing. A joint of a TOML model may state its own
-    #[arg(long, value_name = "ANGLE,LENGTH|none", default_value = "0.5deg,5mm")]
+    /// nothing. auto takes the best of 0.2deg,2mm, 0.5deg,5mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own
+    #[arg(long, value_name = "ANGLE,LENGTH|none|auto", default_value = "0.5deg,5mm")]
     pub(crate) tolerance: BelievedTolerance,
+    /// What joints do beyond geometry: auto fits the terms that predict rows best which were not fitted; groups of terms with their sizes
+    /// in radians, sag, tilt, ratio, harmonics, wobble, backlash, factors
+    #[arg(long, value_name = "auto|off|GROUP[=SIZE],...", default_value = "auto")]
+    pub(crate) corrections: Corrections,
+    /// Highest order of the harmonics of a turn among these terms, 1 to 8
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub(crate) harmonics: u8,
+    /// Further columns of the measurements on which terms may depend, like temperature; approach or approach_JOINT says from which side joints
+    /// came, 1 or -1
+    #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
+    pub(crate) factors: Vec<String>,
+    /// Where gravity pulls, in the robot's base frame, like 0,0,1 for a robot on the ceiling; find takes the direction with which the terms
+    /// leave the least noise
+    #[arg(long, value_name = "X,Y,Z|find", default_value = "0,0,-1", allow_hyphen_values = true)]
+    pub(crate) gravity: GravityDirection,
     /// Blocks to hold as in the model: joints, targets, frames, or names like joint2.axis, in which * stands for any letters
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) fix: Vec<String>,

@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use poecal::calibration::DeviceFrameKnowledge;
+use poecal::robot::Sizes;
 use poecal::simulate::Kind;
 
 use super::shared::TreeArgs;
 use super::words::{FRAME, SIMULATED_KIND, one_of};
-use crate::quantity::LengthAndAngle;
+use crate::quantity::{LengthAndAngle, direction, terms};
 
 /// Arguments of `poecal simulate`.
 #[derive(Args, Debug)]
@@ -23,6 +24,13 @@ pub(crate) struct Simulate {
     /// Standard deviations of each measured component
     #[arg(long, value_name = "LENGTH,ANGLE", default_value = "0.05mm,0.01deg", allow_hyphen_values = true)]
     pub(crate) noise: LengthAndAngle,
+    /// What the joints do beyond geometry: groups of terms with the standard deviations of their random coefficients in radians, sag, tilt,
+    /// ratio, harmonics, wobble, backlash, factors
+    #[arg(long, value_name = "off|GROUP[=SIZE],...", value_parser = terms, default_value = "off")]
+    pub(crate) terms: Sizes,
+    /// Where gravity pulls, in the robot's base frame
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, default_value = "0,0,-1", allow_hyphen_values = true)]
+    pub(crate) gravity: [f64; 3],
     /// Number of measurements
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub(crate) count: u32,

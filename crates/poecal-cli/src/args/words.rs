@@ -65,6 +65,19 @@ pub(super) const PREDICT_IN: Words<PredictionFrame> = &[
     ("device", "The measuring device of a calibration", PredictionFrame::Device),
 ];
 
+/// A model of a calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PredictedModel {
+    Corrected,
+    Calibrated,
+}
+
+/// Which model of a calibration predicts.
+pub(super) const PREDICTED_MODEL: Words<PredictedModel> = &[
+    ("corrected", "Screws and terms of the joints", PredictedModel::Corrected),
+    ("calibrated", "Geometry alone, as a URDF holds it", PredictedModel::Calibrated),
+];
+
 /// The forms that a model can be written in.
 pub(super) const FORM: Words<ModelFormat> = &[
     ("urdf", "A new URDF of links, joints and a tip", ModelFormat::Urdf),

@@ -20,6 +20,7 @@ use poecal_lou2009::{Residual, formulated};
 use super::typed::command;
 use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
+use crate::quantity::BelievedTolerance;
 use crate::style::{self, labelled, shown};
 use crate::timings::Timings;
 use crate::{DONE, WORSE};
@@ -29,7 +30,8 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let model_path = stated_model(arguments)?;
     let places = Places::reserve(arguments, console)?;
     let reading = arguments.reading.options();
-    let model = Model::read(model_path, &arguments.chain.selection(reading.as_ref().ok())?)?;
+    let mut model = Model::read(model_path, &arguments.chain.selection(reading.as_ref().ok())?)?;
+    model.robot = model.robot.with_factors(&arguments.factors)?;
     let (data, inputs) = read_measurements(arguments, &model, reading, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
     let options = options(arguments);
@@ -163,7 +165,15 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
         sigma: ByQuantity::default()
             .with(Quantity::Position, arguments.sigma_position)
             .with(Quantity::Rotation, arguments.sigma_rotation),
-        tolerance: arguments.tolerance.0,
+        tolerance: match arguments.tolerance {
+            BelievedTolerance::Given(tolerance) => Some(tolerance),
+            BelievedTolerance::None => None,
+            BelievedTolerance::Auto => usual.tolerance,
+        },
+        chooses_tolerance: arguments.tolerance == BelievedTolerance::Auto,
+        corrections: arguments.corrections,
+        harmonics: arguments.harmonics,
+        gravity: arguments.gravity,
         held_out: arguments.held_out.unwrap_or(usual.held_out),
         seed: arguments.seed.unwrap_or(usual.seed),
         robust: arguments.robust,

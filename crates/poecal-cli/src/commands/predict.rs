@@ -9,7 +9,7 @@ use poecal::io::urdf::named_link;
 use poecal::io::{measurements, predictions};
 
 use crate::DONE;
-use crate::args::{Predict, with_mapping};
+use crate::args::{Predict, PredictedModel, with_mapping};
 use crate::console::Console;
 
 pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
@@ -25,6 +25,20 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     let mounted = target.filter(|target| has_links && target.contains('=')).map(named_link).transpose()?;
     let selection = arguments.chain.selection().joined(&[], mounted.as_slice())?;
     let model = Model::read(&arguments.model, &with_mapping(selection, options.as_ref().ok())?)?;
+    let model = match arguments.of {
+        PredictedModel::Corrected => {
+            let corrected = model.corrected()?;
+            if !corrected.robot.terms.iter().all(|it| it.coefficient == 0.0)
+                && corrected.robot.gravity.is_some()
+            {
+                console.remark(
+                    "predicted by the corrected model, with what the joints do beyond geometry; --model calibrated is geometry alone",
+                );
+            }
+            corrected
+        }
+        PredictedModel::Calibrated => model,
+    };
     let joints = measurements::read_joints(&arguments.joints, &model.robot, &options?)?;
     console.warnings(&joints.warnings);
     let (frame, target) = (arguments.frame, mounted.as_ref().map(|(name, _)| name.as_str()).or(target));

@@ -4,6 +4,7 @@ use poecal::Result;
 use poecal::calibration::DeviceFrameKnowledge;
 use poecal::io::model::Model;
 use poecal::io::output::{self, Contents, Existing, FolderPlace, SimulatedSession};
+use poecal::robot::{Sizes, TermGroup};
 use poecal::simulate::Simulation;
 use poecal::text::visible;
 
@@ -29,6 +30,8 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         count: arguments.count as usize,
         seed: arguments.seed,
         device_anywhere: arguments.frame == DeviceFrameKnowledge::Unknown,
+        terms: arguments.terms,
+        gravity: arguments.gravity.into(),
     };
     let kind = arguments.kind;
     let made = simulation.run(&model.robot, kind)?;
@@ -62,6 +65,13 @@ fn command(arguments: &Simulate) -> String {
     let (kind, count, seed) = (arguments.kind.word(), arguments.count, arguments.seed);
     words.push(format!("--kind {kind} --count {count} --seed {seed}"));
     words.push(format!("--errors {} --noise {}", arguments.errors.text, arguments.noise.text));
+    if arguments.terms != Sizes::NONE {
+        let used = TermGroup::ALL.into_iter().filter(|&group| arguments.terms[group] > 0.0);
+        let used: Vec<String> =
+            used.map(|group| format!("{}={:e}", group.name(), arguments.terms[group])).collect();
+        let [x, y, z] = arguments.gravity;
+        words.push(format!("--terms {} --gravity {x},{y},{z}", used.join(",")));
+    }
     if arguments.frame == DeviceFrameKnowledge::Base {
         words.push("--frame base".to_owned());
     }

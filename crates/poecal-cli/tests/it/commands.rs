@@ -12,7 +12,7 @@ fn calibrate_writes_its_folder_and_tells_three_models() {
     let folder = session(Kind::Pose);
     let out = folder.done("calibrate robot.urdf measurements.csv --verbose");
     for words in [
-        "nominal    registered    calibrated",
+        "nominal   registered   calibrated",
         "training (42)",
         "held out (18)",
         "60 rows: 42 fitted, 18 held out",

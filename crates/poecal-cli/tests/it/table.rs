@@ -105,7 +105,7 @@ fn the_first_command_prints_a_short_table() {
     let full = folder.done(&format!("{words} --force --verbose"));
     for words in [
         "training (70)",
-        "nominal    registered    calibrated",
+        "nominal   registered   calibrated",
         "\nsolver ",
         "\nnoise ",
         "\nper joint ",

@@ -96,7 +96,7 @@ fn validation_judges_other_sessions() {
     assert_eq!(found["refitted"], serde_json::json!(["device_frame", "tool"]));
     assert!(rms(&found["calibrated"]) < 1.5 * own_rms && rms(&found["nominal"]) > 20.0 * own_rms);
     let out = folder.done("validate poecal-out/calibration.json moved.csv --refit-frame --refit-tool");
-    assert!(out.contains("nominal    calibrated") && out.lines().all(|line| line.len() <= 80), "{out}");
+    assert!(out.contains("nominal   calibrated") && out.lines().all(|line| line.len() <= 80), "{out}");
     assert_eq!(folder.done("validate poecal-out/calibration.json more.csv --quiet"), "");
 
     folder.write("one.csv", folder.read("more.csv").lines().take(2).collect::<Vec<_>>().join("\n"));

@@ -27,9 +27,13 @@ pub fn calibration(data: &[u8]) -> bool {
     let source = ModelSource::Calibration(Box::new(file));
     let model = Model { robot, source, path: PATH.into() };
     converted(&model);
-    if let Some(joints) = understood(parse_joints(&table, PATH, &model.robot, &Default::default()), &table) {
+    let corrected = understood(model.clone().corrected(), &text);
+    for model in std::iter::once(model).chain(corrected) {
+        let joints = understood(parse_joints(&table, PATH, &model.robot, &Default::default()), &table);
         for (frame, doubts) in [(PredictionFrame::Base, true), (PredictionFrame::Device, false)] {
-            understood(predict(&model, &joints, frame, None, doubts), "");
+            if let Some(joints) = &joints {
+                understood(predict(&model, joints, frame, None, doubts), "");
+            }
         }
     }
     true

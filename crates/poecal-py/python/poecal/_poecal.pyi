@@ -283,6 +283,21 @@ class Robot:
     @property
     def joint_names(self) -> list[str]:
         """Names of the n moving joints from base to tip."""
+    def with_factors(self, names: Sequence[str]) -> Robot:
+        """The same robot with further columns of the measurements on which terms of its joints may depend, like temperature.
+
+        "approach" or "approach_JOINT" says from which side joints came, 1 or -1. They are readings behind those of the joints.
+
+        Parameters
+        ----------
+        names
+            Names of the columns.
+
+        Returns
+        -------
+        Robot
+            The robot.
+        """
     @property
     def reading_names(self) -> list[str]:
         """Names of the readings that a configuration consists of: those of the joints but for mimic joints, which follow another."""
@@ -577,7 +592,7 @@ class ModelAccuracy:
 
 @final
 class SetAccuracy:
-    """Errors of the nominal, registered and calibrated model on one set of rows."""
+    """Errors of the nominal, registered, calibrated and corrected model on one set of rows."""
     @property
     def count(self) -> int:
         """Number of measurements."""
@@ -590,6 +605,9 @@ class SetAccuracy:
     @property
     def calibrated(self) -> ModelAccuracy:
         """Screws fitted too."""
+    @property
+    def corrected(self) -> ModelAccuracy | None:
+        """Screws and terms of the joints fitted together; None if no terms were asked for."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
@@ -693,6 +711,9 @@ class Residuals:
     def position_calibrated_mm(self) -> _Array:
         """Error of position of the calibrated model, shape (m,), millimetres; NaN where no position was measured."""
     @property
+    def position_corrected_mm(self) -> _Array:
+        """Error of position of the corrected model, shape (m,), millimetres; NaN without such a model, or where no position was measured."""
+    @property
     def rotation_nominal_deg(self) -> _Array:
         """Error of rotation of the nominal model, shape (m,), degrees; NaN where no orientation was measured."""
     @property
@@ -701,6 +722,9 @@ class Residuals:
     @property
     def rotation_calibrated_deg(self) -> _Array:
         """Error of rotation of the calibrated model, shape (m,), degrees; NaN where no orientation was measured."""
+    @property
+    def rotation_corrected_deg(self) -> _Array:
+        """Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or where no orientation was measured."""
     @property
     def quantities(self) -> dict[str, str]:
         """Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged."""
@@ -725,7 +749,7 @@ class Residuals:
         quantity
             Its name, as in `quantities`.
         model
-            "nominal", "registered" or "calibrated".
+            "nominal", "registered", "calibrated", or "corrected": NaN without such a model.
 
         Returns
         -------
@@ -854,11 +878,17 @@ class Calibration:
     def robot(self) -> Robot:
         """The calibrated robot, with the targets in its tip frame."""
     @property
+    def corrected_robot(self) -> Robot | None:
+        """The corrected robot, with gives and terms beside its joints; None if no terms were asked for."""
+    @property
+    def corrected(self) -> dict[str, Any] | None:
+        """Screws and terms of the joints, fitted together: `corrected` of calibration.json; None if no terms were asked for."""
+    @property
     def nominal(self) -> Robot:
         """The nominal robot."""
     @property
     def accuracy(self) -> Accuracy:
-        """Errors of the nominal, registered and calibrated model on fitted and held-out rows."""
+        """Errors of the nominal, registered, calibrated and corrected model on fitted and held-out rows."""
     @property
     def verdict(self) -> Verdict:
         """How far the calibration may be used, and why no farther; an error for a file that does not say so."""
@@ -973,8 +1003,9 @@ class Calibration:
         with_uncertainty: Literal[False] = False,
         frame: Literal["base", "device"] = "base",
         target: str | None = None,
+        model: Literal["corrected", "calibrated"] = "corrected",
     ) -> _Array:
-        """Poses of the calibrated tip, or of a target.
+        """Poses of the tip, or of a target.
 
         Parameters
         ----------
@@ -986,6 +1017,8 @@ class Calibration:
             Frame of the poses: "base" or "device".
         target
             Name of a target, default the tip.
+        model
+            Which model predicts: "corrected", where there is one, or "calibrated", geometry alone.
 
         Returns
         -------
@@ -1000,6 +1033,7 @@ class Calibration:
         with_uncertainty: Literal[True],
         frame: Literal["base", "device"] = "base",
         target: str | None = None,
+        model: Literal["corrected", "calibrated"] = "corrected",
     ) -> Prediction: ...
     @overload
     def predict(
@@ -1009,6 +1043,7 @@ class Calibration:
         with_uncertainty: bool,
         frame: Literal["base", "device"] = "base",
         target: str | None = None,
+        model: Literal["corrected", "calibrated"] = "corrected",
     ) -> _Array | Prediction: ...
     def validate(
         self, measurements: Measurements, *, refit_frame: bool = False, refit_tool: bool = False
@@ -1105,7 +1140,10 @@ def calibrate(
     frame: _Frame = "unknown",
     sigma_position_mm: float | None = None,
     sigma_rotation_deg: float | None = None,
-    tolerance_deg_mm: tuple[float, float] | None = ...,
+    tolerance_deg_mm: tuple[float, float] | Literal["auto"] | None = ...,
+    corrections: str | Mapping[str, float] = "auto",
+    harmonics: int = 2,
+    gravity: Sequence[float] | Literal["find"] = ...,
     fix: Sequence[str] | None = None,
     free: Sequence[str] | None = None,
     held_out: float | None = None,
@@ -1131,7 +1169,14 @@ def calibrate(
         Standard deviation of each measured component, default estimated from the data.
     tolerance_deg_mm
         Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
-        decides where the measurements determine nothing.
+        decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation.
+    corrections
+        What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "off" none; or groups of terms,
+        "sag,tilt,ratio,harmonics,wobble", or a dict of their sizes in radians.
+    harmonics
+        Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
+    gravity
+        Where gravity pulls, in the robot's base frame, default (0, 0, -1), or "find": where the terms leave the least noise.
     fix
         Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * stands for any letters.
     free
@@ -1389,6 +1434,8 @@ def simulate(
     noise_rotation_deg: float = 0.01,
     frame: _Frame = "unknown",
     held_out_count: int = 0,
+    terms: str | Mapping[str, float] = "off",
+    gravity: Sequence[float] = ...,
 ) -> Simulation:
     """Simulates a robot with errors and its measurements, for tests and for learning.
 
@@ -1410,6 +1457,11 @@ def simulate(
         The measuring device's frame: "unknown" or "base".
     held_out_count
         Number of further measurements, free of noise, to judge a calibration by.
+    terms
+        What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians, as a dict
+        or "sag=1e-3,ratio=1e-4".
+    gravity
+        Where gravity pulls, in the robot's base frame, default (0, 0, -1).
 
     Returns
     -------

@@ -25,6 +25,7 @@ pub(crate) struct Calibration {
     pub(super) nominal: Robot,
     found: Found,
     calibrated: OnceLock<Robot>,
+    corrected: OnceLock<Option<Robot>>,
 }
 
 /// Source of all other contents.
@@ -86,7 +87,12 @@ impl Calibration {
             residuals: OnceLock::new(),
             summary: OnceLock::new(),
         };
-        Calibration { nominal, found: Found::Fit(Box::new(fit)), calibrated: OnceLock::new() }
+        Calibration {
+            nominal,
+            found: Found::Fit(Box::new(fit)),
+            calibrated: OnceLock::new(),
+            corrected: OnceLock::new(),
+        }
     }
 
     /// A calibration from files.
@@ -98,7 +104,12 @@ impl Calibration {
         summary: String,
     ) -> Self {
         let written = Written { robot, file, residuals, summary };
-        Calibration { nominal, found: Found::Written(Box::new(written)), calibrated: OnceLock::new() }
+        Calibration {
+            nominal,
+            found: Found::Written(Box::new(written)),
+            calibrated: OnceLock::new(),
+            corrected: OnceLock::new(),
+        }
     }
 
     /// The calibration as a state.
@@ -199,6 +210,20 @@ impl Calibration {
         let robot = file.robot().map_err(raise)?;
         let model = Model { robot, source: ModelSource::Calibration(Box::new(file)), path: UNWRITTEN.into() };
         Ok(self.calibrated.get_or_init(|| Robot::new(model)))
+    }
+
+    /// The corrected robot as in the file; none without terms.
+    pub(crate) fn corrected(&self) -> PyResult<Option<&Robot>> {
+        if let Some(robot) = self.corrected.get() {
+            return Ok(robot.as_ref());
+        }
+        let made = self.file().corrected().map(|file| {
+            let robot = file.robot().map_err(raise)?;
+            let source = ModelSource::Calibration(Box::new(file));
+            Ok::<_, PyErr>(Robot::new(Model { robot, source, path: UNWRITTEN.into() }))
+        });
+        let made = made.transpose()?;
+        Ok(self.corrected.get_or_init(|| made).as_ref())
     }
 }
 

@@ -33,6 +33,12 @@ impl Robot {
         Robot { model: Arc::new(model), sha256: Arc::default() }
     }
 
+    /// The same file with another robot.
+    pub(crate) fn with_robot(&self, robot: poecal::robot::Robot) -> Self {
+        let model = Model { robot, source: self.model.source.clone(), path: self.model.path.clone() };
+        Robot { model: Arc::new(model), sha256: Arc::clone(&self.sha256) }
+    }
+
     /// A model from a file, with the file's checksum.
     pub(super) fn of_file(model: Model) -> PyResult<Self> {
         let sha256 = Inputs::checksums([model.path.as_path()].into_iter()).map_err(raise)?;

@@ -36,6 +36,13 @@ pub struct JointCoverage {
 }
 
 impl JointCoverage {
+    /// Of a give, which has no range.
+    pub(crate) fn of_give(name: &str) -> Self {
+        let joint = name.to_owned();
+        let (limit_min, limit_max) = (None, None);
+        JointCoverage { joint, sampled_min: 0.0, sampled_max: 0.0, stragglers: 0.0, limit_min, limit_max }
+    }
+
     /// Sampled share of the allowed range, 0 to 1 (theory.md §9, *Verdict*). A revolute joint is allowed at most one turn, also without
     /// limits: whole turns change no geometry. `None` for a prismatic joint without limits.
     #[must_use]

@@ -99,6 +99,9 @@ pub struct SetAccuracy {
     pub registered: ModelAccuracy,
     /// Screws fitted too.
     pub calibrated: ModelAccuracy,
+    /// Screws and terms of the joints fitted together; absent if no terms were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub corrected: Option<ModelAccuracy>,
 }
 
 /// Errors on training and held-out rows.
@@ -128,6 +131,7 @@ pub fn set_accuracy(session: &Session<'_>, rows: &[u32], models: &Models) -> Set
         nominal: of(&models.nominal),
         registered: of(&models.registered),
         calibrated: of(&models.calibrated),
+        corrected: None,
     }
 }
 

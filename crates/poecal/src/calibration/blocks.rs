@@ -6,14 +6,15 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Unknowns;
 use crate::measurement::Dataset;
 use crate::parameters::{Block, Names};
-use crate::robot::Robot;
+use crate::robot::{Coupling, Robot, Term};
 
 /// Blocks that a message lists at most.
 const LISTED: usize = 12;
 
 /// What a fit changes beside or without the usual: first the blocks of `fix` are held as in the model, then those of `free` are unknown.
 /// A word is a block's name ([`Names::of`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis;
-/// or one of `joints` (all axes), `targets` and `frames`.
+/// or one of `joints` (all axes), `targets` and `frames`. Only by their exact names are harmonics unknown (`joint2.sin1`), and couplings:
+/// `joint3.coupled2` is what the second joint turns joint3.
 ///
 /// ```
 /// use poecal::calibration::BlockChoice;
@@ -51,9 +52,14 @@ impl BlockChoice {
         let names = names(robot, data);
         let blocks = names.blocks();
         let mut is_free: Vec<bool> = blocks.iter().map(|block| !matches!(block, Block::Term(..))).collect();
+        let mut further = Vec::new();
         for (words, value) in [(&self.fix, false), (&self.free, true)] {
             for word in words {
                 let chosen = chosen(&names, &blocks, word);
+                if let Some(term) = further_term(&names, word).filter(|_| value && !chosen.contains(&true)) {
+                    further.push(term);
+                    continue;
+                }
                 if !chosen.contains(&true) {
                     return Err(unknown_word(&names, &blocks, word));
                 }
@@ -70,7 +76,11 @@ impl BlockChoice {
                 Block::Axis(_) | Block::Target(_) | Block::Frame(_) | Block::Term(..) => {}
             }
         }
-        if !is_free.contains(&true) {
+        further.sort_unstable();
+        further.dedup();
+        let is_any = !further.is_empty() || is_free.contains(&true);
+        unknowns.terms.extend(further);
+        if !is_any {
             let message = "found that every block is held, expected at least one that is unknown: fix fewer";
             return Err(Error::new(ErrorKind::Option, message));
         }
@@ -96,6 +106,20 @@ pub(super) fn refuse_frames(choice: &BlockChoice, robot: &Robot, data: &Dataset)
             Err(Error::new(ErrorKind::Option, message))
         }
         None => Ok(()),
+    }
+}
+
+/// A term by its exact name that is no block without being asked for: a harmonic, or a coupling with another joint.
+fn further_term(names: &Names, word: &str) -> Option<(usize, Term)> {
+    let (joint, term) = word.rsplit_once('.')?;
+    let joint = names.joints.iter().position(|name| name == joint)?;
+    let term: Term = term.parse().ok()?;
+    match term {
+        Term::Harmonic(_) => Some((joint, term)),
+        Term::Coupling(Coupling { joint: other }) => {
+            (other < names.joints.len() && other != joint).then_some((joint, term))
+        }
+        Term::Offset | Term::Ratio | Term::Sag(_) | Term::Factor(_) => None,
     }
 }
 

@@ -52,6 +52,7 @@ impl OngoingFit {
 }
 
 /// A finished fit.
+#[derive(Clone)]
 pub(super) struct Fitted {
     pub(super) estimate: Estimate,
     pub(super) normal: Normal,

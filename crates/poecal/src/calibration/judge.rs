@@ -84,7 +84,7 @@ pub enum Refitted {
 /// use poecal::{Measured, Quantity, calibration::{Judgement, Statistic}};
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
-/// let judgement = Judgement { count: 20, refitted: vec![], calibrated, nominal: None, promised: None, in_sampled_range: None };
+/// let judgement = Judgement { count: 20, refitted: vec![], calibrated, corrected: None, nominal: None, promised: None, in_sampled_range: None };
 /// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -95,8 +95,29 @@ pub struct Judgement {
     pub refitted: Vec<Refitted>,
     /// Errors of the calibrated model.
     pub calibrated: ModelAccuracy,
+    /// Errors of the corrected model, with its own coverage; `None` if the calibration has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corrected: Option<JudgedModel>,
     /// Errors of the nominal model with the same refit; `None` unless tool and an unknown device frame were both refitted.
     pub nominal: Option<ModelAccuracy>,
+    /// Coverage of the predicted bounds, if there are any.
+    pub promised: Option<CoverageCheck>,
+    /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
+    pub in_sampled_range: Option<InSampledRange>,
+}
+
+/// Errors of a model, and coverage of its predicted bounds.
+///
+/// ```
+/// use poecal::{Measured, calibration::JudgedModel};
+/// let none = JudgedModel { errors: Measured::of(|_| None), promised: None, in_sampled_range: None };
+/// assert!(none.errors.leading().is_none());
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct JudgedModel {
+    /// Its errors.
+    #[serde(flatten)]
+    pub errors: ModelAccuracy,
     /// Coverage of the predicted bounds, if there are any.
     pub promised: Option<CoverageCheck>,
     /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
@@ -128,7 +149,15 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
         subject.uncertainty.and_then(|predicted| coverage_checks(&predicted, subject.refit_tool, &rows));
     let (promised, in_sampled_range) = promised.map_or((None, None), |(all, some)| (Some(all), some));
     let calibrated = model_accuracy(&rows.errors);
-    Ok(Judgement { count: data.len(), refitted, calibrated, nominal, promised, in_sampled_range })
+    Ok(Judgement {
+        count: data.len(),
+        refitted,
+        calibrated,
+        corrected: None,
+        nominal,
+        promised,
+        in_sampled_range,
+    })
 }
 
 /// Errors of a robot's predictions, with device frame and targets refitted as asked.

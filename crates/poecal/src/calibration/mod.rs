@@ -6,6 +6,7 @@ mod corrections;
 mod count;
 mod coverage_check;
 mod doubts;
+mod expected;
 mod fit;
 mod formulation;
 mod found;
@@ -15,6 +16,7 @@ mod moves;
 mod noise;
 mod noise_doubts;
 mod options;
+mod placed;
 mod repeatability;
 mod result;
 mod robust;
@@ -22,27 +24,34 @@ mod split;
 mod stations;
 mod steps;
 mod suspicion;
+mod tolerance;
 mod trust;
 mod verdict;
 
+pub use crate::robot::{CorrectionModel, Corrections, Sizes, TermGroup};
 pub use accuracy::{Accuracy, ModelAccuracy, Models, SetAccuracy, Statistic, set_accuracy};
 pub use blocks::BlockChoice;
 pub(crate) use blocks::names;
-pub use corrections::{Correction, CorrectionModel, Sizes, TermGroup, TriedSizes, correct};
+use corrections::suspected;
+pub use corrections::{
+    Correction, Effects, JointEffect, JointErrorPart, JointErrors, SizesReason, TriedSizes, correct,
+};
 pub use coverage_check::{CoverageCheck, InSampledRange, PartCoverage, PredictedUncertainty};
+pub use expected::{Expectations, Expected, RangePart};
 pub use fit::fit_screws;
 pub use formulation::{Formulation, FormulationWords, Minimize, Minimum};
 pub use found::SolverReport;
-pub use judge::{Judgement, Refitted, Subject, judge};
+pub use judge::{JudgedModel, Judgement, Refitted, Subject, judge};
 pub use noise::{NoiseSource, estimate_noise};
 pub use options::{CalibrationOptions, DeviceFrameKnowledge};
+pub use placed::{CalibratedStation, CalibratedTarget};
 pub use repeatability::{RepeatedPose, repeatability};
-pub use result::{CalibratedStation, CalibratedTarget, Calibration};
+pub use result::Calibration;
 pub(crate) use robust::RowInfluence;
 pub use robust::{Loss, Robust, Robustness, RowJudgement, row_influence};
 pub use split::{settle_sets, split_rows};
 pub use suspicion::JointCorrection;
-pub use trust::{Expected, RangePart, Trust};
+pub use trust::Trust;
 pub use verdict::{Level, Verdict};
 
 pub use crate::estimate::{RowError, delivered, radian_m};
@@ -50,10 +59,10 @@ pub use crate::estimate::{RowError, delivered, radian_m};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Packed, Session};
 use crate::measurement::{Dataset, PoseResidual};
-use crate::robot::Robot;
+use crate::robot::{GravityDirection, Robot};
 use crate::threads;
 use steps::Prepared;
 
@@ -76,11 +85,13 @@ pub enum Stage {
     Fit,
     /// Judging the three models.
     Analysis,
+    /// Fitting what joints do beyond geometry.
+    Corrections,
 }
 
 impl Stage {
     /// All stages in order.
-    pub const ALL: [Stage; 3] = [Stage::Registration, Stage::Fit, Stage::Analysis];
+    pub const ALL: [Stage; 4] = [Stage::Registration, Stage::Fit, Stage::Analysis, Stage::Corrections];
 
     /// Message for users.
     #[must_use]
@@ -89,6 +100,7 @@ impl Stage {
             Stage::Registration => "finding the device frame and the targets",
             Stage::Fit => "fitting the screws",
             Stage::Analysis => "judging the result",
+            Stage::Corrections => "fitting what the joints do beyond geometry",
         }
     }
 }
@@ -103,7 +115,24 @@ pub fn calibrate_with_progress(
     options: &CalibrationOptions,
     progress: &mut dyn FnMut(Stage),
 ) -> Result<Calibration> {
+    if let GravityDirection::Known(direction) = options.gravity
+        && !GravityDirection::is_direction(&direction)
+    {
+        let message = "found a gravity without direction, expected three numbers, not all of them 0";
+        return Err(Error::new(ErrorKind::Option, message));
+    }
+    if options.formulation != Formulation::default() {
+        refuse_beside_formulation(options)?;
+    }
+    if options.chooses_tolerance {
+        let tolerance = tolerance::chosen(options, |options| calibrate(robot, data, options))?;
+        let options =
+            CalibrationOptions { tolerance: Some(tolerance), chooses_tolerance: false, ..options.clone() };
+        let found = calibrate_with_progress(robot, data, &options, progress)?;
+        return Ok(Calibration { chosen_tolerance: Some(tolerance), ..found });
+    }
     let (data, rows) = (&written(data, options.formulation.pose_residual), data.len());
+    let robot = &*about_mean_factors(robot, data);
     let packed = Arc::new(threads::in_pool(rows, || Packed::of(robot, data)));
     if options.frame == DeviceFrameKnowledge::Base {
         blocks::refuse_frames(&options.blocks, robot, data)?;
@@ -117,10 +146,76 @@ pub fn calibrate_with_progress(
     let (registered, noise, source) = threads::in_pool(rows, || prepared.register());
     progress(Stage::Fit);
     let fit = threads::in_pool(rows, || prepared.fit(&registered, noise, source))?;
+    // Terms beside screws that are held or written otherwise would do what the screws do not.
+    let moves_all = (0..robot.joints.len()).all(|joint| unknowns.moves_axis(joint));
+    let sizes = match options.corrections {
+        Corrections::Auto if moves_all => Some(None),
+        Corrections::Sizes(sizes) => Some(Some(sizes)),
+        Corrections::Auto | Corrections::Off => None,
+    };
+    let sizes = sizes.filter(|_| options.formulation == Formulation::default());
     prepared.with_instruments(&registered, fit, source, &mut |prepared, fit| {
         progress(Stage::Analysis);
-        threads::in_pool(rows, || prepared.assess(Arc::clone(&packed), registered.clone(), fit))
+        let assess = |fit| prepared.clone().assess(Arc::clone(&packed), registered.clone(), fit);
+        let mut calibration = threads::in_pool(rows, || assess(fit.clone()));
+        let Some(sizes) = sizes else { return Ok(calibration) };
+        progress(Stage::Corrections);
+        let correct = |calibration: &Calibration| {
+            threads::in_pool(rows, || correct(calibration, data, options.gravity, sizes, options))
+        };
+        let mut found = correct(&calibration);
+        // What joints do beyond geometry makes no outliers.
+        for _ in 0..JUDGEMENTS {
+            if options.robust != Robust::Auto || calibration.robustness.suspects().next().is_none() {
+                break;
+            }
+            let suspected = suspected(&found, &calibration, data, options);
+            if !calibration.robustness.differs(&suspected) {
+                break;
+            }
+            let again = if suspected.contains(&true) {
+                fit.clone()
+            } else {
+                threads::in_pool(rows, || prepared.fit_all(&registered, noise, source))?
+            };
+            calibration = threads::in_pool(rows, || assess(again.suspecting(&suspected)));
+            found = correct(&calibration);
+        }
+        Ok(calibration.with_correction(found))
     })
+}
+
+/// Refuses what only the usual formulation has.
+fn refuse_beside_formulation(options: &CalibrationOptions) -> Result<()> {
+    let found = if matches!(options.corrections, Corrections::Sizes(_)) {
+        "terms of the joints (corrections)"
+    } else if options.gravity != GravityDirection::default() {
+        "a direction of gravity"
+    } else if options.chooses_tolerance {
+        "a tolerance that cross-validation chooses"
+    } else {
+        return Ok(());
+    };
+    let message = format!(
+        "found {found} with a formulation of its own, expected the usual formulation: leave one of both out"
+    );
+    Err(Error::new(ErrorKind::Option, message))
+}
+
+/// Most rounds of judging rows by the corrected model.
+const JUDGEMENTS: usize = 3;
+
+/// The robot with its factors counted from their mean in all rows; the side of an approach from 0.
+fn about_mean_factors<'a>(robot: &'a Robot, data: &Dataset) -> Cow<'a, Robot> {
+    if robot.factors.is_empty() || data.is_empty() {
+        return Cow::Borrowed(robot);
+    }
+    let mut found = robot.clone();
+    for (at, factor) in found.factors.iter_mut().enumerate().filter(|(_, it)| it.approached().is_none()) {
+        let values = (0..data.len()).filter_map(|row| robot.factors_of(data.readings(row)).get(at));
+        factor.reference = values.sum::<f64>() / data.len() as f64;
+    }
+    Cow::Owned(found)
 }
 
 /// The data with the residual of measured frames replaced.

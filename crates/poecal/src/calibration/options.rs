@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::estimate::Session;
 use crate::measurement::ByQuantity;
 use crate::problem::Prior;
-use crate::robot::Tolerance;
+use crate::robot::{CorrectionModel, GravityDirection, Tolerance};
 use crate::solve;
 
-use super::{BlockChoice, Formulation, Robust};
+use super::{BlockChoice, Corrections, Formulation, Robust};
 
 /// What is known of the measuring device's frame.
 ///
@@ -55,6 +55,14 @@ pub struct CalibrationOptions {
     /// Prior: standard deviations of the axes from nominal; a joint's own tolerance precedes. It decides where the measurements determine
     /// little. `None` is no prior. Formulations other than the default have none.
     pub tolerance: Option<Tolerance>,
+    /// Whether, instead, the best of (0.2°, 2 mm), (0.5°, 5 mm) and (3°, 10 mm) is taken: that whose fit predicts rows best which are left out.
+    pub chooses_tolerance: bool,
+    /// Which terms are fitted beside the screws, for the corrected model; with the default formulation only.
+    pub corrections: Corrections,
+    /// Highest order of the harmonics of a joint's turn among these terms.
+    pub harmonics: u8,
+    /// Where weights are pulled.
+    pub gravity: GravityDirection,
     /// How to treat outliers.
     pub robust: Robust,
     /// Options of the solver.
@@ -75,6 +83,10 @@ impl Default for CalibrationOptions {
             seed: 1,
             formulation: Formulation::default(),
             tolerance: Some(Tolerance::default()),
+            chooses_tolerance: false,
+            corrections: Corrections::default(),
+            harmonics: CorrectionModel::ORDERS,
+            gravity: GravityDirection::default(),
             robust: Robust::default(),
             solver: solve::Options::default(),
             diagnose: true,

@@ -2,50 +2,20 @@
 
 use std::sync::Arc;
 
+use super::placed::{CalibratedStation, CalibratedTarget};
 use super::{
-    Accuracy, CalibrationOptions, DeviceFrameKnowledge, Formulation, Models, NoiseSource, Robustness,
-    SolverReport, Trust, Verdict, fit_screws,
+    Accuracy, CalibrationOptions, Correction, DeviceFrameKnowledge, Formulation, JointEffect, Models,
+    NoiseSource, Robustness, SolverReport, Trust, Verdict, fit_screws,
 };
 use crate::analysis::Identifiability;
-use crate::estimate::{Estimate, Packed, Session, Unknowns};
+use crate::estimate::{Packed, Session, Unknowns};
 use crate::forensics::Diagnosis;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
 use crate::problem::Prior;
-use crate::robot::{Mount, Robot};
+use crate::robot::{Robot, Tolerance};
 use crate::solve;
 use crate::threads;
-
-/// A target as calibrated.
-///
-/// ```
-/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
-/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
-/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let [tip] = &calibration.targets[..] else { unreachable!() };
-/// assert!(tip.name.is_none() && tip.is_frame && tip.tip_from_target.translation.norm() < 1e-12);
-/// # Ok::<(), poecal::Error>(())
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct CalibratedTarget {
-    /// Its name; `None` is the tip itself.
-    pub name: Option<String>,
-    /// Whether its orientation was measured; otherwise only the position means something.
-    pub is_frame: bool,
-    /// `tip_from_target` in the calibrated robot; of a target of its `mounted`, which is on a body of its own, at zero joint values.
-    pub tip_from_target: Pose,
-}
-
-/// A station of the device, as calibrated.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CalibratedStation {
-    /// Its name, if the measurements name it.
-    pub name: Option<String>,
-    /// `base_from_device` there; of an instrument on the robot, at zero joint values.
-    pub base_from_device: Pose,
-    /// Noise of its rows that state none.
-    pub noise: Noise,
-}
 
 /// A finished calibration.
 ///
@@ -74,6 +44,8 @@ pub struct Calibration {
     pub unknowns: Unknowns,
     /// How the fit was written and minimised.
     pub formulation: Formulation,
+    /// Tolerance of the prior, if cross-validation chose it.
+    pub chosen_tolerance: Option<Tolerance>,
     /// `base_from_device`, of the first station.
     pub base_from_device: Pose,
     /// All stations, in the order of [`Dataset::stations`]; at least one.
@@ -106,6 +78,8 @@ pub struct Calibration {
     pub fit_rows: Vec<u32>,
     /// Rows held out.
     pub held_out_rows: Vec<u32>,
+    /// The corrected model: screws and terms fitted together; none if no terms were asked for.
+    pub correction: Option<Box<Correction>>,
     /// Joint values of its measurements with their sines and cosines.
     pub(super) packed: Arc<Packed>,
 }
@@ -117,6 +91,23 @@ impl Calibration {
             return Arc::clone(&self.packed);
         }
         Arc::new(Packed::of(&self.nominal, data))
+    }
+
+    /// The calibration with a corrected model.
+    pub(super) fn with_correction(mut self, found: Correction) -> Self {
+        self.accuracy.training.corrected = Some(found.training);
+        if let Some(held_out) = &mut self.accuracy.held_out {
+            held_out.corrected = found.held_out;
+        }
+        for (joint, correction) in self.nominal.joints.iter().zip(&mut self.trust.joints) {
+            let own = found.effects.each.iter().filter(|it| it.joint == joint.name && it.is_found()).take(2);
+            let told: Vec<String> = own.map(JointEffect::words).collect();
+            if let Some(words) = correction.suspicious.as_mut().filter(|_| !told.is_empty()) {
+                *words = format!("{words}. By the corrected model {}", told.join(", and "));
+            }
+        }
+        self.correction = Some(Box::new(found));
+        self
     }
 
     /// The session of these measurements and their joint values.
@@ -154,92 +145,5 @@ impl Calibration {
         let looseness = |prior: &Prior| prior.looseness(&self.models.calibrated);
         let prior = prior.as_ref().map(|prior| (prior, 1.0 / looseness(prior)));
         fit_screws(session, &self.fit_rows, start, self.noise, prior, options).2
-    }
-}
-
-/// The stations of the device.
-pub(super) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise) -> Vec<CalibratedStation> {
-    let data = session.data;
-    let of = |station| CalibratedStation {
-        noise: session.usual_noise(station, noise),
-        name: data.stations.get(station).cloned().flatten(),
-        base_from_device: estimate.device_at_zero(station).inverse(),
-    };
-    (0..data.station_count()).map(of).collect()
-}
-
-/// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (measured as points, with its
-/// nominal orientation to the last joint), and so does a target, or an instrument, of the model at its very place; otherwise the tip keeps its nominal pose on
-/// the last joint. Targets and instruments of the model with bodies of their own stay on these.
-pub(super) fn place_tip(
-    robot: &Robot,
-    data: &Dataset,
-    frames: &[bool],
-    estimate: &Estimate,
-) -> (Robot, Vec<CalibratedTarget>) {
-    let mut calibrated = robot.with_screws(&estimate.screws());
-    calibrated.terms.clone_from(&estimate.terms);
-    calibrated.terms.retain(|it| it.coefficient != 0.0);
-    let last_joint = calibrated.tip_body().joint().and_then(|joint| calibrated.joints.get(joint));
-    calibrated.home =
-        last_joint.map_or_else(Pose::identity, |joint| joint.frame) * robot.last_joint_from_tip();
-    place_mounts(robot, &mut calibrated, data, frames, estimate);
-    for (target, name) in data.targets.iter().enumerate() {
-        if name.is_none() {
-            let seen = estimate.base_from_target[target];
-            let rotation = if frames[target] { seen.rotation } else { calibrated.home.rotation };
-            calibrated.home = Pose::new(rotation, seen.translation);
-        }
-    }
-    let tip_from_base = calibrated.home.inverse();
-    let targets = data
-        .targets
-        .iter()
-        .enumerate()
-        .map(|(target, name)| {
-            let is_frame = frames[target];
-            let tip_from_target = tip_from_base * estimate.base_from_target[target];
-            let rotation = if is_frame { tip_from_target.rotation } else { nalgebra::Matrix3::identity() };
-            CalibratedTarget {
-                name: name.clone(),
-                is_frame,
-                tip_from_target: Pose::new(rotation, tip_from_target.translation),
-            }
-        })
-        .collect();
-    (calibrated, targets)
-}
-
-/// Puts the measured targets and the instruments of the model to their calibrated places. A target at the tip moves it too, or else an
-/// instrument there.
-fn place_mounts(robot: &Robot, calibrated: &mut Robot, data: &Dataset, frames: &[bool], estimate: &Estimate) {
-    // The unnamed target is the tip.
-    let mut is_placed = data.targets.iter().any(Option::is_none);
-    for (target, name) in data.targets.iter().enumerate() {
-        let known = calibrated.mounted.iter().position(|mount| Some(&mount.name) == name.as_ref());
-        if let Some(index) = known {
-            let Mount { name, body, .. } = calibrated.mounted[index].clone();
-            let seen = estimate.base_from_target[target];
-            let nominal = calibrated.base_from(&calibrated.mounted[index]);
-            let rotation = if frames[target] { seen.rotation } else { nominal.rotation };
-            let pose = Pose::new(rotation, seen.translation);
-            if !is_placed && robot.is_at_tip(&robot.mounted[index]) {
-                is_placed = true;
-                calibrated.home = pose;
-            }
-            calibrated.mounted[index] = calibrated.mount(&name, body, &pose);
-        }
-    }
-    for (station, name) in data.stations.iter().enumerate() {
-        let known = calibrated.instruments.iter().position(|mount| Some(&mount.name) == name.as_ref());
-        if let Some(index) = known {
-            let Mount { name, body, .. } = calibrated.instruments[index].clone();
-            let pose = estimate.device_at_zero(station).inverse();
-            if !is_placed && robot.is_at_tip(&robot.instruments[index]) {
-                is_placed = true;
-                calibrated.home = pose;
-            }
-            calibrated.instruments[index] = calibrated.mount(&name, body, &pose);
-        }
     }
 }

@@ -9,14 +9,15 @@ use super::found::Fitted;
 use super::instrument_noise::{ROUNDS, noise_ratios};
 use super::moves::{ChangeSearch, FrameSearch, FramesApart, Moved, frames_apart, moved};
 use super::noise_doubts::noise_doubts;
-use super::result::{place_tip, stations};
+use super::placed::{place_tip, stations};
 use super::robust::{self, RobustFit};
 use super::stations::check_stations;
 use super::trust::{Finished, trust};
 use super::verdict::{Grounds, verdict};
 use super::{
     Accuracy, Calibration, CalibrationOptions, CoverageCheck, Formulation, Level, Models, NoiseSource,
-    PredictedUncertainty, Robustness, Trust, delivered, estimate_noise, noise, set_accuracy, split_rows,
+    PredictedUncertainty, Robust, Robustness, Trust, delivered, estimate_noise, noise, set_accuracy,
+    split_rows,
 };
 use crate::analysis::{Identifiability, Setup, identifiability};
 use crate::error::Result;
@@ -37,6 +38,7 @@ const POSITIONS_FIRST: f64 = 100.0;
 const EFFICIENCY: f64 = 0.95;
 
 /// Session and rows, ready for a fit.
+#[derive(Clone)]
 pub(super) struct Prepared<'a> {
     session: Session<'a>,
     options: &'a CalibrationOptions,
@@ -75,6 +77,17 @@ impl<'a> Prepared<'a> {
         (registered, noise, source)
     }
 
+    /// Fits the screws by least squares, whatever the options say of outliers.
+    pub(super) fn fit_all(
+        &self,
+        registered: &Estimate,
+        noise: Noise,
+        source: NoiseSource,
+    ) -> Result<RobustFit> {
+        let options = CalibrationOptions { robust: Robust::Off, ..self.options.clone() };
+        Prepared { options: &options, ..self.clone() }.fit(registered, noise, source)
+    }
+
     /// Fits the screws.
     pub(super) fn fit(&self, registered: &Estimate, noise: Noise, source: NoiseSource) -> Result<RobustFit> {
         let task = Task {
@@ -93,7 +106,7 @@ impl<'a> Prepared<'a> {
         registered: &Estimate,
         fit: RobustFit,
         source: NoiseSource,
-        end: &mut dyn FnMut(Prepared<'_>, RobustFit) -> Calibration,
+        end: &mut dyn FnMut(Prepared<'_>, RobustFit) -> Result<Calibration>,
     ) -> Result<Calibration> {
         self.after(registered, fit, source, end, ROUNDS)
     }
@@ -103,12 +116,12 @@ impl<'a> Prepared<'a> {
         registered: &Estimate,
         fit: RobustFit,
         source: NoiseSource,
-        end: &mut dyn FnMut(Prepared<'_>, RobustFit) -> Calibration,
+        end: &mut dyn FnMut(Prepared<'_>, RobustFit) -> Result<Calibration>,
         rounds: usize,
     ) -> Result<Calibration> {
         let is_open = source == NoiseSource::Estimated && self.session.data.station_count() > 1 && rounds > 0;
         let ratios = is_open.then(|| noise_ratios(&self.session, &self.fit_rows, &fit)).flatten();
-        let Some(ratios) = ratios else { return Ok(end(self, fit)) };
+        let Some(ratios) = ratios else { return end(self, fit) };
         let again = Prepared { session: self.session.with_noise_ratios(&ratios), ..self };
         let rows = self.session.data.len();
         let fit = threads::in_pool(rows, || again.fit(registered, fit.fitted.noise, source))?;
@@ -184,6 +197,7 @@ impl<'a> Prepared<'a> {
             frame: self.options.frame,
             unknowns: self.session.unknowns.clone(),
             formulation: self.options.formulation,
+            chosen_tolerance: None,
             base_from_device: models.calibrated.device_from_base.inverse(),
             stations: stations(&self.session, &models.calibrated, fitted.noise),
             models,
@@ -198,6 +212,7 @@ impl<'a> Prepared<'a> {
             robustness,
             warnings,
             diagnosis,
+            correction: None,
             fit_rows: self.fit_rows,
             held_out_rows: self.held_out_rows,
             packed,

@@ -236,7 +236,7 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
             rms / of_random
         ));
     }
-    if let (Some(measured), Some(range)) = (trust.measured, trust.range)
+    if let (Some(measured), Some(range)) = (trust.expected.measured, trust.expected.range)
         && range.sigma_m > RANGE * measured.sigma_m
     {
         reasons.push(format!(
@@ -249,7 +249,7 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
 }
 
 fn in_favour(grounds: &Grounds<'_>) -> String {
-    let expected = grounds.trust.range.map_or(String::new(), |range| {
+    let expected = grounds.trust.expected.range.map_or(String::new(), |range| {
         format!(", and the expected error anywhere within the limits is {:.3} mm (RMS)", 1e3 * range.sigma_m)
     });
     format!("all unknowns are determined, every joint was moved through half of its range or more{expected}")

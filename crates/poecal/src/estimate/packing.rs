@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::lanes::{self, SimdLevel};
 use crate::measurement::Dataset;
-use crate::robot::{JointKind, JointTerm, Moments, Robot, Situation, Statics, Term};
+use crate::robot::{JointKind, JointTerm, Robot, Situation, Term, TermFunctions};
 use crate::threads;
 
 /// Rows that one thread takes at a time.
@@ -45,7 +45,8 @@ impl Packed {
     #[must_use]
     pub fn new(robot: &Robot, readings: &[f64], width: usize) -> Self {
         let (indices, width) = (robot.reading_indices(), width.max(1));
-        Packed::fill(robot, readings.len() / width, |first, angles| {
+        let factors = |row: usize| robot.factors_of(&readings[row * width..][..width]);
+        Packed::fill(robot, readings.len() / width, factors, |first, angles| {
             let rows = readings[first * width..].chunks_exact(width);
             for (angles, row) in angles.chunks_exact_mut(indices.len().max(1)).zip(rows) {
                 for ((angle, joint), &index) in angles.iter_mut().zip(&robot.joints).zip(&indices) {
@@ -81,13 +82,23 @@ impl Packed {
     #[must_use]
     pub fn of_values(robot: &Robot, values: &[f64]) -> Self {
         let joints = robot.joints.len().max(1);
-        Packed::fill(robot, values.len() / joints, |first, angles| {
-            angles.copy_from_slice(&values[first * joints..][..angles.len()]);
-        })
+        Packed::fill(
+            robot,
+            values.len() / joints,
+            |_| &[],
+            |first, angles| {
+                angles.copy_from_slice(&values[first * joints..][..angles.len()]);
+            },
+        )
     }
 
-    /// Packs `rows` rows; `put` writes the joint values from a first row on.
-    fn fill(robot: &Robot, rows: usize, put: impl Fn(usize, &mut [f64]) + Sync) -> Self {
+    /// Packs `rows` rows with their factors; `put` writes the joint values from a first row on.
+    fn fill<'a>(
+        robot: &Robot,
+        rows: usize,
+        factors: impl Fn(usize) -> &'a [f64] + Sync,
+        put: impl Fn(usize, &mut [f64]) + Sync,
+    ) -> Self {
         let joints = robot.joints.len();
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
         let mut angles = vec![0.0; rows * joints];
@@ -111,7 +122,7 @@ impl Packed {
             let chunks = angles.par_chunks_mut(len).zip(values.par_chunks_mut(len)).enumerate();
             chunks.with_max_len(1).for_each(|(chunk, (angles, values))| fill(chunk * CHUNK, angles, values));
         }
-        let bases = bases(robot, &angles);
+        let bases = bases(robot, &angles, factors);
         let terms = robot.terms.iter().map(|it| (it.joint, it.term)).collect();
         Packed { joints, kinds, values, angles, terms, bases, further: None }
     }
@@ -199,7 +210,7 @@ impl<'a> Bases<'a> {
         let at = self.terms.iter().position(|it| *it == (joint, term));
         at.and_then(|at| self.bases.get(at))
             .copied()
-            .unwrap_or_else(|| term.model().basis(joint, &Situation { values: self.values, moments: None }))
+            .unwrap_or_else(|| term.model().basis(joint, &Situation::of(self.values)))
     }
 
     /// The sum of terms of a joint, each with its place among the robot's terms, if it is there.
@@ -224,25 +235,16 @@ impl<'a> Bases<'a> {
 }
 
 /// Functions b of all terms of a robot at joint values, one row after the other.
-fn bases(robot: &Robot, angles: &[f64]) -> Vec<f64> {
+fn bases<'a>(robot: &Robot, angles: &[f64], factors: impl Fn(usize) -> &'a [f64] + Sync) -> Vec<f64> {
     if robot.terms.is_empty() {
         return Vec::new();
     }
     let joints = robot.joints.len().max(1);
     let rows: Vec<&[f64]> = angles.chunks_exact(joints).collect();
-    let statics = Statics::new(robot);
-    threads::concat_chunks(&rows, CHUNK, |_, rows| {
-        let mut moments = Moments::default();
-        let mut found = Vec::with_capacity(rows.len() * robot.terms.len());
-        for values in rows {
-            if let Some(statics) = &statics {
-                statics.evaluate(values, &mut moments);
-            }
-            let own = robot.own_values(values);
-            let at = Situation { values: &own, moments: statics.as_ref().map(|_| &moments) };
-            found.extend(robot.terms.iter().map(|it| it.term.model().basis(it.joint, &at)));
-        }
-        found
+    threads::concat_chunks(&rows, CHUNK, |chunk, rows| {
+        let mut functions = TermFunctions::new(robot);
+        let each = rows.iter().enumerate();
+        each.flat_map(|(row, values)| functions.at(values, factors(chunk * CHUNK + row))).collect()
     })
 }
 

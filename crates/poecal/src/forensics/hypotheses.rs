@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use super::DiagnosisKind;
 use super::change::{Change, Stream};
 use crate::measurement::Dataset;
-use crate::robot::{JointKind, Robot};
+use crate::robot::{ReadingKind, Robot};
 
 /// A hypothetical mistake.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,20 +39,22 @@ impl Hypothesis {
     }
 }
 
-/// Names and kinds of the readings; a mimic joint counts with its leader.
+/// Names and kinds of the joints' readings; a mimic joint counts with its leader.
 pub(super) struct ReadingColumns {
     pub(super) names: Vec<String>,
-    pub(super) kinds: Vec<JointKind>,
+    pub(super) kinds: Vec<ReadingKind>,
 }
 
 impl ReadingColumns {
     pub(super) fn new(robot: &Robot) -> Self {
-        let names = robot.reading_names();
+        // Factors come last.
+        let of_joints = |name: &String| robot.reading_kind(name) != ReadingKind::Factor;
+        let names: Vec<String> = robot.reading_names().into_iter().filter(of_joints).collect();
         let kinds = names.iter().map(|name| robot.reading_kind(name)).collect();
         ReadingColumns { names, kinds }
     }
 
-    fn of(&self, kind: JointKind) -> Vec<usize> {
+    fn of(&self, kind: ReadingKind) -> Vec<usize> {
         (0..self.kinds.len()).filter(|&column| self.kinds[column] == kind).collect()
     }
 }
@@ -61,8 +63,8 @@ impl ReadingColumns {
 pub(super) fn joint_units(columns: &ReadingColumns) -> Vec<Hypothesis> {
     let mut all = Vec::new();
     for (kind, factor, large, small) in [
-        (JointKind::Revolute, 180.0 / PI, "degrees", "radians"),
-        (JointKind::Prismatic, 1e3, "millimetres", "metres"),
+        (ReadingKind::Angle, 180.0 / PI, "degrees", "radians"),
+        (ReadingKind::Length, 1e3, "millimetres", "metres"),
     ] {
         let members = columns.of(kind);
         let mut sets: Vec<Vec<usize>> = members.iter().map(|&column| vec![column]).collect();
@@ -120,7 +122,7 @@ pub(super) fn joint_exchanges(columns: &ReadingColumns) -> Vec<Hypothesis> {
 /// A revolute joint's readings as sum or difference with those of the revolute joint before it, as where a controller states the third axis
 /// relative to the horizontal.
 pub(super) fn joint_couplings(columns: &ReadingColumns) -> Vec<Hypothesis> {
-    let turning = columns.of(JointKind::Revolute);
+    let turning = columns.of(ReadingKind::Angle);
     let mut all = Vec::new();
     for (&before, &column) in turning.iter().zip(turning.iter().skip(1)) {
         for (own, factor) in [(1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)] {

@@ -7,7 +7,7 @@ use super::change::Change;
 use super::fitter::Fitter;
 use super::hypotheses::{Hypothesis, ReadingColumns};
 use crate::measurement::Dataset;
-use crate::robot::JointKind;
+use crate::robot::ReadingKind;
 
 /// Smallest gross offset: radians, and share of the reach for prismatic joints. A calibration corrects smaller ones.
 const LEAST_RAD: f64 = 0.052;
@@ -37,7 +37,7 @@ fn joint_zero(
     let name = columns.names.get(column)?;
     let joint = fitter.robot.joints.iter().position(|joint| joint.reading.name == *name)?;
     let multiplier = fitter.robot.joints.get(joint)?.reading.multiplier;
-    let turns = columns.kinds.get(column) == Some(&JointKind::Revolute);
+    let turns = columns.kinds.get(column) == Some(&ReadingKind::Angle);
     let starts: Vec<f64> =
         if turns { (-3..=4).map(|k| f64::from(k) * FRAC_PI_4).collect() } else { vec![0.0] };
     let rough = |by: f64| {

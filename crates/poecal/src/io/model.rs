@@ -137,6 +137,19 @@ impl Model {
     }
 }
 
+impl Model {
+    /// The corrected model of a calibration, if it has one; otherwise the same.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Model`] if the file holds no valid corrected model.
+    pub fn corrected(self) -> Result<Self> {
+        let ModelSource::Calibration(file) = &self.source else { return Ok(self) };
+        let Some(corrected) = file.corrected() else { return Ok(self) };
+        let robot = corrected.robot().map_err(|error| error.in_file(&self.path))?;
+        Ok(Model { robot, source: ModelSource::Calibration(Box::new(corrected)), ..self })
+    }
+}
+
 fn looks_like_json(path: &Path, text: &str) -> bool {
     let named = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
     named || text.trim_start_matches('\u{feff}').trim_start().starts_with('{')
@@ -245,9 +258,9 @@ fn export(model: &Model, message: String) -> Error {
 
 /// Compares the forward kinematics of a model and of its text read back.
 fn verify(model: &Model, robot: &Robot, again: &Robot) -> Result<()> {
-    let names = |robot: &Robot| robot.reading_names().into_iter().collect::<BTreeSet<_>>();
+    let names = |robot: &Robot| robot.joint_reading_names().into_iter().collect::<BTreeSet<_>>();
     let is_same = if model.robot.is_serial() {
-        again.reading_names() == model.robot.reading_names()
+        again.joint_reading_names() == model.robot.joint_reading_names()
     } else {
         names(again) == names(&model.robot)
     };

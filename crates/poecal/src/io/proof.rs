@@ -97,12 +97,13 @@ impl<'a> Reference<'a> {
     /// The readings in the other robot's order, by their names; none if it has others.
     fn readings_of(&self, other: &Robot) -> Option<Cow<'_, [f64]>> {
         let (ours, theirs) = (self.robot.reading_names(), other.reading_names());
-        if ours == theirs || self.robot.is_serial() {
+        if ours == theirs || self.robot.is_serial() && ours.len() == theirs.len() {
             return Some(Cow::Borrowed(&self.readings));
         }
         let at = |name: &String| ours.iter().position(|own| own == name);
         let places = theirs.iter().map(at).collect::<Option<Vec<usize>>>()?;
-        if places.len() != ours.len() {
+        // What a robot without factors lacks is 0 here.
+        if places.len() < self.robot.joint_reading_names().len() {
             return None;
         }
         let rows = self.readings.chunks_exact(ours.len().max(1));

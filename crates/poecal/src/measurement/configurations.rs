@@ -40,7 +40,7 @@ impl Dataset {
         least: usize,
         class: impl Fn(u32) -> C,
     ) -> Vec<Vec<u32>> {
-        let readings = |row: u32| self.readings(row as usize);
+        let readings = |row: u32| self.of_joints(row);
         // Rows of equal readings are neighbours in the order of any weighted sum; with these weights other rows seldom are, and hardly
         // ever in that of two such sums.
         let weight = |k: usize| 1.0 + 0.618_033_988_749_895 * (k as f64).sqrt();
@@ -93,7 +93,7 @@ impl Dataset {
 
     /// Groups of two rows or more among these with identical readings, groups and their rows in the order of the data.
     pub(crate) fn repeated(&self, rows: &[u32]) -> Vec<Vec<u32>> {
-        let bits = |row: u32| self.readings(row as usize).iter().map(|value| value.to_bits());
+        let bits = |row: u32| self.of_joints(row).iter().map(|value| value.to_bits());
         // A hash: only rows with equal hashes are compared.
         let mixed =
             |row: u32| bits(row).fold(0, |sum: u64, bits| (sum ^ bits).wrapping_mul(MIXER).rotate_left(29));

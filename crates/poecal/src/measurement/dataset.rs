@@ -105,6 +105,9 @@ pub struct Dataset {
     readings: Vec<f64>,
     #[serde(default)]
     further_readings: Vec<f64>,
+    /// How many of the readings, the last ones, are of no joint.
+    #[serde(default)]
+    factors: usize,
     /// Names of the targets; `None` is the single unnamed target, which is the tip itself.
     pub targets: Vec<Option<String>>,
     /// Names of the stations of the device, each with a frame of its own; empty for a single station without a name.
@@ -126,6 +129,18 @@ impl Dataset {
     #[must_use]
     pub fn new(reading_names: Vec<String>) -> Self {
         Dataset { reading_names, ..Dataset::default() }
+    }
+
+    /// The same with so many of the readings, the last ones, of no joint: they make no other configuration.
+    #[must_use]
+    pub fn with_factors(self, count: usize) -> Self {
+        Dataset { factors: count, ..self }
+    }
+
+    /// The readings of a row that are of joints: what makes a configuration.
+    pub(super) fn of_joints(&self, row: u32) -> &[f64] {
+        let readings = self.readings(row as usize);
+        &readings[..readings.len().saturating_sub(self.factors)]
     }
 
     /// Names of the readings of a configuration.
@@ -368,6 +383,29 @@ impl Dataset {
         let index = self.further_readings.len() / self.reading_names.len().max(1);
         self.further_readings.extend_from_slice(readings);
         Ok(u32::try_from(index).unwrap_or(u32::MAX))
+    }
+
+    /// Some of the rows, in this order.
+    #[must_use]
+    pub(crate) fn only(&self, rows: &[u32]) -> Dataset {
+        let mut found = Dataset {
+            readings: Vec::with_capacity(rows.len() * self.reading_names.len()),
+            observations: Vec::with_capacity(rows.len()),
+            ids: Vec::new(),
+            reading_names: self.reading_names.clone(),
+            further_readings: self.further_readings.clone(),
+            factors: self.factors,
+            targets: self.targets.clone(),
+            stations: self.stations.clone(),
+            files: self.files.clone(),
+            pose_residual: self.pose_residual,
+        };
+        for row in rows.iter().map(|&row| row as usize) {
+            found.readings.extend_from_slice(self.readings(row));
+            found.observations.extend(self.observations.get(row).copied());
+            found.ids.extend(self.ids.get(row).cloned());
+        }
+        found
     }
 
     /// Marks every row as one to fit, and adds the rows of another data set as held out.

@@ -122,7 +122,12 @@ impl Prior {
             direction: joint.screw.direction(),
             origin: joint.frame.translation,
             turns: !joint.screw.is_prismatic(),
-            tolerance: joint.tolerance.unwrap_or(common),
+            // A give has no axis of its own.
+            tolerance: if joint.give_of.is_some() {
+                Tolerance::NONE
+            } else {
+                joint.tolerance.unwrap_or(common)
+            },
         });
         Prior {
             axes: axes.collect(),
@@ -158,7 +163,8 @@ impl Prior {
     /// a robot that is farther from nominal than its tolerances counts so much less.
     #[must_use]
     pub fn looseness(&self, estimate: &Estimate) -> f64 {
-        let screws: usize = self.axes.iter().map(|axis| if axis.turns { 4 } else { 2 }).sum();
+        let counted = self.axes.iter().filter(|axis| axis.tolerance != Tolerance::NONE);
+        let screws: usize = counted.map(|axis| if axis.turns { 4 } else { 2 }).sum();
         let free = screws.saturating_sub(if self.base_free { 6 } else { 0 }).max(1);
         (2.0 * self.cost(estimate) / free as f64).max(1.0)
     }

@@ -1,8 +1,11 @@
 //! The table of a calibration judged on other measurements.
 
 use super::table::{STATISTICS, WIDTHS, line, number, number_or_dash, row};
-use crate::calibration::{Judgement, ModelAccuracy, PartCoverage, Refitted, Statistic};
+use crate::calibration::{JudgedModel, Judgement, ModelAccuracy, PartCoverage, Refitted, Statistic};
 use crate::measurement::Quantity;
+
+/// Difference of two errors that are one, as a share: rounding of two fits of a frame.
+const SAME: f64 = 1e-6;
 
 /// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
 /// `measurements` name the files.
@@ -24,15 +27,33 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
         out.push('\n');
         for (quantity, part) in check.parts.iter() {
             if let Some(found) = judgement.calibrated.get(quantity) {
-                coverage(&mut out, quantity, &part, found.rms);
+                coverage(&mut out, "coverage", quantity, &part, found.rms);
             }
         }
         line(&mut out, "sampled range", &range_words(judgement));
     }
+    if let Some(model) = with_terms(judgement)
+        && let Some(check) = &model.promised
+    {
+        for (quantity, part) in check.parts.iter() {
+            if let Some(found) = model.errors.get(quantity) {
+                coverage(&mut out, "corrected", quantity, &part, found.rms);
+            }
+        }
+    }
     out
 }
 
-fn coverage(out: &mut String, quantity: Quantity, check: &PartCoverage, found: f64) {
+/// The corrected model, unless it is the calibrated one but for rounding: without terms.
+fn with_terms(judgement: &Judgement) -> Option<&JudgedModel> {
+    let is_same = |model: &&JudgedModel| {
+        let (own, other) = (model.errors.lead().rms, judgement.calibrated.lead().rms);
+        (own - other).abs() <= SAME * other
+    };
+    judgement.corrected.as_ref().filter(|model| !is_same(model))
+}
+
+fn coverage(out: &mut String, label: &str, quantity: Quantity, check: &PartCoverage, found: f64) {
     let (what, unit) = (quantity.name(), quantity.unit().symbol());
     let words = format!(
         "{what}: {:.1} % of the errors are inside their 95 % bounds; {} {unit} (RMS), expected {} with measurement noise",
@@ -40,7 +61,7 @@ fn coverage(out: &mut String, quantity: Quantity, check: &PartCoverage, found: f
         number(found),
         number(check.expected_rms)
     );
-    line(out, "coverage", &words);
+    line(out, label, &words);
 }
 
 fn range_words(judgement: &Judgement) -> String {
@@ -80,7 +101,9 @@ fn block(
     of: impl Fn(&ModelAccuracy) -> Option<Statistic>,
 ) {
     let nominal = judgement.nominal.as_ref().map(|model| ("nominal", model));
-    let columns: Vec<_> = nominal.into_iter().chain([("calibrated", &judgement.calibrated)]).collect();
+    let corrected = with_terms(judgement).map(|model| ("corrected", &model.errors));
+    let columns: Vec<_> =
+        nominal.into_iter().chain([("calibrated", &judgement.calibrated)]).chain(corrected).collect();
     row(out, title, WIDTHS, columns.iter().map(|(head, _)| head));
     for (label, _, value) in STATISTICS {
         let cells = columns.iter().map(|(_, model)| number_or_dash(of(model).map(value)));

@@ -9,14 +9,20 @@ use crate::robot::{JointKind, Robot};
 use crate::text::visible;
 
 /// A model: its word, and how to take it from the accuracy of a set.
-type Model = (&'static str, fn(&SetAccuracy) -> &ModelAccuracy);
+type Model = (&'static str, fn(&SetAccuracy) -> Option<&ModelAccuracy>);
 
-/// The three models.
-pub(super) const MODELS: [Model; 3] = [
-    ("nominal", |set| &set.nominal),
-    ("registered", |set| &set.registered),
-    ("calibrated", |set| &set.calibrated),
+/// The models; not every calibration has the last.
+const MODELS: [Model; 4] = [
+    ("nominal", |set| Some(&set.nominal)),
+    ("registered", |set| Some(&set.registered)),
+    ("calibrated", |set| Some(&set.calibrated)),
+    ("corrected", |set| set.corrected.as_ref()),
 ];
+
+/// The models of some rows.
+pub(super) fn models(set: &SetAccuracy) -> Vec<Model> {
+    MODELS.into_iter().filter(|(_, model)| model(set).is_some()).collect()
+}
 
 /// A row of statistics: its label, its name in files, and how to take it.
 type StatisticRow = (&'static str, &'static str, fn(Statistic) -> f64);
@@ -30,7 +36,7 @@ pub(super) const STATISTICS: [StatisticRow; 4] = [
 ];
 
 /// Widths of the label and of each cell in tables of models.
-pub(super) const WIDTHS: [usize; 2] = [26, 14];
+pub(super) const WIDTHS: [usize; 2] = [26, 13];
 
 /// Errors of each quantity by the three models, training and held out apart.
 pub(super) fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccuracy>) -> String {
@@ -57,7 +63,7 @@ pub(super) fn measured<'a>(
 
 fn block(out: &mut String, quantity: Quantity, training: &SetAccuracy, held_out: Option<&SetAccuracy>) {
     let title = format!("{}, {}", quantity.name(), quantity.unit().symbol());
-    row(out, &title, WIDTHS, MODELS.map(|(word, _)| word));
+    row(out, &title, WIDTHS, models(training).iter().map(|(word, _)| *word));
     set_rows(out, "training", training, quantity);
     match held_out {
         Some(set) => set_rows(out, "held out", set, quantity),
@@ -68,7 +74,9 @@ fn block(out: &mut String, quantity: Quantity, training: &SetAccuracy, held_out:
 fn set_rows(out: &mut String, name: &str, set: &SetAccuracy, quantity: Quantity) {
     for (k, (label, _, value)) in STATISTICS.into_iter().enumerate() {
         let head = if k == 0 { format!("{name} ({})", set.count) } else { String::new() };
-        let cells = MODELS.map(|(_, model)| number_or_dash(model(set).get(quantity).map(value)));
+        let cells = models(set)
+            .into_iter()
+            .map(|(_, model)| number_or_dash(model(set).and_then(|model| model.get(quantity)).map(value)));
         row(out, &format!("  {head:<17} {label:<6}"), WIDTHS, cells);
     }
 }

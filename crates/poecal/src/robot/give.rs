@@ -1,13 +1,15 @@
 //! Joints whose bearings and links give.
 
+use nalgebra::Vector3;
+
 use super::gravity::axes;
 use super::{Body, Joint, JointKind, Mount, Reading, Robot, Weight};
 use crate::lie::{Screw, rotation};
 
 impl Robot {
-    /// The same robot whose joints and links can tilt: behind each of these joints stand gives about the x and y axes of its axis frame, of a
-    /// prismatic joint also about z. A give is a revolute joint at zero, which turns by its terms alone (theory.md §3, *Gives*). Beside the
-    /// robot, the new index of each of its joints.
+    /// The same robot whose joints and links can tilt: behind each of these joints stand gives about two axes across its own through its pivot
+    /// ([`Robot::pivots`]), of a prismatic joint also about its own. A give is a revolute joint at zero, which turns by its terms alone
+    /// (theory.md §3, *Gives*). Beside the robot, the new index of each of its joints.
     ///
     /// ```
     /// let robot = poecal::simulate::elbow();
@@ -20,12 +22,13 @@ impl Robot {
         let mut robot = self.clone();
         robot.joints.clear();
         let (mut places, mut ends) = (Vec::new(), Vec::new());
+        let pivots = self.pivots();
         for (index, joint) in self.joints.iter().enumerate() {
             places.push(robot.joints.len());
             robot.joints.push(joint.clone());
             if joints.contains(&index) {
                 let own = robot.joints.len() - 1;
-                robot.joints.extend(gives(joint, own));
+                robot.joints.extend(gives(joint, own, pivots[index]));
             }
             ends.push(robot.joints.len() - 1);
         }
@@ -41,18 +44,50 @@ impl Robot {
         mounts.for_each(|mount: &mut Mount| mount.body = moved(mount.body));
         let weights = robot.gravity.iter_mut().flat_map(|gravity| &mut gravity.weights);
         weights.for_each(|weight: &mut Weight| weight.body = moved(weight.body));
+        let of_all = axes(&robot);
         if let Some(gravity) = &mut robot.gravity {
-            gravity.axes = axes(&robot.joints);
+            gravity.axes = of_all;
         }
         for term in &mut robot.terms {
-            term.joint = places.get(term.joint).copied().unwrap_or(term.joint);
+            let place = |joint: usize| places.get(joint).copied().unwrap_or(joint);
+            (term.joint, term.term) = (place(term.joint), term.term.moved(place));
         }
         (robot, places)
     }
 }
 
-/// The gives of a joint of this index.
-fn gives(joint: &Joint, index: usize) -> impl Iterator<Item = Joint> {
+impl Robot {
+    /// The same robot without gives and their terms, and without weights and the terms that need them.
+    ///
+    /// ```
+    /// let robot = poecal::simulate::elbow();
+    /// assert_eq!(robot.giving(&[0, 3]).0.rigid(), robot);
+    /// ```
+    #[must_use]
+    pub fn rigid(&self) -> Robot {
+        let mut robot = self.clone();
+        let is_own = |joint: usize| self.joints.get(joint).is_some_and(|it| it.give_of.is_none());
+        // The joint that a link is left with, and its index among those that stay.
+        let left = |joint: usize| (0..joint).filter(|&it| is_own(it)).count();
+        let own = |joint: usize| self.joints.get(joint).and_then(|it| it.give_of).unwrap_or(joint);
+        let moved = |body: Body| match body {
+            Body::Base => Body::Base,
+            Body::Link(joint) => Body::Link(left(own(joint))),
+        };
+        robot.joints.retain(|joint| joint.give_of.is_none());
+        robot.joints.iter_mut().for_each(|joint| joint.stands_on = joint.stands_on.map(moved));
+        robot.tip = self.tip.map(moved);
+        let mounts = robot.mounted.iter_mut().chain(&mut robot.instruments);
+        mounts.for_each(|mount: &mut Mount| mount.body = moved(mount.body));
+        robot.gravity = None;
+        robot.terms.retain(|it| is_own(it.joint) && !it.term.needs_gravity());
+        robot.terms.iter_mut().for_each(|it| (it.joint, it.term) = (left(it.joint), it.term.moved(left)));
+        robot
+    }
+}
+
+/// The gives of a joint of this index, through a pivot.
+fn gives(joint: &Joint, index: usize, pivot: Vector3<f64>) -> impl Iterator<Item = Joint> {
     let z = joint.screw.direction();
     let x = rotation::perpendicular(&z);
     let about = [("x", x), ("y", z.cross(&x)), ("z", z)];
@@ -60,7 +95,6 @@ fn gives(joint: &Joint, index: usize) -> impl Iterator<Item = Joint> {
         JointKind::Revolute => 2,
         JointKind::Prismatic => 3,
     };
-    let origin = joint.frame.translation;
     let (name, frame, reading) = (joint.name.clone(), joint.frame, joint.reading.name.clone());
     about.into_iter().take(count).map(move |(axis, direction)| Joint {
         frame,
@@ -69,7 +103,7 @@ fn gives(joint: &Joint, index: usize) -> impl Iterator<Item = Joint> {
         ..Joint::with_screw(
             &format!("{name}~{axis}"),
             JointKind::Revolute,
-            Screw::revolute(&direction, &origin),
+            Screw::revolute(&direction, &pivot),
         )
     })
 }

@@ -1,9 +1,11 @@
 //! Weights that a robot carries.
 
+use std::str::FromStr;
+
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::{Body, Joint, Robot};
+use super::{Body, JointKind, Robot};
 use crate::lie::Screw;
 
 /// Direction of gravity, and the weights whose moments bend the robot. How heavy they are is not known: only products of mass, lever and
@@ -12,7 +14,7 @@ use crate::lie::Screw;
 /// ```
 /// let robot = poecal::simulate::elbow();
 /// let gravity = poecal::robot::Gravity::of_unit_weights(&robot, nalgebra::Vector3::new(0.0, 0.0, -1.0));
-/// // At the origins of joints 2 to 6, and at the tip.
+/// // At the pivots of joints 2 to 6, and at the tip.
 /// assert_eq!(gravity.weights.len(), 6);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,8 +23,56 @@ pub struct Gravity {
     pub direction: Vector3<f64>,
     /// The weights.
     pub weights: Vec<Weight>,
-    /// Screw and origin of each joint by which moments are counted, at zero joint values: those of the drawing, whatever is found.
+    /// Screw and pivot ([`Robot::pivots`]) of each joint by which moments are counted, at zero joint values: those of the drawing, whatever is
+    /// found.
     pub axes: Vec<(Screw, Vector3<f64>)>,
+}
+
+/// Where weights are pulled.
+///
+/// ```
+/// use poecal::robot::GravityDirection;
+/// assert_eq!("0,0,-1".parse(), Ok(GravityDirection::default()));
+/// assert_eq!("find".parse(), Ok(GravityDirection::Found));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GravityDirection {
+    /// In this direction of the base frame, of any length above 0.
+    Known(Vector3<f64>),
+    /// Where the terms leave the least noise.
+    Found,
+}
+
+impl Default for GravityDirection {
+    /// Against z.
+    fn default() -> Self {
+        GravityDirection::Known(-Vector3::z())
+    }
+}
+
+impl FromStr for GravityDirection {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim() == "find" {
+            return Ok(GravityDirection::Found);
+        }
+        let numbers: Vec<Option<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+        match numbers[..] {
+            [Some(x), Some(y), Some(z)] if GravityDirection::is_direction(&Vector3::new(x, y, z)) => {
+                Ok(GravityDirection::Known(Vector3::new(x, y, z)))
+            }
+            _ => Err(format!("found `{text}`, expected a direction of three numbers, like 0,0,-1, or find")),
+        }
+    }
+}
+
+impl GravityDirection {
+    /// Whether a vector has a direction.
+    #[must_use]
+    pub fn is_direction(vector: &Vector3<f64>) -> bool {
+        (1e-100..=1e100).contains(&vector.norm())
+    }
 }
 
 /// A weight on the robot.
@@ -43,24 +93,69 @@ pub struct Weight {
 }
 
 impl Gravity {
-    /// A weight at the origin of each joint but the first, on the link that carries it, and at the tip.
+    /// A weight at the pivot of each joint but the first, on the link that carries it, and at the tip.
     #[must_use]
     pub fn of_unit_weights(robot: &Robot, direction: Vector3<f64>) -> Self {
         let carried = (0..robot.joints.len()).filter(|&joint| robot.joints[joint].give_of.is_none());
+        let pivots = robot.pivots();
         let at_joints = carried.filter_map(|joint| {
             let body = robot.body_before(joint);
             body.joint()?;
-            let place = robot.joints[joint].frame.translation;
-            Some(Weight { name: robot.joints[joint].name.clone(), body, place })
+            Some(Weight { name: robot.joints[joint].name.clone(), body, place: *pivots.get(joint)? })
         });
         let tip =
             Weight { name: robot.tip_name.clone(), body: robot.tip_body(), place: robot.home.translation };
         let weights = at_joints.chain([tip]).collect();
-        Gravity { direction: direction.normalize(), weights, axes: axes(&robot.joints) }
+        Gravity { direction: direction.normalize().map(|it| it + 0.0), weights, axes: axes(robot) }
     }
 }
 
-/// Screws and origins of joints.
-pub(super) fn axes(joints: &[Joint]) -> Vec<(Screw, Vector3<f64>)> {
-    joints.iter().map(|joint| (joint.screw, joint.frame.translation)).collect()
+/// Screws and pivots of joints.
+pub(super) fn axes(robot: &Robot) -> Vec<(Screw, Vector3<f64>)> {
+    robot.joints.iter().map(|joint| joint.screw).zip(robot.pivots()).collect()
+}
+
+impl Robot {
+    /// A point of each joint's axis that is the same in whatever form the model is written: the nearest to the pivot of the joint that it
+    /// carries, of the last one to the tip; of a sliding joint that pivot itself. At zero joint values, base frame, metres.
+    ///
+    /// ```
+    /// let robot = poecal::simulate::elbow();
+    /// let far = robot.pivots()[5] - robot.home.translation;
+    /// assert!(robot.joints[5].screw.direction().dot(&far).abs() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn pivots(&self) -> Vec<Vector3<f64>> {
+        let on_the_way = self.joints_to(self.tip_body());
+        let mut next: Vec<Option<Vector3<f64>>> = vec![None; self.joints.len()];
+        if let Some(end) = self.tip_body().joint().and_then(|joint| next.get_mut(joint)) {
+            *end = Some(self.home.translation);
+        }
+        for mount in &self.mounted {
+            if let Some(end) = mount.body.joint().and_then(|joint| next.get_mut(joint)) {
+                end.get_or_insert(self.base_from(mount).translation);
+            }
+        }
+        let mut pivots = vec![Vector3::zeros(); self.joints.len()];
+        for (index, joint) in self.joints.iter().enumerate().rev() {
+            let toward = next[index].unwrap_or(joint.frame.translation);
+            pivots[index] = match joint.kind {
+                JointKind::Revolute if joint.give_of.is_none() => joint.screw.nearest_point(&toward),
+                JointKind::Revolute | JointKind::Prismatic => toward,
+            };
+            if let Some(before) = self.body_before(index).joint().and_then(|before| next.get_mut(before)) {
+                // Where links branch, the way to the tip counts, else the last branch.
+                if before.is_none() || on_the_way.contains(&index) {
+                    *before = Some(pivots[index]);
+                }
+            }
+        }
+        // Gives stand at the pivot of their joint.
+        for index in 0..pivots.len() {
+            if let Some(pivot) = self.joints[index].give_of.and_then(|of| pivots.get(of)).copied() {
+                pivots[index] = pivot;
+            }
+        }
+        pivots
+    }
 }

@@ -12,7 +12,7 @@ use crate::unit::Unit;
 /// ```
 /// use poecal::robot::{Harmonic, Situation, TermModel};
 /// let eccentric = Harmonic { order: 2, cosine: false };
-/// let at = Situation { values: &[std::f64::consts::FRAC_PI_4], moments: None };
+/// let at = Situation::of(&[std::f64::consts::FRAC_PI_4]);
 /// assert!((eccentric.basis(0, &at) - 1.0).abs() < 1e-15 && eccentric.name() == "sin2");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

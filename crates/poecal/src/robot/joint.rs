@@ -113,6 +113,8 @@ pub struct Tolerance {
 impl Tolerance {
     /// So wide that the measurements alone decide: 30° and 0.3 m.
     pub const WIDE: Tolerance = Tolerance { angle_rad: 0.5, length_m: 0.3 };
+    /// Nothing is known.
+    pub(crate) const NONE: Tolerance = Tolerance { angle_rad: f64::INFINITY, length_m: f64::INFINITY };
 }
 
 impl Default for Tolerance {

@@ -1,10 +1,8 @@
 //! Forward kinematics by the product of exponentials.
 
-use std::borrow::Cow;
-
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Body, Joint, JointTerm, Moments, Robot, Situation, Statics};
+use super::{Body, Joint, Robot, TermFunctions};
 use crate::lanes::{self, Exponential, SimdLevel, WIDTH, Wide};
 use crate::lie::{Pose, Screw, hat};
 
@@ -20,34 +18,23 @@ impl Robot {
             .zip(indices)
             .map(|(joint, index)| joint.reading.value(readings.get(index).copied().unwrap_or(0.0)))
             .collect();
-        self.add_terms(&mut values);
+        self.add_terms(&mut values, self.factors_of(readings));
         values
     }
 
     /// Adds the terms of the joints' values.
-    fn add_terms(&self, values: &mut [f64]) {
+    fn add_terms(&self, values: &mut [f64], factors: &[f64]) {
         if self.terms.is_empty() {
             return;
         }
-        let mut moments = Moments::default();
-        let statics = Statics::new(self);
-        if let Some(statics) = &statics {
-            statics.evaluate(values, &mut moments);
+        let found = TermFunctions::new(self).at(values, factors);
+        let mut more = vec![0.0; values.len()];
+        for (term, basis) in self.terms.iter().zip(found) {
+            if let Some(more) = more.get_mut(term.joint) {
+                *more += term.coefficient * basis;
+            }
         }
-        let own = self.own_values(values);
-        let at = Situation { values: &own, moments: statics.as_ref().map(|_| &moments) };
-        let more: Vec<f64> = (0..values.len()).map(|joint| JointTerm::sum(&self.terms, joint, &at)).collect();
         values.iter_mut().zip(more).for_each(|(value, more)| *value += more);
-    }
-
-    /// Joint values as terms depend on them: of a give that of the joint which gives.
-    pub(crate) fn own_values<'a>(&self, values: &'a [f64]) -> Cow<'a, [f64]> {
-        if self.joints.iter().all(|joint| joint.give_of.is_none()) {
-            return Cow::Borrowed(values);
-        }
-        let own = self.joints.iter().zip(values);
-        let of = |give: Option<usize>| give.and_then(|joint| values.get(joint)).copied();
-        Cow::Owned(own.map(|(joint, &value)| of(joint.give_of).unwrap_or(value)).collect())
     }
 
     /// `base_from_tip`, theory.md §2 (6), at a configuration given as readings (radians, metres; order of [`Robot::reading_names`]).

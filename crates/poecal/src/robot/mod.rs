@@ -1,7 +1,11 @@
 //! Robots: a chain or a tree of joints with screws, a home pose, forward kinematics. No estimation here, and no files.
 
 mod body;
+mod correction_model;
+mod corrections;
+mod coupling;
 mod dh;
+mod factor;
 mod give;
 mod gravity;
 mod harmonic;
@@ -9,20 +13,30 @@ mod joint;
 mod kinematics;
 mod offset;
 mod ratio;
+mod reading_kind;
 mod sag;
+mod sizes;
 mod statics;
 mod term;
+mod term_functions;
 mod term_model;
 mod zeros;
 
 pub use body::{Body, Mount};
+pub use correction_model::CorrectionModel;
+pub use corrections::Corrections;
+pub use coupling::Coupling;
 pub use dh::{DhConvention, DhRow};
-pub use gravity::{Gravity, Weight};
+pub use factor::{Factor, FactorReading};
+pub use gravity::{Gravity, GravityDirection, Weight};
 pub use harmonic::Harmonic;
 pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
+pub use reading_kind::ReadingKind;
 pub use sag::Sag;
+pub use sizes::{Sizes, TermGroup};
 pub use statics::{Moments, Statics};
 pub use term::{JointTerm, Term};
+pub(crate) use term_functions::TermFunctions;
 pub use term_model::{Situation, TermModel};
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -78,6 +92,9 @@ pub struct Robot {
     /// Gravity and the weights that bend the robot, if terms depend on them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity: Option<Gravity>,
+    /// What else is read in each configuration and terms depend on: readings of no joint, after those of the joints.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub factors: Vec<FactorReading>,
     /// Instruments on the robot; all others stand beside it, on its base.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub instruments: Vec<Mount>,
@@ -124,6 +141,7 @@ impl Robot {
             mounted: Vec::new(),
             terms: Vec::new(),
             gravity: None,
+            factors: Vec::new(),
             instruments: Vec::new(),
         })
     }
@@ -142,19 +160,61 @@ impl Robot {
         self.joints.iter().filter(follows).map(|other| other.name.as_str()).collect()
     }
 
-    /// Names of the readings that a configuration consists of, in order: each joint's own, once; a mimic joint has its leader's.
+    /// The same robot with further factors.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Option`] if two readings have one name, or a name is longer than [`LONGEST_NAME`].
+    ///
+    /// ```
+    /// let robot = poecal::simulate::elbow().with_factors(&["temperature".to_owned()])?;
+    /// assert_eq!(robot.reading_names()[6], "temperature");
+    /// # Ok::<(), poecal::Error>(())
+    /// ```
+    pub fn with_factors(&self, names: &[String]) -> Result<Self> {
+        let mut robot = self.clone();
+        for name in names {
+            check_name(name, "factor")?;
+            if robot.joints.iter().any(|joint| joint.name == *name) || robot.reading_names().contains(name) {
+                let message = format!(
+                    "found the factor `{name}`, expected a name that no joint and no other factor has"
+                );
+                return Err(Error::new(ErrorKind::Option, message));
+            }
+            robot.factors.push(FactorReading::new(name));
+        }
+        Ok(robot)
+    }
+
+    /// Names of the readings that a configuration consists of, in order: each joint's own, once; a mimic joint has its leader's. Then the
+    /// factors.
     #[must_use]
     pub fn reading_names(&self) -> Vec<String> {
         let mut known = BTreeSet::new();
         let names = self.joints.iter().map(|joint| &joint.reading.name);
-        names.filter(|name| known.insert(name.as_str())).cloned().collect()
+        names
+            .filter(|name| known.insert(name.as_str()))
+            .chain(self.factors.iter().map(|it| &it.name))
+            .cloned()
+            .collect()
     }
 
-    /// Kind of a reading: that of the joint of its name, else of the first joint that follows it.
-    pub(crate) fn reading_kind(&self, name: &str) -> JointKind {
+    /// The readings of joints alone.
+    pub(crate) fn joint_reading_names(&self) -> Vec<String> {
+        let mut names = self.reading_names();
+        names.truncate(names.len() - self.factors.len());
+        names
+    }
+
+    /// Kind of a reading: that of the joint of its name, else of the first joint that follows it; of none a factor.
+    pub(crate) fn reading_kind(&self, name: &str) -> ReadingKind {
         let mut users = self.joints.iter().filter(|joint| joint.reading.name == name);
         let leader = users.clone().find(|joint| joint.name == name);
-        leader.or_else(|| users.next()).map_or(JointKind::Revolute, |joint| joint.kind)
+        leader.or_else(|| users.next()).map_or(ReadingKind::Factor, |joint| joint.kind.into())
+    }
+
+    /// The factors among the readings of a configuration.
+    pub(crate) fn factors_of<'a>(&self, readings: &'a [f64]) -> &'a [f64] {
+        readings.get(readings.len().saturating_sub(self.factors.len())..).unwrap_or_default()
     }
 
     /// For each joint, the index of its reading in [`Robot::reading_names`].
@@ -170,7 +230,7 @@ impl Robot {
     }
 
     /// The same robot with other screws (one a joint). Each joint frame follows its axis by the smallest motion
-    /// ([`Screw::smallest_motion_to`] seen from the frame's origin); home pose and targets stay.
+    /// ([`Screw::smallest_motion_to`] seen from the frame's origin), that of a give stays with its joint's; home pose and targets stay.
     #[must_use]
     pub fn with_screws(&self, screws: &[Screw]) -> Self {
         let mut robot = self.clone();
@@ -178,6 +238,11 @@ impl Robot {
             let motion = joint.screw.smallest_motion_to(screw, &joint.frame.translation);
             joint.frame = (motion * joint.frame).orthonormalized();
             joint.screw = *screw;
+        }
+        for index in 0..robot.joints.len() {
+            if let Some(of) = robot.joints[index].give_of.and_then(|of| robot.joints.get(of)) {
+                robot.joints[index].frame = of.frame;
+            }
         }
         robot
     }
@@ -260,6 +325,6 @@ mod tests {
         slide.reading = Reading { name: "drive".to_owned(), multiplier: 0.01, offset: 0.0 };
         let drive = Joint::revolute("drive", Screw::revolute(&Vector3::z(), &Vector3::zeros()));
         let robot = Robot::new("r", vec![slide, drive], Pose::identity()).unwrap();
-        assert_eq!(robot.reading_kind("drive"), JointKind::Revolute);
+        assert_eq!(robot.reading_kind("drive"), ReadingKind::Angle);
     }
 }

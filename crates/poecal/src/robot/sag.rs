@@ -12,7 +12,7 @@ use crate::unit::Unit;
 /// ```
 /// use poecal::robot::{Sag, Situation, TermModel};
 /// let sag = Sag { weight: 5 };
-/// assert_eq!((sag.name().as_ref(), sag.basis(0, &Situation { values: &[], moments: None })), ("sag6", 0.0));
+/// assert_eq!((sag.name().as_ref(), sag.basis(0, &Situation::of(&[]))), ("sag6", 0.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Sag {

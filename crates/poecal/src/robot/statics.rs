@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use super::{Body, Gravity, JointKind, Robot, Weight};
 use crate::lie::Pose;
 
-/// Longest lever below which a weight has no moment, metres.
-const LEAST_LEVER_M: f64 = 1e-3;
+/// Lever below which a weight has no moment, as a share of the arm: a tool on the last axis.
+const LEAST_LEVER: f64 = 1e-2;
 
 /// Moments of the weights of a robot in any configuration, by the screws of its drawing.
 ///
@@ -25,6 +25,7 @@ pub struct Statics<'a> {
     gravity: &'a Gravity,
     /// Of each joint and weight, 1 over the joint's longest lever; 0 of a weight that it does not carry.
     shares: Vec<f64>,
+    levers: Vec<f64>,
 }
 
 /// Moments in one configuration: of each weight about each joint, over the joint's longest lever.
@@ -52,19 +53,28 @@ impl<'a> Statics<'a> {
     pub fn new(robot: &'a Robot) -> Option<Self> {
         let gravity = robot.gravity.as_ref()?;
         let mut shares = Vec::with_capacity(robot.joints.len() * gravity.weights.len());
+        let mut levers = Vec::with_capacity(robot.joints.len());
+        let least = LEAST_LEVER * robot.arm_m();
         for joint in 0..robot.joints.len() {
             let lever = |weight: &Weight| longest_lever(robot, gravity, joint, weight);
             let longest = gravity.weights.iter().filter_map(lever).fold(0.0, f64::max);
+            levers.push(longest);
             for weight in &gravity.weights {
                 shares.push(match robot.joints[joint].kind {
                     JointKind::Revolute => {
-                        lever(weight).filter(|it| *it > LEAST_LEVER_M).map_or(0.0, |_| 1.0 / longest)
+                        lever(weight).filter(|it| *it > least).map_or(0.0, |_| 1.0 / longest)
                     }
                     JointKind::Prismatic => lever(weight).map_or(0.0, |_| 1.0),
                 });
             }
         }
-        Some(Statics { robot, gravity, shares })
+        Some(Statics { robot, gravity, shares, levers })
+    }
+
+    /// The longest lever of each joint, metres; 0 of one that carries no weight.
+    #[must_use]
+    pub fn levers_m(&self) -> &[f64] {
+        &self.levers
     }
 
     /// Whether a weight has a moment about a joint in any configuration.

@@ -8,11 +8,13 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::coupling::Coupling;
+use super::factor::Factor;
 use super::harmonic::Harmonic;
 use super::offset::Offset;
 use super::ratio::Ratio;
 use super::sag::Sag;
-use super::term_model::{Situation, TermModel};
+use super::term_model::TermModel;
 
 /// A term of a joint's value, `θ ← θ + c b(q)` with a known function b of the configuration and a coefficient c (theory.md §3). A new term is
 /// one file with [`TermModel`], one variant here and its name.
@@ -20,7 +22,7 @@ use super::term_model::{Situation, TermModel};
 /// ```
 /// use poecal::robot::{Situation, Term};
 /// let offset = Term::Offset.model();
-/// assert_eq!((offset.name().as_ref(), offset.basis(0, &Situation { values: &[0.7], moments: None })), ("offset", 1.0));
+/// assert_eq!((offset.name().as_ref(), offset.basis(0, &Situation::of(&[0.7]))), ("offset", 1.0));
 /// assert_eq!("cos2".parse::<Term>().map(|term| term.to_string()), Ok("cos2".to_owned()));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,11 +35,43 @@ pub enum Term {
     Harmonic(Harmonic),
     /// What the joint gives under a weight.
     Sag(Sag),
+    /// What another joint turns it.
+    Coupling(Coupling),
+    /// What it owes to a factor.
+    Factor(Factor),
 }
 
 impl Term {
     /// Terms that need nothing but a joint's value, and that a model may state.
     pub const ALL: [Term; 2] = [Term::Offset, Term::Ratio];
+
+    /// Whether its function is of the weights that the robot carries.
+    #[must_use]
+    pub fn needs_gravity(&self) -> bool {
+        match self {
+            Term::Sag(_) => true,
+            Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Coupling(_) | Term::Factor(_) => false,
+        }
+    }
+
+    /// Whether it can be of a robot with so many joints and factors.
+    #[must_use]
+    pub fn is_of(&self, joints: usize, factors: usize) -> bool {
+        match self {
+            Term::Coupling(Coupling { joint }) => *joint < joints,
+            Term::Factor(Factor { index }) => *index < factors,
+            Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Sag(_) => true,
+        }
+    }
+
+    /// The same term where joints have other indices.
+    #[must_use]
+    pub fn moved(self, index: impl Fn(usize) -> usize) -> Self {
+        match self {
+            Term::Coupling(Coupling { joint }) => Term::Coupling(Coupling { joint: index(joint) }),
+            Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Sag(_) | Term::Factor(_) => self,
+        }
+    }
 
     /// What the term is.
     #[must_use]
@@ -47,6 +81,8 @@ impl Term {
             Term::Ratio => &Ratio,
             Term::Harmonic(harmonic) => harmonic,
             Term::Sag(sag) => sag,
+            Term::Coupling(coupling) => coupling,
+            Term::Factor(factor) => factor,
         }
     }
 }
@@ -61,15 +97,20 @@ impl FromStr for Term {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let numbered = |prefix: &str| name.strip_prefix(prefix)?.parse::<u8>().ok().filter(|it| *it > 0);
+        let numbered = |prefix: &str| name.strip_prefix(prefix)?.parse::<u16>().ok().filter(|it| *it > 0);
+        let order = |prefix: &str| u8::try_from(numbered(prefix)?).ok();
         let harmonic = |order: u8, cosine: bool| Term::Harmonic(Harmonic { order, cosine });
         let found = Term::ALL.into_iter().find(|term| term.model().name() == name);
         found
-            .or_else(|| Some(harmonic(numbered("sin")?, false)))
-            .or_else(|| Some(harmonic(numbered("cos")?, true)))
+            .or_else(|| Some(harmonic(order("sin")?, false)))
+            .or_else(|| Some(harmonic(order("cos")?, true)))
             .or_else(|| Some(Term::Sag(Sag { weight: usize::from(numbered("sag")?) - 1 })))
+            .or_else(|| Some(Term::Coupling(Coupling { joint: usize::from(numbered("coupled")?) - 1 })))
+            .or_else(|| Some(Term::Factor(Factor { index: usize::from(numbered("factor")?) - 1 })))
             .ok_or_else(|| {
-                format!("found the term `{name}`, expected offset, ratio, sin1, cos1, … or sag1, …")
+                format!(
+                    "found the term `{name}`, expected offset, ratio, sin1, cos1, …, sag1, …, coupled1, … or factor1, …"
+                )
             })
     }
 }
@@ -95,7 +136,7 @@ impl JsonSchema for Term {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         schemars::json_schema!({
             "type": "string",
-            "pattern": "^(offset|ratio|(sin|cos|sag)[1-9][0-9]*)$",
+            "pattern": "^(offset|ratio|(sin|cos|sag|coupled|factor)[1-9][0-9]*)$",
             "description": "A term of a joint's value.",
         })
     }
@@ -104,9 +145,10 @@ impl JsonSchema for Term {
 /// A term of a joint with its coefficient.
 ///
 /// ```
-/// use poecal::robot::{JointTerm, Situation, Term};
-/// let late = JointTerm { joint: 1, term: Term::Offset, coefficient: 0.02 };
-/// assert_eq!(JointTerm::sum(&[late], 1, &Situation { values: &[0.0, 0.5], moments: None }), 0.02);
+/// use poecal::robot::{JointTerm, Term};
+/// let mut robot = poecal::simulate::elbow();
+/// robot.terms.push(JointTerm { joint: 1, term: Term::Offset, coefficient: 0.02 });
+/// assert_eq!(robot.joint_values(&[0.0; 6])[1], 0.02);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointTerm {
@@ -116,13 +158,4 @@ pub struct JointTerm {
     pub term: Term,
     /// Its coefficient c, in [`TermModel::unit`].
     pub coefficient: f64,
-}
-
-impl JointTerm {
-    /// The sum of all terms of a joint, radians or metres.
-    #[must_use]
-    pub fn sum(terms: &[JointTerm], joint: usize, at: &Situation<'_>) -> f64 {
-        let own = terms.iter().filter(|it| it.joint == joint);
-        own.map(|it| it.coefficient * it.term.model().basis(joint, at)).sum()
-    }
 }

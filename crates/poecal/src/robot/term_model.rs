@@ -10,7 +10,7 @@ use crate::unit::Unit;
 ///
 /// ```
 /// use poecal::robot::{Situation, Term};
-/// let at = Situation { values: &[0.7], moments: None };
+/// let at = Situation::of(&[0.7]);
 /// assert_eq!(Term::Ratio.model().basis(0, &at), 0.7);
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,16 @@ pub struct Situation<'a> {
     pub values: &'a [f64],
     /// Moments of the weights that the robot carries, if it has any.
     pub moments: Option<&'a Moments>,
+    /// The robot's factors, from their references.
+    pub factors: &'a [f64],
+}
+
+impl<'a> Situation<'a> {
+    /// These values of all joints, without weights and factors.
+    #[must_use]
+    pub fn of(values: &'a [f64]) -> Self {
+        Situation { values, moments: None, factors: &[] }
+    }
 }
 
 /// Interface of a term: the function b of a configuration, and what its coefficient c is.

@@ -3,9 +3,9 @@
 use rand_chacha::ChaCha8Rng;
 
 use super::random;
-use crate::robot::{JointKind, Limits, Robot};
+use crate::robot::{JointKind, Limits, ReadingKind, Robot};
 
-/// The configurations of a robot: the range of each reading (±π and ±0.5 m where there are no limits).
+/// The configurations of a robot: the range of each reading (±π and ±0.5 m where there are no limits; its reference of a factor).
 ///
 /// ```
 /// use poecal::simulate::{Configurations, elbow};
@@ -17,7 +17,7 @@ use crate::robot::{JointKind, Limits, Robot};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Configurations {
     /// Kind, least and greatest value of each reading.
-    readings: Vec<(JointKind, f64, f64)>,
+    readings: Vec<(ReadingKind, f64, f64)>,
 }
 
 impl Configurations {
@@ -29,11 +29,12 @@ impl Configurations {
 
     /// A random configuration with every joint within its limits, in steps of 0.0001° and 0.001 mm, as controllers show them.
     pub fn random(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
-        let one = |&(kind, lower, upper): &(JointKind, f64, f64)| {
+        let one = |&(kind, lower, upper): &(ReadingKind, f64, f64)| {
             let value = lower + (upper - lower).max(0.0) * random::uniform(generator);
             let stepped = match kind {
-                JointKind::Revolute => ((value.to_degrees() * 1e4).round() / 1e4).to_radians(),
-                JointKind::Prismatic => (value * 1e6).round() / 1e3 / 1e3,
+                ReadingKind::Angle => ((value.to_degrees() * 1e4).round() / 1e4).to_radians(),
+                ReadingKind::Length => (value * 1e6).round() / 1e3 / 1e3,
+                ReadingKind::Factor => value,
             };
             if (lower..=upper).contains(&stepped) { stepped } else { value }
         };
@@ -42,7 +43,7 @@ impl Configurations {
 }
 
 /// Range of a reading within the limits of all joints that follow it.
-fn range(robot: &Robot, name: &str) -> (JointKind, f64, f64) {
+fn range(robot: &Robot, name: &str) -> (ReadingKind, f64, f64) {
     let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
     let kind = robot.reading_kind(name);
     for joint in robot.joints.iter().filter(|joint| joint.reading.name == name) {
@@ -56,7 +57,15 @@ fn range(robot: &Robot, name: &str) -> (JointKind, f64, f64) {
             upper = upper.min(a.max(b));
         }
     }
-    let span = if kind == JointKind::Revolute { std::f64::consts::PI } else { 0.5 };
+    let span = match kind {
+        ReadingKind::Angle => std::f64::consts::PI,
+        ReadingKind::Length => 0.5,
+        ReadingKind::Factor => 0.0,
+    };
+    let reference = robot.factors.iter().find(|factor| factor.name == name).map(|factor| factor.reference);
+    if let Some(reference) = reference {
+        return (kind, reference, reference);
+    }
     let lower = if lower.is_finite() { lower } else { -span };
     let upper = if upper.is_finite() { upper } else { span };
     (kind, lower, upper)

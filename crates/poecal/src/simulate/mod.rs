@@ -18,7 +18,9 @@ use crate::lie::{Pose, rotation};
 use crate::measurement::{
     Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Source, Stated,
 };
-use crate::robot::{Body, Mount, Robot};
+use crate::robot::{
+    Body, CorrectionModel, Factor, FactorReading, Joint, JointKind, Mount, Robot, Sizes, TermGroup,
+};
 
 /// Kind of the simulated measurements.
 ///
@@ -86,6 +88,32 @@ pub struct Simulation {
     pub seed: u64,
     /// Whether the device frame is unknown instead of equal to the robot's base.
     pub device_anywhere: bool,
+    /// Root mean squares of the coefficients of what the joints do beyond geometry.
+    pub terms: Sizes,
+    /// Where weights are pulled, in the base frame.
+    pub gravity: Vector3<f64>,
+}
+
+/// Name of the temperature in simulated sessions.
+const TEMPERATURE: &str = "temperature";
+/// Range of the temperature, °C.
+const TEMPERATURES: [f64; 2] = [18.0, 28.0];
+
+/// The value of a factor: the side from which a joint came from the configuration before, either side of all joints, or a temperature.
+fn value_of(
+    factor: &FactorReading,
+    names: &[String],
+    [readings, before]: [&[f64]; 2],
+    generator: &mut ChaCha8Rng,
+) -> f64 {
+    let Some(of) = factor.approached() else {
+        return TEMPERATURES[0] + (TEMPERATURES[1] - TEMPERATURES[0]) * random::uniform(generator);
+    };
+    let came = match names.iter().position(|name| name == of) {
+        Some(at) => readings[at] - before[at],
+        None => random::uniform(generator) - 0.5,
+    };
+    if came < 0.0 { -1.0 } else { 1.0 }
 }
 
 impl Default for Simulation {
@@ -98,6 +126,8 @@ impl Default for Simulation {
             count: 50,
             seed: 1,
             device_anywhere: true,
+            terms: Sizes::NONE,
+            gravity: -Vector3::z(),
         }
     }
 }
@@ -135,8 +165,42 @@ impl Simulation {
     /// [`ErrorKind::Problem`] if instruments and targets are on the same links only; otherwise does not fail for a finite robot.
     pub fn run(&self, nominal: &Robot, kind: Kind) -> Result<Simulated> {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
+        let nominal = &self.with_factors(nominal)?;
         let actual = self.perturbed(nominal, &mut generator);
+        let actual = self.giving(actual);
         self.measure(nominal, actual, kind, &mut generator)
+    }
+
+    /// The robot with the factors of its terms: the side from which each joint that turns is approached, and the temperature.
+    fn with_factors(&self, nominal: &Robot) -> Result<Robot> {
+        let turns = |joint: &&Joint| joint.kind == JointKind::Revolute && joint.reading.name == joint.name;
+        let approached =
+            nominal.joints.iter().filter(turns).map(|joint| format!("{}_{}", Factor::APPROACH, joint.name));
+        let sides = approached.filter(|_| self.terms[TermGroup::Backlash] > 0.0);
+        let warmth = (self.terms[TermGroup::Factors] > 0.0).then(|| TEMPERATURE.to_owned());
+        let missing = |name: &String| !nominal.factors.iter().any(|it| it.name == *name);
+        nominal.with_factors(&sides.chain(warmth).filter(missing).collect::<Vec<_>>())
+    }
+
+    /// The robot with terms of random coefficients, under weight of positive ones; the same without any.
+    fn giving(&self, robot: Robot) -> Robot {
+        if self.terms == Sizes::NONE {
+            return robot;
+        }
+        // A further stream of the seed, so that all else does not depend on the terms.
+        let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
+        generator.set_stream(2);
+        let every = vec![true; robot.joints.len()];
+        let model = CorrectionModel::new(&robot, self.gravity, &every).with_sizes(&self.terms);
+        let deviations: Vec<f64> = model.deviations(&self.terms).collect();
+        let own = model.robot.terms.len() - deviations.len();
+        let mut robot = model.robot;
+        for (term, deviation) in robot.terms.iter_mut().skip(own).zip(deviations) {
+            let drawn = random::normal(&mut generator);
+            // Joints give the way they are pulled.
+            term.coefficient = deviation * if term.term.needs_gravity() { drawn.abs() } else { drawn };
+        }
+        robot
     }
 
     /// Measures a given actual robot.
@@ -180,15 +244,22 @@ impl Simulation {
         kind: Kind,
         generator: &mut ChaCha8Rng,
     ) -> Result<Dataset> {
-        let mut data = Dataset::new(nominal.reading_names());
+        let mut data = Dataset::new(nominal.reading_names()).with_factors(nominal.factors.len());
         let configurations = Configurations::new(nominal);
         let pairs = pairs(actual);
         if pairs.is_empty() {
             let message = "found instruments and targets on the same links only, expected joints between them: name others";
             return Err(Error::new(ErrorKind::Problem, message));
         }
+        let mut before = vec![0.0; data.reading_names().len()];
         for row in 0..self.count {
-            let readings = configurations.random(generator);
+            let mut readings = configurations.random(generator);
+            let first = readings.len() - nominal.factors.len();
+            for (at, factor) in nominal.factors.iter().enumerate() {
+                readings[first + at] =
+                    value_of(factor, data.reading_names(), [&readings, &before], generator);
+            }
+            before.clone_from(&readings);
             let (instrument, target) = pairs.get(row % pairs.len().max(1)).copied().unwrap_or_default();
             let seen = match (instrument, target) {
                 (None, None) => *device_from_base * actual.forward_kinematics(&readings),

@@ -275,7 +275,8 @@ fn effective_unknowns(view: &View<'_>, normal: &Normal) -> f64 {
     if !view.prior.is_fitted {
         return n as f64;
     }
-    let variance = 2.0 * normal.cost / (normal.residuals as f64 - n as f64).max(1.0);
+    let of_residuals = 2.0 * normal.cost / (normal.residuals as f64 - n as f64).max(1.0);
+    let variance = view.prior.weight.unwrap_or(of_residuals);
     let Some(factor) = factor(&normal.gram, n, view.prior, variance) else { return n as f64 };
     n as f64 - variance * linalg::trace_of_quotient(&factor, &view.prior.normal.gram, n)
 }
@@ -296,7 +297,8 @@ fn determined_by_rotations(
     }
     let in_proportion = turned
         + (determined - turned).max(0.0) * (rotation.groups as f64 - turned) / (total - turned).max(1.0);
-    if view.rows.len() > FEW {
+    // Terms of joints are determined by both alike.
+    if view.rows.len() > FEW || view.prior.weight.is_some() {
         return in_proportion;
     }
     let n = layout.dim();

@@ -17,6 +17,8 @@ pub struct PriorInformation {
     pub normal: Normal,
     /// Whether the fit contained the prior; if not, it only bounds undetermined directions.
     pub is_fitted: bool,
+    /// Weight that the fit gave it beside whitened residuals; none if that was the variance of these.
+    pub weight: Option<f64>,
 }
 
 impl PriorInformation {
@@ -32,13 +34,13 @@ impl PriorInformation {
                 normal.gram.iter_mut().step_by(n + 1).for_each(|value| *value = information);
             }
         }
-        PriorInformation { normal, is_fitted: prior.is_some() }
+        PriorInformation { normal, is_fitted: prior.is_some(), weight: None }
     }
 
     /// No information of `n` unknowns.
     #[must_use]
     pub(crate) fn none(n: usize) -> Self {
-        PriorInformation { normal: Normal::new(n), is_fitted: false }
+        PriorInformation { normal: Normal::new(n), is_fitted: false, weight: None }
     }
 
     /// The same with directions that are a choice, such as motions of the base without effect: as if they were known.

@@ -1,5 +1,6 @@
 //! How far the start may be from the truth: random elbows whose axes are off by up to 40° and 200 mm.
 
+use crate::common::geometry;
 use crate::trials::trials;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
 use poecal::estimate::{Packed, Session};
@@ -47,12 +48,13 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
         count: CONFIGURATIONS,
         seed,
         device_anywhere: frame == DeviceFrameKnowledge::Unknown,
+        ..Simulation::default()
     };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let start = simulation.perturbed(&elbow(), &mut generator);
     let made = simulation.measure(&elbow(), elbow(), kind, &mut generator).unwrap();
     // Every other start with the belief that it is nearly right, which none of these is.
-    let usual = CalibrationOptions::default();
+    let usual = geometry();
     let (tolerance, same) =
         if seed.is_multiple_of(2) { (None, SAME_OPTIMUM) } else { (usual.tolerance, SAME_WITH_A_BELIEF) };
     let options = CalibrationOptions { frame, held_out: 0.0, diagnose: false, tolerance, ..usual };

@@ -1,5 +1,6 @@
 //! Fits of some blocks of unknowns only: what is held stays to the bit, and the rest is found.
 
+use crate::common::geometry;
 use poecal::analysis::{Cause, Direction};
 use poecal::calibration::{
     BlockChoice, Calibration, CalibrationOptions, DeviceFrameKnowledge, Level, calibrate,
@@ -22,7 +23,7 @@ fn choice(fix: &[&str], free: &[&str]) -> BlockChoice {
 }
 
 fn fitted(robot: &Robot, data: &Dataset, blocks: BlockChoice, has_prior: bool) -> Calibration {
-    let options = CalibrationOptions { blocks, diagnose: false, ..CalibrationOptions::default() };
+    let options = CalibrationOptions { blocks, diagnose: false, ..geometry() };
     let options = if has_prior { options } else { CalibrationOptions { tolerance: None, ..options } };
     calibrate(robot, data, &options).unwrap()
 }

@@ -12,7 +12,9 @@ use poecal::measurement::{
 };
 use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
 use poecal::problem::Problem;
-use poecal::robot::{Body, Gravity, Harmonic, Joint, JointKind, JointTerm, Mount, Robot, Sag, Statics, Term};
+use poecal::robot::{
+    Body, Gravity, Harmonic, Joint, JointKind, JointTerm, Mount, Reading, Robot, Sag, Statics, Term,
+};
 use poecal::simulate::random;
 use poecal::solve::LeastSquares as _;
 use rand_chacha::ChaCha8Rng;
@@ -337,6 +339,115 @@ fn ranks_are_those_of_the_closed_form() {
             println!("    {}", direction.description);
         }
         assert_eq!(found.rank, cell.rank, "{}", cell.name);
+    }
+}
+
+fn of_order(order: u8) -> [Term; 2] {
+    [false, true].map(|cosine| Term::Harmonic(Harmonic { order, cosine }))
+}
+
+/// A robot of joints that turn, each with gives in all directions beside its own: two that turn and three that slide.
+fn giving_everywhere(count: usize) -> Robot {
+    let rigid = chain(&"r".repeat(count), 41);
+    let mut joints = Vec::new();
+    for joint in &rigid.joints {
+        let own = joints.len();
+        joints.push(joint.clone());
+        let (z, origin) = (joint.screw.direction(), joint.frame.translation);
+        let x = rotation::perpendicular(&z);
+        let y = z.cross(&x);
+        let turning = [x, y].map(|axis| Joint::revolute("", Screw::revolute(&axis, &origin)));
+        let sliding = [x, y, z].map(|axis| Joint::prismatic("", Screw::prismatic(&axis)));
+        for (k, give) in turning.into_iter().chain(sliding).enumerate() {
+            let reading = Reading { name: joint.name.clone(), multiplier: 0.0, offset: 0.0 };
+            joints.push(Joint { name: format!("{}~{k}", joint.name), reading, give_of: Some(own), ..give });
+        }
+    }
+    let mut robot = Robot::new("giving", joints, rigid.home).unwrap();
+    let orders = [1, 2].into_iter().flat_map(of_order);
+    let of_joint = |joint: usize| orders.clone().map(move |term| JointTerm { joint, term, coefficient: 0.0 });
+    robot.terms = (0..robot.joints.len()).flat_map(of_joint).collect();
+    robot
+}
+
+/// theory.md §6: which of the terms of a bearing the screws have already, by the rank of the information. A tilted and shifted axis is a first
+/// harmonic across it, 4 a joint; a point's own turning is one of the last joint. Nothing else.
+#[test]
+fn ranks_of_what_bearings_do_are_those_of_the_closed_form() {
+    // Joints, what is seen, order, and the directions in which screws do the same.
+    let cases: [(usize, &str, Function, u8, usize); 6] = [
+        (6, "poses", POSE, 1, 24),
+        (6, "poses", POSE, 2, 0),
+        (6, "points", POINT, 1, 30),
+        (6, "points", POINT, 2, 6),
+        (7, "poses", POSE, 1, 28),
+        (7, "points", POINT, 1, 34),
+    ];
+    for (count, words, function, order, redundant) in cases {
+        let robot = giving_everywhere(count);
+        let cell = Cell { name: "giving", robot, sees: vec![sees(None, None, function)], rank: 0 };
+        let made = Measured::new(&cell, 400, 0.0);
+        let is_give = |joint: usize| made.robot.joints[joint].give_of.is_some();
+        let rank = |terms: Vec<(usize, Term)>| {
+            let mut free = with_terms(&made, terms.into_iter());
+            free.retain(|it| !matches!(it, Parameter::ScrewAxis(axis) if is_give(axis.joint)));
+            let problem = made.problem(free);
+            let n = problem.dim();
+            let gram = problem.normal(&made.estimate).gram;
+            // Columns of length 1: singular values are then of order 1, or rounding.
+            let scale = |k: usize| gram[k * n + k].sqrt().max(1e-300);
+            let scaled =
+                nalgebra::DMatrix::from_fn(n, n, |a, b| gram[a.min(b) * n + a.max(b)] / scale(a) / scale(b));
+            let mut values: Vec<f64> = scaled.symmetric_eigenvalues().iter().copied().collect();
+            values.sort_by(|a, b| b.total_cmp(a));
+            let rank = values.iter().filter(|value| **value > 1e-10).count();
+            let after = values.get(rank).copied().unwrap_or(0.0).abs();
+            (rank, values[rank - 1], after)
+        };
+        let terms: Vec<(usize, Term)> = (0..made.robot.joints.len())
+            .flat_map(|joint| of_order(order).map(|term| (joint, term)))
+            .collect();
+        let columns = terms.len();
+        let (of_geometry, ..) = rank(Vec::new());
+        let (of_all, least, rounding) = rank(terms);
+        let found = columns - (of_all - of_geometry);
+        println!(
+            "{count}R, {words}, order {order}: {found} of {columns} redundant (least {least:.0e}, rounding {rounding:.0e})"
+        );
+        assert_eq!(found, redundant, "{count}R, {words}, order {order}");
+    }
+}
+
+/// Ratio and harmonics of every joint's own value are no part of the screws.
+#[test]
+fn what_joints_turn_is_told_from_their_screws() {
+    for (words, function) in [("poses", POSE), ("points", POINT)] {
+        let cell = Cell {
+            name: "chain",
+            robot: chain("rrrrrr", 43),
+            sees: vec![sees(None, None, function)],
+            rank: 0,
+        };
+        let made = Measured::new(&cell, 300, 0.0);
+        let harmonic = |order, cosine| Term::Harmonic(Harmonic { order, cosine });
+        let own = [Term::Ratio, harmonic(1, false), harmonic(1, true), harmonic(2, false), harmonic(2, true)];
+        let terms: Vec<(usize, Term)> = (0..6).flat_map(|joint| own.map(|term| (joint, term))).collect();
+        let rank = |terms: Vec<(usize, Term)>| {
+            let problem = made.problem(with_terms(&made, terms.into_iter()));
+            let rows = made.data.all_rows();
+            let session = Session::new(&made.robot, &made.data, &made.packed, false).with_length(0.5);
+            let setup = Setup {
+                session,
+                rows: &rows,
+                estimate: &made.estimate,
+                layout: problem.layout(),
+                noise: NOISE,
+            };
+            identifiability(&setup, &problem.normal(&made.estimate).gram, 1.0).rank
+        };
+        let (without, with) = (rank(Vec::new()), rank(terms));
+        println!("{words}: rank {without}, with 30 terms {with}");
+        assert_eq!(with, without + 30, "{words}");
     }
 }
 

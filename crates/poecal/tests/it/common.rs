@@ -1,7 +1,7 @@
 //! What many tests need: sessions, fits and robots.
 
 use nalgebra::Vector3;
-use poecal::calibration::{Calibration, CalibrationOptions, calibrate};
+use poecal::calibration::{Calibration, CalibrationOptions, Corrections, calibrate};
 use poecal::lie::{Pose, Screw, Twist};
 use poecal::measurement::Dataset;
 use poecal::robot::{Joint, Limits, Robot};
@@ -15,7 +15,7 @@ pub(crate) fn simulated(robot: &Robot, kind: Kind, count: usize, seed: u64) -> S
 
 /// A calibration as it is done without options.
 pub(crate) fn calibrated(robot: &Robot, data: &Dataset) -> Calibration {
-    calibrate(robot, data, &CalibrationOptions::default()).unwrap()
+    calibrate(robot, data, &geometry()).unwrap()
 }
 
 pub(crate) fn with_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
@@ -39,4 +39,9 @@ pub(crate) fn lifting_robot() -> Robot {
 /// A small random twist: rotation by `angle_rad` and shift by `distance_m` in random directions.
 pub(crate) fn random_twist(angle_rad: f64, distance_m: f64, generator: &mut ChaCha8Rng) -> Twist {
     Twist::new(random::direction(generator) * distance_m, random::direction(generator) * angle_rad)
+}
+
+/// The usual options for geometry alone, without the corrected model: for tests that fit very many robots, and are about these fits.
+pub(crate) fn geometry() -> CalibrationOptions {
+    CalibrationOptions { corrections: Corrections::Off, ..CalibrationOptions::default() }
 }

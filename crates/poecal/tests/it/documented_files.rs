@@ -128,7 +128,7 @@ fn results_have_the_documented_columns_and_keys() {
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let documented = blocks("Results", "text")[0].lines().next().unwrap();
     assert_eq!(Residuals::of(&made.data, &calibration).text().lines().next().unwrap(), documented);
-    assert!(blocks("Results", "text")[0].lines().all(|line| line.matches(',').count() == 26));
+    assert!(blocks("Results", "text")[0].lines().all(|line| line.matches(',').count() == 28));
 
     let inputs = Inputs::default();
     let text = CalibrationFile::new(&calibration, &made.data, inputs).to_text().unwrap();

@@ -1,5 +1,6 @@
 //! What the data do not tell stays at the drawing, and what they tell is not touched by it.
 
+use crate::common::geometry;
 use crate::trials::trials;
 use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, calibrate};
@@ -128,7 +129,7 @@ fn actual(robot: &Robot, seed: u64) -> Robot {
 }
 
 fn fitted(robot: &Robot, data: &Dataset) -> Calibration {
-    let options = CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() };
+    let options = CalibrationOptions { held_out: 0.0, ..geometry() };
     calibrate(robot, data, &options).unwrap()
 }
 
@@ -314,11 +315,11 @@ fn what_the_data_tell_is_not_touched() {
                     noise_position_m: NOISE_M,
                     noise_rotation_rad: NOISE_RAD,
                     device_anywhere: false,
+                    ..Simulation::default()
                 };
                 let made = simulation.run(&robot, kind).unwrap();
                 [Some(Tolerance::default()), None].map(|tolerance| {
-                    let options =
-                        CalibrationOptions { held_out: 0.0, tolerance, ..CalibrationOptions::default() };
+                    let options = CalibrationOptions { held_out: 0.0, tolerance, ..geometry() };
                     let found = calibrate(&robot, &made.data, &options).unwrap();
                     missed(&robot, &made.actual, &found.models.calibrated, seed).powi(2)
                 })
@@ -341,7 +342,7 @@ fn what_the_data_tell_is_not_touched() {
         ..Simulation::default()
     };
     let made = far.run(&robot, Kind::Pose).unwrap();
-    let found = calibrate(&robot, &made.data, &CalibrationOptions::default()).unwrap();
+    let found = calibrate(&robot, &made.data, &geometry()).unwrap();
     let rms = found.accuracy.held_out.unwrap().calibrated.position_mm().rms;
     println!("errors of 17 deg and 60 mm: {rms:.4} mm");
     assert!(rms < 0.15);

@@ -1,11 +1,12 @@
 //! The hot path against the general path: Gram matrix, gradient and cost on many problems, by every set of instructions that this
 //! machine has, and with any number of threads.
 
+use crate::common::geometry;
 use crate::largest::larger;
 use crate::reference;
 use crate::trials::some;
 use nalgebra::Vector3;
-use poecal::calibration::{CalibrationOptions, fit_screws};
+use poecal::calibration::fit_screws;
 use poecal::estimate::{self, Estimate, Packed, delivered};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement, PoseMeasurement, Quantity, Seen};
@@ -246,7 +247,7 @@ fn few_passes_have_the_same_optimum() {
         let rows = made.data.all_rows();
         let mut start = delivered(&made.nominal, &made.data);
         start.device_from_base = made.device_from_base;
-        let options = CalibrationOptions::default();
+        let options = geometry();
         let session = in_session(&made.nominal, &made.data, &packed);
         let (quick, _, summary) = fit_screws(session, &rows, start.clone(), NOISE, None, &options);
         let free = parameters(&made.nominal, &made.data, &Case::default());

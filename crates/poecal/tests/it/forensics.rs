@@ -1,5 +1,6 @@
 //! Mistakes put into simulated sessions are named, and clean sessions are left in peace.
 
+use crate::common::geometry;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::mistakes::Session;
@@ -228,7 +229,7 @@ fn two_of_many_targets_exchanged_in_some_rows_are_named() {
 fn a_clean_calibration_has_no_mistake() {
     let simulation = poecal::simulate::Simulation::default();
     let made = simulation.run(&poecal::simulate::elbow(), poecal::simulate::Kind::Point).unwrap();
-    let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+    let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let rows: Vec<u32> = made.data.all_rows();
     let options =
         DiagnosisOptions { calibrated: Some(&calibration.models.calibrated), ..DiagnosisOptions::default() };

@@ -1,6 +1,7 @@
 //! Of the many ways to write one robot: predictions are the same in all, and the one chosen is nearest to nominal.
 
 use crate::common;
+use crate::common::geometry;
 use crate::largest::larger;
 use poecal::calibration::{Calibration, CalibrationOptions, calibrate, delivered, radian_m};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed};
@@ -30,12 +31,7 @@ fn simulated(robot: &Robot, kind: Kind) -> Simulated {
 }
 
 fn calibrated(made: &Simulated) -> Calibration {
-    calibrate(
-        &made.nominal,
-        &made.data,
-        &CalibrationOptions { tolerance: None, ..CalibrationOptions::default() },
-    )
-    .unwrap()
+    calibrate(&made.nominal, &made.data, &CalibrationOptions { tolerance: None, ..geometry() }).unwrap()
 }
 
 fn packed(robot: &Robot, data: &Dataset) -> Packed {

@@ -1,5 +1,6 @@
 //! A session of everything at once: points of a tracker, distances of a wire, and poses of a second instrument, read from one file.
 
+use crate::common::geometry;
 use nalgebra::Vector3;
 use poecal::Quantity;
 use poecal::calibration::{BlockChoice, CalibrationOptions, Level, calibrate};
@@ -69,7 +70,7 @@ fn points_distances_and_poses_are_calibrated_together_with_a_noise_of_each_instr
         parse(&text(&actual, 450, &mut generator), "cell.csv", &nominal, &ReadOptions::default()).unwrap();
     // No row is refused: every one is in the fit or held out, and the sums over rows have only one way, that of the kernels.
     assert_eq!(file.data.len(), 450);
-    let found = calibrate(&nominal, &file.data, &CalibrationOptions::default()).unwrap();
+    let found = calibrate(&nominal, &file.data, &geometry()).unwrap();
     assert_eq!(found.fit_rows.len() + found.held_out_rows.len(), 450);
     let held_out = found.accuracy.held_out.unwrap();
     assert_eq!(held_out.count, found.held_out_rows.len());
@@ -124,7 +125,7 @@ fn distances_alone_give_a_robot_that_predicts_distances() {
         rows.lines().filter(|line| !line.contains("tracker") && !line.contains("camera")).collect();
     let file = parse(&wire.join("\n"), "wire.csv", &nominal, &ReadOptions::default()).unwrap();
     assert_eq!(file.data.len(), 300);
-    let found = calibrate(&nominal, &file.data, &CalibrationOptions::default()).unwrap();
+    let found = calibrate(&nominal, &file.data, &geometry()).unwrap();
     let held_out = found.accuracy.held_out.unwrap();
     let [registered, calibrated] =
         [&held_out.registered, &held_out.calibrated].map(|it| it.get(Quantity::Distance).unwrap().rms);
@@ -154,7 +155,7 @@ fn wire(rows: usize, seed: u64, change: impl Fn(usize, f64) -> f64) -> (Robot, R
 fn a_gross_error_of_a_distance_is_one_suspected_row() {
     let (_, nominal, text) = wire(200, 3, |row, distance| if row == 7 { distance + 50.0 } else { distance });
     let file = parse(&text, "wire.csv", &nominal, &ReadOptions::default()).unwrap();
-    let found = calibrate(&nominal, &file.data, &CalibrationOptions::default()).unwrap();
+    let found = calibrate(&nominal, &file.data, &geometry()).unwrap();
     let suspected: Vec<usize> = (0..200).filter(|&row| found.robustness.rows[row].suspected).collect();
     println!("{suspected:?} {:?} {:?}", found.verdict.level, found.diagnosis);
     assert_eq!(suspected, [7]);
@@ -181,7 +182,7 @@ fn a_calibration_by_distances_with_held_blocks_is_read_back() {
     let file = parse(&text, "wire.csv", &nominal, &ReadOptions::default()).unwrap();
     let fix = vec!["joint2".to_owned()];
     let blocks = BlockChoice { fix, ..BlockChoice::default() };
-    let options = CalibrationOptions { blocks, ..CalibrationOptions::default() };
+    let options = CalibrationOptions { blocks, ..geometry() };
     let found = calibrate(&nominal, &file.data, &options).unwrap();
     let written = CalibrationFile::new(&found, &file.data, Inputs::default());
     let read = CalibrationFile::parse(&written.to_text().unwrap(), "calibration.json").unwrap();

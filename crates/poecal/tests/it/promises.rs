@@ -1,5 +1,6 @@
 //! What is promised of predictions holds: bounds, expected errors and verdicts, with noise stated or not, few rows or many.
 
+use crate::common::geometry;
 use crate::trials::trials;
 use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, Level, calibrate};
@@ -42,7 +43,7 @@ fn stated() -> CalibrationOptions {
 }
 
 fn everything() -> CalibrationOptions {
-    CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() }
+    CalibrationOptions { held_out: 0.0, ..geometry() }
 }
 
 /// Errors of predictions of the true place with their 95 % bounds, metres; `real` makes the joint values of readings.
@@ -236,7 +237,7 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
             data.push(&jitter, None, measured(&seen, Kind::Pose, &mut generator)).unwrap();
         }
         let found = calibrate(&made.nominal, &data, &everything()).unwrap();
-        promised += found.trust.range.unwrap().sigma_m.powi(2);
+        promised += found.trust.expected.range.unwrap().sigma_m.powi(2);
         let errors = judged(&found, &made, seed, real);
         found_squares += errors.iter().map(|(error, _)| error * error).sum::<f64>() / errors.len() as f64;
         all.extend(errors);
@@ -284,7 +285,7 @@ fn copied_rows_are_no_rows() {
     for row in (0..12).flat_map(|row| [row; 10]) {
         data.push(made.data.readings(row), None, made.data.observations[row].measurement).unwrap();
     }
-    let found = calibrate(&made.nominal, &data, &CalibrationOptions::default());
+    let found = calibrate(&made.nominal, &data, &geometry());
     match found {
         Ok(found) => {
             println!("{:?}", found.verdict);
@@ -311,7 +312,8 @@ fn joints_of_one_reading_are_drawn_together() {
     };
     let made = simulation.run(&robot, Kind::Pose).unwrap();
     let found = calibrate(&made.nominal, &made.data, &stated()).unwrap();
-    let (measured, range) = (found.trust.measured.unwrap().sigma_m, found.trust.range.unwrap().sigma_m);
+    let (measured, range) =
+        (found.trust.expected.measured.unwrap().sigma_m, found.trust.expected.range.unwrap().sigma_m);
     println!("measured {:.4}, anywhere {:.4} mm", 1e3 * measured, 1e3 * range);
     // Anywhere is where it was measured: both are random within the limits.
     assert!((0.7..1.4).contains(&(range / measured)));
@@ -324,7 +326,7 @@ fn absurd_noise_is_never_good() {
         let made = session(80, 1, Kind::Pose);
         let options = CalibrationOptions {
             sigma: ByQuantity::default().with(Quantity::Position, Some(sigma_m)),
-            ..CalibrationOptions::default()
+            ..geometry()
         };
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();
         let rms = found.accuracy.held_out.unwrap().calibrated.position_mm().rms;

@@ -51,10 +51,10 @@ fn names_of_quantities_and_their_columns_follow_from_one_table() {
     let mut names = BTreeSet::new();
     for quantity in Quantity::ALL {
         assert_eq!(quantity.key(), format!("{}_{}", quantity.name(), quantity.unit().symbol()));
-        assert_eq!(columns(quantity).count(), 3 + quantity.components());
-        names.extend(columns(quantity));
+        assert_eq!(columns(quantity, true).count(), 4 + quantity.components());
+        names.extend(columns(quantity, true));
     }
-    assert_eq!(names.len(), Quantity::ALL.into_iter().map(|it| columns(it).count()).sum::<usize>());
+    assert_eq!(names.len(), Quantity::ALL.into_iter().map(|it| columns(it, true).count()).sum::<usize>());
     for seen in [
         Measurement::Point(PointMeasurement { position: Vector3::zeros() }),
         Measurement::Pose(PoseMeasurement { pose: Pose::identity() }),

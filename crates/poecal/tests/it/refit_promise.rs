@@ -1,5 +1,6 @@
 //! What a calibration promises of rows from which device frame and tool are found anew holds in a Monte Carlo.
 
+use crate::common::geometry;
 use crate::trials::trials;
 use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, Judgement, Level, calibrate};
@@ -26,7 +27,7 @@ fn judged(robot: &Robot, kind: Kind, seed: u64, refit_tool: bool) -> Judgement {
     let options = CalibrationOptions {
         held_out: 0.0,
         sigma: Noise::new(simulation.noise_position_m, simulation.noise_rotation_rad).map(Some),
-        ..CalibrationOptions::default()
+        ..geometry()
     };
     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
@@ -83,7 +84,7 @@ fn a_promise_after_a_refit_is_kept_as_often_as_it_says() {
 fn another_robot_breaks_the_promise_after_a_refit_too() {
     let simulation = Simulation { count: 60, ..Simulation::default() };
     let made = simulation.run(&elbow(), Kind::Point).unwrap();
-    let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+    let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let other = Simulation { seed: 2, ..simulation }.run(&elbow(), Kind::Point).unwrap();
     let judgement = file.judge(&other.data, true, true).unwrap();

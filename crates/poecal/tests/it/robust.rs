@@ -1,5 +1,6 @@
 //! Grossly wrong rows: what they do to a fit, whether they are found, and that clean data are left alone.
 
+use crate::common::geometry;
 use crate::common::{calibrated, with_threads};
 use crate::largest::larger;
 use crate::trials::{Trials, some, trials};
@@ -282,7 +283,7 @@ fn held_out_rows_are_judged_too_and_the_file_names_all() {
     for (line, row) in (2..).zip(&mut data.observations) {
         row.source.line = line;
     }
-    let found = calibrate(&elbow(), &data, &CalibrationOptions::default()).unwrap();
+    let found = calibrate(&elbow(), &data, &geometry()).unwrap();
     let inputs =
         Inputs { model: "elbow.toml".into(), measurements: vec!["session.csv".into()], ..Inputs::default() };
     let file = CalibrationFile::new(&found, &data, inputs);
@@ -363,7 +364,7 @@ fn what_all_targets_of_a_configuration_show_is_the_robot() {
                     data.push(&readings, Some(*target), seen).unwrap();
                 }
             }
-            let found = calibrate(&robot, &data, &CalibrationOptions::default()).unwrap();
+            let found = calibrate(&robot, &data, &geometry()).unwrap();
             usize::from(found.robustness.suspects().count() > 0)
         })
         .sum();
@@ -398,7 +399,7 @@ fn rows_that_alone_tell_something_are_kept() {
                         + random::normal_vector(&mut generator) * 3e-5;
                     data.push(&readings, None, Measurement::Point(PointMeasurement { position })).unwrap();
                 }
-                let options = CalibrationOptions { robust, held_out: 0.0, ..CalibrationOptions::default() };
+                let options = CalibrationOptions { robust, held_out: 0.0, ..geometry() };
                 let found = calibrate(&robot, &data, &options).unwrap();
                 let squares: f64 = (0..100)
                     .map(|_| {

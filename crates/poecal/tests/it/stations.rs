@@ -1,5 +1,6 @@
 //! A device that stood at several places: each has a frame of its own, the robot and its targets are one.
 
+use crate::common::geometry;
 use nalgebra::Vector3;
 use poecal::calibration::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate, row_influence};
 use poecal::estimate::{Packed, Session};
@@ -175,7 +176,7 @@ fn places_that_cannot_be_found_are_refused() {
         observation.set = Some(if observation.station == 0 { Set::Fit } else { Set::HeldOut });
     }
     assert_eq!(
-        refusal(&robot, &judged, &CalibrationOptions::default()),
+        refusal(&robot, &judged, &geometry()),
         "found 30 measurements of instrument `tracker 1` held out and none to fit, expected at least 3 to find its frame from: fit some of \
          them, or judge by `poecal validate --refit-frame` afterwards"
     );

@@ -1,8 +1,9 @@
 //! A joint with a bad transmission, or with an axis farther off than the others', is named; a sound robot is left alone.
 
+use crate::common::geometry;
 use crate::trials::trials;
 use nalgebra::Vector3;
-use poecal::calibration::{CalibrationOptions, calibrate};
+use poecal::calibration::calibrate;
 use poecal::lie::Pose;
 use poecal::lie::rotation;
 use poecal::measurement::{Dataset, Measurement, PointMeasurement};
@@ -17,7 +18,7 @@ const NOISE_M: f64 = 5e-5;
 
 /// The suspicious joints with the words about them.
 fn named(robot: &Robot, data: &Dataset) -> Vec<(usize, String)> {
-    let found = calibrate(robot, data, &CalibrationOptions::default()).unwrap();
+    let found = calibrate(robot, data, &geometry()).unwrap();
     let joints = found.trust.joints.into_iter().enumerate();
     joints.filter_map(|(joint, it)| Some((joint, it.suspicious?))).collect()
 }

@@ -1,5 +1,6 @@
 //! What is stated of uncertainty holds in a Monte Carlo, and stays quiet about discrepancy where there is only noise.
 
+use crate::common::geometry;
 use crate::common::with_threads;
 use crate::trials::trials;
 use nalgebra::Vector3;
@@ -41,7 +42,7 @@ fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
         held_out: 0.0,
         tolerance: None,
         sigma: Noise::new(simulated.noise_position_m, simulated.noise_rotation_rad).map(Some),
-        ..CalibrationOptions::default()
+        ..geometry()
     };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
     let uncertainty = found.trust.uncertainty.unwrap();
@@ -125,9 +126,8 @@ fn stated_intervals_hold() {
 #[test]
 fn same_bytes_whatever_the_threads() {
     let made = Simulation { count: 2500, ..Simulation::default() }.run(&elbow(), Kind::Point).unwrap();
-    let once = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
-    let again =
-        with_threads(1, || calibrate(&made.nominal, &made.data, &CalibrationOptions::default())).unwrap();
+    let once = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
+    let again = with_threads(1, || calibrate(&made.nominal, &made.data, &geometry())).unwrap();
     assert!(format!("{:?}", once.trust) == format!("{:?}", again.trust));
 }
 
@@ -153,7 +153,7 @@ fn errors_that_the_model_does_not_describe_are_stated() {
             let point = poecal::measurement::PointMeasurement { position };
             data.push(made.data.readings(row), None, poecal::measurement::Measurement::Point(point)).unwrap();
         }
-        let options = CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() };
+        let options = CalibrationOptions { held_out: 0.0, ..geometry() };
         let found = calibrate(&robot, &data, &options).unwrap();
         let uncertainty = found.trust.uncertainty.unwrap();
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x7a12);
@@ -187,7 +187,7 @@ fn drawing_rows_anew_agrees_with_the_covariance_where_there_is_only_noise() {
         for seed in sessions.seeds() {
             let made =
                 Simulation { count: 200, seed, ..Simulation::default() }.run(&robot, Kind::Point).unwrap();
-            let found = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+            let found = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
             let bootstrap = found.trust.bootstrap.unwrap();
             ratios.push(bootstrap.sigma_m / bootstrap.formal_sigma_m);
         }
@@ -218,7 +218,7 @@ fn drawing_rows_anew_sees_what_neighbours_share() {
             data.push(&readings, None, poecal::measurement::Measurement::Point(point)).unwrap();
         }
     }
-    let options = CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() };
+    let options = CalibrationOptions { held_out: 0.0, ..geometry() };
     let found = calibrate(&robot, &data, &options).unwrap();
     let bootstrap = found.trust.bootstrap.unwrap();
     let ratio = bootstrap.sigma_m / bootstrap.formal_sigma_m;

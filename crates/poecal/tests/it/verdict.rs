@@ -1,5 +1,6 @@
 //! The verdict and the warnings say what is wrong with a session, and nothing of a sound one.
 
+use crate::common::geometry;
 use crate::common::{calibrated as fit, simulated};
 use crate::trials::{some, trials};
 use nalgebra::Vector3;
@@ -109,10 +110,7 @@ fn noise_in_a_wrong_unit_is_doubted() {
     for (factor, words) in
         [(1e-3, "times the stated noise"), (1e3, "times smaller than the stated noise"), (1.0, "")]
     {
-        let options = CalibrationOptions {
-            sigma: Noise::new(5e-5 * factor, 1.7e-4).map(Some),
-            ..CalibrationOptions::default()
-        };
+        let options = CalibrationOptions { sigma: Noise::new(5e-5 * factor, 1.7e-4).map(Some), ..geometry() };
         let found = calibrate(&made.nominal, &made.data, &options).unwrap();
         println!("{factor}: {:?}", found.warnings);
         if words.is_empty() {
@@ -157,7 +155,7 @@ fn stragglers_do_not_count_as_coverage() {
         data.push(made.data.readings(row), None, Measurement::Pose(PoseMeasurement { pose })).unwrap();
     }
     made.data = data;
-    let options = CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() };
+    let options = CalibrationOptions { held_out: 0.0, ..geometry() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
     let coverage = &found.trust.coverage[1];
     println!("{} rows, {coverage:?}", made.data.len());
@@ -172,7 +170,7 @@ fn what_is_not_this_robot_is_not_to_be_used() {
         .run(&elbow(), Kind::Pose)
         .unwrap();
     let level = |name: &str, robot: &Robot, data: &Dataset, frame| {
-        let options = CalibrationOptions { frame, ..CalibrationOptions::default() };
+        let options = CalibrationOptions { frame, ..geometry() };
         let found = calibrate(robot, data, &options).unwrap();
         println!("{name}: {:?} {:?}", found.verdict.level, found.verdict.reasons);
         assert_eq!(found.verdict.level, Level::DoNotUse, "{name}");
@@ -218,7 +216,7 @@ fn copies_are_nothing_to_judge_by() {
     for (row, observation) in data.observations.iter_mut().enumerate() {
         observation.set = Some(if row < 40 { Set::Fit } else { Set::HeldOut });
     }
-    let error = calibrate(&made.nominal, &data, &CalibrationOptions::default()).unwrap_err();
+    let error = calibrate(&made.nominal, &data, &geometry()).unwrap_err();
     println!("{error}");
     assert!(error.to_string().contains("40 of 40 held-out rows that repeat fitted rows"));
 }
@@ -237,7 +235,7 @@ fn registered_positions_are_the_best_there_are() {
             points.push(made.data.readings(row), None, seen).unwrap();
         }
         let rms = |data: &Dataset| {
-            let options = CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() };
+            let options = CalibrationOptions { held_out: 0.0, ..geometry() };
             calibrate(&made.nominal, data, &options).unwrap().accuracy.training.registered.position_mm().rms
         };
         let (poses, best) = (rms(&made.data), rms(&points));

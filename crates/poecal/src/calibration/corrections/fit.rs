@@ -1,18 +1,30 @@
 //! The fit of screws and terms together.
 
+use std::slice;
+
 use nalgebra::Vector3;
 
-use super::choice::{Choice, HALF, choose};
-use super::model::moving;
-use super::{CorrectionModel, Sizes, TriedSizes};
+use super::choice::{Choice, SizesReason, TriedSizes, choose, weight_of_prior};
+use super::effects::effects;
+use super::found::Correction;
+use super::grid::CHOSEN;
+use super::linear::{Class, Linear, between};
+use super::promise::uncertainty;
+use super::unknowns::{estimate, moving, priors, unknowns, weights};
+use crate::analysis::coverage;
+use crate::calibration::accuracy::model_accuracy;
+use crate::calibration::expected::{Expectations, expectations};
 use crate::calibration::fit::Task;
 use crate::calibration::found::OngoingFit;
 use crate::calibration::noise::{NoiseSource, stated};
-use crate::calibration::{Calibration, CalibrationOptions, estimate_noise};
-use crate::estimate::{Estimate, Packed, RowError, Session, Unknowns};
+use crate::calibration::placed::{place_tip, stations};
+use crate::calibration::{Calibration, CalibrationOptions, PredictedUncertainty, delivered, estimate_noise};
+use crate::estimate::{Estimate, Packed, Session, Unknowns, sample_rows};
+use crate::gauge;
+use crate::lie::rotation;
 use crate::measurement::{ByQuantity, Dataset, Noise};
 use crate::problem::Prior;
-use crate::robot::{Robot, Tolerance};
+use crate::robot::{CorrectionModel, GravityDirection, JointTerm, Robot, Sizes, TermGroup, Tolerance};
 use crate::uncertainty::{PriorInformation, View, parts_to_leave_out};
 
 /// Most rounds of re-estimating the noise.
@@ -21,154 +33,365 @@ const ROUNDS: usize = 4;
 const SAMPLE: usize = 2000;
 /// Change of the noise below which it stays, as a share.
 const SETTLED: f64 = 0.02;
-
-/// A fit of screws and terms: the robot that it found, with all that predicts rows.
-///
-/// ```
-/// use nalgebra::Vector3;
-/// use poecal::calibration::{CalibrationOptions, Sizes, calibrate, correct};
-/// use poecal::simulate::{Kind, Simulation, elbow};
-/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
-/// let options = CalibrationOptions::default();
-/// let calibration = calibrate(&made.nominal, &made.data, &options)?;
-/// let found = correct(&calibration, &made.data, -Vector3::z(), Some(Sizes::COMMON), &options);
-/// assert_eq!(found.errors(&made.data, &calibration.held_out_rows).len(), calibration.held_out_rows.len());
-/// # Ok::<(), poecal::Error>(())
-/// ```
-#[derive(Clone, Debug)]
-pub struct Correction {
-    /// The robot with its gives and terms, as in the model.
-    pub model: CorrectionModel,
-    /// Prior sizes of the groups of terms.
-    pub sizes: Sizes,
-    /// Sizes that cross-validation tried, if it chose.
-    pub tried: Vec<TriedSizes>,
-    /// What was fitted.
-    pub unknowns: Unknowns,
-    /// What was found.
-    pub estimate: Estimate,
-    /// Noise of the fit.
-    pub noise: Noise,
-    packed: Packed,
-}
-
-impl Correction {
-    /// The robot that was found: with its gives and its terms, at the model's tip. It predicts as the fit does.
-    #[must_use]
-    pub fn robot(&self) -> Robot {
-        let found = self.model.robot.with_screws(&self.estimate.screws());
-        Robot { terms: self.estimate.terms.clone(), ..found }
-    }
-
-    /// Errors of rows of the data that were fitted ([`Session::errors`]).
-    #[must_use]
-    pub fn errors(&self, data: &Dataset, rows: &[u32]) -> Vec<RowError> {
-        Session::new(&self.model.robot, data, &self.packed, true).errors(rows, &self.estimate)
-    }
-}
+/// Angles by which a direction of gravity is tilted in turn, radians, and how often by each at most.
+const TILTS: [f64; 6] = [0.35, 0.17, 0.09, 0.04, 0.02, 0.01];
+const MOST_TILTS: usize = 8;
+/// Most held-out rows whose bounds are checked.
+const JUDGED: usize = 4000;
+/// Factor of the first trust region.
+const UNDAMPED: f64 = 1e3;
+/// The fit stops within a tenth of a standard deviation: what the priors hold is not known better.
+const DECREMENT: f64 = 1e-2;
 
 /// Fits screws and terms together, from a finished calibration (theory.md §6, *Corrections*): with these sizes, or with those that
-/// cross-validation chooses. Gravity is a direction in the base frame.
+/// cross-validation chooses.
 #[must_use]
 pub fn correct(
     calibration: &Calibration,
     data: &Dataset,
-    gravity: Vector3<f64>,
+    gravity: GravityDirection,
     sizes: Option<Sizes>,
     options: &CalibrationOptions,
 ) -> Correction {
     let own = calibration.packed(data);
-    let geometry = Geometry { calibration, session: calibration.session(data, &own), options };
-    let moves = moving(&calibration.nominal, &own, &calibration.fit_rows);
-    let all = CorrectionModel::new(&calibration.nominal, gravity, &moves);
-    let start = all.estimate(&calibration.models.calibrated, data);
-    match sizes {
-        Some(sizes) => geometry.fit(&all.with_sizes(&sizes), start, calibration.noise, sizes, None).0,
-        None => {
-            let (tried, choice) = geometry.fit(&all, start, calibration.noise, Sizes::ALL, Some(all.clone()));
-            let Choice { sizes, tried: scores } =
-                choice.unwrap_or(Choice { sizes: Sizes::COMMON, tried: Vec::new() });
-            let model = all.with_sizes(&sizes);
-            let mut start = model.estimate(&calibration.models.calibrated, data);
-            for (to, from) in model.places.iter().zip(&all.places) {
-                start.base_from_axis[*to] = tried.estimate.base_from_axis[*from];
-            }
-            start.base_from_target.clone_from(&tried.estimate.base_from_target);
-            start.device_from_base = tried.estimate.device_from_base;
-            start.further_devices.clone_from(&tried.estimate.further_devices);
-            let (found, _) = geometry.fit(&model, start, tried.noise, sizes, None);
-            Correction { tried: scores, ..found }
+    let session = calibration.session(data, &own).with_noise_ratios(&calibration.noise_ratios);
+    let rows = &calibration.fit_rows;
+    let weights = weights(calibration, options);
+    // Terms that geometry has are of no group.
+    let mut nominal = calibration.nominal.clone();
+    for &(joint, term) in &session.unknowns.terms {
+        if !nominal.terms.iter().any(|it| (it.joint, it.term) == (joint, term)) {
+            nominal.terms.push(JointTerm { joint, term, coefficient: 0.0 });
         }
     }
+    let geometry = Geometry { calibration, nominal, session, options, weights: weights.as_deref() };
+    let moves = moving(&session, rows);
+    let gravity = match gravity {
+        GravityDirection::Known(direction) => direction,
+        GravityDirection::Found => geometry.gravity(&moves, sizes.unwrap_or(Sizes::COMMON)),
+    };
+    let all = CorrectionModel::with_orders(&geometry.nominal, gravity, &moves, options.harmonics);
+    let all = sizes.map_or_else(|| all.clone(), |sizes| all.with_sizes(&sizes));
+    let begun = geometry.begin(&all, sizes);
+    // Terms that may be there keep their part of the uncertainty.
+    let possible = if sizes.is_some() { begun.sizes } else { begun.sizes.max(&Sizes::COMMON) };
+    geometry.end(all.with_sizes(&possible), &possible, begun)
 }
 
 /// A finished calibration, from which corrections are fitted.
 struct Geometry<'a> {
     calibration: &'a Calibration,
+    nominal: Robot,
     session: Session<'a>,
     options: &'a CalibrationOptions,
+    /// Weights of all rows of the data.
+    weights: Option<&'a [f64]>,
+}
+
+/// Sizes, and the optimum with them as far as rows are linear.
+struct Begun {
+    sizes: Sizes,
+    reason: SizesReason,
+    tried: Vec<TriedSizes>,
+    estimate: Estimate,
+    noise: Noise,
+    /// Variance of the residuals whitened by stated noise, at least 1; 1 where the noise is estimated.
+    variance: f64,
+    /// Mean squared error of parts that were left out, over that of all rows.
+    growth: f64,
+}
+
+/// Rows of a sample as linear functions, and the parts of them that are left out in turn.
+struct Sampled {
+    linear: Linear,
+    parts: Vec<Vec<u32>>,
+    configurations: usize,
 }
 
 impl Geometry<'_> {
-    /// The fit of a model with these sizes, and the choice of sizes from its information, if a model is to be chosen for.
-    fn fit(
-        &self,
-        model: &CorrectionModel,
-        start: Estimate,
-        noise: Noise,
-        sizes: Sizes,
-        chosen_for: Option<CorrectionModel>,
-    ) -> (Correction, Option<Choice>) {
-        let Geometry { calibration, session, options } = self;
-        let rows = &calibration.fit_rows;
-        let packed = Packed::of(&model.robot, session.data);
-        let unknowns = model.unknowns(session.unknowns);
-        let session = Session { robot: &model.robot, packed: &packed, unknowns: &unknowns, ..*session };
-        let tolerance = options.tolerance.unwrap_or(Tolerance::WIDE);
-        let prior = Prior::new(&model.robot, tolerance, session.base_free()).with_terms(model.priors(&sizes));
-        let weights: Option<Vec<f64>> = calibration
-            .robustness
-            .loss
-            .map(|_| calibration.robustness.rows.iter().map(|row| row.weight).collect());
-        let weight = 1.0 + session.data.configurations(rows).len() as f64 / HALF;
-        let task =
-            Task { session, rows, weights: weights.as_deref(), prior: Some((&prior, weight)), options };
-        let (estimate, noise) = fitted(&task, start, (noise, calibration.noise_source));
-        let choice = chosen_for.map(|model| {
-            let none = PriorInformation::none(0);
-            let view = View {
-                session,
-                rows,
-                free: &[],
-                noise,
-                noise_is_stated: ByQuantity::default(),
-                prior: &none,
-                variance: 1.0,
-                estimate: &estimate,
-            };
-            let parts = parts_to_leave_out(&view, SAMPLE, options.seed);
-            choose(&Task { prior: Some((&prior, 1.0)), ..task }, &model, (&estimate, noise), &parts)
+    /// The direction of gravity with which terms leave the least noise: the best of three, tilted until it gets no better.
+    fn gravity(&self, moves: &[bool], sizes: Sizes) -> Vector3<f64> {
+        let along = |direction: &Vector3<f64>| {
+            let model =
+                CorrectionModel::with_orders(&self.nominal, *direction, moves, self.options.harmonics);
+            self.sampled(&model.with_sizes(&sizes), Some(sizes)).map(|it| it.linear)
+        };
+        let score = |direction: &Vector3<f64>| {
+            along(direction).map_or(f64::INFINITY, |linear| linear.logarithm_of_noise(&sizes))
+        };
+        let mut best = -Vector3::z();
+        let mut least = score(&best);
+        for direction in [-Vector3::x(), -Vector3::y()] {
+            let found = score(&direction);
+            if found < least {
+                (best, least) = (direction, found);
+            }
+        }
+        for step in TILTS {
+            for _ in 0..MOST_TILTS {
+                let x = rotation::perpendicular(&best);
+                let y = best.cross(&x);
+                let before = least;
+                for turn in [x, -x, y, -y] {
+                    let tilted = rotation::exp(&(turn * step)) * best;
+                    let found = score(&tilted);
+                    if found < least {
+                        (best, least) = (tilted.normalize(), found);
+                    }
+                }
+                if least == before {
+                    break;
+                }
+            }
+        }
+        // Against gravity all coefficients have the other sign and the fit is the same; but joints give the way they are pulled.
+        let given = along(&best).and_then(|linear| linear.solution(&sizes, &linear.whole())).map(|found| {
+            let sags = found.terms.iter().filter(|it| it.term.needs_gravity());
+            sags.map(|it| it.coefficient).sum::<f64>()
         });
-        (
-            Correction { model: model.clone(), sizes, tried: Vec::new(), unknowns, estimate, noise, packed },
-            choice,
-        )
+        if given.is_some_and(|given| given < 0.0) { -best } else { best }
+    }
+
+    fn session<'a>(
+        &'a self,
+        model: &'a CorrectionModel,
+        packed: &'a Packed,
+        unknowns: &'a Unknowns,
+    ) -> Session<'a> {
+        Session { robot: &model.robot, packed, unknowns, ..self.session }
+    }
+
+    fn task<'a>(&'a self, session: Session<'a>, prior: (&'a Prior, f64)) -> Task<'a> {
+        let Geometry { calibration, options, weights, .. } = self;
+        Task { session, rows: &calibration.fit_rows, weights: *weights, prior: Some(prior), options }
+    }
+
+    fn prior(&self, session: &Session<'_>) -> Prior {
+        let tolerance = self.options.tolerance.unwrap_or(Tolerance::WIDE);
+        Prior::new(session.robot, tolerance, session.base_free())
+    }
+
+    /// A sample of the rows, linear about the calibrated model; none if that determines nothing.
+    fn sampled(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Option<Sampled> {
+        let Geometry { calibration, options, .. } = *self;
+        let noise = calibration.noise;
+        let none = PriorInformation::none(0);
+        let view = View {
+            session: self.session,
+            rows: &calibration.fit_rows,
+            free: &[],
+            noise,
+            noise_is_stated: ByQuantity::default(),
+            prior: &none,
+            variance: 1.0,
+            estimate: &calibration.models.calibrated,
+        };
+        let (sample, parts) = parts_to_leave_out(&view, SAMPLE, options.seed);
+        // The rows of the sample alone, so that terms are evaluated at no others.
+        let data = self.session.data.only(&sample);
+        let rows = data.all_rows();
+        let among = |row: &u32| sample.binary_search(row).ok().and_then(|at| u32::try_from(at).ok());
+        let parts: Vec<Vec<u32>> = parts.iter().map(|part| part.iter().filter_map(among).collect()).collect();
+        let weights: Option<Vec<f64>> = self.weights.map(|weights| {
+            sample.iter().map(|&row| weights.get(row as usize).copied().unwrap_or(1.0)).collect()
+        });
+        let start = estimate(model, &calibration.models.calibrated, &data);
+        let packed = Packed::of(&model.robot, &data);
+        let unknowns = unknowns(model, self.session.unknowns, &sizes.unwrap_or(Sizes::ALL));
+        let session = Session {
+            data: &data,
+            robot: &model.robot,
+            packed: &packed,
+            unknowns: &unknowns,
+            ..self.session
+        };
+        let prior = self.prior(&session);
+        let prior = Some((&prior, 1.0));
+        let task = Task { session, rows: &rows, weights: weights.as_deref(), prior, options };
+        let configurations = data.configurations(&rows).len();
+        let weight = weight_of_prior(configurations);
+        let classes: Vec<Class> = match sizes {
+            None => {
+                CHOSEN.map(|(groups, sizes)| (groups, sizes.iter().copied().fold(0.0, f64::max))).to_vec()
+            }
+            Some(sizes) => {
+                TermGroup::ALL.iter().map(|group| (slice::from_ref(group), sizes[*group])).collect()
+            }
+        };
+        let linear = Linear::new(&task, model, (&start, noise), (&rows, weight), &classes)?;
+        Some(Sampled { linear, parts, configurations })
+    }
+
+    /// Chooses sizes, unless they are given.
+    fn begin(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Begun {
+        let Geometry { calibration, .. } = *self;
+        let noise = calibration.noise;
+        let start = || estimate(model, &calibration.models.calibrated, self.session.data);
+        let Some(Sampled { mut linear, parts, configurations }) = self.sampled(model, sizes) else {
+            let (sizes, reason) =
+                sizes.map_or((Sizes::NONE, SizesReason::Undetermined), |sizes| (sizes, SizesReason::Given));
+            let estimate = start();
+            return Begun { sizes, reason, tried: Vec::new(), estimate, noise, variance: 1.0, growth: 1.0 };
+        };
+        let mut noise = noise;
+        let mut variance = 1.0;
+        let usual = sizes.unwrap_or(Sizes::COMMON);
+        if calibration.noise_source == NoiseSource::Estimated {
+            for (quantity, factor) in linear.whiten(&usual) {
+                noise[quantity] *= factor;
+            }
+        } else if calibration.noise_source != NoiseSource::Exact {
+            variance = linear.weigh_priors(&usual);
+        }
+        let whole = linear.whole();
+        let parts = linear.parts(&parts, &whole);
+        let choice = match sizes {
+            Some(sizes) => Choice { sizes, reason: SizesReason::Given, tried: Vec::new() },
+            None => choose(&linear, &parts, configurations),
+        };
+        let estimate = linear.solution(&choice.sizes, &whole).unwrap_or_else(start);
+        let growth = if parts.is_empty() { 1.0 } else { linear.growth(&parts, &whole, &choice.sizes) };
+        let Choice { sizes, reason, tried } = choice;
+        Begun { sizes, reason, tried, estimate, noise, variance, growth }
+    }
+
+    /// Whether a fit with terms explains the fitted rows no worse than geometry alone.
+    fn is_no_worse(&self, session: &Session<'_>, estimate: &Estimate) -> bool {
+        let counts =
+            |row: &&u32| self.weights.is_none_or(|it| it.get(**row as usize).is_none_or(|it| *it > 0.5));
+        let rows: Vec<u32> = self.calibration.fit_rows.iter().filter(counts).copied().collect();
+        let squares = |session: &Session<'_>, estimate: &Estimate| -> f64 {
+            let errors = session.errors(&rows, estimate);
+            errors.iter().map(|error| error.lead().norm_squared()).sum()
+        };
+        squares(session, estimate) <= squares(&self.session, &self.calibration.models.calibrated)
+    }
+
+    /// The fit of a model with the sizes of a beginning, and what it promises with all terms that are possible.
+    fn end(&self, model: CorrectionModel, possible: &Sizes, begun: Begun) -> Correction {
+        let Geometry { calibration, options, .. } = *self;
+        let Begun { sizes, reason, tried, estimate: begun, noise, variance, growth } = begun;
+        let of_geometry = self.session;
+        let data = of_geometry.data;
+        let start = estimate(&model, &calibration.models.calibrated, data);
+        let packed = Packed::of(&model.robot, data);
+        let fitted_unknowns = unknowns(&model, of_geometry.unknowns, &sizes);
+        let session = self.session(&model, &packed, &fitted_unknowns);
+        let rows = &calibration.fit_rows;
+        let weight = weight_of_prior(data.configurations(rows).len());
+        let (estimate, noise) = if sizes == Sizes::NONE {
+            (start, calibration.noise)
+        } else {
+            let coefficient = |it: JointTerm| begun.coefficient(it.joint, it.term);
+            let terms = start.terms.into_iter().map(|it| JointTerm { coefficient: coefficient(it), ..it });
+            let terms = terms.collect();
+            let begun = Estimate { terms, ..begun };
+            // The start is the optimum as far as rows are linear: no damping.
+            let mut near = options.clone();
+            near.solver.trust *= UNDAMPED;
+            near.solver.decrement = near.solver.decrement.max(DECREMENT);
+            let prior = self.prior(&session).with_terms(priors(&model, &sizes));
+            let task = Task { options: &near, ..self.task(session, (&prior, weight * variance)) };
+            let (found, noise) = fitted(&task, begun, (noise, calibration));
+            let base_motion = |found: &Estimate| {
+                let targets = delivered(&model.robot, data).base_from_target;
+                gauge::base_motion(found, &model.robot, &targets, session.length_m)
+            };
+            (if session.base_free() { found.rebased(&base_motion(&found)) } else { found }, noise)
+        };
+        // Where rows are far from linear, terms may lead nowhere.
+        if sizes != Sizes::NONE && !self.is_no_worse(&session, &estimate) {
+            return self.end_without(model, possible, tried);
+        }
+        let every = unknowns(&model, of_geometry.unknowns, possible);
+        let prior = self.prior(&session).with_terms(priors(&model, possible));
+        let whole = self.task(Session { unknowns: &every, ..session }, (&prior, weight));
+        let uncertainty = uncertainty(&whole, (&estimate, noise), (&prior, [weight, variance]), growth);
+        if sizes != Sizes::NONE && uncertainty.is_none() {
+            return self.end_without(model, possible, tried);
+        }
+        let coverage = coverage(&session, rows);
+        let expected = uncertainty.as_ref().map_or_else(Expectations::default, |uncertainty| {
+            expectations(&session, rows, &coverage, uncertainty, options.seed)
+        });
+        let found = uncertainty.as_ref().filter(|_| sizes != Sizes::NONE).map(|uncertainty| {
+            let deviations: Vec<f64> = model.deviations(possible).collect();
+            let before = (&of_geometry, &calibration.models.calibrated);
+            effects(&model, (&session, &estimate), before, rows, (uncertainty, &deviations), noise)
+        });
+        let training = session.errors(rows, &estimate);
+        let judged = &calibration.held_out_rows;
+        let held_out = session.errors(judged, &estimate);
+        let targets: Vec<usize> = (0..data.targets.len()).collect();
+        let kept = uncertainty.as_ref().filter(|_| !judged.is_empty()).map(|uncertainty| {
+            let predicted = PredictedUncertainty { uncertainty, targets: &targets, coverage: &coverage };
+            let some = sample_rows(judged, JUDGED);
+            predicted.check(&session, &estimate, &some, &session.errors(&some, &estimate))
+        });
+        let (robot, targets) = place_tip(&model.robot, data, &data.frames(rows), &estimate);
+        Correction {
+            sizes,
+            reason,
+            tried,
+            robot: Robot { terms: estimate.terms.clone(), ..robot },
+            targets,
+            stations: stations(&session, &estimate, noise),
+            training: model_accuracy(&training),
+            held_out: (!judged.is_empty()).then(|| model_accuracy(&held_out)),
+            uncertainty,
+            effects: found.unwrap_or_default(),
+            expected,
+            kept,
+            noise,
+            frame: calibration.frame,
+            prior_weight: weight * variance,
+            unknowns: fitted_unknowns,
+            model,
+            estimate,
+            packed,
+        }
+    }
+
+    /// Geometry alone where terms lead nowhere.
+    fn end_without(&self, model: CorrectionModel, possible: &Sizes, tried: Vec<TriedSizes>) -> Correction {
+        let none = self.begin(&model, Some(Sizes::NONE));
+        self.end(model, possible, Begun { reason: SizesReason::LedNowhere, tried, ..none })
     }
 }
 
+/// Measured numbers of each quantity.
+fn numbers(task: &Task<'_>) -> ByQuantity<f64> {
+    let mut counts: ByQuantity<f64> = ByQuantity::default();
+    for &row in task.rows {
+        let measurement = &task.session.observation(row).measurement;
+        for (quantity, count) in counts.values_mut() {
+            if measurement.has(quantity) {
+                *count += quantity.components() as f64;
+            }
+        }
+    }
+    counts
+}
+
 /// The optimum with the noise estimated anew.
-fn fitted(task: &Task<'_>, start: Estimate, (noise, source): (Noise, NoiseSource)) -> (Estimate, Noise) {
+fn fitted(task: &Task<'_>, start: Estimate, (noise, of): (Noise, &Calibration)) -> (Estimate, Noise) {
     let (mut estimate, mut noise) = (start, noise);
+    let counts = numbers(task);
+    let all: f64 = counts.iter().map(|(_, count)| *count).sum();
     for _ in 0..ROUNDS {
         let found = OngoingFit::new(task.fit(estimate, noise));
         let known = task.effective_unknowns(&found);
         estimate = found.estimate;
-        if source != NoiseSource::Estimated {
+        if of.noise_source != NoiseSource::Estimated {
             break;
         }
         let Some(better) = estimate_noise(&task.session, task.rows, &estimate, known, None, noise) else {
             break;
         };
+        let better = ByQuantity::from_fn(|quantity| {
+            let freedom = counts[quantity] * (1.0 - known / all).max(0.0);
+            between(of.noise[quantity], better[quantity].powi(2) * freedom, freedom)
+        });
         let better = stated(task.options, better);
         let change = better.iter().map(|(quantity, sigma)| (sigma / noise[quantity]).ln().abs());
         let is_settled = change.fold(0.0, f64::max) < SETTLED;

@@ -1,11 +1,17 @@
 //! What joints really do beyond geometry: terms of their values and of their bearings, fitted beside the screws with priors (theory.md §6).
 
 mod choice;
+mod effects;
 mod fit;
-mod model;
-mod sizes;
+mod found;
+mod grid;
+mod linear;
+mod promise;
+mod suspects;
+mod unknowns;
 
-pub use choice::TriedSizes;
-pub use fit::{Correction, correct};
-pub use model::CorrectionModel;
-pub use sizes::{Sizes, TermGroup};
+pub use choice::{SizesReason, TriedSizes};
+pub use effects::{Effects, JointEffect, JointErrorPart, JointErrors};
+pub use fit::correct;
+pub use found::Correction;
+pub(super) use suspects::suspected;

@@ -6,7 +6,6 @@ mod loss;
 mod rows;
 mod scale;
 
-use alike::Configurations;
 pub(crate) use influence::RowInfluence;
 pub use influence::row_influence;
 pub use loss::{Loss, Robust};
@@ -24,7 +23,9 @@ use crate::parameters::Parameter;
 use crate::solve;
 use crate::start::{Registration, register_robustly};
 use crate::uncertainty::{PriorInformation, View, leave_clusters_out};
-use rows::{Bounds, RowJudgements, is_judgeable, judge_rows};
+pub(super) use alike::Configurations;
+use rows::{Bounds, RowJudgements, is_judgeable};
+pub(super) use rows::{JudgingFit, judge_rows};
 use scale::{RowParts, Scale, parts, settle};
 
 /// Most reweightings with one loss.
@@ -34,7 +35,14 @@ const ITERATIONS: usize = 6;
 /// Largest change of settled weights.
 const SETTLED: f64 = 1e-3;
 
+/// A finished fit, as rows are judged by it.
+fn judging(fitted: &Fitted) -> JudgingFit<'_> {
+    let Fitted { estimate, noise, normal, .. } = fitted;
+    JudgingFit { estimate, noise: *noise, normal, unknowns: normal.dim() as f64 }
+}
+
 /// A fit with its loss and the judgement of every row of the data.
+#[derive(Clone)]
 pub(super) struct RobustFit {
     pub(super) fitted: Fitted,
     pub(super) loss: Option<Loss>,
@@ -84,6 +92,12 @@ pub(super) fn fit(
 }
 
 impl RobustFit {
+    /// The same with these rows suspected.
+    pub(super) fn suspecting(mut self, suspected: &[bool]) -> Self {
+        self.judged.rows.iter_mut().zip(suspected).for_each(|(row, suspected)| row.suspected = *suspected);
+        self
+    }
+
     /// Whether a fitted row is suspected.
     fn is_evident(&self, task: &Task<'_>) -> bool {
         task.rows.iter().any(|&row| self.judged.rows[row as usize].suspected)
@@ -145,7 +159,7 @@ fn ordinary(
 ) -> Result<RobustFit> {
     let fitted = task.with_first_prior_weight(noise, source).complete(found, registered, noise, source)?;
     let weights = vec![1.0; task.session.data.len()];
-    let judged = judge_rows(task, configurations, &fitted, &weights, None);
+    let judged = judge_rows(task, configurations, judging(&fitted), &weights, None);
     Ok(RobustFit { fitted, loss: None, judged })
 }
 
@@ -339,7 +353,7 @@ impl<'c> Reweighted<'c> {
         found.report.iterations += self.iterations;
         found.report.trace.splice(0..0, self.trace);
         let fitted = weighted.finish(found, self.noise, source)?;
-        let judged = judge_rows(&weighted, self.configurations, &fitted, &self.weights, Some(loss));
+        let judged = judge_rows(&weighted, self.configurations, judging(&fitted), &self.weights, Some(loss));
         Ok(RobustFit { fitted, loss: Some(loss), judged })
     }
 }

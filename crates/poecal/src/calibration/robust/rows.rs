@@ -5,9 +5,10 @@ use super::{Configurations, Loss, RowParts, Scale, parts};
 use crate::analysis::influence;
 use crate::calibration::SetAccuracy;
 use crate::calibration::fit::Task;
-use crate::calibration::found::Fitted;
 use crate::distributions;
-use crate::measurement::{ByQuantity, Dataset};
+use crate::estimate::Estimate;
+use crate::measurement::{ByQuantity, Dataset, Noise};
+use crate::solve::Normal;
 
 /// Probability that normal data have a row beyond the bound.
 const FAMILY: f64 = 1e-3;
@@ -70,6 +71,11 @@ impl Robustness {
         robustness.training_rest = training_rest;
         robustness.held_out_rest = held_out_rest;
         robustness
+    }
+
+    /// Rows of which others are suspected than before.
+    pub(in crate::calibration) fn differs(&self, suspected: &[bool]) -> bool {
+        self.rows.iter().zip(suspected).any(|(row, suspected)| row.suspected != *suspected)
     }
 
     /// The suspected rows, in the order of the data.
@@ -145,6 +151,7 @@ pub(super) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowParts>, unknow
 }
 
 /// Judgement of every row of the data, with its scale.
+#[derive(Clone)]
 pub(in crate::calibration) struct RowJudgements {
     pub(in crate::calibration) rows: Vec<RowJudgement>,
     scale: Scale,
@@ -157,11 +164,24 @@ impl RowJudgements {
     }
 }
 
+/// A fit by which rows are judged.
+#[derive(Clone, Copy)]
+pub(in crate::calibration) struct JudgingFit<'a> {
+    /// Where it ended.
+    pub(in crate::calibration) estimate: &'a Estimate,
+    /// Its noise.
+    pub(in crate::calibration) noise: Noise,
+    /// Its information there.
+    pub(in crate::calibration) normal: &'a Normal,
+    /// Number of unknowns that the rows determine.
+    pub(in crate::calibration) unknowns: f64,
+}
+
 /// Judges every row of the data by a fit with these weights; held-out rows have weight 0.
-pub(super) fn judge_rows(
+pub(in crate::calibration) fn judge_rows(
     task: &Task<'_>,
     configurations: &Configurations,
-    fitted: &Fitted,
+    fitted: JudgingFit<'_>,
     weights: &[f64],
     loss: Option<Loss>,
 ) -> RowJudgements {
@@ -169,9 +189,9 @@ pub(super) fn judge_rows(
     let mut is_fitted = vec![false; all.len()];
     task.rows.iter().for_each(|&row| is_fitted[row as usize] = true);
     let bounds = Bounds::suspected(all.len());
-    let parts = parts(&task.session, &all, &fitted.estimate, fitted.noise);
-    let unknowns = configurations.repeats * fitted.normal.dim() as f64;
-    let shares = configurations.shares(&task.session, &fitted.estimate);
+    let parts = parts(&task.session, &all, fitted.estimate, fitted.noise);
+    let unknowns = configurations.repeats * fitted.unknowns;
+    let shares = configurations.shares(&task.session, fitted.estimate);
     let judge = |scale: Scale| -> RowJudgements {
         // Influence is computed only where it may matter: rows with a leverage near 1 have no residual to judge them by.
         let lengths = parts.iter().map(|row| scale.length(row));
@@ -198,11 +218,10 @@ pub(super) fn judge_rows(
             .map(|&row| if is_fitted[row as usize] { weights[row as usize] } else { 0.0 })
             .collect();
         let problem = Task { weights: None, ..*task };
-        let problem = problem.problem(&fitted.estimate, fitted.noise);
-        let found =
-            influence(&problem, &fitted.estimate, &fitted.normal, &near, &counted, |row, component| {
-                component_scale(task.session.data, scale.0, row, component)
-            });
+        let problem = problem.problem(fitted.estimate, fitted.noise);
+        let found = influence(&problem, fitted.estimate, fitted.normal, &near, &counted, |row, component| {
+            component_scale(task.session.data, scale.0, row, component)
+        });
         for (&row, influence) in near.iter().zip(&found) {
             let (_, components) = scale.length(&parts[row as usize]);
             rows[row as usize].suspected =

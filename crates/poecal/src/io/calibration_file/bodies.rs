@@ -6,10 +6,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{CalibrationFile, JointEntry, PoseEntry, ScrewEntry, TargetEntry};
-use crate::calibration::{CalibratedTarget, Calibration};
+use crate::calibration::CalibratedTarget;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
-use crate::robot::{Body, JointTerm, Mount, Robot, Term};
+use crate::robot::{Body, JointTerm, Mount, Robot, Sag, Term};
 
 /// A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves.
 ///
@@ -112,18 +112,39 @@ impl CalibrationFile {
                         format!("found {coefficient} as the {term} of joint `{name}`, expected a number");
                     return Err(Error::new(ErrorKind::Model, message));
                 }
+                if !term.is_of(self.joints.len(), self.robot.factors.len()) {
+                    let (name, joints, factors) = (&entry.name, self.joints.len(), self.robot.factors.len());
+                    let message = format!(
+                        "found the term {term} of joint `{name}`, expected one of the {joints} joints and {factors} factors"
+                    );
+                    return Err(Error::new(ErrorKind::Model, message));
+                }
                 robot.terms.push(JointTerm { joint, term, coefficient });
             }
         }
+        let names: Vec<String> = self.robot.factors.iter().map(|it| it.name.clone()).collect();
+        robot = robot.with_factors(&names)?;
+        if let Some(factor) = self.robot.factors.iter().find(|it| !it.reference.is_finite()) {
+            let message =
+                format!("found a reference of factor `{}` that is no number, expected one", factor.name);
+            return Err(Error::new(ErrorKind::Model, message));
+        }
+        robot.factors.clone_from(&self.robot.factors);
         robot.base_name.clone_from(&self.robot.base_link);
         robot.tip_name.clone_from(&self.robot.tip_link);
         for index in 0..self.joints.len() {
             let on = self.joints.get(index).and_then(|entry| entry.on.as_ref());
             let on = on.map(|on| on.body(&robot)).transpose()?;
+            let gives = self.joints.get(index).and_then(|entry| entry.gives.as_deref());
+            let give_of = gives.map(|name| self.joint_that_gives(name, index)).transpose()?;
             if let Some(joint) = robot.joints.get_mut(index) {
-                joint.stands_on = on;
+                (joint.stands_on, joint.give_of) = (on, give_of);
             }
         }
+        if let Some(gravity) = &self.robot.gravity {
+            robot.gravity = Some(gravity.gravity(&robot, &self.joints)?);
+        }
+        self.check_terms(&robot)?;
         robot.tip = self.robot.tip_on.as_ref().map(|on| on.body(&robot)).transpose()?;
         for (name, target) in &self.targets {
             match &target.on {
@@ -143,6 +164,51 @@ impl CalibrationFile {
     }
 }
 
+impl CalibrationFile {
+    /// Whether a joint has this name.
+    pub(crate) fn has_joint(&self, name: &str) -> bool {
+        self.joints.iter().any(|joint| joint.name == name)
+    }
+
+    /// Refuses terms of weights that the robot does not carry, and gives that do not stand on their joint.
+    fn check_terms(&self, robot: &Robot) -> Result<()> {
+        let weights = robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
+        for JointTerm { joint, term, .. } in &robot.terms {
+            if let Term::Sag(Sag { weight }) = term
+                && *weight >= weights
+            {
+                let name = &robot.joints[*joint].name;
+                let message =
+                    format!("found the term {term} of joint `{name}`, expected one of the {weights} weights");
+                return Err(Error::new(ErrorKind::Model, message));
+            }
+        }
+        for (index, joint) in robot.joints.iter().enumerate() {
+            let Some(of) = joint.give_of else { continue };
+            let before = robot.body_before(index).joint();
+            let is_on_it =
+                before.is_some_and(|before| before == of || robot.joints[before].give_of == Some(of));
+            if !is_on_it {
+                let (give, name) = (&joint.name, &robot.joints[of].name);
+                let message =
+                    format!("found `{give}` as a give of `{name}`, expected it to stand on that joint");
+                return Err(Error::new(ErrorKind::Model, message));
+            }
+        }
+        Ok(())
+    }
+
+    /// Index of the joint of which another is a give.
+    fn joint_that_gives(&self, name: &str, give: usize) -> Result<usize> {
+        let found = self.joints.iter().position(|entry| entry.name == name);
+        found.filter(|&of| of < give && self.joints[of].gives.is_none()).ok_or_else(|| {
+            let own = &self.joints[give].name;
+            let message = format!("found `{own}` as a give of `{name}`, expected one of a joint before it");
+            Error::new(ErrorKind::Model, message)
+        })
+    }
+}
+
 impl BodyEntry {
     /// The entry of a body of a robot.
     pub(crate) fn of(robot: &Robot, body: Body) -> Self {
@@ -152,7 +218,7 @@ impl BodyEntry {
         }
     }
 
-    fn body(&self, robot: &Robot) -> Result<Body> {
+    pub(super) fn body(&self, robot: &Robot) -> Result<Body> {
         match self {
             BodyEntry::Base => Ok(Body::Base),
             BodyEntry::LinkOf(name) => {
@@ -168,8 +234,7 @@ impl BodyEntry {
 }
 
 /// The named targets of a calibration: those that were measured, and those of the model with a body of their own.
-pub(super) fn targets(calibration: &Calibration) -> BTreeMap<String, TargetEntry> {
-    let robot = &calibration.robot;
+pub(super) fn targets(robot: &Robot, targets: &[CalibratedTarget]) -> BTreeMap<String, TargetEntry> {
     let on_body = |mount: &Mount, measured: MeasuredEntry| TargetEntry {
         position_m: mount.pose.translation.into(),
         quaternion_xyzw: Some(mount.pose.quaternion_xyzw()),
@@ -190,11 +255,10 @@ pub(super) fn targets(calibration: &Calibration) -> BTreeMap<String, TargetEntry
         };
         Some((name, entry))
     };
-    let is_measured =
-        |mount: &&Mount| calibration.targets.iter().any(|target| target.name.as_ref() == Some(&mount.name));
+    let is_measured = |mount: &&Mount| targets.iter().any(|target| target.name.as_ref() == Some(&mount.name));
     let unused = robot.mounted.iter().filter(|mount| !is_measured(mount));
     let unused = unused.map(|mount| (mount.name.clone(), on_body(mount, MeasuredEntry::Nothing)));
-    calibration.targets.iter().filter_map(entry).chain(unused).collect()
+    targets.iter().filter_map(entry).chain(unused).collect()
 }
 
 impl InstrumentEntry {

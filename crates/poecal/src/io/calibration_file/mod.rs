@@ -1,6 +1,7 @@
 //! `calibration.json`: a finished calibration as a versioned file, sufficient for predictions.
 
 mod bodies;
+mod corrected;
 mod judging;
 mod keyed;
 mod outliers;
@@ -11,6 +12,9 @@ mod trust;
 mod validation;
 
 pub use bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
+pub use corrected::{
+    CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
+};
 pub use keyed::*;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
@@ -21,7 +25,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::{json_text, source_text};
-use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge, names};
+use crate::calibration::{CalibratedStation, Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
 use crate::error::{Error, ErrorKind, Result};
 use crate::forensics::Diagnosis;
 use crate::lie::{Pose, Screw, Twist};
@@ -43,6 +47,7 @@ impl CalibrationFile {
     pub fn new(calibration: &Calibration, data: &Dataset, inputs: Inputs) -> Self {
         let robot = &calibration.robot;
         let joints = JointEntry::of_robot(robot, &calibration.nominal);
+        let measured_kinds = &calibration.accuracy.training.calibrated;
         CalibrationFile {
             schema: SCHEMA.to_owned(),
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -58,6 +63,10 @@ impl CalibrationFile {
                 converged: calibration.solver.termination.is_success(),
                 termination: calibration.solver.termination,
                 restarts: calibration.solver.restarts,
+                chosen_tolerance: calibration.chosen_tolerance.map(|it| ToleranceEntry {
+                    angle_deg: it.angle_rad.to_degrees(),
+                    length_mm: 1e3 * it.length_m,
+                }),
                 trace: calibration.solver.trace.iter().copied().filter(|value| value.is_finite()).collect(),
                 joint_offsets: OffsetEntry::of(calibration),
             },
@@ -79,7 +88,7 @@ impl CalibrationFile {
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             noise: NoiseEntry {
-                sigma: measured(calibration, calibration.noise).into(),
+                sigma: measured(measured_kinds, calibration.noise).into(),
                 source: calibration.noise_source,
             },
             robot: RobotEntry::new(robot, &calibration.nominal),
@@ -88,10 +97,11 @@ impl CalibrationFile {
                 known: calibration.frame,
                 base_from_device: (&calibration.base_from_device).into(),
             },
-            stations: StationEntry::of(calibration),
+            stations: StationEntry::of(&calibration.stations, calibration.noise, measured_kinds),
             tool: (&robot.last_joint_from_tip()).into(),
-            targets: bodies::targets(calibration),
+            targets: bodies::targets(robot, &calibration.targets),
             instruments: InstrumentEntry::of(robot, &robot.instruments),
+            corrected: calibration.correction.as_ref().map(|it| Box::new(CorrectedEntry::of(it, data))),
         }
     }
 
@@ -162,21 +172,22 @@ impl RobotEntry {
             base_from_tip_at_zero: (&robot.home).into(),
             nominal_base_from_tip_at_zero: (&nominal.home).into(),
             tip_on: robot.tip.map(|body| BodyEntry::of(robot, body)),
+            gravity: robot.gravity.as_ref().map(|gravity| GravityEntry::of(robot, gravity)),
+            factors: robot.factors.clone(),
         }
     }
 }
 
 impl StationEntry {
     /// Stations of a calibration; empty for a single one without a name.
-    fn of(calibration: &Calibration) -> Vec<Self> {
-        let stations = calibration.stations.iter();
-        let is_plain = calibration.stations.len() == 1 && stations.clone().all(|it| it.name.is_none());
+    fn of(stations: &[CalibratedStation], noise: Noise, errors: &ModelAccuracy) -> Vec<Self> {
+        let is_plain = stations.len() == 1 && stations.iter().all(|it| it.name.is_none());
         let entry = |it: &CalibratedStation| StationEntry {
             instrument: it.name.clone(),
             base_from_device: (&it.base_from_device).into(),
-            sigma: (it.noise != calibration.noise).then(|| measured(calibration, it.noise)),
+            sigma: (it.noise != noise).then(|| measured(errors, it.noise)),
         };
-        if is_plain { Vec::new() } else { stations.map(entry).collect() }
+        if is_plain { Vec::new() } else { stations.iter().map(entry).collect() }
     }
 }
 
@@ -201,13 +212,16 @@ impl BlocksEntry {
             };
             if is_free { &mut free } else { &mut held }.push(names.of(block));
         }
+        let listed = names.blocks();
+        let terms = unknowns.terms.iter().map(|&(joint, term)| Block::Term(joint, term));
+        free.extend(terms.filter(|block| !listed.contains(block)).map(|block| names.of(block)));
         Some(BlocksEntry { free, held })
     }
 }
 
 /// Noise of the quantities that the fitted rows measured, millimetres or degrees.
-fn measured(calibration: &Calibration, noise: Noise) -> Measured<f64> {
-    calibration.accuracy.training.calibrated.map(|quantity, _| quantity.unit().shown(noise[quantity]))
+fn measured(errors: &ModelAccuracy, noise: Noise) -> Measured<f64> {
+    errors.map(|quantity, _| quantity.unit().shown(noise[quantity]))
 }
 
 impl OffsetEntry {
@@ -237,6 +251,7 @@ impl JointEntry {
                 limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
                 reading: joint.reading.clone(),
                 on: joint.stands_on.map(|body| BodyEntry::of(robot, body)),
+                gives: joint.give_of.and_then(|of| robot.joints.get(of)).map(|of| of.name.clone()),
                 terms: BTreeMap::new(),
                 nominal_terms: BTreeMap::new(),
             })
@@ -246,26 +261,16 @@ impl JointEntry {
                     let own = terms.iter().filter(|it| it.joint == joint);
                     own.map(|it| (it.term, it.coefficient)).collect()
                 };
-                JointEntry { terms: of(&robot.terms), nominal_terms: of(&nominal.terms), ..entry }
+                let mut nominal_terms = of(&nominal.terms);
+                nominal_terms.retain(|_, coefficient| *coefficient != 0.0);
+                JointEntry { terms: of(&robot.terms), nominal_terms, ..entry }
             })
             .collect()
     }
 
-    /// The joint with one of its screws; on which body it stands is left open.
+    /// The joint with one of its screws; on which body it stands, and of which joint it is a give, is left open.
     fn joint(&self, screw: &ScrewEntry) -> Result<Joint> {
-        let kind = self.kind;
-        let twist = Twist::new(Vector3::from(screw.v_m), Vector3::from(screw.w));
-        let bad = || {
-            let (name, kind) = (&self.name, kind.word());
-            let message =
-                format!("found a screw of joint `{name}` that is no {kind} screw, expected a unit one");
-            Error::new(ErrorKind::Model, message)
-        };
-        let screw = Screw::project(&twist).ok_or_else(bad)?;
-        let off = (screw.twist().to_vector() - twist.to_vector()).norm();
-        if screw.is_prismatic() != (kind == JointKind::Prismatic) || off.is_nan() || off > 1e-6 {
-            return Err(bad());
-        }
+        let (kind, screw) = (self.kind, screw.screw(self)?);
         if let Some([lower, upper]) = self.limits
             && (lower.is_nan() || upper.is_nan() || lower >= upper)
         {
@@ -286,6 +291,26 @@ impl JointEntry {
             stands_on: None,
             give_of: None,
         })
+    }
+}
+
+impl ScrewEntry {
+    /// The screw, as one of a joint.
+    fn screw(&self, of: &JointEntry) -> Result<Screw> {
+        let kind = of.kind;
+        let twist = Twist::new(Vector3::from(self.v_m), Vector3::from(self.w));
+        let bad = || {
+            let (name, kind) = (&of.name, kind.word());
+            let message =
+                format!("found a screw of joint `{name}` that is no {kind} screw, expected a unit one");
+            Error::new(ErrorKind::Model, message)
+        };
+        let screw = Screw::project(&twist).ok_or_else(bad)?;
+        let off = (screw.twist().to_vector() - twist.to_vector()).norm();
+        if screw.is_prismatic() != (kind == JointKind::Prismatic) || off.is_nan() || off > 1e-6 {
+            return Err(bad());
+        }
+        Ok(screw)
     }
 }
 

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
+use super::corrected::{CorrectedEntry, GravityEntry};
 use super::keyed::{Keyed, SigmaKeys};
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
@@ -16,7 +17,7 @@ use crate::error::Result;
 use crate::forensics::DiagnosisKind;
 use crate::io::hashes::sha256;
 use crate::measurement::Measured;
-use crate::robot::{JointKind, Reading, Term};
+use crate::robot::{FactorReading, JointKind, Reading, Term};
 use crate::solve::Termination;
 
 /// A finished calibration.
@@ -92,6 +93,9 @@ pub struct CalibrationFile {
     /// Instruments on the robot.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub instruments: BTreeMap<String, InstrumentEntry>,
+    /// The corrected model: screws and terms of the joints fitted together; absent if no terms were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub corrected: Option<Box<CorrectedEntry>>,
 }
 
 /// Inputs.
@@ -150,6 +154,9 @@ pub struct SolverEntry {
     pub termination: Termination,
     /// Number of further starts after a suspected local minimum.
     pub restarts: usize,
+    /// Tolerance of the prior, if cross-validation chose it.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub chosen_tolerance: Option<ToleranceEntry>,
     /// Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit starts again.
     #[serde(default)]
     pub trace: Vec<f64>,
@@ -169,6 +176,15 @@ fn usual_pose_residual() -> String {
 
 fn usual_method() -> String {
     FormulationWords::default().method.to_owned()
+}
+
+/// Tolerance of the prior: how far each axis may be from nominal, standard deviations.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ToleranceEntry {
+    /// Of its direction, degrees.
+    pub angle_deg: f64,
+    /// Of its place, millimetres.
+    pub length_mm: f64,
 }
 
 /// Offset of a joint.
@@ -279,6 +295,12 @@ pub struct RobotEntry {
     /// Body of the tip, if it is not the last joint's link.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tip_on: Option<BodyEntry>,
+    /// Weights that the robot carries, if its joints sag.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<GravityEntry>,
+    /// What else is read in each configuration and terms depend on; the term `factor1` is of the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub factors: Vec<FactorReading>,
 }
 
 /// A calibrated joint.
@@ -301,6 +323,9 @@ pub struct JointEntry {
     /// Body on which the joint stands, if that is not the link of the joint before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<BodyEntry>,
+    /// The joint of which this is a give: it turns by its terms alone, whose functions are of that joint.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gives: Option<String>,
     /// Coefficients of terms of the joint's value, in radians, metres, or by value: the value is the reading's, plus these terms.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub terms: BTreeMap<Term, f64>,

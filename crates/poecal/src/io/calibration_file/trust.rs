@@ -6,7 +6,10 @@ use serde::{Deserialize, Serialize};
 use super::keyed::{AttributionKeys, DiscrepancyKeys, FreedomKeys, Keyed, NoiseKeys, RmsKeys, shown};
 use super::{CalibrationFile, PoseEntry};
 use crate::analysis::JointCoverage;
-use crate::calibration::{Calibration, CoverageCheck, Expected, JointCorrection, PartCoverage, Trust, names};
+use crate::calibration::{
+    CalibratedTarget, Calibration, Correction, CoverageCheck, Expectations, Expected, JointCorrection,
+    ModelAccuracy, PartCoverage, Trust, names,
+};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Stand, Tree};
 use crate::measurement::{ByQuantity, Dataset, Measured, Quantity};
@@ -167,6 +170,19 @@ pub struct UncertaintyEntry {
     pub covariance_outside_m2: Option<Vec<f64>>,
 }
 
+/// A model with what it predicts of its own errors.
+#[derive(Clone, Copy)]
+struct Predicting<'a> {
+    uncertainty: &'a Uncertainty,
+    expected: &'a Expectations,
+    held_out: Option<&'a CoverageCheck>,
+    bootstrap: Option<&'a Bootstrap>,
+    robot: &'a Robot,
+    targets: &'a [CalibratedTarget],
+    /// Errors of the fitted rows.
+    measured: &'a ModelAccuracy,
+}
+
 impl LeftOutEntry {
     fn of(found: &LeftOut) -> Self {
         LeftOutEntry {
@@ -222,9 +238,49 @@ impl CorrectionEntry {
 }
 
 impl UncertaintyEntry {
+    /// Of the calibrated model.
     pub(super) fn of(calibration: &Calibration, data: &Dataset) -> Option<Self> {
         let trust = &calibration.trust;
-        let found = trust.uncertainty.as_ref()?;
+        Self::of_model(
+            &Predicting {
+                uncertainty: trust.uncertainty.as_ref()?,
+                expected: &trust.expected,
+                held_out: trust.held_out.as_ref(),
+                bootstrap: trust.bootstrap.as_ref(),
+                robot: &calibration.nominal,
+                targets: &calibration.targets,
+                measured: &calibration.accuracy.training.calibrated,
+            },
+            data,
+        )
+    }
+
+    /// Of the corrected model.
+    pub(super) fn of_correction(correction: &Correction, data: &Dataset) -> Option<Self> {
+        Self::of_model(
+            &Predicting {
+                uncertainty: correction.uncertainty.as_ref()?,
+                expected: &correction.expected,
+                held_out: correction.kept.as_ref(),
+                bootstrap: None,
+                robot: &correction.robot,
+                targets: &correction.targets,
+                measured: &correction.training,
+            },
+            data,
+        )
+    }
+
+    fn of_model(model: &Predicting<'_>, data: &Dataset) -> Option<Self> {
+        let Predicting {
+            uncertainty: found,
+            expected,
+            held_out: judged,
+            bootstrap,
+            robot,
+            targets,
+            measured,
+        } = *model;
         let n = found.layout.dim();
         // Predictions are in the frame of the first station, so that those of others do not matter.
         let is_kept = |parameter: &Parameter| match parameter {
@@ -235,7 +291,7 @@ impl UncertaintyEntry {
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_) => true,
         };
-        let names = names(&calibration.nominal, data);
+        let names = names(robot, data);
         let of_layout: Vec<_> =
             found.layout.parameters().filter(|(parameter, _)| is_kept(parameter)).collect();
         let mut kept: Vec<(usize, String)> = of_layout
@@ -262,11 +318,9 @@ impl UncertaintyEntry {
         };
         let Discrepancy { scatter, extrapolation, standard_deviation, noise, attribution, freedom, lag_one } =
             found.discrepancy;
-        let measured = calibration.accuracy.training.calibrated;
         let is_told = |quantity: Quantity| quantity.is_of_pose() || measured.get(quantity).is_some();
         let told = |quantity: Quantity, si: f64| is_told(quantity).then_some(si);
         let is_finite = |quantity: Quantity| is_told(quantity) && freedom[quantity].is_finite();
-        let names = calibration.targets.iter();
         Some(UncertaintyEntry {
             inflation: scatter,
             extrapolation: Some(extrapolation).filter(|it| *it > scatter),
@@ -275,15 +329,15 @@ impl UncertaintyEntry {
             residuals: Measured::of(|quantity| is_told(quantity).then_some(attribution[quantity])).into(),
             freedom: Measured::of(|quantity| is_finite(quantity).then_some(freedom[quantity])).into(),
             lag_one_correlation: lag_one,
-            measured: ExpectedEntry::of(trust.measured.as_ref()?),
-            range: ExpectedEntry::of(trust.range.as_ref()?),
-            held_out: trust.held_out.as_ref().map(held_out),
-            bootstrap: trust.bootstrap.as_ref().map(BootstrapEntry::of),
-            parts: trust
+            measured: ExpectedEntry::of(expected.measured.as_ref()?),
+            range: ExpectedEntry::of(expected.range.as_ref()?),
+            held_out: judged.map(held_out),
+            bootstrap: bootstrap.map(BootstrapEntry::of),
+            parts: expected
                 .parts
                 .iter()
                 .map(|part| RangeEntry {
-                    joint: trust.coverage[part.joint].joint.clone(),
+                    joint: robot.joints[part.joint].name.clone(),
                     from: part.range[0],
                     to: part.range[1],
                     sigma_position_mm: part.sigma_m * 1e3,
@@ -291,7 +345,7 @@ impl UncertaintyEntry {
                 .collect(),
             length_m: found.length_m,
             axes: found.estimate.base_from_axis.iter().map(PoseEntry::from).collect(),
-            targets: names.map(|it| (it.name.clone().unwrap_or_default(), it.is_frame)).collect(),
+            targets: targets.iter().map(|it| (it.name.clone().unwrap_or_default(), it.is_frame)).collect(),
             unknowns,
             frame_about_m: about,
             covariance_m2: upper(&found.covariance),
@@ -344,7 +398,7 @@ impl CalibrationFile {
         let at = entry.unknowns.iter().position(|name| name == term)?;
         let (joint, name) = term.rsplit_once('.')?;
         let kind = self.joints.iter().find(|entry| entry.name == joint)?.kind;
-        let term = Term::ALL.into_iter().find(|it| it.model().name() == name)?;
+        let term: Term = name.parse().ok()?;
         let n = entry.unknowns.len();
         // The diagonal of an upper triangle by rows.
         let variance = entry.covariance_m2.get(at * n - at * at.saturating_sub(1) / 2)?;
@@ -436,6 +490,13 @@ impl CalibrationFile {
         if !is_whole(&entry.covariance_m2) || !outside.is_none_or(is_whole) {
             return Err(bad("a covariance of another size than the unknowns make"));
         }
+        let is_covariance = |upper: &Vec<f64>| {
+            let of_row = |row: usize| row * n - row * row.saturating_sub(1) / 2;
+            upper.iter().all(|it| it.is_finite()) && (0..n).all(|row| upper[of_row(row)] >= 0.0)
+        };
+        if !is_covariance(&entry.covariance_m2) || !outside.is_none_or(is_covariance) {
+            return Err(bad("a negative variance, or one that is no number"));
+        }
         let uncertainty = Uncertainty {
             estimate,
             layout,
@@ -457,9 +518,10 @@ impl UncertaintyEntry {
             |about: [f64; 3]| if turns { DeviceFrame::new(0, about.into()) } else { DeviceFrame::anchor(0) };
         let frame = self.frame_about_m.map(|about| Parameter::DeviceFrame(of(about)));
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
-        let terms = kinds.iter().enumerate().flat_map(|(joint, &kind)| {
-            let terms = Term::ALL.into_iter().filter(|_| !self.unknowns.is_empty());
-            terms.map(move |term| Parameter::ValueTerm(ValueTerm { joint, kind, term }))
+        let terms = self.unknowns.iter().filter_map(|name| {
+            let (joint, term) = name.rsplit_once('.')?;
+            let joint = robot.joints.iter().position(|it| it.name == joint)?;
+            Some(Parameter::ValueTerm(ValueTerm { joint, kind: kinds[joint], term: term.parse().ok()? }))
         });
         frame.into_iter().chain(screw_axes(&kinds)).chain(terms).collect()
     }

@@ -2,7 +2,7 @@
 
 use super::CalibrationFile;
 use crate::calibration::{
-    CoverageCheck, Judgement, PartCoverage, PredictedUncertainty, Refitted, Subject, judge,
+    CoverageCheck, JudgedModel, Judgement, PartCoverage, PredictedUncertainty, Refitted, Subject, judge,
 };
 use crate::error::Result;
 use crate::measurement::{Dataset, Quantity};
@@ -23,6 +23,20 @@ impl CalibrationFile {
     /// [`ErrorKind::Problem`](crate::ErrorKind::Problem) if the measurements are of other targets or instruments, or too few for the refit;
     /// [`ErrorKind::Model`](crate::ErrorKind::Model) if the file holds no valid calibration.
     pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
+        let judgement = self.judged(data, refit_frame, refit_tool)?;
+        let corrected = match self.corrected() {
+            Some(file) => Some(file.judged(data, refit_frame, refit_tool)?),
+            None => None,
+        };
+        let corrected = corrected.map(|it| JudgedModel {
+            errors: it.calibrated,
+            promised: it.promised,
+            in_sampled_range: it.in_sampled_range,
+        });
+        Ok(Judgement { corrected, ..judgement })
+    }
+
+    fn judged(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
         let (calibrated, nominal) = (self.robot()?, self.nominal_robot()?);
         if !refit_tool {
             self.check_targets(data)?;

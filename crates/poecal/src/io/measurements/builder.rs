@@ -10,7 +10,7 @@ use super::orientation::OrientationForm;
 use super::units::{Dimension, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::robot::{JointKind, Robot};
+use crate::robot::{ReadingKind, Robot};
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
@@ -81,11 +81,30 @@ impl<'a> Builder<'a> {
         let mut builder = Builder { header, map, readings, inputs: Vec::new(), used };
         let default = ColumnSpec::default();
         for name in &names {
+            if robot.reading_kind(name) == ReadingKind::Factor {
+                builder.factor_input(name)?;
+                continue;
+            }
             let spec = map.joints.get(name).unwrap_or(&default);
             let purpose = format!("for joint `{name}`");
             builder.spec_input(name, spec, reading_quantity(robot, name), &purpose)?;
         }
         Ok(builder)
+    }
+
+    /// Adds the number of a factor, in whatever unit its column is.
+    fn factor_input(&mut self, name: &str) -> Result<()> {
+        if is_our_name(name) {
+            let message = format!(
+                "found the factor `{name}`, expected a column without a meaning of its own: rename it"
+            );
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+        let column = self.text_column(name, "for the factor")?;
+        let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Column(column));
+        let (unit, unit_from) = (Dimension::Number.si_unit(), UnitSource::Si);
+        self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });
+        Ok(())
     }
 
     /// Adds a number from a column or a constant.
@@ -423,7 +442,8 @@ fn clash(name: &str) -> String {
 
 fn reading_quantity(robot: &Robot, reading: &str) -> Dimension {
     match robot.reading_kind(reading) {
-        JointKind::Prismatic => Dimension::Length,
-        JointKind::Revolute => Dimension::Angle,
+        ReadingKind::Length => Dimension::Length,
+        ReadingKind::Angle => Dimension::Angle,
+        ReadingKind::Factor => Dimension::Number,
     }
 }

@@ -92,7 +92,7 @@ impl<'a> Reader<'a> {
             stations: Names::default(),
             fit_values_seen: Vec::new(),
             found: MeasurementFile {
-                data: Dataset::new(robot.reading_names()),
+                data: Dataset::new(robot.reading_names()).with_factors(robot.factors.len()),
                 ..MeasurementFile::default()
             },
         }

@@ -6,7 +6,7 @@ use super::units::{Dimension, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::csv_text;
 use crate::measurement::{Dataset, Noise, Quantity};
-use crate::robot::{JointKind, Robot};
+use crate::robot::{ReadingKind, Robot};
 
 /// Rows as a file with a leading comment: degrees and millimetres, orientations as quaternions, names where there are some. Readings are exact;
 /// measured numbers are rounded to less than a thousandth of their noise.
@@ -50,8 +50,9 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
 pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>> {
     let (deg, mm) = (Unit::parse("deg", Dimension::Angle)?, Unit::parse("mm", Dimension::Length)?);
     let unit = |name: &String| match robot.reading_kind(name) {
-        JointKind::Prismatic => mm,
-        JointKind::Revolute => deg,
+        ReadingKind::Length => mm,
+        ReadingKind::Angle => deg,
+        ReadingKind::Factor => Dimension::Number.si_unit(),
     };
     Ok(names.iter().map(unit).collect())
 }
@@ -80,8 +81,11 @@ pub(super) fn header(names: &[String], units: &[Unit], orientations: bool) -> Re
 
 /// The columns of the readings.
 pub(super) fn reading_header(names: &[String], units: &[Unit]) -> String {
-    let cell =
-        |(name, unit): (&String, &Unit)| csv_text::cell(&format!("{name}[{}]", unit.symbol())).into_owned();
+    let cell = |(name, unit): (&String, &Unit)| {
+        let symbol =
+            if unit.quantity() == Dimension::Number { String::new() } else { format!("[{}]", unit.symbol()) };
+        csv_text::cell(&format!("{name}{symbol}")).into_owned()
+    };
     names.iter().zip(units).map(cell).collect::<Vec<_>>().join(",")
 }
 

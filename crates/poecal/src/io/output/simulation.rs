@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{FolderPlace, NewFile, Written, robot_files, write_files};
+use super::{CONFIGURATIONS, FolderPlace, NewFile, Written, robot_files, write_files};
 use crate::calibration::DeviceFrameKnowledge;
 use crate::error::Result;
 use crate::io::calibration_file::{FrameEntry, InstrumentEntry, JointEntry, PoseEntry, RobotEntry};
 use crate::io::json_text;
 use crate::io::measurements;
 use crate::io::model::Model;
+use crate::io::proof::Difference;
 use crate::measurement::{Dataset, Noise};
 use crate::simulate::{Kind, Simulated, Simulation};
 
@@ -71,6 +72,9 @@ impl Magnitudes {
 impl TruthFile {
     fn new(session: &SimulatedSession) -> Self {
         let SimulatedSession { simulation, made, .. } = session;
+        let all: Vec<usize> = (0..made.nominal.joints.len()).collect();
+        let gives = made.actual.joints.len() > made.nominal.joints.len();
+        let nominal = if gives { made.nominal.giving(&all).0 } else { made.nominal.clone() };
         TruthFile {
             schema: SCHEMA.to_owned(),
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -82,7 +86,7 @@ impl TruthFile {
             errors: Magnitudes::new(simulation.error_position_m, simulation.error_rotation_rad),
             noise: Magnitudes::new(simulation.noise_position_m, simulation.noise_rotation_rad),
             robot: RobotEntry::new(&made.actual, &made.nominal),
-            joints: JointEntry::of_robot(&made.actual, &made.nominal),
+            joints: JointEntry::of_robot(&made.actual, &nominal),
             measurement_frame: FrameEntry {
                 known: if simulation.device_anywhere {
                     DeviceFrameKnowledge::Unknown
@@ -110,7 +114,15 @@ pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSe
     let exact = Noise::new(0.0, 0.0);
     let mut notes = Vec::new();
     let mut files = robot_files("nominal", model, &made.nominal, &mut notes)?;
-    files.extend(robot_files("actual", model, &made.actual, &mut notes)?);
+    let mut rigid = made.actual.rigid();
+    rigid.terms.truncate(made.nominal.terms.len());
+    if rigid.joints.len() < made.actual.joints.len() {
+        let off = Difference::of(&made.actual, &rigid, CONFIGURATIONS).position_m * 1e3;
+        notes.push(format!(
+            "the actual model is written without what its joints do beyond geometry, which moves the tip by up to {off:.3} mm: truth.json has it"
+        ));
+    }
+    files.extend(robot_files("actual", model, &rigid, &mut notes)?);
     notes.sort();
     notes.dedup();
     let comment = format!("simulated by: {command}");

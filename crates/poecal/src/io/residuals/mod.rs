@@ -9,7 +9,7 @@ use std::io::Write;
 
 use crate::calibration::Calibration;
 use crate::measurement::{Dataset, Measured, Quantity};
-use crate::robot::JointKind;
+use crate::robot::ReadingKind;
 use source::RowSource;
 pub use write::ResidualRows;
 use write::in_pieces;
@@ -37,6 +37,8 @@ const INSTRUMENT: &str = "instrument";
 pub struct ModelErrors {
     /// Of the nominal, registered and calibrated model.
     pub models: [f64; MODELS],
+    /// Of the corrected model, if there is one.
+    pub corrected: Option<f64>,
     /// By component, 0 beyond them.
     residual: [f64; Quantity::MOST_COMPONENTS],
     components: usize,
@@ -48,7 +50,13 @@ impl ModelErrors {
     pub fn new(models: [f64; MODELS], residual: &[f64]) -> Self {
         let mut all = [0.0; Quantity::MOST_COMPONENTS];
         all.iter_mut().zip(residual).for_each(|(to, from)| *to = *from);
-        ModelErrors { models, residual: all, components: residual.len().min(all.len()) }
+        ModelErrors { models, corrected: None, residual: all, components: residual.len().min(all.len()) }
+    }
+
+    /// The same with the error of a corrected model.
+    #[must_use]
+    pub fn with_corrected(self, corrected: Option<f64>) -> Self {
+        ModelErrors { corrected, ..self }
     }
 
     /// The error of the calibrated model.
@@ -65,22 +73,24 @@ impl ModelErrors {
 
     /// All numbers, in the order of [`columns`].
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
-        self.models.iter().chain(self.residual()).copied()
+        self.models.iter().chain(&self.corrected).chain(self.residual()).copied()
     }
 }
 
-/// Names of the columns of a quantity: errors of the three models, then the residual by component.
+/// Names of the columns of a quantity: errors of the three models, and of the corrected one where there is one, then the residual of the
+/// calibrated model by component.
 ///
 /// ```
 /// use poecal::{Quantity, io::residuals::columns};
-/// let names: Vec<String> = columns(Quantity::Rotation).collect();
-/// assert_eq!((&*names[0], &*names[3]), ("rotation_nominal[deg]", "rx[deg]"));
+/// let names: Vec<String> = columns(Quantity::Rotation, true).collect();
+/// assert_eq!((&*names[0], &*names[3], &*names[4]), ("rotation_nominal[deg]", "rotation_corrected[deg]", "rx[deg]"));
 /// ```
-pub fn columns(quantity: Quantity) -> impl Iterator<Item = String> {
+pub fn columns(quantity: Quantity, has_corrected: bool) -> impl Iterator<Item = String> {
     let (name, unit) = (quantity.name(), quantity.unit().symbol());
-    let models = ["nominal", "registered", "calibrated"].map(|model| format!("{name}_{model}[{unit}]"));
+    let models =
+        ["nominal", "registered", "calibrated"].into_iter().chain(has_corrected.then_some("corrected"));
     let components = quantity.component_names().iter().map(move |component| format!("{component}[{unit}]"));
-    models.into_iter().chain(components)
+    models.map(move |model| format!("{name}_{model}[{unit}]")).chain(components)
 }
 
 /// Diagnostics of a row.
@@ -153,10 +163,12 @@ pub struct Residuals {
     /// The instruments' names, if there are several.
     pub stations: Vec<String>,
     /// Names of the joint readings, and whether each is a length (millimetres) or an angle (degrees).
-    pub readings: Vec<(String, JointKind)>,
+    pub readings: Vec<(String, ReadingKind)>,
     /// Quantities that were measured beside positions and rotations, which always have their columns; in the order of
     /// [`Quantity::ALL`]. Errors of a quantity without columns are not written.
     pub further: Vec<Quantity>,
+    /// Whether the rows have errors of a corrected model.
+    pub has_corrected: bool,
     /// The rows.
     rows: Vec<ResidualRow>,
     /// How many rows measured which quantities, in the order of the first row of each kind.
@@ -262,13 +274,5 @@ impl Residuals {
     /// Errors of `out`.
     pub fn write_to(&self, out: &mut (dyn Write + Send)) -> std::io::Result<()> {
         ResidualRows::AtHand(self).write_to(out)
-    }
-}
-
-/// The unit of a column of readings.
-fn unit(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "deg",
-        JointKind::Prismatic => "mm",
     }
 }

@@ -5,14 +5,13 @@ use std::path::Path;
 
 use super::{
     DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, ResidualRow, Residuals, RowDiagnostics, columns,
-    unit,
 };
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::measurements::{Cell, Separator, split};
 use crate::io::source::LARGEST_TABLE;
 use crate::io::source_text;
 use crate::measurement::{ByQuantity, Measured, Quantity};
-use crate::robot::JointKind;
+use crate::robot::ReadingKind;
 
 /// Advice for a file of another kind.
 const EXPECTED: &str = "a residuals.csv as written by this version's `poecal calibrate`";
@@ -58,10 +57,14 @@ impl Residuals {
         let mut first = 0;
         FIRST.into_iter().try_for_each(|column| expect(cells, &mut first, column))?;
         for quantity in Quantity::ALL {
-            let stands =
-                columns(quantity).next().is_some_and(|column| cells.get(first) == Some(&column.into()));
+            let stands_at = |at: usize, column: Option<String>| {
+                column.is_some_and(|it| cells.get(at) == Some(&it.into()))
+            };
+            let stands = stands_at(first, columns(quantity, false).next());
             if quantity.is_of_pose() || stands {
-                columns(quantity).try_for_each(|column| expect(cells, &mut first, &column))?;
+                self.has_corrected |= stands_at(first + MODELS, columns(quantity, true).nth(MODELS));
+                let mut all = columns(quantity, self.has_corrected);
+                all.try_for_each(|column| expect(cells, &mut first, &column))?;
                 self.further.extend((!quantity.is_of_pose()).then_some(quantity));
             }
         }
@@ -74,9 +77,8 @@ impl Residuals {
             _ => cells,
         };
         for (column, cell) in cells.iter().enumerate().skip(first) {
-            let kinds = [JointKind::Revolute, JointKind::Prismatic];
-            let reading = kinds.into_iter().find_map(|kind| {
-                let name = cell.strip_suffix(&format!("[{}]", unit(kind)))?;
+            let reading = ReadingKind::ALL.into_iter().find_map(|kind| {
+                let name = cell.strip_suffix(&format!("[{}]", kind.symbol()))?;
                 Some((name.to_owned(), kind))
             });
             let message = || {
@@ -100,7 +102,7 @@ impl Residuals {
             other => return Err(cells.wrong(other, "fit or held_out")),
         };
         let target = index_of(&mut self.targets, cells.text()?);
-        let errors = cells.errors(self.quantities())?;
+        let errors = cells.errors(self.quantities(), self.has_corrected)?;
         let judged = cells.judged()?;
         for _ in 0..self.readings.len() {
             self.values.push(cells.number()?);
@@ -205,10 +207,11 @@ impl<'a> Cells<'a> {
     fn errors(
         &mut self,
         quantities: impl Iterator<Item = Quantity>,
+        has_corrected: bool,
     ) -> std::result::Result<Measured<ModelErrors>, Wrong> {
         let mut found: ByQuantity<Option<ModelErrors>> = ByQuantity::default();
         for quantity in quantities {
-            found[quantity] = self.errors_of(quantity)?;
+            found[quantity] = self.errors_of(quantity, has_corrected)?;
         }
         let errors = Measured::of(|quantity| found[quantity]);
         if errors.leading().is_none() {
@@ -217,17 +220,26 @@ impl<'a> Cells<'a> {
         Ok(errors)
     }
 
-    fn errors_of(&mut self, quantity: Quantity) -> std::result::Result<Option<ModelErrors>, Wrong> {
+    fn errors_of(
+        &mut self,
+        quantity: Quantity,
+        has_corrected: bool,
+    ) -> std::result::Result<Option<ModelErrors>, Wrong> {
         let components = quantity.components();
         let mut models = [0.0; MODELS];
-        if self.are_empty(models.len() + components) {
+        if self.are_empty(models.len() + usize::from(has_corrected) + components) {
             return Ok(None);
         }
-        let mut residual = [0.0; Quantity::MOST_COMPONENTS];
-        for value in models.iter_mut().chain(residual.iter_mut().take(components)) {
+        for value in &mut models {
             *value = self.number()?;
         }
-        Ok(Some(ModelErrors::new(models, residual.get(..components).unwrap_or_default())))
+        let corrected = if has_corrected { Some(self.number()?) } else { None };
+        let mut residual = [0.0; Quantity::MOST_COMPONENTS];
+        for value in residual.iter_mut().take(components) {
+            *value = self.number()?;
+        }
+        let found = ModelErrors::new(models, residual.get(..components).unwrap_or_default());
+        Ok(Some(found.with_corrected(corrected)))
     }
 
     fn judged(&mut self) -> std::result::Result<Option<RowDiagnostics>, Wrong> {

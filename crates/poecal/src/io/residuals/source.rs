@@ -6,7 +6,6 @@ use super::{ModelErrors, ResidualRow, Residuals, RowDiagnostics};
 use crate::calibration::{Calibration, RowError, RowInfluence};
 use crate::estimate::Estimate;
 use crate::measurement::{Dataset, Measured, Quantity};
-use crate::robot::JointKind;
 
 /// Input for computing any row.
 pub(super) struct RowSource<'a> {
@@ -30,6 +29,7 @@ impl<'a> RowSource<'a> {
             targets: data.targets.iter().map(|name| name.clone().unwrap_or_default()).collect(),
             stations: stations(data),
             readings: readings.map(|name| (name.clone(), calibration.nominal.reading_kind(name))).collect(),
+            has_corrected: calibration.correction.is_some(),
             further: Quantity::ALL.into_iter().filter(|it| !it.is_of_pose() && data.has(*it)).collect(),
             ..Residuals::default()
         };
@@ -44,6 +44,7 @@ impl<'a> RowSource<'a> {
         let errors = |estimate: &Estimate| session.errors(&indices, estimate);
         let [nominal, registered, calibrated] =
             [&models.nominal, &models.registered, &models.calibrated].map(errors);
+        let corrected = self.calibration.correction.as_ref().map(|it| it.errors(self.data, &indices));
         let influences = self.influence.of(&indices);
         let row = |(at, &row): (usize, &u32)| {
             let row = row as usize;
@@ -56,7 +57,11 @@ impl<'a> RowSource<'a> {
                 held_out: self.held_out[row],
                 target: observation.target,
                 station: observation.station,
-                errors: Measured::of(|quantity| errors_of(errors, quantity)),
+                errors: Measured::of(|quantity| {
+                    let corrected = corrected.as_ref().and_then(|all| all[at].length(quantity));
+                    let corrected = corrected.map(|value| quantity.unit().shown(value));
+                    Some(errors_of(errors, quantity)?.with_corrected(corrected))
+                }),
                 judged: robustness.rows.get(row).map(|found| RowDiagnostics {
                     weight: found.weight,
                     leverage: influences[at].leverage,
@@ -67,7 +72,7 @@ impl<'a> RowSource<'a> {
         };
         let readings = indices.iter().flat_map(|&row| self.data.readings(row as usize));
         let kinds = self.names.readings.iter().map(|(_, kind)| *kind).cycle();
-        let values = readings.zip(kinds).map(|(&value, kind)| shown(kind, value)).collect();
+        let values = readings.zip(kinds).map(|(&value, kind)| kind.shown(value)).collect();
         let mut found = Residuals { rows: Vec::with_capacity(indices.len()), values, ..self.names.clone() };
         indices.iter().enumerate().map(row).for_each(|row| found.push(row));
         found
@@ -78,14 +83,6 @@ impl<'a> RowSource<'a> {
 fn stations(data: &Dataset) -> Vec<String> {
     let names = data.stations.iter().map(|name| name.clone().unwrap_or_default());
     if data.station_count() > 1 { names.collect() } else { Vec::new() }
-}
-
-/// A reading in the unit of its column.
-fn shown(kind: JointKind, value: f64) -> f64 {
-    match kind {
-        JointKind::Revolute => value.to_degrees(),
-        JointKind::Prismatic => value * 1e3,
-    }
 }
 
 /// Errors of one quantity of the three models, in the unit in which people read it, if it was measured.

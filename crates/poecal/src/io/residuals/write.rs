@@ -5,7 +5,7 @@ use std::io::Write;
 use std::ops::Range;
 
 use super::source::RowSource;
-use super::{DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, Residuals, RowDiagnostics, columns, unit};
+use super::{DIAGNOSTICS, FIRST, INSTRUMENT, MODELS, ModelErrors, Residuals, RowDiagnostics, columns};
 use crate::calibration::Calibration;
 use crate::io::csv_text::cell;
 use crate::io::numbers::push_number;
@@ -90,12 +90,12 @@ pub(super) fn in_pieces<T: Send, E: Send>(
 
 /// The line of column names.
 fn head(residuals: &Residuals) -> String {
-    let quantities = residuals.quantities().flat_map(columns);
+    let quantities = residuals.quantities().flat_map(|quantity| columns(quantity, residuals.has_corrected));
     let names = FIRST.map(str::to_owned).into_iter().chain(quantities).chain(DIAGNOSTICS.map(str::to_owned));
     let mut text = names.collect::<Vec<_>>().join(",");
     for (name, kind) in &residuals.readings {
         text.push(',');
-        text.push_str(&cell(&format!("{name}[{}]", unit(*kind))));
+        text.push_str(&cell(&format!("{name}[{}]", kind.symbol())));
     }
     if !residuals.stations.is_empty() {
         text.push(',');
@@ -118,7 +118,8 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
         text.push_str(&cell(&row.id));
         text.push_str(if row.held_out { ",held_out," } else { ",fit," });
         text.push_str(targets.get(row.target).map_or("", |name| name));
-        quantities.iter().for_each(|&quantity| push_errors(&mut text, quantity, &row.errors));
+        let has_corrected = residuals.has_corrected;
+        quantities.iter().for_each(|&it| push_errors(&mut text, (it, has_corrected), &row.errors));
         match &row.judged {
             Some(RowDiagnostics { weight, leverage, studentized, suspected }) => {
                 [*weight, *leverage, *studentized]
@@ -139,12 +140,16 @@ fn text(residuals: &Residuals, range: Range<usize>) -> String {
 }
 
 /// Empty cells, as many as a quantity has at most.
-const EMPTY: &str = ",,,,,,";
-const _: () = assert!(EMPTY.len() == MODELS + Quantity::MOST_COMPONENTS);
+const EMPTY: &str = ",,,,,,,";
+const _: () = assert!(EMPTY.len() == MODELS + 1 + Quantity::MOST_COMPONENTS);
 
 /// The cells of a quantity, empty if it was not measured.
-fn push_errors(out: &mut String, quantity: Quantity, errors: &Measured<ModelErrors>) {
-    let cells = MODELS + quantity.components();
+fn push_errors(
+    out: &mut String,
+    (quantity, has_corrected): (Quantity, bool),
+    errors: &Measured<ModelErrors>,
+) {
+    let cells = MODELS + usize::from(has_corrected) + quantity.components();
     let mut empty = cells;
     if let Some(errors) = errors.get(quantity) {
         for value in errors.numbers().take(cells) {

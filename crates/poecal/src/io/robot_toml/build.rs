@@ -50,6 +50,13 @@ pub(super) fn robot(context: &Context, file: &File) -> Result<Robot> {
                 Unit::One => *value.get_ref(),
             };
             let of = format!("{} of joint `{}`", term.model().name(), table.name());
+            if term.needs_gravity() || !term.is_of(file.joint.len(), 0) {
+                let message = format!(
+                    "found the term {of}, expected one of offset, ratio, sin1, cos1, …, or coupled1 to coupled{}: weights are in a calibration.json",
+                    file.joint.len()
+                );
+                return Err(context.error(value.span(), message));
+            }
             let [coefficient] = context.checked([found], value.span(), &of)?;
             robot.terms.push(JointTerm { joint, term, coefficient });
         }

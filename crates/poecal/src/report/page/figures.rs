@@ -14,7 +14,7 @@ const STEPS: usize = 20;
 /// Standard deviations that an interval reaches to each side.
 const INTERVAL: f64 = 2.0;
 
-/// Which share of the rows is off by how much, for the three models.
+/// Which share of the rows is off by how much, for the models.
 pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
     let lead = Lead::of(residuals);
     let lines = ["nominal", "registered", "calibrated"].iter().enumerate().map(|(model, name)| {
@@ -23,15 +23,22 @@ pub(super) fn distributions(residuals: &Residuals, held_out: bool) -> Markup {
         // The same colours as the residuals of the calibrated model everywhere else.
         Line { name: (*name).to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
     });
+    let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
+    let corrected: Vec<f64> = rows.filter_map(|row| lead.corrected(row)).collect();
+    let corrected = (!corrected.is_empty()).then(|| Line {
+        name: "corrected".to_owned(),
+        style: 2,
+        points: distribution(corrected),
+    });
     let name = lead.name();
     let plot = LinePlot {
         title: format!("Distribution of the {name} error"),
         description: format!(
-            "For each of the three models the share of the rows whose {name} error is below a value; the table beside has the figures."
+            "For each model the share of the rows whose {name} error is below a value; the table beside has the figures."
         ),
         x: Axis::new(&format!("{name} error, {} (logarithmic)", lead.unit()), Scale::Log),
         y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
-        lines: lines.collect(),
+        lines: lines.chain(corrected).collect(),
         mark: None,
     };
     PreEscaped(plot.svg())

@@ -11,8 +11,8 @@ use crate::calibration::{Level, NoiseSource, SetAccuracy};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::residuals::Residuals;
 use crate::measurement::Quantity;
-use crate::report::summary::{ModelRow, Place, Point, expected, leading, look_at};
-use crate::report::table::{MODELS, STATISTICS, further_words, joints_words};
+use crate::report::summary::{ModelRow, Place, Point, expected, has_terms, leading, look_at};
+use crate::report::table::{STATISTICS, further_words, joints_words, models};
 use crate::unit::Unit;
 
 /// A quantity's errors as a caption: `Position error on …, mm`.
@@ -64,7 +64,9 @@ pub(super) fn screen(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                 }
                 p.note {
                     b { "Nominal, tool and device fitted" } " (registered): the axes are the model's. " b { "Calibrated" }
-                    ": the axes are fitted too. The gain of the calibration is the difference."
+                    ": the axes are fitted too. "
+                    @if has_terms(file) { b { "Corrected" } ": with them what the joints do beyond geometry. " }
+                    "The gain of the calibration is the difference."
                 }
                 (facts(&the_facts(file, residuals)))
             }
@@ -153,13 +155,15 @@ fn verdict_words(level: Level) -> &'static str {
     }
 }
 
-/// Errors of the three models.
+/// Errors of the models.
 pub(super) fn error_table(caption: &str, set: &SetAccuracy, key: &str, quantity: Quantity) -> HtmlTable {
-    let mut table = HtmlTable::new(caption, 1, &["", "nominal", "registered", "calibrated"]);
+    let models = models(set);
+    let heads: Vec<&str> = std::iter::once("").chain(models.iter().map(|(name, _)| *name)).collect();
+    let mut table = HtmlTable::new(caption, 1, &heads);
     for (label, statistic, value) in STATISTICS {
-        let cells = MODELS.map(|(name, model)| {
+        let cells = models.iter().map(|(name, model)| {
             figure_or(
-                model(set).get(quantity).map(value),
+                model(set).and_then(|model| model.get(quantity)).map(value),
                 format_args!("{key}.{name}.{}.{statistic}", quantity.key()),
                 "",
             )
@@ -217,16 +221,13 @@ fn noise(file: &CalibrationFile) -> Markup {
 
 fn contents(file: &CalibrationFile) -> Markup {
     let repeated = file.repeatability.as_ref().map(|_| ("repeatability", "Repeatability"));
-    let sections = [
-        ("view", "In 3D"),
-        ("joints", "Joints"),
-        ("errors", "Errors of the rows"),
-        ("suspects", "Suspected rows"),
-    ];
+    let corrected = file.corrected.as_ref().map(|_| ("corrected", "What the joints do"));
+    let sections = [("view", "In 3D"), ("joints", "Joints")].into_iter().chain(corrected);
+    let rows = [("errors", "Errors of the rows"), ("suspects", "Suspected rows")];
     let rest = [("trust", "How far to trust it"), ("told", "Unknowns"), ("method", "Method and inputs")];
     html! {
         nav aria-label="Contents" {
-            @for (id, title) in sections.into_iter().chain(repeated).chain(rest) { a href={ "#" (id) } { (title) } " " }
+            @for (id, title) in sections.chain(rows).chain(repeated).chain(rest) { a href={ "#" (id) } { (title) } " " }
         }
     }
 }

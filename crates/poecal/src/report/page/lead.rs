@@ -35,6 +35,12 @@ impl Lead {
         self.found(row).map(|(_, errors)| errors.calibrated())
     }
 
+    /// The error of the corrected model in a row, if it is another than the calibrated one's.
+    pub(super) fn corrected(&self, row: &ResidualRow) -> Option<f64> {
+        let (_, errors) = self.found(row)?;
+        errors.corrected.filter(|it| *it != errors.calibrated())
+    }
+
     /// What it is an error of: `position`.
     pub(super) fn name(&self) -> String {
         let names: Vec<&str> = self.quantities.iter().map(|quantity| quantity.name()).collect();

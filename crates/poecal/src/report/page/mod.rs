@@ -1,5 +1,6 @@
 //! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
 
+mod corrected;
 mod data;
 mod figures;
 mod first;
@@ -18,7 +19,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::CalibrationFile;
 use crate::io::output::Page;
 use crate::io::residuals::Residuals;
-use crate::robot::JointKind;
+use crate::robot::ReadingKind;
 use crate::text::visible_markup;
 
 /// Style and script, built from `web/` by `npm run build`.
@@ -69,6 +70,7 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
         main #main {
             (first::screen(file, residuals))
             (joints::sections(file))
+            (corrected::sections(file))
             (rows::sections(file, residuals))
             (trust::sections(file))
             (method::sections(file))
@@ -130,14 +132,16 @@ fn reading_index(residuals: &Residuals, name: &str) -> Option<usize> {
 
 /// The joint readings: index among the columns of the residuals, name and unit.
 fn readings_of(residuals: &Residuals) -> impl Iterator<Item = (usize, &str, &'static str)> {
-    residuals.readings.iter().enumerate().map(|(index, (name, kind))| (index, name.as_str(), unit(*kind)))
+    let all = residuals.readings.iter().enumerate();
+    all.filter_map(|(index, (name, kind))| Some((index, name.as_str(), unit(*kind)?)))
 }
 
-/// The unit of a reading.
-fn unit(kind: JointKind) -> &'static str {
+/// The unit of a joint's reading; none of a factor.
+fn unit(kind: ReadingKind) -> Option<&'static str> {
     match kind {
-        JointKind::Revolute => "°",
-        JointKind::Prismatic => "mm",
+        ReadingKind::Angle => Some("°"),
+        ReadingKind::Length => Some("mm"),
+        ReadingKind::Factor => None,
     }
 }
 

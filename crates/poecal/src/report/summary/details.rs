@@ -1,15 +1,17 @@
 //! What `--verbose` adds: the robot, the rows, all errors of the fit, what every figure comes from.
 
+use std::collections::BTreeMap;
+
 use super::super::identify::coverage_table;
 use super::super::outliers;
-use super::super::table::{self, accuracy_table, joints_words, leading_words, line, number};
+use super::super::table::{self, accuracy_table, joints_words, leading_words, line, lines, number};
 use crate::calibration::{FormulationWords, NoiseSource};
 use crate::error::shown;
 use crate::io::calibration_file::CalibrationFile;
 use crate::solve::Termination;
 use crate::text::visible;
 
-pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
+pub(super) fn all(out: &mut String, file: &CalibrationFile) {
     line(out, "robot", &robot_words(file));
     line(out, "measurements", &rows_words(file));
     line(out, "noise", &noise_words(file));
@@ -30,6 +32,7 @@ pub(super) fn lines(out: &mut String, file: &CalibrationFile) {
         line(out, "condition", &format!("{condition:.3e} over the determined unknowns"));
     }
     trust(out, file);
+    corrected(out, file);
     if !file.coverage.is_empty() {
         coverage_table(out, file.coverage.iter().zip(file.joints.iter().map(|joint| joint.kind)));
         out.push('\n');
@@ -74,7 +77,10 @@ fn solver_words(file: &CalibrationFile) -> String {
         1 => ", 1 further start".to_owned(),
         count => format!(", {count} further starts"),
     };
-    format!("{} iterations, {end}{restarts}", solver.iterations)
+    let tolerance = solver.chosen_tolerance.map_or_else(String::new, |it| {
+        format!("; tolerance {} deg, {} mm by cross-validation", number(it.angle_deg), number(it.length_mm))
+    });
+    format!("{} iterations, {end}{restarts}{tolerance}", solver.iterations)
 }
 
 /// How the problem was written, where not as usual, and what follows from that.
@@ -94,6 +100,47 @@ fn formulation_words(file: &CalibrationFile) -> Option<String> {
         words.push_str(&format!("; {}", visible(note)));
     }
     Some(words)
+}
+
+/// Most effects that are told.
+const SHOWN: usize = 6;
+
+/// What speaks for each group of terms, and what they do.
+fn corrected(out: &mut String, file: &CalibrationFile) {
+    let Some(found) = &file.corrected else { return };
+    let left_out = |sizes: &BTreeMap<String, f64>| {
+        found.tried.iter().find(|it| it.sizes == *sizes).map(|it| it.left_out)
+    };
+    if let Some(chosen) = left_out(&found.sizes) {
+        let without = found.sizes.iter().filter(|(_, size)| **size > 0.0).filter_map(|(group, _)| {
+            let mut sizes = found.sizes.clone();
+            // Those of gravity are chosen together.
+            let together = ["sag", "tilt"];
+            for (other, size) in &mut sizes {
+                let is_same = together.contains(&group.as_str()) && together.contains(&other.as_str());
+                if other == group || is_same {
+                    *size = 0.0;
+                }
+            }
+            let label = if together.contains(&group.as_str()) { "sag and tilt" } else { group };
+            Some((label, left_out(&sizes)?))
+        });
+        let mut without: Vec<(&str, f64)> = without.collect();
+        without.dedup_by(|a, b| a.0 == b.0);
+        let words: Vec<String> =
+            without.iter().map(|(group, it)| format!("without {group} {it:.3}")).collect();
+        if !words.is_empty() {
+            let words = words.join(", ");
+            line(out, "left out", &format!("error over that of geometry alone: {chosen:.3}; {words}"));
+        }
+    }
+    let told = found.effects.iter().filter(|it| it.found).take(SHOWN);
+    lines(
+        out,
+        "joints do",
+        told.map(|it| format!("{} ({} mm at the target, RMS)", it.words, number(it.effect_mm))),
+    );
+    lines(out, "not told", &found.confused);
 }
 
 /// Expected errors, cross-validation, and what each joint's correction is worth.

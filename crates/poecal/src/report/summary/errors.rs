@@ -32,11 +32,19 @@ pub(in crate::report) fn leading(file: &CalibrationFile) -> (&SetAccuracy, Vec<M
         (nominal.to_owned(), &set.registered, format!("accuracy.{key}.registered")),
         ("calibrated".to_owned(), &set.calibrated, format!("accuracy.{key}.calibrated")),
     ];
+    if let Some(corrected) = set.corrected.as_ref().filter(|_| has_terms(file)) {
+        rows.push(("corrected".to_owned(), corrected, format!("accuracy.{key}.corrected")));
+    }
     rows.extend(rest.as_ref().map(|rest| {
         let words = format!("calibrated, without {suspected} suspected");
         (words, &rest.calibrated, format!("robust.{key}_without_suspected.calibrated"))
     }));
     (set, rows)
+}
+
+/// Whether the corrected model has terms: otherwise it is the calibrated one.
+pub(in crate::report) fn has_terms(file: &CalibrationFile) -> bool {
+    file.corrected.as_ref().is_some_and(|it| it.sizes.values().any(|size| *size > 0.0))
 }
 
 /// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.

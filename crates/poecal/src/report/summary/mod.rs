@@ -6,15 +6,17 @@ mod look;
 
 use std::mem::discriminant;
 
-pub(super) use errors::{ModelRow, leading};
+pub(super) use errors::{ModelRow, has_terms, leading};
 use look::reasons;
 pub(super) use look::{Place, Point, look_at};
 
 use super::table::{line, lines, number};
 use crate::analysis::{Cause, Direction};
-use crate::calibration::Level;
-use crate::io::calibration_file::CalibrationFile;
+use crate::calibration::{Level, TermGroup};
+use crate::io::calibration_file::{CalibrationFile, CorrectedEntry};
 
+/// Angle of gravity from -z of the base below which it is not told, radians.
+const UPRIGHT: f64 = 1e-4;
 /// The most that a list of the table names.
 pub(super) const MOST: usize = 5;
 
@@ -53,7 +55,7 @@ pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
     known(&mut out, file);
     if detail == Detail::Full {
         out.push('\n');
-        details::lines(&mut out, file);
+        details::all(&mut out, file);
     }
     out
 }
@@ -165,6 +167,37 @@ fn known(out: &mut String, file: &CalibrationFile) {
         lines(out, "held", (!blocks.held.is_empty()).then(|| blocks.held.join(", ")));
     }
     lines(out, "terms", terms(file).map(|(name, value)| format!("{name} {value}")));
+    if let Some(found) = &file.corrected {
+        line(out, "corrected", &corrected_words(found));
+        let has_terms = found.sizes.values().any(|size| *size > 0.0);
+        let direction = found.robot.gravity.as_ref().map(|gravity| gravity.direction).filter(|_| has_terms);
+        if let Some([x, y, z]) = direction.filter(|[_, _, z]| (-z).clamp(-1.0, 1.0).acos() > UPRIGHT) {
+            let off = number((-z).clamp(-1.0, 1.0).acos().to_degrees());
+            line(out, "gravity", &format!("along {x:.3}, {y:.3}, {z:.3} of the base, {off} deg from -z"));
+        }
+    } else if file.blocks.as_ref().is_some_and(|it| it.held.iter().any(|name| file.has_joint(name))) {
+        line(out, "corrected", "not fitted: beside axes that are held, only groups of terms that are named");
+    }
+}
+
+/// Which groups of terms the corrected model has, and what speaks for them.
+fn corrected_words(found: &CorrectedEntry) -> String {
+    let used = TermGroup::ALL.into_iter().filter_map(|group| {
+        let size = *found.sizes.get(group.name())?;
+        let shown = format!("{:.4}", 1e3 * size);
+        let shown = shown.trim_end_matches('0').trim_end_matches('.');
+        (size > 0.0).then(|| format!("{} {shown} mrad", group.name()))
+    });
+    let used = used.collect::<Vec<_>>().join(", ");
+    let chosen = found.tried.iter().find(|it| it.sizes == found.sizes);
+    match (used.is_empty(), chosen) {
+        (true, _) => format!("as calibrated: {}", found.reason.words()),
+        (false, None) => format!("by {used}: {}", found.reason.words()),
+        (false, Some(chosen)) => format!(
+            "by {used}: {:.2} of the error of geometry alone on rows of other parts of the range",
+            chosen.left_out
+        ),
+    }
 }
 
 /// The terms of joint values with their coefficients, as they are read.

@@ -2,6 +2,7 @@
 
 mod cases;
 
+use crate::common::geometry;
 use crate::trials::trials;
 use cases::{CASES, Case};
 use poecal::analysis::{Cause, Identifiability, PlannedSession, identify};
@@ -93,7 +94,7 @@ fn what_is_left_open_changes_no_prediction() {
         .map(|case| {
             let (nominal, data) = measured(case, 0.0);
             // Without a belief, which data without noise do not need.
-            let options = CalibrationOptions { tolerance: None, ..CalibrationOptions::default() };
+            let options = CalibrationOptions { tolerance: None, ..geometry() };
             let result = calibrate(&nominal, &data, &options).unwrap();
             let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm().max * 1e-3;
             (held_out_m, case.name)
@@ -165,7 +166,7 @@ fn offsets_beside_screws_are_structure_and_not_a_defect_of_the_data() {
         words: FormulationWords { formulation: "offsets too", ..FormulationWords::default() },
         ..Formulation::default()
     };
-    let options = CalibrationOptions { formulation: with_offsets, ..CalibrationOptions::default() };
+    let options = CalibrationOptions { formulation: with_offsets, ..geometry() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap().identifiability;
     println!("{}", words(&found));
     assert_eq!(words(&found), "30 of 36");

@@ -2,25 +2,18 @@
 
 use nalgebra::Vector3;
 
-use super::{Sizes, TermGroup};
-use crate::estimate::{Estimate, Packed, Tree, Unknowns};
-use crate::measurement::Dataset;
-use crate::problem::TermPrior;
-use crate::robot::{Gravity, Harmonic, JointKind, JointTerm, Robot, Sag, Statics, Term};
-
-/// Range of a joint's values in the fitted rows below which it has no term of its own value: encoders' jitter, radians.
-const LEAST_RANGE_RAD: f64 = 0.02;
+use super::{Factor, Gravity, Harmonic, JointKind, JointTerm, Robot, Sag, Sizes, Statics, Term, TermGroup};
 
 /// A robot with gives and terms whose coefficients are zero, each term of a group.
 ///
 /// ```
-/// use poecal::calibration::{CorrectionModel, TermGroup};
+/// use poecal::robot::{CorrectionModel, TermGroup};
 /// let robot = poecal::simulate::elbow();
 /// let model = CorrectionModel::new(&robot, -nalgebra::Vector3::z(), &[true; 6]);
 /// assert_eq!((model.robot.joints.len(), model.places[1]), (18, 3));
 /// assert!(model.groups.contains(&TermGroup::Sag) && model.groups.len() == model.robot.terms.len());
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CorrectionModel {
     /// The robot with its gives, its gravity and its terms.
     pub robot: Robot,
@@ -34,10 +27,31 @@ pub struct CorrectionModel {
     shares: Vec<f64>,
 }
 
+/// Factors on which a joint may depend, with their groups: the side from which it is approached only if it is its own, or that of all.
+fn factors(robot: &Robot, joint: usize) -> impl Iterator<Item = (usize, TermGroup)> {
+    let own = robot.joints.get(joint).map(|joint| [&joint.name, &joint.reading.name]);
+    robot.factors.iter().enumerate().filter_map(move |(index, it)| match it.approached() {
+        None => Some((index, TermGroup::Factors)),
+        Some(of) => {
+            let is_own = of.is_empty() || own.is_some_and(|own| own.into_iter().any(|name| name == of));
+            is_own.then_some((index, TermGroup::Backlash))
+        }
+    })
+}
+
 impl CorrectionModel {
+    /// Usual highest order of harmonics.
+    pub const ORDERS: u8 = 2;
+
     /// The model of a robot in gravity of a direction (base frame); of joints that do not move no terms of their own values.
     #[must_use]
     pub fn new(robot: &Robot, gravity: Vector3<f64>, moves: &[bool]) -> Self {
+        CorrectionModel::with_orders(robot, gravity, moves, CorrectionModel::ORDERS)
+    }
+
+    /// The same with harmonics up to this order.
+    #[must_use]
+    pub fn with_orders(robot: &Robot, gravity: Vector3<f64>, moves: &[bool], orders: u8) -> Self {
         let mut robot = robot.clone();
         robot.gravity = Some(Gravity::of_unit_weights(&robot, gravity));
         let all: Vec<usize> = (0..robot.joints.len()).collect();
@@ -69,13 +83,18 @@ impl CorrectionModel {
                 let share = 1.0 / carried.len().max(1) as f64;
                 carried.iter().for_each(|&weight| push(Term::Sag(Sag { weight }), group, share));
             }
+            if is_own && turns {
+                for (index, group) in factors(&robot, joint) {
+                    push(Term::Factor(Factor { index }), group, 1.0);
+                }
+            }
             if !turns || !is_moving {
                 continue;
             }
             let harmonic = |order, cosine| Term::Harmonic(Harmonic { order, cosine });
             if is_own {
                 push(Term::Ratio, TermGroup::Ratio, 1.0);
-                for order in 1..3 {
+                for order in 1..=orders {
                     push(harmonic(order, false), TermGroup::Harmonics, 1.0);
                     push(harmonic(order, true), TermGroup::Harmonics, 1.0);
                 }
@@ -102,8 +121,13 @@ impl CorrectionModel {
         kept
     }
 
+    /// Prior standard deviation of each term of the groups.
+    pub fn deviations(&self, sizes: &Sizes) -> impl Iterator<Item = f64> {
+        self.groups.iter().zip(&self.shares).map(|(group, share)| sizes[*group] * share.sqrt())
+    }
+
     /// Share of each term's variance in that of its group and joint.
-    pub(super) fn shares(&self) -> impl Iterator<Item = f64> {
+    pub fn shares(&self) -> impl Iterator<Item = f64> {
         self.shares.iter().copied()
     }
 
@@ -117,56 +141,9 @@ impl CorrectionModel {
         (0..self.robot.joints.len()).filter(|&joint| self.robot.joints[joint].give_of.is_some())
     }
 
-    /// Prior standard deviation of each term of the groups.
-    #[must_use]
-    pub fn priors(&self, sizes: &Sizes) -> Vec<TermPrior> {
-        let each = self.terms().zip(self.groups.iter().zip(&self.shares));
-        each.map(|((joint, term), (group, share))| TermPrior {
-            joint,
-            term,
-            deviation: sizes[*group] * share.sqrt(),
-        })
-        .collect()
+    /// The joints and terms of the groups of a size above 0.
+    pub fn terms_of(&self, sizes: &Sizes) -> impl Iterator<Item = (usize, Term)> {
+        let used = self.terms().zip(&self.groups).filter(|(_, group)| sizes[**group] > 0.0);
+        used.map(|(term, _)| term)
     }
-
-    /// What a fit changes: what it changes of the robot without gives, and the terms.
-    #[must_use]
-    pub fn unknowns(&self, of_geometry: &Unknowns) -> Unknowns {
-        let place = |joint: usize| self.places.get(joint).copied().unwrap_or(joint);
-        let own = of_geometry.terms.iter().map(|&(joint, term)| (place(joint), term));
-        let held = of_geometry.held_axes.iter().map(|&joint| place(joint));
-        Unknowns {
-            held_axes: held.chain(self.gives()).collect(),
-            terms: own.chain(self.terms()).collect(),
-            ..of_geometry.clone()
-        }
-    }
-
-    /// The estimate of a robot without gives, as one of this model.
-    #[must_use]
-    pub fn estimate(&self, found: &Estimate, data: &Dataset) -> Estimate {
-        let tree = Tree::of(&self.robot, data);
-        let targets = found.base_from_target.clone();
-        let mut estimate = Estimate::on(&self.robot, tree, targets, found.device_from_base);
-        estimate.further_devices.clone_from(&found.further_devices);
-        for (&place, frame) in self.places.iter().zip(&found.base_from_axis) {
-            estimate.base_from_axis[place] = *frame;
-        }
-        for term in &found.terms {
-            *estimate.coefficient_mut(self.places[term.joint], term.term) = term.coefficient;
-        }
-        estimate
-    }
-}
-
-/// Whether each joint's value changes among some rows.
-#[must_use]
-pub(super) fn moving(robot: &Robot, packed: &Packed, rows: &[u32]) -> Vec<bool> {
-    let range = |joint: usize| {
-        let values = rows.iter().map(|&row| packed.joint_values(row as usize)[joint]);
-        let (least, most) =
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(value), b.max(value)));
-        most - least
-    };
-    (0..robot.joints.len()).map(|joint| range(joint) > LEAST_RANGE_RAD).collect()
 }

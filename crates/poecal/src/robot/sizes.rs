@@ -5,7 +5,7 @@ use std::ops::{Index, IndexMut};
 /// A group of terms whose coefficients are of one size.
 ///
 /// ```
-/// use poecal::calibration::TermGroup;
+/// use poecal::robot::TermGroup;
 /// assert_eq!(TermGroup::Sag.name(), "sag");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,12 +20,23 @@ pub enum TermGroup {
     Harmonics,
     /// Second harmonic across the axis; radians of amplitude.
     Wobble,
+    /// Half the play of gears: of factors whose names begin with `approach`, radians each unit.
+    Backlash,
+    /// Of all other factors, radians each unit.
+    Factors,
 }
 
 impl TermGroup {
     /// All groups.
-    pub const ALL: [TermGroup; 5] =
-        [TermGroup::Sag, TermGroup::Tilt, TermGroup::Ratio, TermGroup::Harmonics, TermGroup::Wobble];
+    pub const ALL: [TermGroup; 7] = [
+        TermGroup::Sag,
+        TermGroup::Tilt,
+        TermGroup::Ratio,
+        TermGroup::Harmonics,
+        TermGroup::Wobble,
+        TermGroup::Backlash,
+        TermGroup::Factors,
+    ];
 
     /// Its name.
     #[must_use]
@@ -36,6 +47,8 @@ impl TermGroup {
             TermGroup::Ratio => "ratio",
             TermGroup::Harmonics => "harmonics",
             TermGroup::Wobble => "wobble",
+            TermGroup::Backlash => "backlash",
+            TermGroup::Factors => "factors",
         }
     }
 }
@@ -43,7 +56,7 @@ impl TermGroup {
 /// Prior standard deviation of the terms of each group, radians ([`TermGroup`]); 0 leaves a group out.
 ///
 /// ```
-/// use poecal::calibration::{Sizes, TermGroup};
+/// use poecal::robot::{Sizes, TermGroup};
 /// let mut sizes = Sizes::COMMON;
 /// sizes[TermGroup::Tilt] = 0.0;
 /// assert!(sizes[TermGroup::Sag] == 1e-3 && sizes != Sizes::NONE);
@@ -54,10 +67,20 @@ pub struct Sizes([f64; TermGroup::ALL.len()]);
 impl Sizes {
     /// No term at all: geometry alone.
     pub const NONE: Sizes = Sizes([0.0; TermGroup::ALL.len()]);
-    /// Sizes with which all terms are fitted before a choice.
-    pub(super) const ALL: Sizes = Sizes([1e-3, 1e-3, 1e-4, 1e-4, 1e-4]);
+    /// Sizes of all groups: the common ones, and of a group that is commonly left out what is usual where it is not.
+    pub(crate) const ALL: Sizes = Sizes([1e-3, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-5]);
     /// Sizes that are common among industrial robots.
-    pub const COMMON: Sizes = Sizes([1e-3, 1e-3, 1e-4, 1e-4, 0.0]);
+    pub const COMMON: Sizes = Sizes([1e-3, 1e-3, 1e-4, 1e-4, 0.0, 0.0, 0.0]);
+}
+
+impl Sizes {
+    /// The larger of both, group by group.
+    #[must_use]
+    pub fn max(&self, other: &Sizes) -> Sizes {
+        let mut both = *self;
+        TermGroup::ALL.iter().for_each(|&group| both[group] = both[group].max(other[group]));
+        both
+    }
 }
 
 impl Index<TermGroup> for Sizes {

@@ -1,0 +1,81 @@
+//! Result of a fit of screws and terms.
+
+use super::choice::{SizesReason, TriedSizes};
+use super::effects::Effects;
+use crate::calibration::accuracy::ModelAccuracy;
+use crate::calibration::coverage_check::CoverageCheck;
+use crate::calibration::expected::Expectations;
+use crate::calibration::options::DeviceFrameKnowledge;
+use crate::calibration::placed::{CalibratedStation, CalibratedTarget};
+use crate::estimate::{Estimate, Packed, RowError, Session, Unknowns};
+use crate::measurement::{Dataset, Noise};
+use crate::robot::{CorrectionModel, Robot, Sizes};
+use crate::uncertainty::Uncertainty;
+
+/// A fit of screws and terms: the robot that it found, with all that predicts rows.
+///
+/// ```
+/// use poecal::calibration::{CalibrationOptions, Sizes, calibrate, correct};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation::default().run(&elbow(), Kind::Pose)?;
+/// let options = CalibrationOptions::default();
+/// let calibration = calibrate(&made.nominal, &made.data, &options)?;
+/// let found = correct(&calibration, &made.data, options.gravity, Some(Sizes::COMMON), &options);
+/// assert_eq!(found.errors(&made.data, &calibration.held_out_rows).len(), calibration.held_out_rows.len());
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Correction {
+    /// The robot with its gives and terms, as in the model.
+    pub model: CorrectionModel,
+    /// Prior sizes of the groups of terms.
+    pub sizes: Sizes,
+    /// Why it has terms of these sizes.
+    pub reason: SizesReason,
+    /// Sizes that cross-validation tried, if it chose.
+    pub tried: Vec<TriedSizes>,
+    /// The robot that was found, with its gives and its terms, and its tip as that of [`Calibration::robot`](crate::Calibration).
+    /// It predicts as the fit does.
+    pub robot: Robot,
+    /// The targets.
+    pub targets: Vec<CalibratedTarget>,
+    /// All stations.
+    pub stations: Vec<CalibratedStation>,
+    /// What was fitted.
+    pub unknowns: Unknowns,
+    /// What was found.
+    pub estimate: Estimate,
+    /// Noise of the fit.
+    pub noise: Noise,
+    /// What was known of the device's frame.
+    pub frame: DeviceFrameKnowledge,
+    /// Errors on the training rows.
+    pub training: ModelAccuracy,
+    /// Errors on the held-out rows.
+    pub held_out: Option<ModelAccuracy>,
+    /// Covariance of the unknowns and of terms that may be there, and model error.
+    pub uncertainty: Option<Uncertainty>,
+    /// What the terms do; nothing without any.
+    pub effects: Effects,
+    /// Expected errors.
+    pub expected: Expectations,
+    /// Coverage on the held-out rows.
+    pub kept: Option<CoverageCheck>,
+    /// Weight of the priors in the fit.
+    pub(super) prior_weight: f64,
+    pub(super) packed: Packed,
+}
+
+impl Correction {
+    /// Errors of rows of the data that were fitted ([`Session::errors`]).
+    #[must_use]
+    pub fn errors(&self, data: &Dataset, rows: &[u32]) -> Vec<RowError> {
+        Session::new(&self.model.robot, data, &self.packed, true).errors(rows, &self.estimate)
+    }
+
+    /// Whether it has terms at all, rather than geometry alone.
+    #[must_use]
+    pub fn has_terms(&self) -> bool {
+        self.sizes != Sizes::NONE
+    }
+}

@@ -1,0 +1,57 @@
+//! What a fit of a model with gives and terms changes, where it starts, and what is known before.
+
+use crate::analysis::ranges;
+use crate::calibration::{Calibration, CalibrationOptions, Robust, RowJudgement};
+use crate::estimate::{Estimate, Session, Tree, Unknowns};
+use crate::measurement::Dataset;
+use crate::problem::TermPrior;
+use crate::robot::{CorrectionModel, Sizes};
+
+/// Range of a joint's values in the fitted rows below which it has no term of its own value: encoders' jitter, radians.
+const LEAST_RANGE_RAD: f64 = 0.02;
+
+/// Prior standard deviation of each term of the groups.
+pub(super) fn priors(model: &CorrectionModel, sizes: &Sizes) -> Vec<TermPrior> {
+    let each = model.terms().zip(model.deviations(sizes));
+    each.map(|((joint, term), deviation)| TermPrior { joint, term, deviation }).collect()
+}
+
+/// What a fit changes: what it changes of the robot without gives, and the terms of a size above 0.
+pub(super) fn unknowns(model: &CorrectionModel, of_geometry: &Unknowns, sizes: &Sizes) -> Unknowns {
+    let place = |joint: usize| model.places.get(joint).copied().unwrap_or(joint);
+    let own = of_geometry.terms.iter().map(|&(joint, term)| (place(joint), term.moved(place)));
+    let held = of_geometry.held_axes.iter().map(|&joint| place(joint));
+    Unknowns {
+        held_axes: held.chain(model.gives()).collect(),
+        terms: own.chain(model.terms_of(sizes)).collect(),
+        ..of_geometry.clone()
+    }
+}
+
+/// The estimate of a robot without gives, as one of this model.
+pub(super) fn estimate(model: &CorrectionModel, found: &Estimate, data: &Dataset) -> Estimate {
+    let tree = Tree::of(&model.robot, data);
+    let targets = found.base_from_target.clone();
+    let mut estimate = Estimate::on(&model.robot, tree, targets, found.device_from_base);
+    estimate.further_devices.clone_from(&found.further_devices);
+    for (&place, frame) in model.places.iter().zip(&found.base_from_axis) {
+        estimate.base_from_axis[place] = *frame;
+    }
+    for term in &found.terms {
+        let place = |joint: usize| model.places.get(joint).copied().unwrap_or(joint);
+        *estimate.coefficient_mut(place(term.joint), term.term.moved(place)) = term.coefficient;
+    }
+    estimate
+}
+
+/// Whether each joint's value changes among some rows.
+pub(super) fn moving(session: &Session<'_>, rows: &[u32]) -> Vec<bool> {
+    ranges(session, rows).into_iter().map(|(least, most)| most - least > LEAST_RANGE_RAD).collect()
+}
+
+/// Weights of all rows of the data after a robust fit: those of a loss that was asked for; otherwise only suspected rows lose theirs.
+pub(super) fn weights(calibration: &Calibration, options: &CalibrationOptions) -> Option<Vec<f64>> {
+    let is_chosen = matches!(options.robust, Robust::Loss(_));
+    let weight = |row: &RowJudgement| if row.suspected || is_chosen { row.weight } else { 1.0 };
+    calibration.robustness.loss.map(|_| calibration.robustness.rows.iter().map(weight).collect())
+}

@@ -1,0 +1,124 @@
+//! Targets, instruments and tip at their calibrated places.
+
+use crate::estimate::{Estimate, Session};
+use crate::lie::Pose;
+use crate::measurement::{Dataset, Noise};
+use crate::robot::{Mount, Robot};
+
+/// A target as calibrated.
+///
+/// ```
+/// # use poecal::{CalibrationOptions, Kind, Simulation, calibrate, simulate::elbow};
+/// # let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Pose)?;
+/// # let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
+/// let [tip] = &calibration.targets[..] else { unreachable!() };
+/// assert!(tip.name.is_none() && tip.is_frame && tip.tip_from_target.translation.norm() < 1e-12);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedTarget {
+    /// Its name; `None` is the tip itself.
+    pub name: Option<String>,
+    /// Whether its orientation was measured; otherwise only the position means something.
+    pub is_frame: bool,
+    /// `tip_from_target` in the calibrated robot; of a target of its `mounted`, which is on a body of its own, at zero joint values.
+    pub tip_from_target: Pose,
+}
+
+/// A station of the device, as calibrated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedStation {
+    /// Its name, if the measurements name it.
+    pub name: Option<String>,
+    /// `base_from_device` there; of an instrument on the robot, at zero joint values.
+    pub base_from_device: Pose,
+    /// Noise of its rows that state none.
+    pub noise: Noise,
+}
+
+/// The stations of the device.
+pub(super) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise) -> Vec<CalibratedStation> {
+    let data = session.data;
+    let of = |station| CalibratedStation {
+        noise: session.usual_noise(station, noise),
+        name: data.stations.get(station).cloned().flatten(),
+        base_from_device: estimate.device_at_zero(station).inverse(),
+    };
+    (0..data.station_count()).map(of).collect()
+}
+
+/// The calibrated robot with its tip, and the targets in that tip. A single unnamed target becomes the tip (measured as points, with its
+/// nominal orientation to the last joint), and so does a target, or an instrument, of the model at its very place; otherwise the tip keeps its nominal pose on
+/// the last joint. Targets and instruments of the model with bodies of their own stay on these.
+pub(super) fn place_tip(
+    robot: &Robot,
+    data: &Dataset,
+    frames: &[bool],
+    estimate: &Estimate,
+) -> (Robot, Vec<CalibratedTarget>) {
+    let mut calibrated = robot.with_screws(&estimate.screws());
+    calibrated.terms.clone_from(&estimate.terms);
+    calibrated.terms.retain(|it| it.coefficient != 0.0);
+    let last_joint = calibrated.tip_body().joint().and_then(|joint| calibrated.joints.get(joint));
+    calibrated.home =
+        last_joint.map_or_else(Pose::identity, |joint| joint.frame) * robot.last_joint_from_tip();
+    place_mounts(robot, &mut calibrated, data, frames, estimate);
+    for (target, name) in data.targets.iter().enumerate() {
+        if name.is_none() {
+            let seen = estimate.base_from_target[target];
+            let rotation = if frames[target] { seen.rotation } else { calibrated.home.rotation };
+            calibrated.home = Pose::new(rotation, seen.translation);
+        }
+    }
+    let tip_from_base = calibrated.home.inverse();
+    let targets = data
+        .targets
+        .iter()
+        .enumerate()
+        .map(|(target, name)| {
+            let is_frame = frames[target];
+            let tip_from_target = tip_from_base * estimate.base_from_target[target];
+            let rotation = if is_frame { tip_from_target.rotation } else { nalgebra::Matrix3::identity() };
+            CalibratedTarget {
+                name: name.clone(),
+                is_frame,
+                tip_from_target: Pose::new(rotation, tip_from_target.translation),
+            }
+        })
+        .collect();
+    (calibrated, targets)
+}
+
+/// Puts the measured targets and the instruments of the model to their calibrated places. A target at the tip moves it too, or else an
+/// instrument there.
+fn place_mounts(robot: &Robot, calibrated: &mut Robot, data: &Dataset, frames: &[bool], estimate: &Estimate) {
+    // The unnamed target is the tip.
+    let mut is_placed = data.targets.iter().any(Option::is_none);
+    for (target, name) in data.targets.iter().enumerate() {
+        let known = calibrated.mounted.iter().position(|mount| Some(&mount.name) == name.as_ref());
+        if let Some(index) = known {
+            let Mount { name, body, .. } = calibrated.mounted[index].clone();
+            let seen = estimate.base_from_target[target];
+            let nominal = calibrated.base_from(&calibrated.mounted[index]);
+            let rotation = if frames[target] { seen.rotation } else { nominal.rotation };
+            let pose = Pose::new(rotation, seen.translation);
+            if !is_placed && robot.is_at_tip(&robot.mounted[index]) {
+                is_placed = true;
+                calibrated.home = pose;
+            }
+            calibrated.mounted[index] = calibrated.mount(&name, body, &pose);
+        }
+    }
+    for (station, name) in data.stations.iter().enumerate() {
+        let known = calibrated.instruments.iter().position(|mount| Some(&mount.name) == name.as_ref());
+        if let Some(index) = known {
+            let Mount { name, body, .. } = calibrated.instruments[index].clone();
+            let pose = estimate.device_at_zero(station).inverse();
+            if !is_placed && robot.is_at_tip(&robot.instruments[index]) {
+                is_placed = true;
+                calibrated.home = pose;
+            }
+            calibrated.instruments[index] = calibrated.mount(&name, body, &pose);
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Which terms a calibration fits beside the screws, by words.
+
+use std::str::FromStr;
+
+use super::{Sizes, TermGroup};
+use crate::error::nearest;
+
+/// Which terms a calibration fits beside the screws, and how large they may be.
+///
+/// ```
+/// use poecal::robot::{Corrections, TermGroup};
+/// let Ok(Corrections::Sizes(sizes)) = "sag,ratio=2e-4".parse() else { unreachable!() };
+/// assert_eq!((sizes[TermGroup::Sag], sizes[TermGroup::Ratio], sizes[TermGroup::Tilt]), (1e-3, 2e-4, 0.0));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Corrections {
+    /// Those that predict rows best which were not fitted; none if geometry alone does as well.
+    #[default]
+    Auto,
+    /// None.
+    Off,
+    /// Groups of these sizes.
+    Sizes(Sizes),
+}
+
+impl FromStr for Corrections {
+    type Err = String;
+
+    /// `auto`, `off`, or groups with commas between, each with its size behind an equals sign or of the common one.
+    fn from_str(words: &str) -> Result<Self, String> {
+        match words.trim() {
+            "auto" => return Ok(Corrections::Auto),
+            "off" => return Ok(Corrections::Off),
+            _ => {}
+        }
+        let mut sizes = Sizes::NONE;
+        for word in words.split(',') {
+            let (name, size) = match word.split_once('=') {
+                Some((name, size)) => (name.trim(), Some(size.trim())),
+                None => (word.trim(), None),
+            };
+            let names = || TermGroup::ALL.into_iter().map(TermGroup::name);
+            let Some(group) = TermGroup::ALL.into_iter().find(|group| group.name() == name) else {
+                let near = nearest(name, names()).map(|near| format!("; did you mean `{near}`?"));
+                let known = names().collect::<Vec<_>>().join(", ");
+                return Err(format!(
+                    "found `{name}`, expected auto, off, or some of {known}, each with a size like sag=1e-3{}",
+                    near.unwrap_or_default()
+                ));
+            };
+            if sizes[group] != 0.0 {
+                return Err(format!("found `{name}` twice, expected each group once"));
+            }
+            sizes[group] = match size {
+                None => Sizes::ALL[group],
+                Some(text) => {
+                    text.parse().ok().filter(|size| (1e-9..=1.0).contains(size)).ok_or_else(|| {
+                        format!(
+                            "found `{text}` as the size of {name}, expected radians from 1e-9 to 1, like 1e-3"
+                        )
+                    })?
+                }
+            };
+        }
+        Ok(Corrections::Sizes(sizes))
+    }
+}

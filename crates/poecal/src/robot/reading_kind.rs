@@ -1,0 +1,54 @@
+//! What a reading is: the value of a joint, or of something else that joints depend on.
+
+use super::JointKind;
+
+/// Kind of a reading.
+///
+/// ```
+/// use poecal::robot::ReadingKind;
+/// assert_eq!((ReadingKind::Angle.symbol(), ReadingKind::Angle.shown(0.5f64.to_radians())), ("deg", 0.5));
+/// assert_eq!(ReadingKind::Factor.shown(21.5), 21.5);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReadingKind {
+    /// Of a joint that turns, radians.
+    Angle,
+    /// Of a joint that slides, metres.
+    Length,
+    /// Of no joint ([`Robot::factors`](super::Robot)), in the unit of its column.
+    Factor,
+}
+
+impl ReadingKind {
+    /// All kinds.
+    pub const ALL: [ReadingKind; 3] = [ReadingKind::Angle, ReadingKind::Length, ReadingKind::Factor];
+
+    /// Symbol of the unit in which people read it; 1 of a factor.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            ReadingKind::Angle => "deg",
+            ReadingKind::Length => "mm",
+            ReadingKind::Factor => "1",
+        }
+    }
+
+    /// Its value in that unit.
+    #[must_use]
+    pub fn shown(self, value: f64) -> f64 {
+        match self {
+            ReadingKind::Angle => value.to_degrees(),
+            ReadingKind::Length => 1e3 * value,
+            ReadingKind::Factor => value,
+        }
+    }
+}
+
+impl From<JointKind> for ReadingKind {
+    fn from(kind: JointKind) -> Self {
+        match kind {
+            JointKind::Revolute => ReadingKind::Angle,
+            JointKind::Prismatic => ReadingKind::Length,
+        }
+    }
+}
