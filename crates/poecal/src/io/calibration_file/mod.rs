@@ -34,6 +34,10 @@ use crate::parameters::Block;
 use crate::robot::{Joint, JointKind, JointTerm, Limits, Robot, Term};
 use nalgebra::Vector3;
 use refusal::refusal;
+use schemars::Schema;
+use schemars::generate::SchemaSettings;
+use schemars::transform::RecursiveTransform;
+use serde_json::Value;
 
 /// Version of the files that are written. Readers take those of version 1 too, and refuse others.
 pub const SCHEMA: &str = "poecal-calibration-2";
@@ -151,8 +155,19 @@ impl CalibrationFile {
     /// The JSON Schema (draft 2020-12) of the file.
     #[must_use]
     pub fn json_schema() -> String {
-        let schema = schemars::schema_for!(CalibrationFile);
+        let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(without_example));
+        let schema = settings.into_generator().into_root_schema_for::<CalibrationFile>();
         serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
+    }
+}
+
+/// Cuts examples in Rust off a description.
+fn without_example(schema: &mut Schema) {
+    if let Some(Value::String(words)) = schema.get_mut("description")
+        && let Some(end) = words.find("```")
+    {
+        words.truncate(end);
+        words.truncate(words.trim_end().len());
     }
 }
 
