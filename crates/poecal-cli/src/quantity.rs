@@ -154,7 +154,9 @@ pub(crate) fn terms(text: &str) -> std::result::Result<Sizes, String> {
     match text.parse()? {
         Corrections::Off => Ok(Sizes::NONE),
         Corrections::Sizes(sizes) => Ok(sizes),
-        Corrections::Auto => Err(format!("found `{text}`, expected off, or groups like sag=1e-3,ratio")),
+        Corrections::Auto | Corrections::All => {
+            Err(format!("found `{text}`, expected off, or groups like sag=1e-3,ratio"))
+        }
     }
 }
 

@@ -38,8 +38,8 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
 ///     decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation.
 /// corrections
-///     What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "off" none; or groups of terms,
-///     "sag,tilt,ratio,harmonics,wobble", or a dict of their sizes in radians.
+///     What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
+///     "off" fits none; or groups of terms, "sag,tilt,ratio,harmonics,wobble", or a dict of their sizes in radians or metres.
 /// harmonics
 ///     Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
 /// gravity

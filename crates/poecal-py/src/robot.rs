@@ -319,7 +319,7 @@ impl Robot {
 
     /// The same robot with further columns of the measurements on which terms of its joints may depend, like temperature.
     ///
-    /// "approach" or "approach_JOINT" says from which side joints came, 1 or -1. They are readings behind those of the joints.
+    /// "approach" or "approach_JOINT" says from which side joints came, 1 or -1, "payload" which mass hangs at the tip, in kg. They are readings behind those of the joints.
     ///
     /// Parameters
     /// ----------

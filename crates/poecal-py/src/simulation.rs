@@ -173,7 +173,7 @@ pub(crate) fn simulate(
         terms: match terms {
             None | Some(Corrections::Off) => Sizes::NONE,
             Some(Corrections::Sizes(sizes)) => sizes,
-            Some(Corrections::Auto) => {
+            Some(Corrections::Auto | Corrections::All) => {
                 return Err(crate::errors::argument(
                     "terms",
                     "found auto, expected off, or groups with sizes",

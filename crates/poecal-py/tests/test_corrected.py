@@ -60,7 +60,7 @@ def test_terms_can_be_left_out_and_chosen(made):
     assert np.isnan(off.residuals.position_corrected_mm).all()
     assert np.array_equal(off.predict(configurations(3)), off.robot.forward_kinematics(configurations(3)))
     sag = poecal.calibrate(made.nominal, made.measurements, corrections={"sag": 1e-3}, gravity="find", harmonics=3)
-    assert sag.corrected["sizes"] == {"sag": 1e-3, "tilt": 0, "ratio": 0, "harmonics": 0, "wobble": 0, "backlash": 0, "factors": 0}
+    assert sag.corrected["sizes"] == {"sag": 1e-3, "tilt": 0, "ratio": 0, "harmonics": 0, "wobble": 0, "backlash": 0, "factors": 0, "payload": 0, "shift": 0, "runout": 0}
     direction = sag.corrected["robot"]["gravity"]["direction"]
     # 2 mrad of sag against 0.05 mm tell the direction to some degrees.
     assert direction[2] < -0.98
@@ -84,7 +84,7 @@ def test_backlash_is_found_by_the_side_of_the_approach(tmp_path):
 @pytest.mark.parametrize(
     ("argument", "sentence"),
     [
-        ({"corrections": "sga"}, "corrections: found `sga`, expected auto, off, or some of sag, tilt, ratio, harmonics, wobble"),
+        ({"corrections": "sga"}, "corrections: found `sga`, expected auto, all, off, or some of sag, tilt, ratio, harmonics, wobble"),
         ({"corrections": {"sag": 2.0}}, "corrections: found `2e0` as the size of sag, expected radians from 1e-9 to 1"),
         ({"corrections": 3}, "corrections: found 3, expected a text, or a dict of groups of terms and their sizes"),
         ({"gravity": (0, 0, 0)}, "gravity: found"),

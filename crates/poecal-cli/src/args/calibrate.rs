@@ -40,15 +40,16 @@ pub(crate) struct Calibrate {
     /// nothing. auto takes the best of 0.2deg,2mm, 0.5deg,5mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own
     #[arg(long, value_name = "ANGLE,LENGTH|none|auto", default_value = "0.5deg,5mm")]
     pub(crate) tolerance: BelievedTolerance,
-    /// What joints do beyond geometry: auto fits the terms that predict rows best which were not fitted; groups of terms with their sizes
-    /// in radians, sag, tilt, ratio, harmonics, wobble, backlash, factors
-    #[arg(long, value_name = "auto|off|GROUP[=SIZE],...", default_value = "auto")]
+    /// What joints do beyond geometry: auto fits the terms that predict rows best which were not fitted, all looks
+    /// among more of them; groups of terms with their sizes
+    /// in radians or metres, sag, tilt, ratio, harmonics, wobble, backlash, factors, payload, shift, runout
+    #[arg(long, value_name = "auto|all|off|GROUP[=SIZE],...", default_value = "auto")]
     pub(crate) corrections: Corrections,
     /// Highest order of the harmonics of a turn among these terms, 1 to 8
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
     pub(crate) harmonics: u8,
     /// Further columns of the measurements on which terms may depend, like temperature; approach or approach_JOINT says from which side joints
-    /// came, 1 or -1
+    /// came, 1 or -1, and payload which mass hangs at the tip, in kg
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
     pub(crate) factors: Vec<String>,
     /// Where gravity pulls, in the robot's base frame, like 0,0,1 for a robot on the ceiling; find takes the direction with which the terms

@@ -25,7 +25,7 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "LENGTH,ANGLE", default_value = "0.05mm,0.01deg", allow_hyphen_values = true)]
     pub(crate) noise: LengthAndAngle,
     /// What the joints do beyond geometry: groups of terms with the standard deviations of their random coefficients in radians, sag, tilt,
-    /// ratio, harmonics, wobble, backlash, factors
+    /// ratio, harmonics, wobble, backlash, factors, payload, shift, runout
     #[arg(long, value_name = "off|GROUP[=SIZE],...", value_parser = terms, default_value = "off")]
     pub(crate) terms: Sizes,
     /// Where gravity pulls, in the robot's base frame

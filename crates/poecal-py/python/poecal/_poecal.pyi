@@ -286,7 +286,7 @@ class Robot:
     def with_factors(self, names: Sequence[str]) -> Robot:
         """The same robot with further columns of the measurements on which terms of its joints may depend, like temperature.
 
-        "approach" or "approach_JOINT" says from which side joints came, 1 or -1. They are readings behind those of the joints.
+        "approach" or "approach_JOINT" says from which side joints came, 1 or -1, "payload" which mass hangs at the tip, in kg. They are readings behind those of the joints.
 
         Parameters
         ----------
@@ -1171,8 +1171,8 @@ def calibrate(
         Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
         decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation.
     corrections
-        What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "off" none; or groups of terms,
-        "sag,tilt,ratio,harmonics,wobble", or a dict of their sizes in radians.
+        What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
+        "off" fits none; or groups of terms, "sag,tilt,ratio,harmonics,wobble", or a dict of their sizes in radians or metres.
     harmonics
         Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
     gravity

@@ -149,9 +149,9 @@ pub fn calibrate_with_progress(
     // Terms beside screws that are held or written otherwise would do what the screws do not.
     let moves_all = (0..robot.joints.len()).all(|joint| unknowns.moves_axis(joint));
     let sizes = match options.corrections {
-        Corrections::Auto if moves_all => Some(None),
+        Corrections::Auto | Corrections::All if moves_all => Some(None),
         Corrections::Sizes(sizes) => Some(Some(sizes)),
-        Corrections::Auto | Corrections::Off => None,
+        Corrections::Auto | Corrections::All | Corrections::Off => None,
     };
     let sizes = sizes.filter(|_| options.formulation == Formulation::default());
     prepared.with_instruments(&registered, fit, source, &mut |prepared, fit| {
@@ -187,7 +187,7 @@ pub fn calibrate_with_progress(
 
 /// Refuses what only the usual formulation has.
 fn refuse_beside_formulation(options: &CalibrationOptions) -> Result<()> {
-    let found = if matches!(options.corrections, Corrections::Sizes(_)) {
+    let found = if matches!(options.corrections, Corrections::All | Corrections::Sizes(_)) {
         "terms of the joints (corrections)"
     } else if options.gravity != GravityDirection::default() {
         "a direction of gravity"
@@ -205,13 +205,15 @@ fn refuse_beside_formulation(options: &CalibrationOptions) -> Result<()> {
 /// Most rounds of judging rows by the corrected model.
 const JUDGEMENTS: usize = 3;
 
-/// The robot with its factors counted from their mean in all rows; the side of an approach from 0.
+/// The robot with its factors counted from their mean in all rows; the side of an approach and a payload from 0.
 fn about_mean_factors<'a>(robot: &'a Robot, data: &Dataset) -> Cow<'a, Robot> {
     if robot.factors.is_empty() || data.is_empty() {
         return Cow::Borrowed(robot);
     }
     let mut found = robot.clone();
-    for (at, factor) in found.factors.iter_mut().enumerate().filter(|(_, it)| it.approached().is_none()) {
+    for (at, factor) in
+        found.factors.iter_mut().enumerate().filter(|(_, it)| it.approached().is_none() && !it.is_payload())
+    {
         let values = (0..data.len()).filter_map(|row| robot.factors_of(data.readings(row)).get(at));
         factor.reference = values.sum::<f64>() / data.len() as f64;
     }

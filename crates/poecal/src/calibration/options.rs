@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::estimate::Session;
 use crate::measurement::ByQuantity;
 use crate::problem::Prior;
-use crate::robot::{CorrectionModel, GravityDirection, Tolerance};
+use crate::robot::{Extent, GravityDirection, Tolerance};
 use crate::solve;
 
 use super::{BlockChoice, Corrections, Formulation, Robust};
@@ -85,7 +85,7 @@ impl Default for CalibrationOptions {
             tolerance: Some(Tolerance::default()),
             chooses_tolerance: false,
             corrections: Corrections::default(),
-            harmonics: CorrectionModel::ORDERS,
+            harmonics: Extent::default().orders,
             gravity: GravityDirection::default(),
             robust: Robust::default(),
             solver: solve::Options::default(),

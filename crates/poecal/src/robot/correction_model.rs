@@ -2,14 +2,36 @@
 
 use nalgebra::Vector3;
 
-use super::{Factor, Gravity, Harmonic, JointKind, JointTerm, Robot, Sag, Sizes, Statics, Term, TermGroup};
+use super::{
+    Factor, Gives, Gravity, Harmonic, JointKind, JointTerm, Load, Robot, Sag, Sizes, Statics, Term, TermGroup,
+};
+
+/// How far the model of what joints do reaches.
+///
+/// ```
+/// use poecal::robot::{Extent, Gives};
+/// assert_eq!(Extent::default(), Extent { orders: 2, gives: Gives::Tilting });
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Highest order of the harmonics of gears and encoders.
+    pub orders: u8,
+    /// In which directions bearings and links give. Where they give in all, first harmonics are among their terms.
+    pub gives: Gives,
+}
+
+impl Default for Extent {
+    fn default() -> Self {
+        Extent { orders: 2, gives: Gives::Tilting }
+    }
+}
 
 /// A robot with gives and terms whose coefficients are zero, each term of a group.
 ///
 /// ```
-/// use poecal::robot::{CorrectionModel, TermGroup};
+/// use poecal::robot::{CorrectionModel, Extent, TermGroup};
 /// let robot = poecal::simulate::elbow();
-/// let model = CorrectionModel::new(&robot, -nalgebra::Vector3::z(), &[true; 6]);
+/// let model = CorrectionModel::new(&robot, -nalgebra::Vector3::z(), &[true; 6], Extent::default());
 /// assert_eq!((model.robot.joints.len(), model.places[1]), (18, 3));
 /// assert!(model.groups.contains(&TermGroup::Sag) && model.groups.len() == model.robot.terms.len());
 /// ```
@@ -27,10 +49,11 @@ pub struct CorrectionModel {
     shares: Vec<f64>,
 }
 
-/// Factors on which a joint may depend, with their groups: the side from which it is approached only if it is its own, or that of all.
+/// Factors on which a joint's value may depend, with their groups: the side from which it is approached only if it is its own, or that of all.
 fn factors(robot: &Robot, joint: usize) -> impl Iterator<Item = (usize, TermGroup)> {
     let own = robot.joints.get(joint).map(|joint| [&joint.name, &joint.reading.name]);
     robot.factors.iter().enumerate().filter_map(move |(index, it)| match it.approached() {
+        None if it.is_payload() => None,
         None => Some((index, TermGroup::Factors)),
         Some(of) => {
             let is_own = of.is_empty() || own.is_some_and(|own| own.into_iter().any(|name| name == of));
@@ -40,22 +63,13 @@ fn factors(robot: &Robot, joint: usize) -> impl Iterator<Item = (usize, TermGrou
 }
 
 impl CorrectionModel {
-    /// Usual highest order of harmonics.
-    pub const ORDERS: u8 = 2;
-
     /// The model of a robot in gravity of a direction (base frame); of joints that do not move no terms of their own values.
     #[must_use]
-    pub fn new(robot: &Robot, gravity: Vector3<f64>, moves: &[bool]) -> Self {
-        CorrectionModel::with_orders(robot, gravity, moves, CorrectionModel::ORDERS)
-    }
-
-    /// The same with harmonics up to this order.
-    #[must_use]
-    pub fn with_orders(robot: &Robot, gravity: Vector3<f64>, moves: &[bool], orders: u8) -> Self {
+    pub fn new(robot: &Robot, gravity: Vector3<f64>, moves: &[bool], extent: Extent) -> Self {
         let mut robot = robot.clone();
         robot.gravity = Some(Gravity::of_unit_weights(&robot, gravity));
         let all: Vec<usize> = (0..robot.joints.len()).collect();
-        let (mut robot, places) = robot.giving(&all);
+        let (mut robot, places) = robot.giving(&all, extent.gives);
         let own = robot.terms.len();
         let (mut terms, mut groups, mut shares) = (Vec::new(), Vec::new(), Vec::new());
         let Some(statics) = Statics::new(&robot) else {
@@ -66,6 +80,7 @@ impl CorrectionModel {
             let of = it.give_of.unwrap_or(joint);
             let is_own = it.give_of.is_none();
             let turns = robot.joints[of].kind == JointKind::Revolute;
+            let shifts = !is_own && it.kind == JointKind::Prismatic;
             let is_moving =
                 places.iter().position(|&place| place == of).is_some_and(|at| moves.get(at) == Some(&true));
             let mut push = |term: Term, group: TermGroup, share: f64| {
@@ -76,12 +91,21 @@ impl CorrectionModel {
                     shares.push(share);
                 }
             };
-            if !is_own || turns {
+            if shifts {
+                // All weights pull alike.
+                let carried = (0..weights).rev().find(|&weight| statics.is_carried(joint, weight));
+                carried.into_iter().for_each(|weight| push(Term::Sag(Sag { weight }), TermGroup::Shift, 1.0));
+            } else if !is_own || turns {
                 let carried: Vec<usize> =
                     (0..weights).filter(|&weight| statics.is_carried(joint, weight)).collect();
                 let group = if is_own { TermGroup::Sag } else { TermGroup::Tilt };
                 let share = 1.0 / carried.len().max(1) as f64;
                 carried.iter().for_each(|&weight| push(Term::Sag(Sag { weight }), group, share));
+                let carries_payload =
+                    weights.checked_sub(1).is_some_and(|last| statics.is_carried(joint, last));
+                for index in robot.payloads().filter(|_| carries_payload) {
+                    push(Term::Load(Load { index }), TermGroup::Payload, 1.0);
+                }
             }
             if is_own && turns {
                 for (index, group) in factors(&robot, joint) {
@@ -94,13 +118,20 @@ impl CorrectionModel {
             let harmonic = |order, cosine| Term::Harmonic(Harmonic { order, cosine });
             if is_own {
                 push(Term::Ratio, TermGroup::Ratio, 1.0);
-                for order in 1..=orders {
+                for order in 1..=extent.orders {
                     push(harmonic(order, false), TermGroup::Harmonics, 1.0);
                     push(harmonic(order, true), TermGroup::Harmonics, 1.0);
                 }
             } else {
-                push(harmonic(2, false), TermGroup::Wobble, 1.0);
-                push(harmonic(2, true), TermGroup::Wobble, 1.0);
+                let group = if shifts { TermGroup::Runout } else { TermGroup::Wobble };
+                let first = match extent.gives {
+                    Gives::Tilting => 2,
+                    Gives::All => 1,
+                };
+                for order in first..=2 {
+                    push(harmonic(order, false), group, 1.0);
+                    push(harmonic(order, true), group, 1.0);
+                }
             }
         }
         robot.terms.extend(terms);

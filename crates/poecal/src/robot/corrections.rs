@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::{Sizes, TermGroup};
+use super::{Gives, Sizes, TermGroup};
 use crate::error::nearest;
 
 /// Which terms a calibration fits beside the screws, and how large they may be.
@@ -17,19 +17,34 @@ pub enum Corrections {
     /// Those that predict rows best which were not fitted; none if geometry alone does as well.
     #[default]
     Auto,
+    /// The same where bearings and links give in all directions ([`Gives::All`]).
+    All,
     /// None.
     Off,
     /// Groups of these sizes.
     Sizes(Sizes),
 }
 
+impl Corrections {
+    /// In which directions bearings and links give.
+    #[must_use]
+    pub fn gives(&self) -> Gives {
+        match self {
+            Corrections::Auto | Corrections::Off => Gives::Tilting,
+            Corrections::All => Gives::All,
+            Corrections::Sizes(sizes) => sizes.gives(),
+        }
+    }
+}
+
 impl FromStr for Corrections {
     type Err = String;
 
-    /// `auto`, `off`, or groups with commas between, each with its size behind an equals sign or of the common one.
+    /// `auto`, `all`, `off`, or groups with commas between, each with its size behind an equals sign or of the common one.
     fn from_str(words: &str) -> Result<Self, String> {
         match words.trim() {
             "auto" => return Ok(Corrections::Auto),
+            "all" => return Ok(Corrections::All),
             "off" => return Ok(Corrections::Off),
             _ => {}
         }
@@ -44,7 +59,7 @@ impl FromStr for Corrections {
                 let near = nearest(name, names()).map(|near| format!("; did you mean `{near}`?"));
                 let known = names().collect::<Vec<_>>().join(", ");
                 return Err(format!(
-                    "found `{name}`, expected auto, off, or some of {known}, each with a size like sag=1e-3{}",
+                    "found `{name}`, expected auto, all, off, or some of {known}, each with a size like sag=1e-3{}",
                     near.unwrap_or_default()
                 ));
             };
@@ -56,7 +71,8 @@ impl FromStr for Corrections {
                 Some(text) => {
                     text.parse().ok().filter(|size| (1e-9..=1.0).contains(size)).ok_or_else(|| {
                         format!(
-                            "found `{text}` as the size of {name}, expected radians from 1e-9 to 1, like 1e-3"
+                            "found `{text}` as the size of {name}, expected {} from 1e-9 to 1, like 1e-3",
+                            group.unit_words()
                         )
                     })?
                 }

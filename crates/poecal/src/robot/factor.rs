@@ -1,4 +1,4 @@
-//! What joints owe to something else that was read: temperature, or the side from which they were approached.
+//! What joints owe to something else that was read: temperature, the side from which they were approached, or a payload.
 
 use std::borrow::Cow;
 
@@ -50,11 +50,19 @@ impl FactorReading {
     pub fn approached(&self) -> Option<&str> {
         Some(self.name.strip_prefix(Factor::APPROACH)?.trim_start_matches(['_', '.', ' ']))
     }
+
+    /// Whether it is the mass that hangs at the tip, kg.
+    #[must_use]
+    pub fn is_payload(&self) -> bool {
+        self.name.starts_with(Factor::PAYLOAD)
+    }
 }
 
 impl Factor {
     /// Word with which the name of a factor begins that is the side from which joints are approached.
     pub(crate) const APPROACH: &str = "approach";
+    /// Word with which the name of a factor begins that is the mass of a payload.
+    pub(crate) const PAYLOAD: &str = "payload";
 }
 
 impl TermModel for Factor {

@@ -6,19 +6,37 @@ use super::gravity::axes;
 use super::{Body, Joint, JointKind, Mount, Reading, Robot, Weight};
 use crate::lie::{Screw, rotation};
 
+/// In which directions links and bearings give.
+///
+/// ```
+/// use poecal::robot::Gives;
+/// let robot = poecal::simulate::elbow();
+/// let count = |gives| robot.giving(&[1], gives).0.joints.len() - robot.joints.len();
+/// assert_eq!((count(Gives::Tilting), count(Gives::All)), (2, 5));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Gives {
+    /// They tilt.
+    #[default]
+    Tilting,
+    /// They tilt, and shift along three axes.
+    All,
+}
+
 impl Robot {
-    /// The same robot whose joints and links can tilt: behind each of these joints stand gives about two axes across its own through its pivot
-    /// ([`Robot::pivots`]), of a prismatic joint also about its own. A give is a revolute joint at zero, which turns by its terms alone
-    /// (theory.md §3, *Gives*). Beside the robot, the new index of each of its joints.
+    /// The same robot whose joints and links give: behind each of these joints stand gives about two axes across its own through its pivot
+    /// ([`Robot::pivots`]), of a prismatic joint also about its own; and, where asked, along three axes. A give is a joint at zero, which moves
+    /// by its terms alone (theory.md §3, *Gives*). Beside the robot, the new index of each of its joints.
     ///
     /// ```
+    /// use poecal::robot::Gives;
     /// let robot = poecal::simulate::elbow();
-    /// let (giving, places) = robot.giving(&[1]);
+    /// let (giving, places) = robot.giving(&[1], Gives::Tilting);
     /// assert_eq!((giving.joints.len(), &places[..3]), (8, &[0, 1, 4][..]));
     /// assert_eq!(giving.forward_kinematics(&[0.3; 6]), robot.forward_kinematics(&[0.3; 6]));
     /// ```
     #[must_use]
-    pub fn giving(&self, joints: &[usize]) -> (Robot, Vec<usize>) {
+    pub fn giving(&self, joints: &[usize], directions: Gives) -> (Robot, Vec<usize>) {
         let mut robot = self.clone();
         robot.joints.clear();
         let (mut places, mut ends) = (Vec::new(), Vec::new());
@@ -28,7 +46,7 @@ impl Robot {
             robot.joints.push(joint.clone());
             if joints.contains(&index) {
                 let own = robot.joints.len() - 1;
-                robot.joints.extend(gives(joint, own, pivots[index]));
+                robot.joints.extend(gives(joint, own, pivots[index], directions));
             }
             ends.push(robot.joints.len() - 1);
         }
@@ -61,7 +79,7 @@ impl Robot {
     ///
     /// ```
     /// let robot = poecal::simulate::elbow();
-    /// assert_eq!(robot.giving(&[0, 3]).0.rigid(), robot);
+    /// assert_eq!(robot.giving(&[0, 3], poecal::robot::Gives::All).0.rigid(), robot);
     /// ```
     #[must_use]
     pub fn rigid(&self) -> Robot {
@@ -87,23 +105,29 @@ impl Robot {
 }
 
 /// The gives of a joint of this index, through a pivot.
-fn gives(joint: &Joint, index: usize, pivot: Vector3<f64>) -> impl Iterator<Item = Joint> {
+fn gives(joint: &Joint, index: usize, pivot: Vector3<f64>, directions: Gives) -> impl Iterator<Item = Joint> {
     let z = joint.screw.direction();
     let x = rotation::perpendicular(&z);
-    let about = [("x", x), ("y", z.cross(&x)), ("z", z)];
-    let count = match joint.kind {
+    let axes = [("x", x), ("y", z.cross(&x)), ("z", z)];
+    let turning = match joint.kind {
         JointKind::Revolute => 2,
         JointKind::Prismatic => 3,
     };
+    let sliding = match directions {
+        Gives::Tilting => 0,
+        Gives::All => 3,
+    };
+    let about = axes.into_iter().take(turning).map(move |(axis, direction)| {
+        (axis.to_owned(), JointKind::Revolute, Screw::revolute(&direction, &pivot))
+    });
+    let along = axes.into_iter().take(sliding).map(|(axis, direction)| {
+        (format!("along_{axis}"), JointKind::Prismatic, Screw::prismatic(&direction))
+    });
     let (name, frame, reading) = (joint.name.clone(), joint.frame, joint.reading.name.clone());
-    about.into_iter().take(count).map(move |(axis, direction)| Joint {
+    about.chain(along).map(move |(direction, kind, screw)| Joint {
         frame,
         reading: Reading { name: reading.clone(), multiplier: 0.0, offset: 0.0 },
         give_of: Some(index),
-        ..Joint::with_screw(
-            &format!("{name}~{axis}"),
-            JointKind::Revolute,
-            Screw::revolute(&direction, &pivot),
-        )
+        ..Joint::with_screw(&format!("{name}~{direction}"), kind, screw)
     })
 }

@@ -21,7 +21,7 @@ use crate::lie::Screw;
 pub struct Gravity {
     /// Where weights are pulled, in the base frame, of length 1.
     pub direction: Vector3<f64>,
-    /// The weights.
+    /// The weights; payloads are where the last one is, at the tip.
     pub weights: Vec<Weight>,
     /// Screw and pivot ([`Robot::pivots`]) of each joint by which moments are counted, at zero joint values: those of the drawing, whatever is
     /// found.

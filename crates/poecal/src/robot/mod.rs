@@ -11,6 +11,7 @@ mod gravity;
 mod harmonic;
 mod joint;
 mod kinematics;
+mod load;
 mod offset;
 mod ratio;
 mod reading_kind;
@@ -23,14 +24,16 @@ mod term_model;
 mod zeros;
 
 pub use body::{Body, Mount};
-pub use correction_model::CorrectionModel;
+pub use correction_model::{CorrectionModel, Extent};
 pub use corrections::Corrections;
 pub use coupling::Coupling;
 pub use dh::{DhConvention, DhRow};
 pub use factor::{Factor, FactorReading};
+pub use give::Gives;
 pub use gravity::{Gravity, GravityDirection, Weight};
 pub use harmonic::Harmonic;
 pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
+pub use load::Load;
 pub use reading_kind::ReadingKind;
 pub use sag::Sag;
 pub use sizes::{Sizes, TermGroup};
@@ -215,6 +218,11 @@ impl Robot {
     /// The factors among the readings of a configuration.
     pub(crate) fn factors_of<'a>(&self, readings: &'a [f64]) -> &'a [f64] {
         readings.get(readings.len().saturating_sub(self.factors.len())..).unwrap_or_default()
+    }
+
+    /// Indices of the factors that are payloads.
+    pub(super) fn payloads(&self) -> impl Iterator<Item = usize> {
+        self.factors.iter().enumerate().filter(|(_, it)| it.is_payload()).map(|(index, _)| index)
     }
 
     /// For each joint, the index of its reading in [`Robot::reading_names`].

@@ -45,6 +45,11 @@ impl Moments {
         }
         self.values.get(joint * self.weights + weight).copied().unwrap_or_default()
     }
+
+    /// The moment of the last weight, where payloads are, about a joint.
+    pub(super) fn of_last(&self, joint: usize) -> f64 {
+        self.weights.checked_sub(1).map_or(0.0, |last| self.of(joint, last))
+    }
 }
 
 impl<'a> Statics<'a> {

@@ -11,6 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::coupling::Coupling;
 use super::factor::Factor;
 use super::harmonic::Harmonic;
+use super::load::Load;
 use super::offset::Offset;
 use super::ratio::Ratio;
 use super::sag::Sag;
@@ -39,6 +40,8 @@ pub enum Term {
     Coupling(Coupling),
     /// What it owes to a factor.
     Factor(Factor),
+    /// What it gives under a payload.
+    Load(Load),
 }
 
 impl Term {
@@ -49,7 +52,7 @@ impl Term {
     #[must_use]
     pub fn needs_gravity(&self) -> bool {
         match self {
-            Term::Sag(_) => true,
+            Term::Sag(_) | Term::Load(_) => true,
             Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Coupling(_) | Term::Factor(_) => false,
         }
     }
@@ -59,7 +62,7 @@ impl Term {
     pub fn is_of(&self, joints: usize, factors: usize) -> bool {
         match self {
             Term::Coupling(Coupling { joint }) => *joint < joints,
-            Term::Factor(Factor { index }) => *index < factors,
+            Term::Factor(Factor { index }) | Term::Load(Load { index }) => *index < factors,
             Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Sag(_) => true,
         }
     }
@@ -69,7 +72,12 @@ impl Term {
     pub fn moved(self, index: impl Fn(usize) -> usize) -> Self {
         match self {
             Term::Coupling(Coupling { joint }) => Term::Coupling(Coupling { joint: index(joint) }),
-            Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Sag(_) | Term::Factor(_) => self,
+            Term::Offset
+            | Term::Ratio
+            | Term::Harmonic(_)
+            | Term::Sag(_)
+            | Term::Factor(_)
+            | Term::Load(_) => self,
         }
     }
 
@@ -83,6 +91,7 @@ impl Term {
             Term::Sag(sag) => sag,
             Term::Coupling(coupling) => coupling,
             Term::Factor(factor) => factor,
+            Term::Load(load) => load,
         }
     }
 }
@@ -107,9 +116,10 @@ impl FromStr for Term {
             .or_else(|| Some(Term::Sag(Sag { weight: usize::from(numbered("sag")?) - 1 })))
             .or_else(|| Some(Term::Coupling(Coupling { joint: usize::from(numbered("coupled")?) - 1 })))
             .or_else(|| Some(Term::Factor(Factor { index: usize::from(numbered("factor")?) - 1 })))
+            .or_else(|| Some(Term::Load(Load { index: usize::from(numbered("load")?) - 1 })))
             .ok_or_else(|| {
                 format!(
-                    "found the term `{name}`, expected offset, ratio, sin1, cos1, …, sag1, …, coupled1, … or factor1, …"
+                    "found the term `{name}`, expected offset, ratio, sin1, cos1, …, sag1, …, coupled1, …, factor1, … or load1, …"
                 )
             })
     }
@@ -136,7 +146,7 @@ impl JsonSchema for Term {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         schemars::json_schema!({
             "type": "string",
-            "pattern": "^(offset|ratio|(sin|cos|sag|coupled|factor)[1-9][0-9]*)$",
+            "pattern": "^(offset|ratio|(sin|cos|sag|coupled|factor|load)[1-9][0-9]*)$",
             "description": "A term of a joint's value.",
         })
     }

@@ -19,7 +19,7 @@ use crate::measurement::{
     Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Source, Stated,
 };
 use crate::robot::{
-    Body, CorrectionModel, Factor, FactorReading, Joint, JointKind, Mount, Robot, Sizes, TermGroup,
+    Body, CorrectionModel, Extent, Factor, FactorReading, Joint, JointKind, Mount, Robot, Sizes, TermGroup,
 };
 
 /// Kind of the simulated measurements.
@@ -99,7 +99,11 @@ const TEMPERATURE: &str = "temperature";
 /// Range of the temperature, °C.
 const TEMPERATURES: [f64; 2] = [18.0, 28.0];
 
-/// The value of a factor: the side from which a joint came from the configuration before, either side of all joints, or a temperature.
+/// Payloads, kg.
+const PAYLOADS: [f64; 2] = [0.0, 5.0];
+
+/// The value of a factor: the side from which a joint came from the configuration before, either side of all joints, a payload or none, or a
+/// temperature.
 fn value_of(
     factor: &FactorReading,
     names: &[String],
@@ -107,6 +111,9 @@ fn value_of(
     generator: &mut ChaCha8Rng,
 ) -> f64 {
     let Some(of) = factor.approached() else {
+        if factor.is_payload() {
+            return PAYLOADS[usize::from(random::uniform(generator) < 0.5)];
+        }
         return TEMPERATURES[0] + (TEMPERATURES[1] - TEMPERATURES[0]) * random::uniform(generator);
     };
     let came = match names.iter().position(|name| name == of) {
@@ -171,15 +178,16 @@ impl Simulation {
         self.measure(nominal, actual, kind, &mut generator)
     }
 
-    /// The robot with the factors of its terms: the side from which each joint that turns is approached, and the temperature.
+    /// The robot with the factors of its terms: the side from which each joint that turns is approached, the temperature, and the payload.
     fn with_factors(&self, nominal: &Robot) -> Result<Robot> {
         let turns = |joint: &&Joint| joint.kind == JointKind::Revolute && joint.reading.name == joint.name;
         let approached =
             nominal.joints.iter().filter(turns).map(|joint| format!("{}_{}", Factor::APPROACH, joint.name));
         let sides = approached.filter(|_| self.terms[TermGroup::Backlash] > 0.0);
         let warmth = (self.terms[TermGroup::Factors] > 0.0).then(|| TEMPERATURE.to_owned());
+        let payload = (self.terms[TermGroup::Payload] > 0.0).then(|| Factor::PAYLOAD.to_owned());
         let missing = |name: &String| !nominal.factors.iter().any(|it| it.name == *name);
-        nominal.with_factors(&sides.chain(warmth).filter(missing).collect::<Vec<_>>())
+        nominal.with_factors(&sides.chain(warmth).chain(payload).filter(missing).collect::<Vec<_>>())
     }
 
     /// The robot with terms of random coefficients, under weight of positive ones; the same without any.
@@ -191,7 +199,8 @@ impl Simulation {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         generator.set_stream(2);
         let every = vec![true; robot.joints.len()];
-        let model = CorrectionModel::new(&robot, self.gravity, &every).with_sizes(&self.terms);
+        let extent = Extent { gives: self.terms.gives(), ..Extent::default() };
+        let model = CorrectionModel::new(&robot, self.gravity, &every, extent).with_sizes(&self.terms);
         let deviations: Vec<f64> = model.deviations(&self.terms).collect();
         let own = model.robot.terms.len() - deviations.len();
         let mut robot = model.robot;

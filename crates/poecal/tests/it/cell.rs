@@ -13,7 +13,7 @@ use poecal::measurement::{
 use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
 use poecal::problem::Problem;
 use poecal::robot::{
-    Body, Gravity, Harmonic, Joint, JointKind, JointTerm, Mount, Reading, Robot, Sag, Statics, Term,
+    Body, Gives, Gravity, Harmonic, Joint, JointKind, JointTerm, Mount, Robot, Sag, Statics, Term,
 };
 use poecal::simulate::random;
 use poecal::solve::LeastSquares as _;
@@ -226,7 +226,9 @@ impl Measured {
 /// The same cell whose joints sag, wobble and tilt, with coefficients that are not zero.
 fn deviating(cell: &Cell) -> Cell {
     let all: Vec<usize> = (0..cell.robot.joints.len()).collect();
-    let (mut robot, _) = cell.robot.giving(&all);
+    // In all directions of the shortest arm, whose terms are fewest.
+    let directions = if all.len() <= 4 { Gives::All } else { Gives::Tilting };
+    let (mut robot, _) = cell.robot.giving(&all, directions);
     let gravity = Gravity::of_unit_weights(&robot, Vector3::new(0.2, -0.1, -0.9));
     let weights = gravity.weights.len();
     robot.gravity = Some(gravity);
@@ -346,24 +348,10 @@ fn of_order(order: u8) -> [Term; 2] {
     [false, true].map(|cosine| Term::Harmonic(Harmonic { order, cosine }))
 }
 
-/// A robot of joints that turn, each with gives in all directions beside its own: two that turn and three that slide.
+/// A robot of joints that turn, each with gives in all directions, and harmonics of orders 1 and 2.
 fn giving_everywhere(count: usize) -> Robot {
     let rigid = chain(&"r".repeat(count), 41);
-    let mut joints = Vec::new();
-    for joint in &rigid.joints {
-        let own = joints.len();
-        joints.push(joint.clone());
-        let (z, origin) = (joint.screw.direction(), joint.frame.translation);
-        let x = rotation::perpendicular(&z);
-        let y = z.cross(&x);
-        let turning = [x, y].map(|axis| Joint::revolute("", Screw::revolute(&axis, &origin)));
-        let sliding = [x, y, z].map(|axis| Joint::prismatic("", Screw::prismatic(&axis)));
-        for (k, give) in turning.into_iter().chain(sliding).enumerate() {
-            let reading = Reading { name: joint.name.clone(), multiplier: 0.0, offset: 0.0 };
-            joints.push(Joint { name: format!("{}~{k}", joint.name), reading, give_of: Some(own), ..give });
-        }
-    }
-    let mut robot = Robot::new("giving", joints, rigid.home).unwrap();
+    let (mut robot, _) = rigid.giving(&(0..count).collect::<Vec<_>>(), Gives::All);
     let orders = [1, 2].into_iter().flat_map(of_order);
     let of_joint = |joint: usize| orders.clone().map(move |term| JointTerm { joint, term, coefficient: 0.0 });
     robot.terms = (0..robot.joints.len()).flat_map(of_joint).collect();

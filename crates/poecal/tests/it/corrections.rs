@@ -10,7 +10,7 @@ use poecal::estimate::{Estimate, Packed, RowError, Session};
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, PoseMeasurement};
-use poecal::robot::{Coupling, GravityDirection, Harmonic, JointTerm, Robot, Sag, Term};
+use poecal::robot::{Coupling, Extent, Gives, GravityDirection, Harmonic, JointTerm, Robot, Sag, Term};
 use poecal::simulate::{Kind, Simulation, elbow, random};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
@@ -23,7 +23,7 @@ fn mean_mm(errors: &[RowError]) -> f64 {
 /// Poses of an elbow robot that sags and whose gears are eccentric, by a device beside it.
 fn measured(rows: usize) -> (Robot, Dataset) {
     let nominal = elbow();
-    let mut model = CorrectionModel::new(&nominal, -Vector3::z(), &[true; 6]);
+    let mut model = CorrectionModel::new(&nominal, -Vector3::z(), &[true; 6], Extent::default());
     let [second, third] = [model.places[1], model.places[2]];
     let planted = [
         (second, Term::Sag(Sag { weight: 5 }), 8e-4),
@@ -141,9 +141,10 @@ fn terms_are_asked_for_by_words() {
     assert_eq!((sizes[TermGroup::Sag], sizes[TermGroup::Wobble], sizes[TermGroup::Ratio]), (2e-3, 1e-4, 0.0));
     for (words, sentence) in [
         ("sga", "did you mean `sag`?"),
-        ("", "found ``, expected auto, off, or some of"),
+        ("", "found ``, expected auto, all, off, or some of"),
         ("sag=0", "found `0` as the size of sag"),
         ("sag=nan", "expected radians from 1e-9 to 1"),
+        ("runout=2", "expected metres from 1e-9 to 1"),
         ("sag,sag=1e-3", "found `sag` twice"),
     ] {
         let error = parsed(words).unwrap_err();
@@ -164,6 +165,9 @@ fn what_is_planted_is_found_and_nothing_else() {
         ("wobble", 60, 1.25),
         ("backlash", 60, 1.15),
         ("factors=5e-5", 60, 1.15),
+        ("payload=5e-5", 60, 1.15),
+        ("shift=1e-4", 60, 1.15),
+        ("runout=5e-5", 60, 1.15),
     ] {
         let sizes = match words.parse() {
             Ok(Corrections::Sizes(sizes)) => sizes,
@@ -184,7 +188,12 @@ fn what_is_planted_is_found_and_nothing_else() {
                 };
                 let made = drawn.run(&elbow(), Kind::Pose).unwrap();
                 let unseen = drawn.held_out(&made, Kind::Pose, 100).unwrap();
-                let options = CalibrationOptions { held_out: 0.0, diagnose: false, ..Default::default() };
+                let corrections = match sizes.gives() {
+                    Gives::Tilting => Corrections::Auto,
+                    Gives::All => Corrections::All,
+                };
+                let options =
+                    CalibrationOptions { held_out: 0.0, diagnose: false, corrections, ..Default::default() };
                 let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
                 let found = calibration.correction.as_ref().unwrap();
                 let missed = |robot: &Robot, estimate: &Estimate| {
@@ -315,7 +324,8 @@ fn frames_along_the_axes_change_no_correction() {
     for (k, joint) in other.joints.iter_mut().enumerate() {
         joint.frame.translation += joint.screw.direction() * (0.1 + 0.2 * k as f64);
     }
-    let [one, two] = [&robot, &other].map(|it| CorrectionModel::new(it, -Vector3::z(), &[true; 6]));
+    let [one, two] =
+        [&robot, &other].map(|it| CorrectionModel::new(it, -Vector3::z(), &[true; 6], Extent::default()));
     let (a, b) = (one.robot.gravity.unwrap(), two.robot.gravity.unwrap());
     let of_weights = a.weights.iter().zip(&b.weights).map(|(a, b)| (a.place - b.place).norm());
     let of_axes = a.axes.iter().zip(&b.axes).map(|(a, b)| (a.1 - b.1).norm());
@@ -381,10 +391,12 @@ fn effects_are_what_predictions_lose_without_them() {
     }
 }
 
-/// Backlash of joints whose approach is read, and what follows the temperature: a file keeps the factors and predicts as the fit.
+/// Backlash of joints whose approach is read, what follows the temperature, and what gives under a payload: a file keeps the factors and predicts as the fit.
 #[test]
 fn factors_are_read_fitted_and_kept() {
-    for (words, first) in [("backlash=3e-4", "approach_joint1"), ("factors=2e-4", "temperature")] {
+    for (words, first) in
+        [("backlash=3e-4", "approach_joint1"), ("factors=2e-4", "temperature"), ("payload=2e-4", "payload")]
+    {
         let Ok(Corrections::Sizes(terms)) = words.parse() else { panic!("no sizes") };
         let simulation = Simulation { terms, count: 80, seed: 3, ..Simulation::default() };
         let made = simulation.run(&elbow(), Kind::Pose).unwrap();

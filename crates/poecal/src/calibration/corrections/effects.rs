@@ -50,7 +50,7 @@ impl JointEffect {
     #[must_use]
     pub fn words(&self) -> String {
         let JointEffect { joint, group, amplitude, .. } = self;
-        let much = format!("{:.2} mrad", 1e3 * amplitude.abs());
+        let much = format!("{:.2} {}", 1e3 * amplitude.abs(), group.symbol());
         match group {
             TermGroup::Sag => format!("{joint} sags by up to {much} under weight"),
             TermGroup::Tilt => format!("the bearing or link of {joint} tilts by up to {much} under weight"),
@@ -62,6 +62,9 @@ impl JointEffect {
             TermGroup::Wobble => format!("the axis of {joint} wobbles by up to {much} within a turn"),
             TermGroup::Backlash => format!("{joint} stands off by {much} to the side from which it comes"),
             TermGroup::Factors => format!("{joint} follows the factors by up to {much}"),
+            TermGroup::Payload => format!("{joint} gives by up to {much} under the payload"),
+            TermGroup::Shift => format!("the bearing or link of {joint} shifts by up to {much} under weight"),
+            TermGroup::Runout => format!("the axis of {joint} runs out by up to {much} within a turn"),
         }
     }
 
@@ -325,8 +328,8 @@ impl<'a> Gatherer<'a> {
         // The terms of its gives are at other joints.
         let own: Vec<(usize, Term, f64)> = TermGroup::ALL
             .into_iter()
-            .filter(|group| !matches!(group, TermGroup::Tilt | TermGroup::Wobble))
             .flat_map(|group| self.of(joint, group).concat())
+            .filter(|(at, ..)| *at == joint)
             .collect();
         let (least, most) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &row| {
             (least.min(value(row)), most.max(value(row)))

@@ -24,7 +24,9 @@ use crate::gauge;
 use crate::lie::rotation;
 use crate::measurement::{ByQuantity, Dataset, Noise};
 use crate::problem::Prior;
-use crate::robot::{CorrectionModel, GravityDirection, JointTerm, Robot, Sizes, TermGroup, Tolerance};
+use crate::robot::{
+    CorrectionModel, Extent, GravityDirection, JointTerm, Robot, Sizes, TermGroup, Tolerance,
+};
 use crate::uncertainty::{PriorInformation, View, parts_to_leave_out};
 
 /// Most rounds of re-estimating the noise.
@@ -70,7 +72,7 @@ pub fn correct(
         GravityDirection::Known(direction) => direction,
         GravityDirection::Found => geometry.gravity(&moves, sizes.unwrap_or(Sizes::COMMON)),
     };
-    let all = CorrectionModel::with_orders(&geometry.nominal, gravity, &moves, options.harmonics);
+    let all = CorrectionModel::new(&geometry.nominal, gravity, &moves, geometry.extent(sizes));
     let all = sizes.map_or_else(|| all.clone(), |sizes| all.with_sizes(&sizes));
     let begun = geometry.begin(&all, sizes);
     // Terms that may be there keep their part of the uncertainty.
@@ -109,11 +111,16 @@ struct Sampled {
 }
 
 impl Geometry<'_> {
+    /// How far the model reaches; for terms of these sizes as far as they do.
+    fn extent(&self, sizes: Option<Sizes>) -> Extent {
+        let gives = sizes.map_or(self.options.corrections.gives(), |sizes| sizes.gives());
+        Extent { orders: self.options.harmonics, gives }
+    }
+
     /// The direction of gravity with which terms leave the least noise: the best of three, tilted until it gets no better.
     fn gravity(&self, moves: &[bool], sizes: Sizes) -> Vector3<f64> {
         let along = |direction: &Vector3<f64>| {
-            let model =
-                CorrectionModel::with_orders(&self.nominal, *direction, moves, self.options.harmonics);
+            let model = CorrectionModel::new(&self.nominal, *direction, moves, self.extent(Some(sizes)));
             self.sampled(&model.with_sizes(&sizes), Some(sizes)).map(|it| it.linear)
         };
         let score = |direction: &Vector3<f64>| {

@@ -174,6 +174,12 @@ impl CalibrationFile {
     fn check_terms(&self, robot: &Robot) -> Result<()> {
         let weights = robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
         for JointTerm { joint, term, .. } in &robot.terms {
+            if term.needs_gravity() && weights == 0 {
+                let name = &robot.joints[*joint].name;
+                let message =
+                    format!("found the term {term} of joint `{name}`, expected a robot with weights");
+                return Err(Error::new(ErrorKind::Model, message));
+            }
             if let Term::Sag(Sag { weight }) = term
                 && *weight >= weights
             {

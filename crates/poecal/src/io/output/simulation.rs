@@ -74,7 +74,8 @@ impl TruthFile {
         let SimulatedSession { simulation, made, .. } = session;
         let all: Vec<usize> = (0..made.nominal.joints.len()).collect();
         let gives = made.actual.joints.len() > made.nominal.joints.len();
-        let nominal = if gives { made.nominal.giving(&all).0 } else { made.nominal.clone() };
+        let nominal =
+            if gives { made.nominal.giving(&all, simulation.terms.gives()).0 } else { made.nominal.clone() };
         TruthFile {
             schema: SCHEMA.to_owned(),
             poecal_version: env!("CARGO_PKG_VERSION").to_owned(),

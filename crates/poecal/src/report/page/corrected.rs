@@ -43,7 +43,7 @@ pub(super) fn sections(file: &CalibrationFile) -> Markup {
 }
 
 fn effects(found: &CorrectedEntry) -> Markup {
-    let head = ["joint", "what it does", "±, mrad (1 σ)", "told, %", "at the target, mm (RMS)"];
+    let head = ["joint", "what it does", "± (1 σ), mrad or mm", "told, %", "at the target, mm (RMS)"];
     let mut table = HtmlTable::new("What the terms do in the fitted configurations", 2, &head);
     let mut faint = 0;
     for (k, it) in found.effects.iter().enumerate() {
@@ -107,8 +107,10 @@ fn tried(found: &CorrectedEntry) -> Markup {
     }
     let is_tried =
         |name: &&str| found.tried.iter().any(|it| it.sizes.get(*name).is_some_and(|size| *size > 0.0));
-    let names: Vec<&str> = TermGroup::ALL.into_iter().map(TermGroup::name).filter(is_tried).collect();
-    let heads: Vec<String> = names.iter().map(|name| format!("{name}, mrad")).collect();
+    let groups: Vec<TermGroup> = TermGroup::ALL.into_iter().filter(|group| is_tried(&group.name())).collect();
+    let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
+    let heads: Vec<String> =
+        groups.iter().map(|group| format!("{}, {}", group.name(), group.symbol())).collect();
     let head: Vec<&str> =
         std::iter::once("left out, of geometry's error").chain(heads.iter().map(String::as_str)).collect();
     let mut table = HtmlTable::new(

@@ -186,7 +186,7 @@ fn corrected_words(found: &CorrectedEntry) -> String {
         let size = *found.sizes.get(group.name())?;
         let shown = format!("{:.4}", 1e3 * size);
         let shown = shown.trim_end_matches('0').trim_end_matches('.');
-        (size > 0.0).then(|| format!("{} {shown} mrad", group.name()))
+        (size > 0.0).then(|| format!("{} {shown} {}", group.name(), group.symbol()))
     });
     let used = used.collect::<Vec<_>>().join(", ");
     let chosen = found.tried.iter().find(|it| it.sizes == found.sizes);
