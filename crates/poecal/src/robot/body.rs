@@ -158,7 +158,8 @@ impl Robot {
         let is_known = |body: Body, below: usize| body.joint().is_none_or(|joint| joint < below);
         let joints = (0..count).all(|joint| is_known(self.body_before(joint), joint));
         let mounts = self.instruments.iter().chain(&self.mounted).all(|mount| is_known(mount.body, count));
-        if joints && mounts && is_known(self.tip_body(), count) {
+        let masses = self.masses.iter().all(|mass| is_known(mass.body, count));
+        if joints && mounts && masses && is_known(self.tip_body(), count) {
             return Ok(());
         }
         let message = format!(

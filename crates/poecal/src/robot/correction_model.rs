@@ -99,7 +99,13 @@ impl CorrectionModel {
                 let carried: Vec<usize> =
                     (0..weights).filter(|&weight| statics.is_carried(joint, weight)).collect();
                 let group = if is_own { TermGroup::Sag } else { TermGroup::Tilt };
-                let share = 1.0 / carried.len().max(1) as f64;
+                // Masses of a drawing are estimates: half of what is believed.
+                let masses = statics.carries_masses(joint);
+                let believed = if masses { 0.5 } else { 1.0 };
+                if masses {
+                    push(Term::OwnWeight, group, 0.5);
+                }
+                let share = believed / carried.len().max(1) as f64;
                 carried.iter().for_each(|&weight| push(Term::Sag(Sag { weight }), group, share));
                 let carries_payload =
                     weights.checked_sub(1).is_some_and(|last| statics.is_carried(joint, last));

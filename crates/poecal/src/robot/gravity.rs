@@ -23,6 +23,9 @@ pub struct Gravity {
     pub direction: Vector3<f64>,
     /// The weights; payloads are where the last one is, at the tip.
     pub weights: Vec<Weight>,
+    /// Masses of the model's links, if it states them ([`Robot::masses`]).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub masses: Vec<Mass>,
     /// Screw and pivot ([`Robot::pivots`]) of each joint by which moments are counted, at zero joint values: those of the drawing, whatever is
     /// found.
     pub axes: Vec<(Screw, Vector3<f64>)>,
@@ -75,6 +78,30 @@ impl GravityDirection {
     }
 }
 
+/// A mass of the model.
+///
+/// ```
+/// use poecal::robot::{Body, Mass};
+/// let forearm = Mass { body: Body::Link(2), place: nalgebra::Vector3::x(), kg: 4.5 };
+/// assert_eq!(forearm.body.joint(), Some(2));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mass {
+    /// Its body.
+    pub body: Body,
+    /// Its centre at zero joint values, base frame, metres.
+    pub place: Vector3<f64>,
+    /// How heavy it is, kg.
+    pub kg: f64,
+}
+
+impl Mass {
+    /// Whether a number of kilograms is that of a mass.
+    pub(crate) fn is_mass(kg: f64) -> bool {
+        kg > 0.0 && kg <= 1e6
+    }
+}
+
 /// A weight on the robot.
 ///
 /// ```
@@ -106,7 +133,12 @@ impl Gravity {
         let tip =
             Weight { name: robot.tip_name.clone(), body: robot.tip_body(), place: robot.home.translation };
         let weights = at_joints.chain([tip]).collect();
-        Gravity { direction: direction.normalize().map(|it| it + 0.0), weights, axes: axes(robot) }
+        Gravity {
+            direction: direction.normalize().map(|it| it + 0.0),
+            weights,
+            masses: robot.masses.clone(),
+            axes: axes(robot),
+        }
     }
 }
 

@@ -13,6 +13,7 @@ mod joint;
 mod kinematics;
 mod load;
 mod offset;
+mod own_weight;
 mod ratio;
 mod reading_kind;
 mod sag;
@@ -30,10 +31,11 @@ pub use coupling::Coupling;
 pub use dh::{DhConvention, DhRow};
 pub use factor::{Factor, FactorReading};
 pub use give::Gives;
-pub use gravity::{Gravity, GravityDirection, Weight};
+pub use gravity::{Gravity, GravityDirection, Mass, Weight};
 pub use harmonic::Harmonic;
 pub use joint::{Joint, JointKind, Limits, Reading, Tolerance};
 pub use load::Load;
+pub use own_weight::OwnWeight;
 pub use reading_kind::ReadingKind;
 pub use sag::Sag;
 pub use sizes::{Sizes, TermGroup};
@@ -95,6 +97,9 @@ pub struct Robot {
     /// Gravity and the weights that bend the robot, if terms depend on them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity: Option<Gravity>,
+    /// Masses of the model's links, if it states them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub masses: Vec<Mass>,
     /// What else is read in each configuration and terms depend on: readings of no joint, after those of the joints.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub factors: Vec<FactorReading>,
@@ -144,6 +149,7 @@ impl Robot {
             mounted: Vec::new(),
             terms: Vec::new(),
             gravity: None,
+            masses: Vec::new(),
             factors: Vec::new(),
             instruments: Vec::new(),
         })

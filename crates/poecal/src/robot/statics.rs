@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Body, Gravity, JointKind, Robot, Weight};
+use super::{Body, Gravity, JointKind, Mass, Robot, Weight};
 use crate::lie::Pose;
 
 /// Lever below which a weight has no moment, as a share of the arm: a tool on the last axis.
@@ -26,6 +26,9 @@ pub struct Statics<'a> {
     /// Of each joint and weight, 1 over the joint's longest lever; 0 of a weight that it does not carry.
     shares: Vec<f64>,
     levers: Vec<f64>,
+    mass_levers: Vec<f64>,
+    /// Of each joint and mass, the mass over the sum of all that the joint carries times their longest levers; 0 of one that it does not carry.
+    of_masses: Vec<f64>,
 }
 
 /// Moments in one configuration: of each weight about each joint, over the joint's longest lever.
@@ -33,6 +36,7 @@ pub struct Statics<'a> {
 pub struct Moments {
     weights: usize,
     values: Vec<f64>,
+    of_masses: Vec<f64>,
     links: Vec<Pose>,
 }
 
@@ -44,6 +48,11 @@ impl Moments {
             return 0.0;
         }
         self.values.get(joint * self.weights + weight).copied().unwrap_or_default()
+    }
+
+    /// The moment of all masses about a joint.
+    pub(super) fn of_masses(&self, joint: usize) -> f64 {
+        self.of_masses.get(joint).copied().unwrap_or_default()
     }
 
     /// The moment of the last weight, where payloads are, about a joint.
@@ -61,7 +70,7 @@ impl<'a> Statics<'a> {
         let mut levers = Vec::with_capacity(robot.joints.len());
         let least = LEAST_LEVER * robot.arm_m();
         for joint in 0..robot.joints.len() {
-            let lever = |weight: &Weight| longest_lever(robot, gravity, joint, weight);
+            let lever = |weight: &Weight| longest_lever(robot, gravity, joint, (weight.body, &weight.place));
             let longest = gravity.weights.iter().filter_map(lever).fold(0.0, f64::max);
             levers.push(longest);
             for weight in &gravity.weights {
@@ -73,7 +82,23 @@ impl<'a> Statics<'a> {
                 });
             }
         }
-        Some(Statics { robot, gravity, shares, levers })
+        let total: f64 = gravity.masses.iter().map(|mass| mass.kg).sum();
+        let mass_lever = |joint: usize, mass: &Mass| {
+            let lever = longest_lever(robot, gravity, joint, (mass.body, &mass.place))?;
+            Some(match robot.joints[joint].kind {
+                JointKind::Revolute => mass.kg * lever,
+                JointKind::Prismatic => mass.kg,
+            })
+        };
+        let all = (0..robot.joints.len())
+            .map(|joint| gravity.masses.iter().filter_map(|mass| mass_lever(joint, mass)).sum::<f64>());
+        let mass_levers: Vec<f64> = all.map(|it| if it > least * total { it } else { 0.0 }).collect();
+        let of_masses = mass_levers.iter().enumerate().flat_map(|(joint, all)| {
+            let is_carried = move |mass: &Mass| *all > 0.0 && mass_lever(joint, mass).is_some();
+            gravity.masses.iter().map(move |mass| if is_carried(mass) { mass.kg / all } else { 0.0 })
+        });
+        let of_masses = of_masses.collect();
+        Some(Statics { robot, gravity, shares, levers, mass_levers, of_masses })
     }
 
     /// The longest lever of each joint, metres; 0 of one that carries no weight.
@@ -82,10 +107,22 @@ impl<'a> Statics<'a> {
         &self.levers
     }
 
+    /// Of each joint, the sum of the masses that it carries times their longest levers, kg m; of a prismatic joint of the masses alone.
+    #[must_use]
+    pub fn mass_levers_kg_m(&self) -> &[f64] {
+        &self.mass_levers
+    }
+
     /// Whether a weight has a moment about a joint in any configuration.
     #[must_use]
     pub fn is_carried(&self, joint: usize, weight: usize) -> bool {
         self.shares.get(joint * self.gravity.weights.len() + weight).is_some_and(|share| *share > 0.0)
+    }
+
+    /// Whether masses of the model have a moment about a joint in any configuration.
+    #[must_use]
+    pub fn carries_masses(&self, joint: usize) -> bool {
+        self.mass_levers.get(joint).is_some_and(|all| *all > 0.0)
     }
 
     /// Moments at these values of all joints, without terms.
@@ -104,23 +141,26 @@ impl<'a> Statics<'a> {
             out.links.push(link);
         }
         out.values.clear();
+        out.of_masses.clear();
         let places: Vec<Vector3<f64>> =
             weights.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
+        let masses: Vec<Vector3<f64>> =
+            self.gravity.masses.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
         for (index, (joint, (screw, place))) in joints().enumerate() {
             let moving = body_of(&out.links, self.robot.body_before(index));
             let axis = moving.rotation * screw.direction();
             let origin = moving.act(place);
             let shares = &self.shares[index * weights.len()..];
-            out.values.extend(places.iter().zip(shares).map(|(place, share)| {
-                if *share == 0.0 {
-                    return 0.0;
-                }
-                share
-                    * match joint.kind {
-                        JointKind::Revolute => axis.dot(&(place - origin).cross(&self.gravity.direction)),
-                        JointKind::Prismatic => axis.dot(&self.gravity.direction),
-                    }
-            }));
+            let moment = |place: &Vector3<f64>| match joint.kind {
+                JointKind::Revolute => axis.dot(&(place - origin).cross(&self.gravity.direction)),
+                JointKind::Prismatic => axis.dot(&self.gravity.direction),
+            };
+            let of_weight = |(place, share): (&Vector3<f64>, &f64)| {
+                if *share == 0.0 { 0.0 } else { share * moment(place) }
+            };
+            out.values.extend(places.iter().zip(shares).map(of_weight));
+            let shares = &self.of_masses[index * masses.len()..];
+            out.of_masses.push(masses.iter().zip(shares).map(of_weight).sum());
         }
     }
 }
@@ -130,8 +170,13 @@ fn body_of(links: &[Pose], body: Body) -> Pose {
 }
 
 /// The longest lever of a weight about a joint that carries it: the path from joint to joint, metres.
-fn longest_lever(robot: &Robot, gravity: &Gravity, joint: usize, weight: &Weight) -> Option<f64> {
-    let path = robot.joints_to(weight.body);
+fn longest_lever(
+    robot: &Robot,
+    gravity: &Gravity,
+    joint: usize,
+    (body, place): (Body, &Vector3<f64>),
+) -> Option<f64> {
+    let path = robot.joints_to(body);
     let first = path.iter().position(|&other| other == joint)?;
     let turning = path[first..].iter().filter(|&&other| robot.joints[other].kind == JointKind::Revolute);
     let mut at = gravity.axes.get(joint)?.1;
@@ -141,5 +186,5 @@ fn longest_lever(robot: &Robot, gravity: &Gravity, joint: usize, weight: &Weight
         lever += (next - at).norm();
         at = next;
     }
-    Some(lever + (weight.place - at).norm())
+    Some(lever + (place - at).norm())
 }

@@ -13,6 +13,7 @@ use super::factor::Factor;
 use super::harmonic::Harmonic;
 use super::load::Load;
 use super::offset::Offset;
+use super::own_weight::OwnWeight;
 use super::ratio::Ratio;
 use super::sag::Sag;
 use super::term_model::TermModel;
@@ -34,6 +35,8 @@ pub enum Term {
     Ratio,
     /// A harmonic of the joint's value.
     Harmonic(Harmonic),
+    /// What the joint gives under the robot's own weight.
+    OwnWeight,
     /// What the joint gives under a weight.
     Sag(Sag),
     /// What another joint turns it.
@@ -52,7 +55,7 @@ impl Term {
     #[must_use]
     pub fn needs_gravity(&self) -> bool {
         match self {
-            Term::Sag(_) | Term::Load(_) => true,
+            Term::OwnWeight | Term::Sag(_) | Term::Load(_) => true,
             Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Coupling(_) | Term::Factor(_) => false,
         }
     }
@@ -63,7 +66,7 @@ impl Term {
         match self {
             Term::Coupling(Coupling { joint }) => *joint < joints,
             Term::Factor(Factor { index }) | Term::Load(Load { index }) => *index < factors,
-            Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Sag(_) => true,
+            Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::OwnWeight | Term::Sag(_) => true,
         }
     }
 
@@ -75,6 +78,7 @@ impl Term {
             Term::Offset
             | Term::Ratio
             | Term::Harmonic(_)
+            | Term::OwnWeight
             | Term::Sag(_)
             | Term::Factor(_)
             | Term::Load(_) => self,
@@ -88,6 +92,7 @@ impl Term {
             Term::Offset => &Offset,
             Term::Ratio => &Ratio,
             Term::Harmonic(harmonic) => harmonic,
+            Term::OwnWeight => &OwnWeight,
             Term::Sag(sag) => sag,
             Term::Coupling(coupling) => coupling,
             Term::Factor(factor) => factor,
@@ -110,6 +115,7 @@ impl FromStr for Term {
         let order = |prefix: &str| u8::try_from(numbered(prefix)?).ok();
         let harmonic = |order: u8, cosine: bool| Term::Harmonic(Harmonic { order, cosine });
         let found = Term::ALL.into_iter().find(|term| term.model().name() == name);
+        let found = found.or_else(|| (name == "weight").then_some(Term::OwnWeight));
         found
             .or_else(|| Some(harmonic(order("sin")?, false)))
             .or_else(|| Some(harmonic(order("cos")?, true)))
@@ -119,7 +125,7 @@ impl FromStr for Term {
             .or_else(|| Some(Term::Load(Load { index: usize::from(numbered("load")?) - 1 })))
             .ok_or_else(|| {
                 format!(
-                    "found the term `{name}`, expected offset, ratio, sin1, cos1, …, sag1, …, coupled1, …, factor1, … or load1, …"
+                    "found the term `{name}`, expected offset, ratio, sin1, cos1, …, weight, sag1, …, coupled1, …, factor1, … or load1, …"
                 )
             })
     }
@@ -146,7 +152,7 @@ impl JsonSchema for Term {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         schemars::json_schema!({
             "type": "string",
-            "pattern": "^(offset|ratio|(sin|cos|sag|coupled|factor|load)[1-9][0-9]*)$",
+            "pattern": "^(offset|ratio|weight|(sin|cos|sag|coupled|factor|load)[1-9][0-9]*)$",
             "description": "A term of a joint's value.",
         })
     }

@@ -21,6 +21,7 @@ fn robot(name: &str, joints: Vec<Joint>, home: Pose) -> Robot {
         mounted: Vec::new(),
         terms: Vec::new(),
         gravity: None,
+        masses: Vec::new(),
         factors: Vec::new(),
         instruments: Vec::new(),
     }

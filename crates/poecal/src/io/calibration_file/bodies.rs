@@ -174,7 +174,11 @@ impl CalibrationFile {
     fn check_terms(&self, robot: &Robot) -> Result<()> {
         let weights = robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
         for JointTerm { joint, term, .. } in &robot.terms {
-            if term.needs_gravity() && weights == 0 {
+            let is_there = match (term, &robot.gravity) {
+                (Term::OwnWeight, Some(gravity)) => !gravity.masses.is_empty(),
+                (term, _) => !term.needs_gravity() || weights > 0,
+            };
+            if !is_there {
                 let name = &robot.joints[*joint].name;
                 let message =
                     format!("found the term {term} of joint `{name}`, expected a robot with weights");

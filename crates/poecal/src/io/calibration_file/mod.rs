@@ -13,7 +13,8 @@ mod validation;
 
 pub use bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
 pub use corrected::{
-    CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
+    CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, MassEntry, TriedEntry,
+    WeightEntry,
 };
 pub use keyed::*;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};

@@ -27,6 +27,8 @@ pub(super) struct File {
     pub(super) target: Vec<TargetTable>,
     #[serde(default)]
     pub(super) instrument: Vec<TargetTable>,
+    #[serde(default)]
+    pub(super) mass: Vec<MassTable>,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -143,6 +145,15 @@ pub(super) struct PoseTable {
     pub(super) quaternion_xyzw: Option<Spanned<[f64; 4]>>,
     pub(super) rpy: Option<Spanned<[f64; 3]>>,
     pub(super) rotation: Option<Spanned<[[f64; 3]; 3]>>,
+}
+
+/// A mass of a link.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MassTable {
+    pub(super) on: Spanned<String>,
+    pub(super) position: Spanned<[f64; 3]>,
+    pub(super) kg: Spanned<f64>,
 }
 
 /// A target or an instrument.

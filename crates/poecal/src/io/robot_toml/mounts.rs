@@ -7,7 +7,7 @@ use toml::Spanned;
 use super::context::Context;
 use super::file::{Convention, File, TargetTable};
 use crate::error::{Result, nearest_or_all};
-use crate::robot::{Body, Robot};
+use crate::robot::{Body, Mass, Robot};
 
 /// Word for the base; the empty name means it too, where a joint has this name.
 pub(super) const BASE: &str = "base";
@@ -60,6 +60,17 @@ pub(super) fn place(context: &Context, file: &File, robot: &mut Robot) -> Result
         };
         let body = body(context, robot, on, &format!("`on` of {of}"))?;
         robot.instruments.push(robot.mount(&name, body, &pose));
+    }
+    for mass in &file.mass {
+        let body = body(context, robot, &mass.on, "`on` of the mass")?;
+        let place =
+            context.metres(*mass.position.get_ref(), mass.position.span(), "`position` of the mass")?;
+        let kg = *mass.kg.get_ref();
+        if !Mass::is_mass(kg) {
+            let message = format!("found the mass {kg}, expected kilograms above 0 and at most 1e6");
+            return Err(context.error(mass.kg.span(), message));
+        }
+        robot.masses.push(Mass { body, place: place.into(), kg });
     }
     Ok(())
 }

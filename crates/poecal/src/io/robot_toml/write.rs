@@ -52,6 +52,10 @@ pub fn write(robot: &Robot) -> String {
             let _ = write!(text, "\n[[{key}]]\nname = {name}\non = {on}\n{pose}");
         }
     }
+    for mass in &robot.masses {
+        let (on, position) = (body_name(robot, mass.body), array(mass.place.into()));
+        let _ = write!(text, "\n[[mass]]\non = {on}\nposition = {position}\nkg = {}\n", shortest(mass.kg));
+    }
     text
 }
 

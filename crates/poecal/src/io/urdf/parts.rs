@@ -12,7 +12,7 @@ use super::xml::{XmlSource, value_range};
 use crate::error::{Result, nearest_or_all};
 use crate::io::mimic;
 use crate::lie::Pose;
-use crate::robot::{Body, Joint, JointKind, Limits, Reading, Robot, check_name};
+use crate::robot::{Body, Joint, JointKind, Limits, Mass, Reading, Robot, check_name};
 
 /// A fixed or moving joint, with the places for writing it back.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,10 +94,46 @@ pub(super) fn read(tree: &Tree, chain: &UrdfChain, name: &str) -> Result<(Vec<Pa
     let instruments = chain.instruments.iter().map(mount).collect::<Result<_>>()?;
     let mounted = chain.targets.iter().map(mount).collect::<Result<_>>()?;
     (robot.instruments, robot.mounted) = (instruments, mounted);
+    robot.masses = masses(tree, &links, base).unwrap_or_default();
     let named = chain.instruments.iter().chain(&chain.targets).map(|(_, link)| *link);
     let end = |link: usize| End { link: tree.link_name(link).to_owned(), part: at(link).part };
     let ends = std::iter::once(chain.tip).chain(named).map(end).collect();
     Ok((parts, ends, robot))
+}
+
+/// Masses of the links of the chain and of what they carry, other joints at zero; none if one of them cannot be read, since nothing else
+/// needs them.
+fn masses(tree: &Tree, links: &BTreeMap<usize, At>, base: At) -> Result<Vec<Mass>> {
+    let source = &tree.source;
+    let mut links = links.clone();
+    let mut found = Vec::new();
+    for node in source.children(source.document.root_element(), "link") {
+        let Some(link) = node.attribute("name").and_then(|name| tree.link(name)) else { continue };
+        // From the nearest link that is known down to this one; what is not carried by the chain is as if on the base.
+        let unknown = |&(_, joint): &(usize, &TreeJoint)| !links.contains_key(&joint.child);
+        let way: Vec<&TreeJoint> = tree.ancestors(link).take_while(unknown).map(|(_, joint)| joint).collect();
+        let known = way.last().map_or(links.get(&link), |joint| links.get(&joint.parent));
+        let mut at = known.copied().unwrap_or(base);
+        for joint in way.into_iter().rev() {
+            if at.body != Body::Base {
+                at.base_from_link = at.base_from_link * read_part(source, joint)?.parent_from_joint;
+            }
+            links.insert(joint.child, at);
+        }
+        let of = format!("<inertial> of link `{}`", tree.link_name(link));
+        let child = |node, name| source.only_child(node, name, &of, false);
+        let Some(inertial) = child(node, "inertial")?.filter(|_| at.body != Body::Base) else { continue };
+        let Some(mass) = child(inertial, "mass")? else { continue };
+        let Some([kg]) = source.numbers(mass, "value", &of)?.filter(|[kg]| Mass::is_mass(*kg)) else {
+            continue;
+        };
+        let centre = match child(inertial, "origin")? {
+            Some(origin) => source.numbers(origin, "xyz", &of)?.unwrap_or_default(),
+            None => [0.0; 3],
+        };
+        found.push(Mass { body: at.body, place: at.base_from_link.act(&Vector3::from(centre)), kg });
+    }
+    Ok(found)
 }
 
 fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {

@@ -88,6 +88,9 @@ pub(in crate::io) fn written_new(robot: &Robot) -> Result<(Converted, ChainSelec
     if !robot.targets.is_empty() {
         writer.notes.push("targets are not part of a URDF and were left out".to_owned());
     }
+    if !robot.masses.is_empty() {
+        writer.notes.push("masses without inertia are not part of a URDF and were left out".to_owned());
+    }
     let ends: Vec<&str> = ends.iter().map(String::as_str).collect();
     let selection = ChainSelection::of(robot, &ends);
     Ok((Converted { text: writer.text, notes: writer.notes }, selection))
