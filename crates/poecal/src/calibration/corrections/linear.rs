@@ -86,6 +86,8 @@ pub(super) struct LeftOutPart {
     places: Vec<usize>,
     follow: DMatrix<f64>,
     still: DVector<f64>,
+    /// Covariance of geometry where the modes are known.
+    covariance: DMatrix<f64>,
 }
 
 impl Linear {
@@ -334,7 +336,8 @@ impl Linear {
         let factor = of_geometry(rest.view((0, 0), (k, k)).into_owned())?;
         let mixed = rest.view((0, k), (k, m)).into_owned();
         // How the other unknowns follow each mode, and where they are without.
-        let follow = solved(&factor, &mixed);
+        let covariance = DMatrix::from_column_slice(k, k, &linalg::inverse(&factor));
+        let follow = &covariance * &mixed;
         let still = DVector::from_vec(linalg::cholesky_solve(&factor, pull.rows(0, k).as_slice()));
         let information = rest.view((k, k), (m, m)) - mixed.transpose() * &follow;
         let pull = pull.rows(k, m) - mixed.tr_mul(&still);
@@ -351,7 +354,7 @@ impl Linear {
                 DVector::from_vec(linalg::cholesky_solve(&factor, frames.tr_mul(&left).as_slice()));
             Squares::new(columns - &frames * moved, left - &frames * of_still)
         };
-        Some(LeftOutPart { information, pull, fitted, places, follow, still })
+        Some(LeftOutPart { information, pull, fitted, places, follow, still, covariance })
     }
 
     /// The modes of these sizes by the fit without a part; none if that is not positive definite.
@@ -360,8 +363,16 @@ impl Linear {
         if used.is_empty() {
             return Some(modes);
         }
+        let (factor, unit) = self.factor_without(part, used)?;
+        let right: Vec<f64> = used.iter().zip(&unit).map(|((at, _), unit)| unit * part.pull[*at]).collect();
+        let found = linalg::cholesky_solve(&factor, &right);
+        used.iter().zip(&unit).zip(found).for_each(|(((at, _), unit), value)| modes[*at] = unit * value);
+        Some(modes)
+    }
+
+    /// Factor of the information of the used modes without a part, in units in which the prior is 1, and these units.
+    fn factor_without(&self, part: &LeftOutPart, used: &[(usize, f64)]) -> Option<(Factor, Vec<f64>)> {
         let n = used.len();
-        // In units of the sizes, so that the prior is 1.
         let unit: Vec<f64> = used.iter().map(|(_, prior)| (self.weight * prior).sqrt().recip()).collect();
         let mut gram = vec![0.0; n * n];
         for (i, (row, &(a, _))) in gram.chunks_exact_mut(n).zip(used).enumerate() {
@@ -370,12 +381,32 @@ impl Linear {
                 *out = unit[i] * unit[j] * column[b];
             }
         }
-        let right: Vec<f64> = used.iter().zip(&unit).map(|((at, _), unit)| unit * part.pull[*at]).collect();
         let largest = gram.iter().step_by(n + 1).fold(0.0, |largest: f64, it| largest.max(*it));
-        let factor = linalg::cholesky(&gram, n, 1.0 + ROUNDING_OF_TERMS * largest)?;
-        let found = linalg::cholesky_solve(&factor, &right);
-        used.iter().zip(&unit).zip(found).for_each(|(((at, _), unit), value)| modes[*at] = unit * value);
-        Some(modes)
+        Some((linalg::cholesky(&gram, n, 1.0 + ROUNDING_OF_TERMS * largest)?, unit))
+    }
+
+    /// Variance of what the fit without a part predicts for some of its numbers, mean over them, by its information alone.
+    fn predicted_without(
+        &self,
+        part: &LeftOutPart,
+        used: &[(usize, f64)],
+        counts: impl Fn(&usize) -> bool,
+    ) -> Option<f64> {
+        let k = self.known.len();
+        let places: Vec<usize> = part.places.iter().copied().filter(counts).collect();
+        let own = self.jacobian.select_rows(&places);
+        let known = own.columns(0, k);
+        let mut sum = (known * &part.covariance).dot(&known);
+        if !used.is_empty() {
+            let (factor, unit) = self.factor_without(part, used)?;
+            let all = own.columns(k, self.modes.len()) - known * &part.follow;
+            let columns: Vec<DVector<f64>> =
+                used.iter().zip(&unit).map(|((at, _), unit)| all.column(*at) * *unit).collect();
+            let columns = DMatrix::from_columns(&columns);
+            let n = used.len();
+            sum += (&columns * DMatrix::from_column_slice(n, n, &linalg::inverse(&factor))).dot(&columns);
+        }
+        Some(sum / places.len().max(1) as f64)
     }
 
     /// Mean over the parts of the logarithm of their mean squared residual, by the fits of the others with terms of these sizes.
@@ -384,8 +415,8 @@ impl Linear {
         mean_logarithm(parts, |part| Some(part.fitted.mean(&self.without(part, &used)?)))
     }
 
-    /// Mean squared error of the lengths of the parts, by the fits of the others and their device frames, over that of all rows by their
-    /// own fit, at least 1; without lengths that of all numbers.
+    /// Mean squared error of the lengths of the parts, by the fits of the others and their device frames, over what the residuals of all rows
+    /// and the uncertainty of these fits let expect, at least 1; without lengths that of all numbers.
     pub(super) fn growth(
         &self,
         parts: &[LeftOutPart],
@@ -396,7 +427,13 @@ impl Linear {
         let counts = |at: &usize| !has_lengths || self.quantities[*at].unit() == Unit::Metre;
         let used = self.used(sizes);
         let k = self.known.len();
-        let left_out = mean_logarithm(parts, |part| {
+        let Some((step, determined)) = self.optimum(sizes, (gram, gradient)) else { return 1.0 };
+        let counted: Vec<usize> = (0..self.quantities.len()).filter(counts).collect();
+        let left = &self.residuals - self.jacobian.columns(0, self.fitted()) * step;
+        let numbers = self.quantities.len() as f64;
+        let freedom = (numbers - determined).max(LEAST_FREEDOM * numbers) / numbers * counted.len() as f64;
+        let fitted = counted.iter().map(|&at| left[at] * left[at]).sum::<f64>() / freedom;
+        let grown = mean_logarithm(parts, |part| {
             let modes = self.without(part, &used)?;
             let known = &part.still - &part.follow * &modes;
             let places = part.places.iter().copied().filter(counts);
@@ -408,15 +445,12 @@ impl Linear {
                 self.residuals[at] - of(0, &known) - of(k, &modes)
             });
             let (sum, count) = left.fold((0.0, 0), |(sum, count), it| (sum + it * it, count + 1));
-            Some(sum / count.max(1) as f64)
+            let expected = fitted + self.weight * self.predicted_without(part, &used, counts)?;
+            // Half of what the fit's own uncertainty explains: other sessions err by more than its model knows.
+            let allowed = (fitted * expected).sqrt();
+            Some(sum / count.max(1) as f64 / allowed.max(f64::MIN_POSITIVE))
         });
-        let Some((step, determined)) = self.optimum(sizes, (gram, gradient)) else { return 1.0 };
-        let counted: Vec<usize> = (0..self.quantities.len()).filter(counts).collect();
-        let left = &self.residuals - self.jacobian.columns(0, self.fitted()) * step;
-        let numbers = self.quantities.len() as f64;
-        let freedom = (numbers - determined).max(LEAST_FREEDOM * numbers) / numbers * counted.len() as f64;
-        let fitted = counted.iter().map(|&at| left[at] * left[at]).sum::<f64>() / freedom;
-        let growth = left_out.exp() / fitted.max(f64::MIN_POSITIVE);
+        let growth = grown.exp();
         if growth.is_finite() { growth.max(1.0) } else { 1.0 }
     }
 }
