@@ -344,3 +344,35 @@ fn single_column_joint_tables_are_read() {
     let path = folder.write("joints.csv", "a\n0,5\n-1\n");
     assert_eq!(read_joints(path, &robot, &ReadOptions::default()).unwrap().readings, [0.5, -1.0]);
 }
+
+#[test]
+fn anchors_name_where_distances_are_measured_from() {
+    let head = "a[deg],lift[mm],b,x[mm],y[mm],z[mm],instrument,anchor,distance[mm]\n";
+    let file = plain(&format!(
+        "{head}10,250,0.5,100,20,3,tracker,,\n20,250,0.5,,,,,wall,800\n30,250,0.5,,,,,door,900\n40,250,0.5,,,,,wall,810\n"
+    ));
+    let stations: Vec<_> = file.data.observations.iter().map(|it| it.station).collect();
+    assert_eq!(stations, [0, 1, 2, 1]);
+    let names: Vec<_> = file.data.stations.iter().map(|name| name.as_deref().unwrap()).collect();
+    assert_eq!(names, ["tracker", "wall", "door"]);
+    assert!(file.warnings.is_empty(), "{:?}", file.warnings);
+    let columns: Vec<_> = file.understood[0].columns.iter().map(|column| column.name.as_str()).collect();
+    assert_eq!(columns[columns.len() - 2..], ["instrument", "anchor"]);
+
+    // Without an instrument's column, and with the same name in both.
+    let file = plain("a,lift,b,anchor,distance\n0,0.1,0,wall,0.8\n0.1,0.1,0,door,0.9\n");
+    assert_eq!(file.data.stations.len(), 2);
+    assert_eq!(plain(&format!("{head}20,250,0.5,,,,wall,wall,800\n")).data.stations.len(), 1);
+
+    let refused = |rows: &str| {
+        let folder = Folder::new();
+        let path = folder.write("points.csv", format!("{head}{rows}"));
+        folder
+            .without_path(&read(&[path], &lifting_robot(), &ReadOptions::default()).unwrap_err().to_string())
+    };
+    assert_eq!(
+        refused("20,250,0.5,,,,wire,wall,800\n"),
+        "points.csv:2:20: found the anchor `wall` beside the instrument `wire`, expected one of the two: leave one cell empty"
+    );
+    assert!(refused("20,250,0.5,,,,,wall,800\n20,250,0.5,,,,,,800\n").contains("points.csv:3"));
+}

@@ -311,7 +311,8 @@ impl<'a> Builder<'a> {
             let number = |name: &&'static str| self.column_input(name, name, dimension, None, &purpose);
             let numbers = names.iter().map(number).collect::<Result<Vec<_>>>()?;
             let sigma = self.sigma(&format!("sigma_{}", kind.quantity.name()), None, dimension, true)?;
-            found.push(KindColumns::new(index, numbers, sigma));
+            let place = self.optional_text_column(kind.place)?;
+            found.push(KindColumns::new(index, numbers, sigma, place));
         }
         Ok(found)
     }

@@ -11,6 +11,8 @@ use crate::unit::Unit;
 /// quantity's name.
 pub(super) struct Kind {
     pub(super) quantity: Quantity,
+    /// The column that names the place from which it is measured, in place of `instrument`.
+    pub(super) place: &'static str,
     /// Whether its numbers are above 0; then 0 is a lost beam.
     pub(super) is_above_zero: bool,
     /// The measurement from its numbers, metres and radians.
@@ -20,6 +22,7 @@ pub(super) struct Kind {
 /// All of them. A new one is a line here.
 pub(super) const KINDS: [Kind; 1] = [Kind {
     quantity: Quantity::Distance,
+    place: "anchor",
     is_above_zero: true,
     of: |numbers| {
         Measurement::Distance(DistanceMeasurement { distance: numbers.first().copied().unwrap_or(f64::NAN) })
@@ -44,7 +47,7 @@ impl Kind {
 
 /// Names of all their columns.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    KINDS.iter().flat_map(|kind| kind.names().iter().copied())
+    KINDS.iter().flat_map(|kind| kind.names().iter().copied().chain([kind.place]))
 }
 
 /// Where a file has the numbers of a kind: indices into the inputs.
@@ -54,12 +57,19 @@ pub(super) struct KindColumns {
     kind: usize,
     numbers: Vec<usize>,
     sigma: Option<usize>,
+    /// Column with the name of its place.
+    place: Option<usize>,
 }
 
 impl KindColumns {
     /// Of a kind by its index.
-    pub(super) fn new(kind: usize, numbers: Vec<usize>, sigma: Option<usize>) -> Self {
-        KindColumns { kind, numbers, sigma }
+    pub(super) fn new(kind: usize, numbers: Vec<usize>, sigma: Option<usize>, place: Option<usize>) -> Self {
+        KindColumns { kind, numbers, sigma, place }
+    }
+
+    /// Name and column of its place.
+    pub(super) fn place(&self) -> Option<(&'static str, usize)> {
+        Some((KINDS.get(self.kind)?.place, self.place?))
     }
 
     /// The inputs of its numbers.

@@ -211,13 +211,19 @@ impl<'a> Reader<'a> {
                 let mut stated = Stated::default();
                 stated.set(Quantity::Position, inputs.sigma(row, target.sigma_position)?);
                 stated.set(Quantity::Rotation, inputs.sigma(row, target.sigma_rotation)?);
-                self.observation(row, layout, (target, set), (measurement, stated), inputs)?;
+                self.observation(row, layout, (target, set, None), (measurement, stated), inputs)?;
             }
             for kind in &target.kinds {
                 if let Some((measurement, quantity, sigma)) = kind.measurement(row, inputs)? {
                     let mut stated = Stated::default();
                     stated.set(quantity, sigma);
-                    self.observation(row, layout, (target, set), (measurement, stated), inputs)?;
+                    self.observation(
+                        row,
+                        layout,
+                        (target, set, kind.place()),
+                        (measurement, stated),
+                        inputs,
+                    )?;
                 }
             }
         }
@@ -229,13 +235,13 @@ impl<'a> Reader<'a> {
         &mut self,
         row: &Row<'_>,
         layout: &ColumnLayout,
-        (target, set): (&TargetLayout, Option<Set>),
+        (target, set, place): (&TargetLayout, Option<Set>, Option<(&str, usize)>),
         (measurement, stated): (Measurement, Stated),
         inputs: &InputReader<'_>,
     ) -> Result<()> {
         let observation = Observation {
             target: self.target(row, layout, target)?,
-            station: self.station(row, layout)?,
+            station: self.station(row, layout, place)?,
             from: None,
             measurement,
             stated,
@@ -293,19 +299,37 @@ impl<'a> Reader<'a> {
         Ok(index)
     }
 
-    /// Index of the row's station. Either all rows name their instrument or none does.
-    fn station(&mut self, row: &Row<'_>, layout: &ColumnLayout) -> Result<usize> {
-        let column = layout.instrument;
+    /// Index of the row's station: of its instrument, or of the place from which it was measured. Either all rows name theirs or none does.
+    fn station(
+        &mut self,
+        row: &Row<'_>,
+        layout: &ColumnLayout,
+        place: Option<(&str, usize)>,
+    ) -> Result<usize> {
+        let is_named = |column: usize| row.cells.get(column).is_some_and(|cell| !cell.text().is_empty());
+        let instrument = layout.instrument.map(|column| ("instrument", column));
+        let named = place.filter(|(_, column)| is_named(*column));
+        if let (Some((what, column)), Some((_, other))) = (named, instrument.filter(|it| is_named(it.1))) {
+            let [own, other] =
+                [column, other].map(|at| row.cells.get(at).map(|cell| cell.text()).unwrap_or_default());
+            if own != other {
+                let message = format!(
+                    "found the {what} `{own}` beside the instrument `{other}`, expected one of the two: leave one cell empty"
+                );
+                return Err(row.error(column, message));
+            }
+        }
+        let (what, column) = named.or(instrument).or(place).unzip();
+        let what = what.unwrap_or("instrument");
         let name = match self.options.frames {
             Frames::PerFile => Some(Cow::Owned(row.path.display().to_string())),
             Frames::Common => column.and_then(|column| row.cells.get(column)).map(|cell| cell.text()),
         };
         let name = name.as_deref().filter(|name| !name.is_empty());
-        let index = self.stations.index(row, column, ("instrument", ""), name)?;
+        let index = self.stations.index(row, column, (what, ""), name)?;
         if let Some(name) = name.filter(|_| index == self.found.data.stations.len()) {
             if self.options.frames == Frames::Common {
-                check_name(name, "instrument")
-                    .map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
+                check_name(name, what).map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
             }
             self.found.data.stations.push(Some(name.to_owned()));
         }

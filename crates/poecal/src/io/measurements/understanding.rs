@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::cells::Separator;
 use super::header::Header;
 use super::inputs::{Input, InputSource, Range};
+use super::kinds::KindColumns;
 use super::layout::{ColumnLayout, SetRule};
 use super::lost::LostBeams;
 use super::mapping::PoseDirection;
@@ -103,9 +104,12 @@ pub(super) fn columns(
         SetRule::Unstated => None,
         SetRule::Words(index) | SetRule::Where(index, _) => Some(index),
     };
+    let places: Vec<(&str, usize)> =
+        layout.targets.iter().flat_map(|target| &target.kinds).filter_map(KindColumns::place).collect();
     let texts = [
         text("target", layout.target_column),
         text("instrument", layout.instrument),
+        places.first().and_then(|&(name, column)| text(name, Some(column))),
         text("id", layout.id),
         text("set", set),
     ];
