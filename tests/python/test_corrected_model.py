@@ -22,7 +22,7 @@ def test_the_documented_formulas_are_those_of_the_program(tmp_path):
     poecal("calibrate", *measured, *sizes, "--out", tmp_path / "results", "--report", "none", "--quiet")
     corrected = json.loads((tmp_path / "results/calibration.json").read_text())["corrected"]
     used = {re.sub(r"\d+$", "", term) for joint in corrected["joints"] for term in joint.get("terms", {})}
-    assert used == {"sag", "weight", "ratio", "sin", "cos", "factor", "load"}
+    assert used == {"sag", "masses", "ratio", "sin", "cos", "factor", "payload"}
 
     page = (ROOT / "docs/corrected-model.md").read_text()
     block = next(block for block in re.findall(r"```python\n(.*?)```", page, re.S) if "def predict" in block)

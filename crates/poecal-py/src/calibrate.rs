@@ -39,7 +39,8 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation.
 /// corrections
 ///     What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
-///     "off" fits none; or groups of terms, "sag,tilt,ratio,harmonics,wobble", or a dict of their sizes in radians or metres.
+///     "off" fits none; or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of
+///     their sizes in radians or metres.
 /// harmonics
 ///     Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
 /// gravity

@@ -128,7 +128,7 @@ impl Simulation {
 /// held_out_count
 ///     Number of further measurements, free of noise, to judge a calibration by.
 /// terms
-///     What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians, as a dict
+///     What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians or metres, as a dict
 ///     or "sag=1e-3,ratio=1e-4".
 /// gravity
 ///     Where gravity pulls, in the robot's base frame, default (0, 0, -1).
@@ -173,11 +173,10 @@ pub(crate) fn simulate(
         terms: match terms {
             None | Some(Corrections::Off) => Sizes::NONE,
             Some(Corrections::Sizes(sizes)) => sizes,
-            Some(Corrections::Auto | Corrections::All) => {
-                return Err(crate::errors::argument(
-                    "terms",
-                    "found auto, expected off, or groups with sizes",
-                ));
+            Some(other @ (Corrections::Auto | Corrections::All)) => {
+                let word = if other == Corrections::All { "all" } else { "auto" };
+                let message = format!("found {word}, expected off, or groups with sizes");
+                return Err(crate::errors::argument("terms", &message));
             }
         },
         gravity: direction(gravity.unwrap_or([0.0, 0.0, -1.0]))?,

@@ -1172,7 +1172,8 @@ def calibrate(
         decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation.
     corrections
         What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
-        "off" fits none; or groups of terms, "sag,tilt,ratio,harmonics,wobble", or a dict of their sizes in radians or metres.
+        "off" fits none; or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of
+        their sizes in radians or metres.
     harmonics
         Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
     gravity
@@ -1458,7 +1459,7 @@ def simulate(
     held_out_count
         Number of further measurements, free of noise, to judge a calibration by.
     terms
-        What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians, as a dict
+        What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians or metres, as a dict
         or "sag=1e-3,ratio=1e-4".
     gravity
         Where gravity pulls, in the robot's base frame, default (0, 0, -1).

@@ -119,7 +119,9 @@ fn further_term(names: &Names, word: &str) -> Option<(usize, Term)> {
         Term::Coupling(Coupling { joint: other }) => {
             (other < names.joints.len() && other != joint).then_some((joint, term))
         }
-        Term::Offset | Term::Ratio | Term::OwnWeight | Term::Sag(_) | Term::Factor(_) | Term::Load(_) => None,
+        Term::Offset | Term::Ratio | Term::OwnWeight | Term::Sag(_) | Term::Factor(_) | Term::Payload(_) => {
+            None
+        }
     }
 }
 

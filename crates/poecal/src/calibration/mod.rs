@@ -62,7 +62,7 @@ use std::sync::Arc;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Packed, Session};
 use crate::measurement::{Dataset, PoseResidual};
-use crate::robot::{GravityDirection, Robot};
+use crate::robot::{FactorReading, GravityDirection, Robot};
 use crate::threads;
 use steps::Prepared;
 
@@ -146,12 +146,17 @@ pub fn calibrate_with_progress(
     let (registered, noise, source) = threads::in_pool(rows, || prepared.register());
     progress(Stage::Fit);
     let fit = threads::in_pool(rows, || prepared.fit(&registered, noise, source))?;
+    refuse_without_factors(robot, options)?;
     // Terms beside screws that are held or written otherwise would do what the screws do not.
     let moves_all = (0..robot.joints.len()).all(|joint| unknowns.moves_axis(joint));
     let sizes = match options.corrections {
         Corrections::Auto | Corrections::All if moves_all => Some(None),
+        Corrections::All => {
+            let message = "found corrections `all` beside axes that are held, expected all axes fitted, or groups of terms by name";
+            return Err(Error::new(ErrorKind::Option, message));
+        }
         Corrections::Sizes(sizes) => Some(Some(sizes)),
-        Corrections::Auto | Corrections::All | Corrections::Off => None,
+        Corrections::Auto | Corrections::Off => None,
     };
     let sizes = sizes.filter(|_| options.formulation == Formulation::default());
     prepared.with_instruments(&registered, fit, source, &mut |prepared, fit| {
@@ -183,6 +188,31 @@ pub fn calibrate_with_progress(
         }
         Ok(calibration.with_correction(found))
     })
+}
+
+/// Refuses groups of terms that depend on columns that are not read.
+fn refuse_without_factors(robot: &Robot, options: &CalibrationOptions) -> Result<()> {
+    let Corrections::Sizes(sizes) = options.corrections else { return Ok(()) };
+    let group_of = |it: &FactorReading| match it.approached() {
+        Some(_) => TermGroup::Backlash,
+        None if it.is_payload() => TermGroup::Payload,
+        None => TermGroup::Factors,
+    };
+    let needed = [
+        (TermGroup::Backlash, "approach or approach_JOINT"),
+        (TermGroup::Payload, "payload"),
+        (TermGroup::Factors, "temperature or another column"),
+    ];
+    for (group, column) in needed {
+        if sizes[group] > 0.0 && !robot.factors.iter().any(|it| group_of(it) == group) {
+            let message = format!(
+                "found {} among the corrections and no factor for it, expected {column} among the factors (--factors)",
+                group.name()
+            );
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses what only the usual formulation has.

@@ -9,7 +9,7 @@ use super::sight::SightCheck;
 use super::table::{kinds_words, line, lines, robot_words};
 use crate::error::first_few;
 use crate::forensics::Diagnosis;
-use crate::io::calibration_file::{BodyEntry, PoseEntry};
+use crate::io::calibration_file::{BodyEntry, MassEntry, PoseEntry};
 use crate::io::measurements::{
     ColumnUnderstanding, DecimalSign, Dimension, FileUnderstanding, MeasurementFile, Separator, Unit,
     UnitSource,
@@ -61,6 +61,9 @@ struct ModelCheck {
     mounted: Vec<MountCheck>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     instruments: Vec<MountCheck>,
+    /// Masses of the links that joints move.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    masses: Vec<MassEntry>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -126,6 +129,7 @@ impl Check {
                     .collect(),
                 mounted: MountCheck::of(robot, &robot.mounted),
                 instruments: MountCheck::of(robot, &robot.instruments),
+                masses: MassEntry::of(robot),
             },
             files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
             sets: measurements.map(SetCounts::of),
@@ -150,6 +154,14 @@ impl Check {
         let targets = model.targets.iter().map(words);
         lines(&mut out, "targets", targets.chain(model.mounted.iter().map(MountCheck::words)));
         lines(&mut out, "instruments", model.instruments.iter().map(MountCheck::words));
+        if !model.masses.is_empty() {
+            let all: f64 = model.masses.iter().map(|mass| mass.mass_kg).sum();
+            line(
+                &mut out,
+                "masses",
+                &format!("{} of the moving links, {all:.1} kg in all", model.masses.len()),
+            );
+        }
         if let Some(sight) = &self.sight {
             lines(&mut out, "ways", sight.words());
             lines(&mut out, "unseen", sight.unseen_words());

@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use super::{
-    Factor, Gives, Gravity, Harmonic, JointKind, JointTerm, Load, Robot, Sag, Sizes, Statics, Term, TermGroup,
+    Factor, Gives, Gravity, Harmonic, JointKind, JointTerm, Payload, Robot, Sag, Sizes, Statics, Term,
+    TermGroup,
 };
 
 /// How far the model of what joints do reaches.
@@ -110,7 +111,7 @@ impl CorrectionModel {
                 let carries_payload =
                     weights.checked_sub(1).is_some_and(|last| statics.is_carried(joint, last));
                 for index in robot.payloads().filter(|_| carries_payload) {
-                    push(Term::Load(Load { index }), TermGroup::Payload, 1.0);
+                    push(Term::Payload(Payload { index }), TermGroup::Payload, 1.0);
                 }
             }
             if is_own && turns {

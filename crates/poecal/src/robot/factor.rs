@@ -54,14 +54,14 @@ impl FactorReading {
     /// Whether it is the mass that hangs at the tip, kg.
     #[must_use]
     pub fn is_payload(&self) -> bool {
-        self.name.starts_with(Factor::PAYLOAD)
+        self.name == Factor::PAYLOAD
     }
 }
 
 impl Factor {
     /// Word with which the name of a factor begins that is the side from which joints are approached.
     pub(crate) const APPROACH: &str = "approach";
-    /// Word with which the name of a factor begins that is the mass of a payload.
+    /// Name of the factor that is the mass of a payload.
     pub(crate) const PAYLOAD: &str = "payload";
 }
 

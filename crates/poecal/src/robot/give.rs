@@ -62,8 +62,7 @@ impl Robot {
         mounts.for_each(|mount: &mut Mount| mount.body = moved(mount.body));
         let weights = robot.gravity.iter_mut().flat_map(|gravity| &mut gravity.weights);
         weights.for_each(|weight: &mut Weight| weight.body = moved(weight.body));
-        let of_gravity = robot.gravity.iter_mut().flat_map(|gravity| &mut gravity.masses);
-        of_gravity.chain(&mut robot.masses).for_each(|mass| mass.body = moved(mass.body));
+        robot.masses.iter_mut().for_each(|mass| mass.body = moved(mass.body));
         let of_all = axes(&robot);
         if let Some(gravity) = &mut robot.gravity {
             gravity.axes = of_all;

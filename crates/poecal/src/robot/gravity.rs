@@ -23,9 +23,6 @@ pub struct Gravity {
     pub direction: Vector3<f64>,
     /// The weights; payloads are where the last one is, at the tip.
     pub weights: Vec<Weight>,
-    /// Masses of the model's links, if it states them ([`Robot::masses`]).
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub masses: Vec<Mass>,
     /// Screw and pivot ([`Robot::pivots`]) of each joint by which moments are counted, at zero joint values: those of the drawing, whatever is
     /// found.
     pub axes: Vec<(Screw, Vector3<f64>)>,
@@ -133,12 +130,7 @@ impl Gravity {
         let tip =
             Weight { name: robot.tip_name.clone(), body: robot.tip_body(), place: robot.home.translation };
         let weights = at_joints.chain([tip]).collect();
-        Gravity {
-            direction: direction.normalize().map(|it| it + 0.0),
-            weights,
-            masses: robot.masses.clone(),
-            axes: axes(robot),
-        }
+        Gravity { direction: direction.normalize().map(|it| it + 0.0), weights, axes: axes(robot) }
     }
 }
 

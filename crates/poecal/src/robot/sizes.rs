@@ -27,7 +27,7 @@ pub enum TermGroup {
     Backlash,
     /// Of all other factors, radians each unit.
     Factors,
-    /// Gears, bearings and links that give under a payload: of factors whose names begin with `payload`, radians each kilogram at full lever.
+    /// Gears, bearings and links that give under a payload: of the factor `payload`, radians each kilogram at full lever.
     Payload,
     /// Bearings and links that shift under weight; metres.
     Shift,
@@ -88,10 +88,16 @@ impl TermGroup {
         if self.unit() == Unit::Metre { "metres" } else { "radians" }
     }
 
-    /// Symbol of a thousandth of that unit, in which people read it.
+    /// Symbol of a thousandth of that unit, in which people read effects.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         if self.unit() == Unit::Metre { "mm" } else { "mrad" }
+    }
+
+    /// The same of its sizes: of a payload each kilogram.
+    #[must_use]
+    pub fn symbol_of_sizes(self) -> &'static str {
+        if self == TermGroup::Payload { "mrad/kg" } else { self.symbol() }
     }
 }
 

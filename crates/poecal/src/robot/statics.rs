@@ -82,7 +82,6 @@ impl<'a> Statics<'a> {
                 });
             }
         }
-        let total: f64 = gravity.masses.iter().map(|mass| mass.kg).sum();
         let mass_lever = |joint: usize, mass: &Mass| {
             let lever = longest_lever(robot, gravity, joint, (mass.body, &mass.place))?;
             Some(match robot.joints[joint].kind {
@@ -91,11 +90,20 @@ impl<'a> Statics<'a> {
             })
         };
         let all = (0..robot.joints.len())
-            .map(|joint| gravity.masses.iter().filter_map(|mass| mass_lever(joint, mass)).sum::<f64>());
-        let mass_levers: Vec<f64> = all.map(|it| if it > least * total { it } else { 0.0 }).collect();
+            .map(|joint| robot.masses.iter().filter_map(|mass| mass_lever(joint, mass)).sum::<f64>());
+        let carried = |joint: usize| {
+            let is_carried = |mass: &&Mass| mass_lever(joint, mass).is_some();
+            robot.masses.iter().filter(is_carried).map(|mass| mass.kg).sum::<f64>()
+        };
+        let is_lever = |joint: usize, all: f64| match robot.joints[joint].kind {
+            JointKind::Revolute => all > least * carried(joint),
+            JointKind::Prismatic => all > 0.0,
+        };
+        let all = all.enumerate().map(|(joint, all)| if is_lever(joint, all) { all } else { 0.0 });
+        let mass_levers: Vec<f64> = all.collect();
         let of_masses = mass_levers.iter().enumerate().flat_map(|(joint, all)| {
             let is_carried = move |mass: &Mass| *all > 0.0 && mass_lever(joint, mass).is_some();
-            gravity.masses.iter().map(move |mass| if is_carried(mass) { mass.kg / all } else { 0.0 })
+            robot.masses.iter().map(move |mass| if is_carried(mass) { mass.kg / all } else { 0.0 })
         });
         let of_masses = of_masses.collect();
         Some(Statics { robot, gravity, shares, levers, mass_levers, of_masses })
@@ -145,7 +153,7 @@ impl<'a> Statics<'a> {
         let places: Vec<Vector3<f64>> =
             weights.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
         let masses: Vec<Vector3<f64>> =
-            self.gravity.masses.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
+            self.robot.masses.iter().map(|it| body_of(&out.links, it.body).act(&it.place)).collect();
         for (index, (joint, (screw, place))) in joints().enumerate() {
             let moving = body_of(&out.links, self.robot.body_before(index));
             let axis = moving.rotation * screw.direction();

@@ -11,9 +11,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::coupling::Coupling;
 use super::factor::Factor;
 use super::harmonic::Harmonic;
-use super::load::Load;
 use super::offset::Offset;
 use super::own_weight::OwnWeight;
+use super::payload::Payload;
 use super::ratio::Ratio;
 use super::sag::Sag;
 use super::term_model::TermModel;
@@ -44,7 +44,7 @@ pub enum Term {
     /// What it owes to a factor.
     Factor(Factor),
     /// What it gives under a payload.
-    Load(Load),
+    Payload(Payload),
 }
 
 impl Term {
@@ -55,7 +55,7 @@ impl Term {
     #[must_use]
     pub fn needs_gravity(&self) -> bool {
         match self {
-            Term::OwnWeight | Term::Sag(_) | Term::Load(_) => true,
+            Term::OwnWeight | Term::Sag(_) | Term::Payload(_) => true,
             Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::Coupling(_) | Term::Factor(_) => false,
         }
     }
@@ -65,7 +65,7 @@ impl Term {
     pub fn is_of(&self, joints: usize, factors: usize) -> bool {
         match self {
             Term::Coupling(Coupling { joint }) => *joint < joints,
-            Term::Factor(Factor { index }) | Term::Load(Load { index }) => *index < factors,
+            Term::Factor(Factor { index }) | Term::Payload(Payload { index }) => *index < factors,
             Term::Offset | Term::Ratio | Term::Harmonic(_) | Term::OwnWeight | Term::Sag(_) => true,
         }
     }
@@ -81,7 +81,7 @@ impl Term {
             | Term::OwnWeight
             | Term::Sag(_)
             | Term::Factor(_)
-            | Term::Load(_) => self,
+            | Term::Payload(_) => self,
         }
     }
 
@@ -96,7 +96,7 @@ impl Term {
             Term::Sag(sag) => sag,
             Term::Coupling(coupling) => coupling,
             Term::Factor(factor) => factor,
-            Term::Load(load) => load,
+            Term::Payload(payload) => payload,
         }
     }
 }
@@ -115,17 +115,17 @@ impl FromStr for Term {
         let order = |prefix: &str| u8::try_from(numbered(prefix)?).ok();
         let harmonic = |order: u8, cosine: bool| Term::Harmonic(Harmonic { order, cosine });
         let found = Term::ALL.into_iter().find(|term| term.model().name() == name);
-        let found = found.or_else(|| (name == "weight").then_some(Term::OwnWeight));
+        let found = found.or_else(|| (name == "masses").then_some(Term::OwnWeight));
         found
             .or_else(|| Some(harmonic(order("sin")?, false)))
             .or_else(|| Some(harmonic(order("cos")?, true)))
             .or_else(|| Some(Term::Sag(Sag { weight: usize::from(numbered("sag")?) - 1 })))
             .or_else(|| Some(Term::Coupling(Coupling { joint: usize::from(numbered("coupled")?) - 1 })))
             .or_else(|| Some(Term::Factor(Factor { index: usize::from(numbered("factor")?) - 1 })))
-            .or_else(|| Some(Term::Load(Load { index: usize::from(numbered("load")?) - 1 })))
+            .or_else(|| Some(Term::Payload(Payload { index: usize::from(numbered("payload")?) - 1 })))
             .ok_or_else(|| {
                 format!(
-                    "found the term `{name}`, expected offset, ratio, sin1, cos1, …, weight, sag1, …, coupled1, …, factor1, … or load1, …"
+                    "found the term `{name}`, expected offset, ratio, sin1, cos1, …, masses, sag1, …, coupled1, …, factor1, … or payload1, …"
                 )
             })
     }
@@ -152,7 +152,7 @@ impl JsonSchema for Term {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         schemars::json_schema!({
             "type": "string",
-            "pattern": "^(offset|ratio|weight|(sin|cos|sag|coupled|factor|load)[1-9][0-9]*)$",
+            "pattern": "^(offset|ratio|masses|(sin|cos|sag|coupled|factor|payload)[1-9][0-9]*)$",
             "description": "A term of a joint's value.",
         })
     }

@@ -27,6 +27,9 @@ impl Robot {
             joint.frame = (motion * joint.frame).orthonormalized();
             motions.push(motion);
         }
+        for mass in &mut robot.masses {
+            mass.place = of(&motions, mass.body.joint()).act(&mass.place);
+        }
         robot.home = (of(&motions, self.tip_body().joint()) * robot.home).orthonormalized();
         robot
     }

@@ -462,8 +462,11 @@ fn masses_of_a_urdf_pull_as_their_potential_says() {
         assert!((Vector3::from(found.1) - Vector3::from(expected.1)).norm() < 1e-15);
     }
     assert_eq!(found.len(), expected.len());
-    // Masses are not worth refusing a model.
-    assert!(robot(&HEAVY.replace("\"8\"", "\"heavy\"")).masses.is_empty());
+    // Masses are not worth refusing a model: of a link whose own cannot be read there is none.
+    for (from, to) in [("\"8\"", "\"heavy\""), ("\"8\"/>", "\"8\"/><mass value=\"9\"/>")] {
+        assert_eq!(robot(&HEAVY.replace(from, to)).masses, heavy.masses[1..]);
+    }
+    assert_eq!(robot(&HEAVY.replace("0.2 0.05 0", "0.2 0.05 left")).masses, heavy.masses[..2]);
     let toml = robot_toml::write(&heavy);
     // Numbers are written without their rounding errors.
     let again = robot_toml::parse(&toml, "heavy.toml").unwrap().masses;
@@ -472,6 +475,16 @@ fn masses_of_a_urdf_pull_as_their_potential_says() {
     assert!(again.len() == 3 && again.iter().zip(&heavy.masses).all(is_same), "{toml}");
     let error = robot_toml::parse(&toml.replace("kg = 3", "kg = -3"), "heavy.toml").unwrap_err().to_string();
     assert!(error.contains("found the mass -3, expected kilograms above 0"), "{error}");
+
+    let error =
+        robot_toml::parse(&toml.replace("on = \"shoulder\"", "on = \"base\""), "heavy.toml").unwrap_err();
+    assert!(error.to_string().contains("found a mass on the base"), "{error}");
+    // They follow joint offsets that become screws.
+    let mut off = heavy.clone();
+    off.masses[2].place = off.home.translation;
+    off.terms = vec![JointTerm { joint: 0, term: Term::Offset, coefficient: 0.3 }];
+    let off = off.without_offsets();
+    assert!((off.masses[2].place - off.home.translation).norm() < 1e-15 && off.home != heavy.home);
 
     let down = Vector3::new(0.1, 0.2, -1.0).normalize();
     let mut pulled = heavy.clone();
@@ -533,4 +546,23 @@ fn masses_are_kept_with_the_corrected_model() {
             .and_then(|file| file.corrected().unwrap().robot());
         assert!(refused.unwrap_err().to_string().contains("expected above 0 and at most 1e6"));
     }
+}
+
+/// Terms that have nothing to depend on are refused, and so are those of all directions beside axes that are held.
+#[test]
+fn corrections_that_cannot_be_are_refused() {
+    let (robot, data) = measured(30);
+    let refused = |corrections: &str, fix: &[&str]| {
+        let corrections: Corrections = corrections.parse().unwrap();
+        let blocks = BlockChoice { fix: fix.iter().map(|&it| it.to_owned()).collect(), ..Default::default() };
+        let options = CalibrationOptions { corrections, blocks, ..CalibrationOptions::default() };
+        calibrate(&robot, &data, &options).unwrap_err().to_string()
+    };
+    for (group, column) in
+        [("backlash", "approach_JOINT"), ("payload", "payload"), ("factors", "temperature")]
+    {
+        let found = refused(group, &[]);
+        assert!(found.contains(&format!("found {group} among")) && found.contains(column), "{found}");
+    }
+    assert!(refused("all", &["joint2"]).contains("beside axes that are held"));
 }

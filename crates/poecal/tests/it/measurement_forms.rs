@@ -376,3 +376,23 @@ fn anchors_name_where_distances_are_measured_from() {
     );
     assert!(refused("20,250,0.5,,,,,wall,800\n20,250,0.5,,,,,,800\n").contains("points.csv:3"));
 }
+
+#[test]
+fn payloads_are_kilograms() {
+    let robot = lifting_robot().with_factors(&["payload".to_owned()]).unwrap();
+    let read = |unit: &str| {
+        let folder = Folder::new();
+        let path =
+            folder.write("points.csv", format!("a,lift,b,payload{unit},x,y,z\n0,0.1,0,2.5,0.1,0.2,0.3\n"));
+        read(&[path], &robot, &ReadOptions::default())
+            .map_err(|error| folder.without_path(&error.to_string()))
+    };
+    for unit in ["", "[kg]"] {
+        assert_eq!(read(unit).unwrap().data.readings(0)[3], 2.5);
+    }
+    let error = read("[g]").unwrap_err();
+    assert!(
+        error.contains("points.csv:1:10: found the unit `g` of `payload`, expected `kg` or none"),
+        "{error}"
+    );
+}

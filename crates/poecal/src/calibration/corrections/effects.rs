@@ -35,7 +35,7 @@ pub struct JointEffect {
     pub joint: String,
     /// The group.
     pub group: TermGroup,
-    /// Largest deviation in the fitted rows, radians; of a ratio the change each radian.
+    /// Largest deviation in the fitted rows, radians or metres ([`TermGroup::unit`]); of a ratio the change each radian.
     pub amplitude: f64,
     /// Its standard deviation.
     pub sigma: f64,

@@ -99,7 +99,7 @@ struct Begun {
     noise: Noise,
     /// Variance of the residuals whitened by stated noise, at least 1; 1 where the noise is estimated.
     variance: f64,
-    /// Mean squared error of parts that were left out, over that of all rows.
+    /// Mean squared error of parts that were left out, over what their fits let expect (theory.md (43a)).
     growth: f64,
 }
 

@@ -14,7 +14,7 @@ use crate::uncertainty::{PriorInformation, Uncertainty, View, discrepancy, remai
 const MANY: usize = 4000;
 
 /// Uncertainty of a fit with all terms that may be there. The priors' weight is that of the number of configurations times the variance of
-/// the whitened residuals; `growth` is the mean squared error of parts that were left out over that of the fitted rows. `None` with no more
+/// the whitened residuals; `growth` is the mean squared error of parts that were left out over what their fits let expect. `None` with no more
 /// numbers than unknowns that they determine.
 pub(super) fn uncertainty(
     task: &Task<'_>,

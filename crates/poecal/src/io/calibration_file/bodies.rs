@@ -9,7 +9,8 @@ use super::{CalibrationFile, JointEntry, PoseEntry, ScrewEntry, TargetEntry};
 use crate::calibration::CalibratedTarget;
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
-use crate::robot::{Body, JointTerm, Mount, Robot, Sag, Term};
+use crate::robot::{Body, JointTerm, Mass, Mount, Robot, Sag, Term};
+use nalgebra::Vector3;
 
 /// A body of the robot: `"base"`, or `{"link_of": "joint2"}`, the link that this joint moves.
 ///
@@ -141,6 +142,7 @@ impl CalibrationFile {
                 (joint.stands_on, joint.give_of) = (on, give_of);
             }
         }
+        robot.masses = self.robot.masses.iter().map(|entry| entry.mass(&robot)).collect::<Result<_>>()?;
         if let Some(gravity) = &self.robot.gravity {
             robot.gravity = Some(gravity.gravity(&robot, &self.joints)?);
         }
@@ -164,6 +166,45 @@ impl CalibrationFile {
     }
 }
 
+/// A mass of the model.
+///
+/// ```
+/// use poecal::io::calibration_file::MassEntry;
+/// let text = r#"{ "on": { "link_of": "joint3" }, "place_m": [0.2, 0, 0.6], "mass_kg": 4.5 }"#;
+/// let entry: MassEntry = serde_json::from_str(text)?;
+/// assert_eq!(entry.mass_kg, 4.5);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MassEntry {
+    /// Its body.
+    pub on: BodyEntry,
+    /// Its centre at zero joint values, base frame, metres.
+    pub place_m: [f64; 3],
+    /// How heavy it is, kg.
+    pub mass_kg: f64,
+}
+
+impl MassEntry {
+    /// The masses of a robot.
+    pub(crate) fn of(robot: &Robot) -> Vec<Self> {
+        let entry = |mass: &Mass| MassEntry {
+            on: BodyEntry::of(robot, mass.body),
+            place_m: mass.place.into(),
+            mass_kg: mass.kg,
+        };
+        robot.masses.iter().map(entry).collect()
+    }
+
+    fn mass(&self, robot: &Robot) -> Result<Mass> {
+        if !Mass::is_mass(self.mass_kg) {
+            let message = format!("found a mass of {} kg, expected above 0 and at most 1e6", self.mass_kg);
+            return Err(Error::new(ErrorKind::Model, message));
+        }
+        Ok(Mass { body: self.on.body(robot)?, place: Vector3::from(self.place_m), kg: self.mass_kg })
+    }
+}
+
 impl CalibrationFile {
     /// Whether a joint has this name.
     pub(crate) fn has_joint(&self, name: &str) -> bool {
@@ -174,14 +215,15 @@ impl CalibrationFile {
     fn check_terms(&self, robot: &Robot) -> Result<()> {
         let weights = robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
         for JointTerm { joint, term, .. } in &robot.terms {
-            let is_there = match (term, &robot.gravity) {
-                (Term::OwnWeight, Some(gravity)) => !gravity.masses.is_empty(),
-                (term, _) => !term.needs_gravity() || weights > 0,
+            let (is_there, needed) = if *term == Term::OwnWeight {
+                (!robot.masses.is_empty(), "masses")
+            } else {
+                (!term.needs_gravity() || weights > 0, "weights")
             };
             if !is_there {
                 let name = &robot.joints[*joint].name;
                 let message =
-                    format!("found the term {term} of joint `{name}`, expected a robot with weights");
+                    format!("found the term {term} of joint `{name}`, expected a robot with {needed}");
                 return Err(Error::new(ErrorKind::Model, message));
             }
             if let Term::Sag(Sag { weight }) = term

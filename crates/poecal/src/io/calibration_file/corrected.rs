@@ -17,7 +17,7 @@ use crate::calibration::{
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Pose;
 use crate::measurement::Dataset;
-use crate::robot::{Gravity, Mass, Robot, Statics, Weight};
+use crate::robot::{Gravity, Robot, Statics, Weight};
 
 /// Screws and terms of the joints, fitted together. Its entries replace those of the same name where predictions are those of the corrected
 /// model.
@@ -144,9 +144,6 @@ pub struct GravityEntry {
     pub direction: [f64; 3],
     /// The weights; the term `sag1` is of the first.
     pub weights: Vec<WeightEntry>,
-    /// Masses of the model's links; the term `weight` is of all of them.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub masses: Vec<MassEntry>,
     /// Origin of each joint of the nominal model at zero joint values, about which moments are counted, base frame.
     pub joint_origins_m: Vec<[f64; 3]>,
     /// Longest lever of each joint, by which moments about it are divided: the path from joint to joint to the farthest weight. It follows
@@ -262,25 +259,6 @@ impl CalibrationFile {
     }
 }
 
-/// A mass of the model.
-///
-/// ```
-/// use poecal::io::calibration_file::MassEntry;
-/// let text = r#"{ "on": { "link_of": "joint3" }, "place_m": [0.2, 0, 0.6], "mass_kg": 4.5 }"#;
-/// let entry: MassEntry = serde_json::from_str(text)?;
-/// assert_eq!(entry.mass_kg, 4.5);
-/// # Ok::<(), serde_json::Error>(())
-/// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct MassEntry {
-    /// Its body.
-    pub on: BodyEntry,
-    /// Its centre at zero joint values, base frame, metres.
-    pub place_m: [f64; 3],
-    /// How heavy it is, kg.
-    pub mass_kg: f64,
-}
-
 impl GravityEntry {
     pub(super) fn of(robot: &Robot, gravity: &Gravity) -> Self {
         let entry = |weight: &Weight| WeightEntry {
@@ -288,20 +266,14 @@ impl GravityEntry {
             on: BodyEntry::of(robot, weight.body),
             place_m: weight.place.into(),
         };
-        let of_mass = |mass: &Mass| MassEntry {
-            on: BodyEntry::of(robot, mass.body),
-            place_m: mass.place.into(),
-            mass_kg: mass.kg,
-        };
         let statics = Statics::new(robot);
         GravityEntry {
             direction: gravity.direction.into(),
             weights: gravity.weights.iter().map(entry).collect(),
-            masses: gravity.masses.iter().map(of_mass).collect(),
             joint_origins_m: gravity.axes.iter().map(|(_, origin)| (*origin).into()).collect(),
             joint_mass_levers_kg_m: statics
                 .as_ref()
-                .filter(|_| !gravity.masses.is_empty())
+                .filter(|_| !robot.masses.is_empty())
                 .map_or_else(Vec::new, |statics| statics.mass_levers_kg_m().to_vec()),
             joint_levers_m: statics.as_ref().map_or_else(Vec::new, |statics| statics.levers_m().to_vec()),
         }
@@ -326,18 +298,7 @@ impl GravityEntry {
             let (name, place) = (entry.at.clone(), Vector3::from(entry.place_m));
             Ok(Weight { name, body: entry.on.body(robot)?, place })
         };
-        let mass = |entry: &MassEntry| {
-            let place = Vector3::from(entry.place_m);
-            if !Mass::is_mass(entry.mass_kg) {
-                return Err(bad(format!(
-                    "found a mass of {} kg, expected above 0 and at most 1e6",
-                    entry.mass_kg
-                )));
-            }
-            Ok(Mass { body: entry.on.body(robot)?, place, kg: entry.mass_kg })
-        };
         Ok(Gravity {
-            masses: self.masses.iter().map(mass).collect::<Result<_>>()?,
             direction: direction / length,
             weights: self.weights.iter().map(weight).collect::<Result<_>>()?,
             axes: axes.collect::<Result<_>>()?,

@@ -11,10 +11,9 @@ mod schema;
 mod trust;
 mod validation;
 
-pub use bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
+pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use corrected::{
-    CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, MassEntry, TriedEntry,
-    WeightEntry,
+    CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
 };
 pub use keyed::*;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
@@ -189,6 +188,7 @@ impl RobotEntry {
             nominal_base_from_tip_at_zero: (&nominal.home).into(),
             tip_on: robot.tip.map(|body| BodyEntry::of(robot, body)),
             gravity: robot.gravity.as_ref().map(|gravity| GravityEntry::of(robot, gravity)),
+            masses: MassEntry::of(robot),
             factors: robot.factors.clone(),
         }
     }

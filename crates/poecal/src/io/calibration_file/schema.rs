@@ -6,7 +6,7 @@ use std::path::Path;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::bodies::{BodyEntry, InstrumentEntry, MeasuredEntry};
+use super::bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 use super::corrected::{CorrectedEntry, GravityEntry};
 use super::keyed::{Keyed, SigmaKeys};
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
@@ -298,6 +298,9 @@ pub struct RobotEntry {
     /// Weights that the robot carries, if its joints sag.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity: Option<GravityEntry>,
+    /// Masses of the model's links; the term `masses` is of all of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub masses: Vec<MassEntry>,
     /// What else is read in each configuration and terms depend on; the term `factor1` is of the first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub factors: Vec<FactorReading>,

@@ -10,7 +10,7 @@ use super::orientation::OrientationForm;
 use super::units::{Dimension, Unit, UnitSource};
 use crate::error::{Error, ErrorKind, Result, distance_within, first_few};
 use crate::io::numbers::LARGEST_NUMBER;
-use crate::robot::{ReadingKind, Robot};
+use crate::robot::{Factor, ReadingKind, Robot};
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
@@ -101,6 +101,9 @@ impl<'a> Builder<'a> {
             return Err(Error::new(ErrorKind::Option, message));
         }
         let column = self.text_column(name, "for the factor")?;
+        if name == Factor::PAYLOAD {
+            self.header.only_unit(column, "kg")?;
+        }
         let (name, label, source) = (name.to_owned(), name.to_owned(), InputSource::Column(column));
         let (unit, unit_from) = (Dimension::Number.si_unit(), UnitSource::Si);
         self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new() });

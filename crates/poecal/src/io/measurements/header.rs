@@ -126,6 +126,22 @@ impl<'a> Header<'a> {
         self.units_line.unwrap_or(self.line)
     }
 
+    /// Refuses a column of a number without dimension whose unit is another one than this.
+    pub(super) fn only_unit(&self, index: usize, expected: &str) -> Result<()> {
+        let Some(cell) = self.cells.get(index) else { return Ok(()) };
+        let below = self.units_line.zip(cell.below.as_ref());
+        let below = below.map(|(line, (column, unit))| (line, *column, bare(unit)));
+        let stated = cell.unit.as_deref().map(|unit| (self.line, cell.column, unit));
+        match stated.into_iter().chain(below).find(|(.., unit)| *unit != expected) {
+            Some((line, column, unit)) => {
+                let message =
+                    format!("found the unit `{unit}` of `{}`, expected `{expected}` or none", cell.name);
+                Err(Error::new(ErrorKind::Unit, message).at(self.path, line, column))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Unit of a column by the header, the line of units, or both.
     pub(super) fn unit(
         &self,

@@ -65,6 +65,11 @@ pub(super) fn place(context: &Context, file: &File, robot: &mut Robot) -> Result
         let body = body(context, robot, &mass.on, "`on` of the mass")?;
         let place =
             context.metres(*mass.position.get_ref(), mass.position.span(), "`position` of the mass")?;
+        if body == Body::Base {
+            let message =
+                "found a mass on the base, expected one that a joint moves: leave it out".to_owned();
+            return Err(context.error(mass.on.span(), message));
+        }
         let kg = *mass.kg.get_ref();
         if !Mass::is_mass(kg) {
             let message = format!("found the mass {kg}, expected kilograms above 0 and at most 1e6");

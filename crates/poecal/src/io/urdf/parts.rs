@@ -94,16 +94,15 @@ pub(super) fn read(tree: &Tree, chain: &UrdfChain, name: &str) -> Result<(Vec<Pa
     let instruments = chain.instruments.iter().map(mount).collect::<Result<_>>()?;
     let mounted = chain.targets.iter().map(mount).collect::<Result<_>>()?;
     (robot.instruments, robot.mounted) = (instruments, mounted);
-    robot.masses = masses(tree, &links, base).unwrap_or_default();
+    robot.masses = masses(tree, &links, base);
     let named = chain.instruments.iter().chain(&chain.targets).map(|(_, link)| *link);
     let end = |link: usize| End { link: tree.link_name(link).to_owned(), part: at(link).part };
     let ends = std::iter::once(chain.tip).chain(named).map(end).collect();
     Ok((parts, ends, robot))
 }
 
-/// Masses of the links of the chain and of what they carry, other joints at zero; none if one of them cannot be read, since nothing else
-/// needs them.
-fn masses(tree: &Tree, links: &BTreeMap<usize, At>, base: At) -> Result<Vec<Mass>> {
+/// Masses of the links of the chain and of what they carry, other joints at zero. Nothing else needs them: what cannot be read is no mass.
+fn masses(tree: &Tree, links: &BTreeMap<usize, At>, base: At) -> Vec<Mass> {
     let source = &tree.source;
     let mut links = links.clone();
     let mut found = Vec::new();
@@ -116,24 +115,34 @@ fn masses(tree: &Tree, links: &BTreeMap<usize, At>, base: At) -> Result<Vec<Mass
         let mut at = known.copied().unwrap_or(base);
         for joint in way.into_iter().rev() {
             if at.body != Body::Base {
-                at.base_from_link = at.base_from_link * read_part(source, joint)?.parent_from_joint;
+                match read_part(source, joint) {
+                    Ok(part) => at.base_from_link = at.base_from_link * part.parent_from_joint,
+                    Err(_) => at = base,
+                }
             }
             links.insert(joint.child, at);
         }
-        let of = format!("<inertial> of link `{}`", tree.link_name(link));
-        let child = |node, name| source.only_child(node, name, &of, false);
-        let Some(inertial) = child(node, "inertial")?.filter(|_| at.body != Body::Base) else { continue };
-        let Some(mass) = child(inertial, "mass")? else { continue };
-        let Some([kg]) = source.numbers(mass, "value", &of)?.filter(|[kg]| Mass::is_mass(*kg)) else {
-            continue;
-        };
-        let centre = match child(inertial, "origin")? {
-            Some(origin) => source.numbers(origin, "xyz", &of)?.unwrap_or_default(),
-            None => [0.0; 3],
-        };
-        found.push(Mass { body: at.body, place: at.base_from_link.act(&Vector3::from(centre)), kg });
+        if at.body != Body::Base {
+            let of = format!("<inertial> of link `{}`", tree.link_name(link));
+            found.extend(mass(source, node, at, &of).ok().flatten());
+        }
     }
-    Ok(found)
+    found
+}
+
+/// The mass of a link.
+fn mass<'a>(source: &XmlSource<'a>, link: Node<'a, 'a>, at: At, of: &str) -> Result<Option<Mass>> {
+    let child = |node, name| source.only_child(node, name, of, true);
+    let Some(inertial) = child(link, "inertial")? else { return Ok(None) };
+    let Some(mass) = child(inertial, "mass")? else { return Ok(None) };
+    let Some([kg]) = source.numbers(mass, "value", of)?.filter(|[kg]| Mass::is_mass(*kg)) else {
+        return Ok(None);
+    };
+    let centre = match child(inertial, "origin")? {
+        Some(origin) => source.numbers(origin, "xyz", of)?.unwrap_or_default(),
+        None => [0.0; 3],
+    };
+    Ok(Some(Mass { body: at.body, place: at.base_from_link.act(&Vector3::from(centre)), kg }))
 }
 
 fn moving_joint(tree: &Tree, joint: &TreeJoint, axis: &Vector3<f64>, base_from_joint: Pose) -> Result<Joint> {

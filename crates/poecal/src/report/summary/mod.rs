@@ -175,7 +175,9 @@ fn known(out: &mut String, file: &CalibrationFile) {
             let off = number((-z).clamp(-1.0, 1.0).acos().to_degrees());
             line(out, "gravity", &format!("along {x:.3}, {y:.3}, {z:.3} of the base, {off} deg from -z"));
         }
-    } else if file.blocks.as_ref().is_some_and(|it| it.held.iter().any(|name| file.has_joint(name))) {
+    } else if file.blocks.as_ref().is_some_and(|it| {
+        it.held.iter().any(|name| file.has_joint(name.strip_suffix(".axis").unwrap_or(name)))
+    }) {
         line(out, "corrected", "not fitted: beside axes that are held, only groups of terms that are named");
     }
 }
@@ -186,7 +188,7 @@ fn corrected_words(found: &CorrectedEntry) -> String {
         let size = *found.sizes.get(group.name())?;
         let shown = format!("{:.4}", 1e3 * size);
         let shown = shown.trim_end_matches('0').trim_end_matches('.');
-        (size > 0.0).then(|| format!("{} {shown} {}", group.name(), group.symbol()))
+        (size > 0.0).then(|| format!("{} {shown} {}", group.name(), group.symbol_of_sizes()))
     });
     let used = used.collect::<Vec<_>>().join(", ");
     let chosen = found.tried.iter().find(|it| it.sizes == found.sizes);

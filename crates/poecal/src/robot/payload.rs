@@ -11,19 +11,19 @@ use crate::unit::Unit;
 /// compliance: an angle each kilogram at full lever.
 ///
 /// ```
-/// use poecal::robot::{Load, Situation, TermModel};
-/// let load = Load { index: 0 };
-/// assert_eq!((load.name().as_ref(), load.basis(0, &Situation::of(&[]))), ("load1", 0.0));
+/// use poecal::robot::{Payload, Situation, TermModel};
+/// let payload = Payload { index: 0 };
+/// assert_eq!((payload.name().as_ref(), payload.basis(0, &Situation::of(&[]))), ("payload1", 0.0));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Load {
+pub struct Payload {
     /// Index of the payload among the robot's factors.
     pub index: usize,
 }
 
-impl TermModel for Load {
+impl TermModel for Payload {
     fn name(&self) -> Cow<'static, str> {
-        format!("load{}", self.index + 1).into()
+        format!("payload{}", self.index + 1).into()
     }
 
     fn unit(&self, kind: JointKind) -> Unit {
