@@ -62,7 +62,7 @@ use std::sync::Arc;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Packed, Session};
 use crate::measurement::{Dataset, PoseResidual};
-use crate::robot::{FactorReading, GravityDirection, Robot};
+use crate::robot::{GravityDirection, Robot};
 use crate::threads;
 use steps::Prepared;
 
@@ -193,18 +193,13 @@ pub fn calibrate_with_progress(
 /// Refuses groups of terms that depend on columns that are not read.
 fn refuse_without_factors(robot: &Robot, options: &CalibrationOptions) -> Result<()> {
     let Corrections::Sizes(sizes) = options.corrections else { return Ok(()) };
-    let group_of = |it: &FactorReading| match it.approached() {
-        Some(_) => TermGroup::Backlash,
-        None if it.is_payload() => TermGroup::Payload,
-        None => TermGroup::Factors,
-    };
     let needed = [
         (TermGroup::Backlash, "approach or approach_JOINT"),
         (TermGroup::Payload, "payload"),
         (TermGroup::Factors, "temperature or another column"),
     ];
     for (group, column) in needed {
-        if sizes[group] > 0.0 && !robot.factors.iter().any(|it| group_of(it) == group) {
+        if sizes[group] > 0.0 && !robot.factors.iter().any(|it| it.group() == group) {
             let message = format!(
                 "found {} among the corrections and no factor for it, expected {column} among the factors (--factors)",
                 group.name()
@@ -242,7 +237,7 @@ fn about_mean_factors<'a>(robot: &'a Robot, data: &Dataset) -> Cow<'a, Robot> {
     }
     let mut found = robot.clone();
     for (at, factor) in
-        found.factors.iter_mut().enumerate().filter(|(_, it)| it.approached().is_none() && !it.is_payload())
+        found.factors.iter_mut().enumerate().filter(|(_, it)| it.group() == TermGroup::Factors)
     {
         let values = (0..data.len()).filter_map(|row| robot.factors_of(data.readings(row)).get(at));
         factor.reference = values.sum::<f64>() / data.len() as f64;

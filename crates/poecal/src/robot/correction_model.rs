@@ -53,13 +53,11 @@ pub struct CorrectionModel {
 /// Factors on which a joint's value may depend, with their groups: the side from which it is approached only if it is its own, or that of all.
 fn factors(robot: &Robot, joint: usize) -> impl Iterator<Item = (usize, TermGroup)> {
     let own = robot.joints.get(joint).map(|joint| [&joint.name, &joint.reading.name]);
-    robot.factors.iter().enumerate().filter_map(move |(index, it)| match it.approached() {
-        None if it.is_payload() => None,
-        None => Some((index, TermGroup::Factors)),
-        Some(of) => {
-            let is_own = of.is_empty() || own.is_some_and(|own| own.into_iter().any(|name| name == of));
-            is_own.then_some((index, TermGroup::Backlash))
-        }
+    let all = robot.factors.iter().enumerate().filter(|(_, it)| it.group() != TermGroup::Payload);
+    all.filter_map(move |(index, it)| {
+        let is_own =
+            |of: &str| of.is_empty() || own.is_some_and(|own| own.into_iter().any(|name| name == of));
+        it.approached().is_none_or(is_own).then(|| (index, it.group()))
     })
 }
 

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::joint::JointKind;
+use super::sizes::TermGroup;
 use super::term_model::{Situation, TermModel, unit_of_value};
 use crate::unit::Unit;
 
@@ -49,6 +50,16 @@ impl FactorReading {
     #[must_use]
     pub fn approached(&self) -> Option<&str> {
         Some(self.name.strip_prefix(Factor::APPROACH)?.trim_start_matches(['_', '.', ' ']))
+    }
+
+    /// The group of the terms that depend on it.
+    #[must_use]
+    pub fn group(&self) -> TermGroup {
+        match self.approached() {
+            Some(_) => TermGroup::Backlash,
+            None if self.is_payload() => TermGroup::Payload,
+            None => TermGroup::Factors,
+        }
     }
 
     /// Whether it is the mass that hangs at the tip, kg.
