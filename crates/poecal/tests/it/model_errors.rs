@@ -176,7 +176,7 @@ fn bad_toml_models_get_one_sentence_each() {
         (toml(axis, home).replace("'mm'", "'inch'"),
          "r.toml:3:15: unknown variant `inch`, expected one of `m`, `cm`, `mm`, `um`"),
         (toml(axis, home).replace("angle_unit", "angel_unit"),
-         "r.toml:4:1: unknown field `angel_unit`, expected one of `poecal_robot`, `name`, `length_unit`, `angle_unit`, `convention`, `base_link`, `tip_link`, `tip_on`, `joint`, `home`, `base`, `tool`, `target`, `instrument`"),
+         "r.toml:4:1: unknown field `angel_unit`, expected one of `poecal_robot`, `name`, `length_unit`, `angle_unit`, `convention`, `base_link`, `tip_link`, `tip_on`, `joint`, `home`, `base`, `tool`, `target`, `instrument`, `mass`"),
         (toml(axis, ""),
          "r.toml:1:1: found no [home], expected it: the tip's pose in the base at zero joint values"),
         (toml(axis, "home = { rpy = [0, 0, 0] }"),
