@@ -27,6 +27,7 @@ mod jacobians;
 mod largest;
 mod mapping_errors;
 mod mapping_forms;
+mod masses;
 mod measurement_choices;
 mod measurement_errors;
 mod measurement_forms;

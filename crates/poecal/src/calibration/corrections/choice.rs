@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::grid::CHOSEN;
-use super::linear::{LeftOutPart, Linear};
+use super::left_out::LeftOutPart;
+use super::linear::Linear;
 use crate::robot::{Sizes, TermGroup};
 
 /// Rounds of choosing each group's size in turn.
