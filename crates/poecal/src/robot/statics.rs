@@ -68,6 +68,7 @@ impl<'a> Statics<'a> {
         let gravity = robot.gravity.as_ref()?;
         let mut shares = Vec::with_capacity(robot.joints.len() * gravity.weights.len());
         let mut levers = Vec::with_capacity(robot.joints.len());
+        let (mut mass_levers, mut of_masses) = (Vec::new(), Vec::new());
         let least = LEAST_LEVER * robot.arm_m();
         for joint in 0..robot.joints.len() {
             let lever = |weight: &Weight| longest_lever(robot, gravity, joint, (weight.body, &weight.place));
@@ -81,31 +82,24 @@ impl<'a> Statics<'a> {
                     JointKind::Prismatic => lever(weight).map_or(0.0, |_| 1.0),
                 });
             }
+            let lever = |mass: &Mass| longest_lever(robot, gravity, joint, (mass.body, &mass.place));
+            let arms: Vec<Option<f64>> = robot.masses.iter().map(lever).collect();
+            let carried =
+                || robot.masses.iter().zip(&arms).filter_map(|(mass, arm)| Some((mass.kg, (*arm)?)));
+            let kg: f64 = carried().map(|(kg, _)| kg).sum();
+            let all = match robot.joints[joint].kind {
+                JointKind::Revolute => {
+                    let all: f64 = carried().map(|(kg, arm)| kg * arm).sum();
+                    if all > least * kg { all } else { 0.0 }
+                }
+                JointKind::Prismatic => kg,
+            };
+            mass_levers.push(all);
+            let share = |(mass, arm): (&Mass, &Option<f64>)| {
+                if all > 0.0 && arm.is_some() { mass.kg / all } else { 0.0 }
+            };
+            of_masses.extend(robot.masses.iter().zip(&arms).map(share));
         }
-        let mass_lever = |joint: usize, mass: &Mass| {
-            let lever = longest_lever(robot, gravity, joint, (mass.body, &mass.place))?;
-            Some(match robot.joints[joint].kind {
-                JointKind::Revolute => mass.kg * lever,
-                JointKind::Prismatic => mass.kg,
-            })
-        };
-        let all = (0..robot.joints.len())
-            .map(|joint| robot.masses.iter().filter_map(|mass| mass_lever(joint, mass)).sum::<f64>());
-        let carried = |joint: usize| {
-            let is_carried = |mass: &&Mass| mass_lever(joint, mass).is_some();
-            robot.masses.iter().filter(is_carried).map(|mass| mass.kg).sum::<f64>()
-        };
-        let is_lever = |joint: usize, all: f64| match robot.joints[joint].kind {
-            JointKind::Revolute => all > least * carried(joint),
-            JointKind::Prismatic => all > 0.0,
-        };
-        let all = all.enumerate().map(|(joint, all)| if is_lever(joint, all) { all } else { 0.0 });
-        let mass_levers: Vec<f64> = all.collect();
-        let of_masses = mass_levers.iter().enumerate().flat_map(|(joint, all)| {
-            let is_carried = move |mass: &Mass| *all > 0.0 && mass_lever(joint, mass).is_some();
-            robot.masses.iter().map(move |mass| if is_carried(mass) { mass.kg / all } else { 0.0 })
-        });
-        let of_masses = of_masses.collect();
         Some(Statics { robot, gravity, shares, levers, mass_levers, of_masses })
     }
 
