@@ -101,7 +101,7 @@ impl PaperSession {
     pub(super) fn free(&self, formulation: Formulation) -> Vec<Parameter> {
         let mut free = formulation.joint_parameters(self.truth.kinds());
         free.push(match self.seen {
-            MeasurementKind::Poses => Parameter::TargetFrame(TargetFrame { target: 0 }),
+            MeasurementKind::Poses => Parameter::TargetFrame(TargetFrame::new(0)),
             MeasurementKind::Points => Parameter::TargetPlace(TargetPlace { target: 0 }),
         });
         free

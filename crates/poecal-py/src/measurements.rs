@@ -40,6 +40,7 @@ fn options(
         fit_where: fit_where.map(str::parse).transpose()?,
         ignore_sets,
         strict,
+        ..ReadOptions::default()
     })
 }
 

@@ -70,7 +70,7 @@ fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(E
     let start = delivered(robot, &begun);
     let packed = Packed::of(robot, &begun);
     let mut free = screw_axes(start.kinds());
-    free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
+    free.push(Parameter::TargetFrame(TargetFrame::new(0)));
     let session = Session::new(robot, &begun, &packed, false).with_length(robot.reach_m() / 3.0);
     let problem = Problem::new(session, begun.all_rows(), free, NOISE);
     let (optimum, _, _) = minimize(&problem, start, &Options::default());

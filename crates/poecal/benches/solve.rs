@@ -93,7 +93,7 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
     let start = delivered(&made.nominal, &made.data);
     let rows: Vec<u32> = (0..50).collect();
     let mut free = screw_axes(start.kinds());
-    free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
+    free.push(Parameter::TargetFrame(TargetFrame::new(0)));
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let trials: Vec<Vec<Measurement>> = (0..1_000).map(|_| disturbed(&made.data, &mut generator)).collect();
     let length_m = made.nominal.reach_m() / 3.0;

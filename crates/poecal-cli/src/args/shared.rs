@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal::io::measurements::{ColumnMap, Frames, ReadOptions};
+use poecal::io::measurements::{ColumnMap, Frames, PlaneContact, ReadOptions, SocketDistances};
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::urdf::{ChainSelection, named_link};
 
-use super::words::{FRAMES, one_of};
+use super::words::{CONTACT, FRAMES, one_of};
 use crate::console::Console;
 
 /// Which chain of a URDF.
@@ -86,11 +86,19 @@ pub(crate) struct Meaning {
     /// Which rows share a frame of the measuring device: per-file if it was moved between the files
     #[arg(long, value_parser = one_of(FRAMES), default_value = "common")]
     pub(crate) frames: Frames,
+    /// Known distance between the two sockets of each place, like 50mm, or of pairs by name, like A-B=50mm,B-C=70mm+-0.02mm
+    #[arg(long, value_name = "LENGTH|A-B=LENGTH,...")]
+    pub(crate) socket_distance: Option<SocketDistances>,
+    /// What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush
+    #[arg(long, value_parser = one_of(CONTACT), default_value = "point")]
+    pub(crate) contact: PlaneContact,
 }
 
 impl Meaning {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
-        Ok(ReadOptions { strict: self.strict, frames: self.frames, ..self.columns.options()? })
+        let (strict, frames, contact) = (self.strict, self.frames, self.contact);
+        let socket_distances = self.socket_distance.clone();
+        Ok(ReadOptions { strict, frames, contact, socket_distances, ..self.columns.options()? })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use poecal::calibration::{DeviceFrameKnowledge, Level, Loss, Robust};
-use poecal::io::measurements::Frames;
+use poecal::io::measurements::{Frames, PlaneContact};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
 use poecal::offsets::End;
@@ -22,6 +22,12 @@ pub(super) const FRAME: Words<DeviceFrameKnowledge> = &[
 pub(super) const FRAMES: Words<Frames> = &[
     ("common", "All, or those of one name in the column `instrument`", Frames::Common),
     ("per-file", "Those of a file", Frames::PerFile),
+];
+
+/// How planes are touched.
+pub(super) const CONTACT: Words<PlaneContact> = &[
+    ("point", "By a point: a height", PlaneContact::Point),
+    ("flush", "By a face that lies flush: a height and two tilts", PlaneContact::Flush),
 ];
 
 /// How errors of the joints are parameterised.

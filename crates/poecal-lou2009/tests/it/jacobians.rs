@@ -87,7 +87,7 @@ fn jacobians_agree_with_differences() {
     let robot = robot();
     let device = Pose::from_xyz_rpy([0.3, -0.2, 0.1], [-0.5, 0.9, 2.0]);
     let state = Estimate::new(&robot, vec![robot.home], device);
-    let mut parameters = vec![("target frame", Parameter::TargetFrame(TargetFrame { target: 0 }))];
+    let mut parameters = vec![("target frame", Parameter::TargetFrame(TargetFrame::new(0)))];
     for (joint, it) in robot.joints.iter().enumerate() {
         parameters.push(("free screw", FreeScrew::of(joint, it.kind)));
         parameters.push(("screw axis", Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
@@ -166,7 +166,7 @@ fn the_kernels_sum_them_as_their_formulas_do() {
             free.extend(
                 formulation.joint_parameters(&robot.joints.iter().map(|it| it.kind).collect::<Vec<_>>()),
             );
-            free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
+            free.push(Parameter::TargetFrame(TargetFrame::new(0)));
             let noise = Noise::new(5e-5, 2e-4);
             let problem = Problem::new(seen, made.data.all_rows(), free, noise);
             let estimate = Estimate::new(&robot, vec![robot.home], made.device_from_base);

@@ -289,7 +289,7 @@ impl Rules<'_> {
         for (parameter, places) in self.setup.layout.parameters() {
             let (frame, by) = match parameter {
                 Parameter::TargetPlace(TargetPlace { target })
-                | Parameter::TargetFrame(TargetFrame { target }) => {
+                | Parameter::TargetFrame(TargetFrame { target, .. }) => {
                     (estimate.base_from_target[*target].rotation, tool)
                 }
                 Parameter::ScrewAxis(axis) => (estimate.base_from_axis[axis.joint].rotation, -seen),

@@ -125,7 +125,7 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     let mut free = screw_axes(estimate.kinds());
     free.extend((0..data.targets.len()).map(|target| match planned.kind {
         Kind::Point => Parameter::TargetPlace(TargetPlace { target }),
-        Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame { target }),
+        Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame::new(target)),
     }));
     // The first instrument's frame is a choice of the base.
     free.extend((1..data.station_count()).map(|station| {

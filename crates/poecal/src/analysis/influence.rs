@@ -120,7 +120,7 @@ mod tests {
         let packed = Packed::of(robot, data);
         let estimate = Estimate::new(robot, vec![robot.home], Pose::identity());
         let mut free = screw_axes(estimate.kinds());
-        free.push(Parameter::TargetFrame(TargetFrame { target: 0 }));
+        free.push(Parameter::TargetFrame(TargetFrame::new(0)));
         let rows = data.all_rows();
         let noise = Noise::new(1e-3, 1e-2);
         let session = Session::new(robot, data, &packed, true).with_length(0.5);
@@ -175,7 +175,7 @@ mod tests {
             let mut free = screw_axes(estimate.kinds());
             free.push(Parameter::DeviceFrame(DeviceFrame::new(0, Vector3::new(0.3, -0.2, 0.5))));
             free.push(Parameter::TargetPlace(TargetPlace { target: 0 }));
-            free.push(Parameter::TargetFrame(TargetFrame { target: 1 }));
+            free.push(Parameter::TargetFrame(TargetFrame::new(1)));
             let rows = data.all_rows();
             let noise = Noise::new(1e-3, 1e-2);
             let session = Session::new(robot, &data, &packed, true).with_length(0.5);

@@ -1,5 +1,7 @@
 //! Errors of the three models.
 
+use std::ops::Deref;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +18,14 @@ pub struct Models {
     pub registered: Estimate,
     /// Screws, targets and device frame fitted.
     pub calibrated: Estimate,
+}
+
+impl Models {
+    /// What `to` makes of each.
+    pub(super) fn map(self, mut to: impl FnMut(Estimate) -> Estimate) -> Models {
+        let Models { nominal, registered, calibrated } = self;
+        Models { nominal: to(nominal), registered: to(registered), calibrated: to(calibrated) }
+    }
 }
 
 /// Mean, root mean square, 95th percentile (linear between ranks) and maximum of errors.
@@ -69,7 +79,30 @@ impl Statistic {
 /// assert!(calibrated.position_mm().rms < 0.1 && calibrated.rotation_deg().is_some());
 /// # Ok::<(), poecal::Error>(())
 /// ```
-pub type ModelAccuracy = Measured<Statistic>;
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ModelAccuracy {
+    /// Of each measured quantity.
+    #[serde(flatten)]
+    pub quantities: Measured<Statistic>,
+    /// Of all rows that a device without a frame of its own measured, millimetres, whatever their quantity: what their constraint leaves, as the
+    /// error of a distance, a ball from the middle of its socket, a height over its plane. Absent if there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_mm: Option<Statistic>,
+}
+
+impl Deref for ModelAccuracy {
+    type Target = Measured<Statistic>;
+
+    fn deref(&self) -> &Measured<Statistic> {
+        &self.quantities
+    }
+}
+
+impl From<Measured<Statistic>> for ModelAccuracy {
+    fn from(quantities: Measured<Statistic>) -> Self {
+        ModelAccuracy { quantities, residual_mm: None }
+    }
+}
 
 impl Measured<Statistic> {
     /// Root mean square of the leading quantity, metres, if it is a length.
@@ -137,8 +170,10 @@ pub fn set_accuracy(session: &Session<'_>, rows: &[u32], models: &Models) -> Set
 
 /// Statistics of one model's row errors.
 pub(super) fn model_accuracy(errors: &[RowError]) -> ModelAccuracy {
-    Measured::of(|quantity| {
+    let quantities = Measured::of(|quantity| {
         let shown = |length: f64| quantity.unit().shown(length);
         Statistic::of(errors.iter().filter_map(|error| error.length(quantity).map(shown)).collect())
-    })
+    });
+    let constrained = errors.iter().filter_map(RowError::constraint_m);
+    ModelAccuracy { quantities, residual_mm: Statistic::of(constrained.map(|it| 1e3 * it).collect()) }
 }

@@ -28,9 +28,9 @@ pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
             ));
         }
     }
-    let targets = data.frames(fit_rows).into_iter().enumerate();
+    let targets = data.target_freedoms(fit_rows).into_iter().enumerate();
     let targets = targets.filter(|(target, _)| unknowns.moves_target(*target));
-    let targets: usize = targets.map(|(_, is_frame)| if is_frame { 6 } else { 3 }).sum();
+    let targets: usize = targets.map(|(_, freedom)| freedom.count()).sum();
     // Beside free axes the first frame is no further unknown.
     let first = usize::from(!session.device_free || session.base_free());
     let devices = (first..data.station_count()).filter(|&at| unknowns.moves_frame(at));

@@ -3,6 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
+use super::located::stations_to_locate;
 use super::found::{Fitted, OngoingFit, SolverReport};
 use super::noise::stated;
 use super::{CalibrationOptions, Formulation, Minimum, NoiseSource, delivered, estimate_noise};
@@ -47,8 +48,10 @@ pub(super) fn free_parameters(
     let Session { data, unknowns, .. } = session;
     let is_fixed = !session.device_free || session.base_free();
     let stations = usize::from(is_fixed)..=estimate.further_devices.len();
-    let is_free =
-        |station: &usize| unknowns.moves_frame(*station) && estimate.tree.shared(*station).is_none();
+    let absent = stations_to_locate(data, rows);
+    let is_free = |station: &usize| {
+        unknowns.moves_frame(*station) && estimate.tree.shared(*station).is_none() && !absent.contains(station)
+    };
     let frames = stations.filter(is_free).map(|station| device_parameter(data, station, rows));
     let is_free = |parameter: &Parameter| match parameter.model().subject() {
         Subject::Joint(joint) => unknowns.moves_axis(joint),

@@ -12,6 +12,7 @@ use super::{DeviceFrameKnowledge, delivered, measurements_words};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Packed, Session};
 use crate::lie::Pose;
+use crate::lie::Freedom;
 use crate::measurement::{Dataset, Noise};
 use crate::problem::MOST_UNKNOWNS;
 use crate::robot::Robot;
@@ -191,7 +192,7 @@ fn judged_rows<'a>(
 fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     let frames = (0..data.station_count()).map(|station| of_device(data, station, &data.all_rows()));
     let frame: usize = if subject.refit_frame { frames.sum() } else { 0 };
-    let targets = data.frames(&data.all_rows()).into_iter().map(|is_frame| if is_frame { 6 } else { 3 });
+    let targets = data.target_freedoms(&data.all_rows()).into_iter().map(Freedom::count);
     let tool: usize = if subject.refit_tool { targets.sum() } else { 0 };
     if tool > MOST_UNKNOWNS {
         let message = format!(

@@ -12,6 +12,7 @@ mod formulation;
 mod found;
 mod instrument_noise;
 mod judge;
+mod located;
 mod moves;
 mod noise;
 mod noise_doubts;

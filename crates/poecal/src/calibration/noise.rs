@@ -103,7 +103,7 @@ pub fn estimate_noise(
         }
     }
     // Each target's orientation (3 unknowns) is determined by rotations alone; all other unknowns are shared in proportion.
-    let turned = 3 * session.data.frames(rows).iter().filter(|&&is_frame| is_frame).count();
+    let turned = session.data.turns_of_targets(rows);
     let total = (shares.iter().map(|(_, share)| share.count).sum::<usize>() + stated) as f64;
     let others = ((unknowns - turned as f64).max(0.0) / (total - turned as f64).max(1.0)).min(1.0);
     let lengths = shares.iter().filter(|(quantity, _)| quantity.unit() == Unit::Metre);

@@ -3,10 +3,20 @@
 use super::{CalibrationOptions, DeviceFrameKnowledge, measurements_words};
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::Unknowns;
+use crate::lie::Freedom;
 use crate::measurement::Dataset;
 
 /// Fewest rows that determine a device frame: three points.
 const FEWEST_ROWS: usize = 3;
+
+/// Fewest rows that determine what a station shows of its frame.
+fn fewest(data: &Dataset, station: usize, rows: &[u32]) -> usize {
+    let numbers = rows.iter().map(|&row| data.observations[row as usize].measurement.observe().dim()).max();
+    match data.device_freedom(station, rows) {
+        Freedom::Frame => FEWEST_ROWS,
+        freedom => freedom.count().div_ceil(numbers.unwrap_or(1)),
+    }
+}
 
 /// Refuses stations whose frame cannot be determined, and several stations if measurements are in the base frame.
 pub(super) fn check_stations(
@@ -27,25 +37,18 @@ pub(super) fn check_stations(
         return Err(Error::new(ErrorKind::Option, message));
     }
     for station in (0..stations).filter(|&station| unknowns.moves_frame(station)) {
-        let rows = data.seen_from(station, fitted).len();
-        if rows >= FEWEST_ROWS {
+        let (own, judging) = (data.seen_from(station, fitted), data.seen_from(station, held_out));
+        // A station that held-out rows alone name is found from these.
+        let rows = if own.is_empty() { judging } else { own };
+        let needed = fewest(data, station, &rows);
+        if rows.len() >= needed {
             continue;
         }
-        let name = data.station_words(station);
-        let judging = data.seen_from(station, held_out).len();
-        let message = if rows == 0 && judging > 0 {
-            format!(
-                "found {} of {name} held out and none to fit, expected at least {FEWEST_ROWS} to find its frame from: fit some of them, or \
-                 judge by `poecal validate --refit-frame` afterwards",
-                measurements_words(judging)
-            )
-        } else {
-            format!(
-                "found {} of {name} to fit, expected at least {FEWEST_ROWS} to find its frame from: measure more from there, hold out \
-                 fewer, or leave its rows out",
-                measurements_words(rows)
-            )
-        };
+        let message = format!(
+            "found {} of {} to find its frame from, expected at least {needed}: measure more from there, hold out fewer, or leave its rows out",
+            measurements_words(rows.len()),
+            data.station_words(station),
+        );
         return Err(Error::new(ErrorKind::Problem, message));
     }
     Ok(())

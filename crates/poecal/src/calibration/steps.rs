@@ -7,6 +7,7 @@ use super::doubts::doubts;
 use super::fit::{self, Task};
 use super::found::Fitted;
 use super::instrument_noise::{ROUNDS, noise_ratios};
+use super::located::{located, promised_rows};
 use super::moves::{ChangeSearch, FrameSearch, FramesApart, Moved, frames_apart, moved};
 use super::noise_doubts::noise_doubts;
 use super::placed::{place_tip, stations};
@@ -138,6 +139,7 @@ impl<'a> Prepared<'a> {
             self.fit_rows.clone()
         };
         let models = self.models(registered, &fitted, &kept, loss.is_some());
+        let models = models.map(|it| located(&self.session, &self.fit_rows, &it, fitted.noise).into_owned());
         let accuracy = self.accuracy(&models);
         let (mut trust, remainder) = self.trust(&fitted, &models, &kept, loss.is_some());
         trust.held_out = self.held_out_coverage(&trust, &models.calibrated);
@@ -334,8 +336,9 @@ impl<'a> Prepared<'a> {
         let uncertainty = trust.uncertainty.as_ref().filter(|_| !self.held_out_rows.is_empty())?;
         let targets: Vec<usize> = (0..self.session.data.targets.len()).collect();
         let predicted = PredictedUncertainty { uncertainty, targets: &targets, coverage: &trust.coverage };
-        let errors = self.session.errors(&self.held_out_rows, calibrated);
-        Some(predicted.check(&self.session, calibrated, &self.held_out_rows, &errors))
+        let rows = promised_rows(self.session.data, &self.fit_rows, &self.held_out_rows);
+        let errors = self.session.errors(&rows, calibrated);
+        (!rows.is_empty()).then(|| predicted.check(&self.session, calibrated, &rows, &errors))
     }
 
     /// Doubts about the input, by the rows that are not suspected.

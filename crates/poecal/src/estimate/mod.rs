@@ -4,6 +4,7 @@
 //! the screw. A local step `A_i ← A_i exp(ε)` is the adjoint update `ξ_i ← Ad_exp(η) ξ_i` with `η = Ad_A_i ε` (theory.md §5 (18)).
 
 mod chain;
+mod faces;
 mod packing;
 mod predictions;
 mod row_error;

@@ -137,6 +137,13 @@ impl RowError {
         Quantity::ALL.into_iter().any(is_angle)
     }
 
+    /// The error of all numbers that are lengths but no position, metres: of a distance, a contact, a height.
+    pub(crate) fn constraint_m(&self) -> Option<f64> {
+        let is_own = |quantity: &Quantity| quantity.unit() == Unit::Metre && !quantity.is_of_pose();
+        let own = Quantity::ALL.into_iter().filter(is_own).filter(|quantity| self.channels.has(*quantity));
+        own.map(|quantity| self.square(quantity)).reduce(|a, b| a + b).map(f64::sqrt)
+    }
+
     fn square_of(&self, unit: Unit) -> f64 {
         let own = Quantity::ALL.into_iter().filter(|quantity| quantity.unit() == unit);
         own.map(|quantity| self.square(quantity)).sum()

@@ -3,12 +3,14 @@
 //! Conventions (docs/conventions.md): a twist is `ξ = (v; ω)`, linear part first; perturbations are on the left,
 //! `T ← exp(δ) T`; poses are named `a_from_b` and take coordinates in `b` to coordinates in `a`.
 
+mod freedom;
 mod pose;
 pub mod rotation;
 mod screw;
 pub mod series;
 mod twist;
 
+pub use freedom::Freedom;
 pub use pose::Pose;
 pub use screw::Screw;
 pub use twist::{TargetTwist, Twist};

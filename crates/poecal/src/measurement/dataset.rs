@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::{ByQuantity, Measurement, Noise, PoseResidual, Quantity, Stated};
+use super::{ByQuantity, KnownLength, Measurement, Noise, PoseResidual, Quantity, Stated};
 use crate::error::{Error, ErrorKind, Result};
+use crate::lie::Freedom;
 
 /// Set of a row: training or held out.
 ///
@@ -113,6 +114,9 @@ pub struct Dataset {
     /// Names of the stations of the device, each with a frame of its own; empty for a single station without a name.
     #[serde(default)]
     pub stations: Vec<Option<String>>,
+    /// Known distances between stations.
+    #[serde(default)]
+    pub lengths: Vec<KnownLength>,
     /// The rows.
     pub observations: Vec<Observation>,
     /// The rows' `id`, empty if there is no such column.
@@ -199,6 +203,7 @@ impl Dataset {
             && (self.ids.is_empty() || self.ids.len() == self.len())
             && self.observations.iter().all(|row| row.target < self.targets.len())
             && self.observations.iter().all(|row| row.station < self.station_count())
+            && self.lengths.iter().all(|it| it.stations.iter().all(|&at| at < self.station_count()))
             && self.observations.iter().filter_map(|row| row.from).all(|from| from < further)
             && self.observations.iter().all(|row| (row.source.file as usize) < files);
         if fits {
@@ -259,6 +264,7 @@ impl Dataset {
     pub(crate) fn without_stations(&self) -> Self {
         let mut data = self.clone();
         data.stations.clear();
+        data.lengths.clear();
         data.observations.iter_mut().for_each(|row| row.station = 0);
         data
     }
@@ -334,11 +340,32 @@ impl Dataset {
         frames
     }
 
-    /// Whether some of these rows depend on the axes of their device; of no rows, as if they did.
+    /// What some of these rows show of a station; of no rows, its frame.
     #[must_use]
-    pub fn sees_axes(&self, rows: &[u32]) -> bool {
-        let sees = |row: &u32| self.observations[*row as usize].measurement.observe().sees_device_axes();
-        rows.is_empty() || rows.iter().any(sees)
+    pub fn device_freedom(&self, station: usize, rows: &[u32]) -> Freedom {
+        let own = rows.iter().map(|&row| &self.observations[row as usize]).filter(|it| it.station == station);
+        shown(own.map(|it| it.measurement.observe().device_freedom())).unwrap_or(Freedom::Frame)
+    }
+
+    /// What some of these rows show of each target; of one that none sees, its place.
+    #[must_use]
+    pub fn target_freedoms(&self, rows: &[u32]) -> Vec<Freedom> {
+        let mut found: Vec<Option<Freedom>> = vec![None; self.targets.len()];
+        for &row in rows {
+            let observation = &self.observations[row as usize];
+            let known = &mut found[observation.target];
+            if *known != Some(Freedom::Frame) {
+                *known = shown(known.iter().copied().chain([observation.measurement.target_freedom()]));
+            }
+        }
+        found.into_iter().map(|it| it.unwrap_or(Freedom::Place)).collect()
+    }
+
+    /// Number of rotations of targets that some of these rows show.
+    #[must_use]
+    pub fn turns_of_targets(&self, rows: &[u32]) -> usize {
+        let turns = |freedom: Freedom| freedom.motions().iter().filter(|&&motion| motion >= 3).count();
+        self.target_freedoms(rows).into_iter().map(turns).sum()
     }
 
     /// Mean of the positions that some rows measured, metres, device frame.
@@ -397,6 +424,7 @@ impl Dataset {
             factors: self.factors,
             targets: self.targets.clone(),
             stations: self.stations.clone(),
+            lengths: self.lengths.clone(),
             files: self.files.clone(),
             pose_residual: self.pose_residual,
         };
@@ -453,6 +481,13 @@ impl Dataset {
             (_, []) => vec![self.station_index(None)],
             (_, named) => named.iter().map(|name| self.station_index(name.as_deref())).collect(),
         };
+        let station = |at: usize| stations.get(at).copied().unwrap_or_default();
+        let lengths = other.lengths.iter().map(|it| KnownLength { stations: it.stations.map(station), ..*it });
+        for length in lengths {
+            if !self.lengths.contains(&length) {
+                self.lengths.push(length);
+            }
+        }
         for row in 0..other.len() {
             readings.clear();
             readings.extend(order.iter().map(|&index| other.readings(row)[index]));
@@ -474,6 +509,12 @@ impl Dataset {
         }
         Ok(())
     }
+}
+
+/// What measurements show together.
+fn shown(mut parts: impl Iterator<Item = Freedom>) -> Option<Freedom> {
+    let first = parts.next()?;
+    Some(parts.fold(first, |all, part| if all == Freedom::Frame || all == part { all } else { all.with(part) }))
 }
 
 fn is_finite(numbers: &[f64]) -> bool {

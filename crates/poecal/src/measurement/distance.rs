@@ -1,7 +1,7 @@
 //! Distance of a target from the instrument's origin: a draw-wire, a ball bar to a socket.
 
 use super::{Channel, Channels, Observe, Quantity, Sensitivity};
-use crate::lie::Pose;
+use crate::lie::{Freedom, Pose};
 
 /// Measured distance, `e = d - |p|`, `S = [pᵀ/|p| 0]`. It shows where its instrument is, and not how it is turned (theory.md §4 (15a)).
 ///
@@ -39,8 +39,8 @@ impl Observe for DistanceMeasurement {
         Some(self.distance)
     }
 
-    fn sees_device_axes(&self) -> bool {
-        false
+    fn device_freedom(&self) -> Freedom {
+        Freedom::Place
     }
 
     fn is_finite(&self) -> bool {

@@ -3,26 +3,36 @@
 
 mod configurations;
 mod dataset;
+mod direction;
 mod distance;
+mod flush;
+mod height;
+mod known_length;
 mod observe;
 mod other_pose;
 mod point;
 mod pose;
 mod quantity;
+mod socket;
 
 pub(crate) use configurations::MANY as MANY_ROWS;
 pub use dataset::{Dataset, Observation, Set, Source};
+pub use direction::DirectionMeasurement;
 pub use distance::DistanceMeasurement;
+pub use flush::FlushMeasurement;
+pub use height::HeightMeasurement;
+pub use known_length::KnownLength;
 pub use observe::{Channel, Channels, NUMBERS, Observe, Sensitivity};
 pub use other_pose::PoseResidual;
 pub(crate) use other_pose::Written;
 pub use point::PointMeasurement;
 pub use pose::PoseMeasurement;
 pub use quantity::{ByQuantity, Measured, Noise, Quantity, Stated};
+pub use socket::SocketMeasurement;
 
 use nalgebra::Vector3;
 
-use crate::lie::{Pose, rotation};
+use crate::lie::{Freedom, Pose, rotation};
 
 /// One measurement of a target in the measuring device's frame.
 ///
@@ -42,6 +52,14 @@ pub enum Measurement {
     Pose(PoseMeasurement),
     /// Distance of a point from the instrument.
     Distance(DistanceMeasurement),
+    /// Place of a ball in its socket.
+    Socket(SocketMeasurement),
+    /// Height over a plane.
+    Height(HeightMeasurement),
+    /// Height and tilts of a face on a plane.
+    Flush(FlushMeasurement),
+    /// A fixed direction, as the target sees it.
+    Direction(DirectionMeasurement),
 }
 
 /// What a measurement shows of the target itself: for all that moves or draws measured places and orientations.
@@ -71,6 +89,10 @@ impl Measurement {
             Measurement::Point(point) => point,
             Measurement::Pose(pose) => pose,
             Measurement::Distance(distance) => distance,
+            Measurement::Socket(socket) => socket,
+            Measurement::Height(height) => height,
+            Measurement::Flush(flush) => flush,
+            Measurement::Direction(direction) => direction,
         }
     }
 
@@ -81,28 +103,42 @@ impl Measurement {
         match self {
             Measurement::Point(PointMeasurement { position }) => Seen::Point(position),
             Measurement::Pose(PoseMeasurement { pose }) => Seen::Frame(pose),
-            Measurement::Distance(distance) => Seen::Other(distance),
+            other @ (Measurement::Distance(_)
+            | Measurement::Socket(_)
+            | Measurement::Height(_)
+            | Measurement::Flush(_)
+            | Measurement::Direction(_)) => Seen::Other(other.observe()),
         }
     }
 
     /// How far apart two measurements of one kind are: metres, and radians of orientations. `None` of different kinds.
     #[must_use]
     pub fn apart(&self, other: &Measurement) -> Option<(f64, f64)> {
-        let place = |seen: Seen<'_>| match seen {
-            Seen::Point(position) => Some((*position, None)),
-            Seen::Frame(pose) => Some((pose.translation, Some(pose.rotation))),
-            Seen::Other(_) => None,
-        };
-        match (place(self.seen()), place(other.seen())) {
-            (Some((a, turned)), Some((b, other))) => {
-                let turn = turned.zip(other).map(|(a, b)| rotation::log(&(a * b.transpose())).norm());
-                Some(((a - b).norm(), turn.unwrap_or(0.0)))
+        let angle = |a: &Vector3<f64>, b: &Vector3<f64>| a.cross(b).norm().atan2(a.dot(b));
+        match (self, other) {
+            (Measurement::Distance(a), Measurement::Distance(b)) => Some(((a.distance - b.distance).abs(), 0.0)),
+            (Measurement::Socket(a), Measurement::Socket(b)) => Some(((a.place - b.place).norm(), 0.0)),
+            (Measurement::Height(a), Measurement::Height(b)) => Some(((a.height - b.height).abs(), 0.0)),
+            (Measurement::Flush(a), Measurement::Flush(b)) => {
+                Some(((a.height - b.height).abs(), angle(&a.normal, &b.normal)))
             }
-            (None, None) => {
-                let (a, b) = (self.observe().range()?, other.observe().range()?);
-                Some(((a - b).abs(), 0.0))
+            (Measurement::Direction(a), Measurement::Direction(b)) => Some((0.0, angle(&a.direction, &b.direction))),
+            (Measurement::Point(_) | Measurement::Pose(_), Measurement::Point(_) | Measurement::Pose(_)) => {
+                let (a, b) = (self.pose(), other.pose());
+                let both = self.sees_orientation() && other.sees_orientation();
+                let turn = if both { rotation::log(&(a.rotation * b.rotation.transpose())).norm() } else { 0.0 };
+                Some(((a.translation - b.translation).norm(), turn))
             }
-            (Some(_), None) | (None, Some(_)) => None,
+            (
+                Measurement::Point(_)
+                | Measurement::Pose(_)
+                | Measurement::Distance(_)
+                | Measurement::Socket(_)
+                | Measurement::Height(_)
+                | Measurement::Flush(_)
+                | Measurement::Direction(_),
+                _,
+            ) => None,
         }
     }
 
@@ -110,10 +146,17 @@ impl Measurement {
     #[must_use]
     #[inline]
     pub fn sees_orientation(&self) -> bool {
+        self.target_freedom().turns()
+    }
+
+    /// What it shows of the target.
+    #[must_use]
+    #[inline]
+    pub fn target_freedom(&self) -> Freedom {
         match self.seen() {
-            Seen::Point(_) => false,
-            Seen::Frame(_) => true,
-            Seen::Other(model) => model.sees_orientation(),
+            Seen::Point(_) => Freedom::Place,
+            Seen::Frame(_) => Freedom::Frame,
+            Seen::Other(model) => model.target_freedom(),
         }
     }
 

@@ -5,7 +5,7 @@ use std::ops::{Deref, Range};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{ByQuantity, Quantity};
-use crate::lie::Pose;
+use crate::lie::{Freedom, Pose};
 
 /// Most numbers of one measurement.
 pub const NUMBERS: usize = 6;
@@ -131,9 +131,14 @@ pub trait Observe {
         None
     }
 
-    /// Whether it depends on the device's axes, so that the device is a frame and not only a point.
-    fn sees_device_axes(&self) -> bool {
-        true
+    /// What it shows of the device: its frame, or only where it is.
+    fn device_freedom(&self) -> Freedom {
+        Freedom::Frame
+    }
+
+    /// What it shows of the target: its frame where an orientation is measured, else its place.
+    fn target_freedom(&self) -> Freedom {
+        if self.orientation().is_some() { Freedom::Frame } else { Freedom::Place }
     }
 
     /// Whether all measured numbers are finite.
@@ -146,6 +151,6 @@ pub trait Observe {
 
     /// Whether it depends on the target's orientation, so that the target is a frame and not only a point.
     fn sees_orientation(&self) -> bool {
-        self.orientation().is_some()
+        self.target_freedom().turns()
     }
 }

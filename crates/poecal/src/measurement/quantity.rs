@@ -67,6 +67,12 @@ pub enum Quantity {
     Rotation = ("rotation", Radian, ["rx", "ry", "rz"]),
     /// Distance of a target from the instrument.
     Distance = ("distance", Metre, ["distance"]),
+    /// Place of a ball from the middle of its socket.
+    Contact = ("contact", Metre, ["contact_x", "contact_y", "contact_z"]),
+    /// Height of a target over a plane.
+    Height = ("height", Metre, ["height"]),
+    /// Tilts of a face against a plane, or of a target against a direction such as gravity's.
+    Tilt = ("tilt", Radian, ["tilt_x", "tilt_y"]),
 }
 }
 

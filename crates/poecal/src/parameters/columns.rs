@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::estimate::{Chain, Estimate};
-use crate::lie::TargetTwist;
+use crate::lie::{Freedom, TargetTwist};
 use crate::unit::Unit;
 
 /// One unknown of a parameter.
@@ -43,8 +43,8 @@ impl Column {
     }
 }
 
-/// Columns of a frame: translations along its axes, rotations about them.
-pub(super) const FRAME: [Column; 6] = [
+/// Motions of a frame: translations along its axes, rotations about them.
+const FRAME: [Column; 6] = [
     Column::shift("x"),
     Column::shift("y"),
     Column::shift("z"),
@@ -54,7 +54,25 @@ pub(super) const FRAME: [Column; 6] = [
 ];
 
 /// Columns of a place: translations along its axes.
-pub(super) const PLACE: [Column; 3] = [Column::shift("x"), Column::shift("y"), Column::shift("z")];
+pub(super) const PLACE: [Column; 3] = [FRAME[0], FRAME[1], FRAME[2]];
+const PLANE_X: [Column; 3] = [FRAME[0], FRAME[4], FRAME[5]];
+const PLANE_Y: [Column; 3] = [FRAME[1], FRAME[3], FRAME[5]];
+const PLANE_Z: [Column; 3] = [FRAME[2], FRAME[3], FRAME[4]];
+const TURN: [Column; 3] = [FRAME[3], FRAME[4], FRAME[5]];
+const DIRECTION: [Column; 2] = [FRAME[3], FRAME[4]];
+
+/// Columns of the motions of a frame that are seen.
+pub(super) const fn of_freedom(freedom: Freedom) -> &'static [Column] {
+    match freedom {
+        Freedom::Frame => &FRAME,
+        Freedom::Place => &PLACE,
+        Freedom::PlaneX => &PLANE_X,
+        Freedom::PlaneY => &PLANE_Y,
+        Freedom::PlaneZ => &PLANE_Z,
+        Freedom::Turn => &TURN,
+        Freedom::Direction => &DIRECTION,
+    }
+}
 
 /// Force `f` at a target's origin and torque `τ`, device axes: the whitened residual pulled back through the measurement
 /// (theory.md §6 (31a)).

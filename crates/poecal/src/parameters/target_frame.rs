@@ -2,21 +2,32 @@
 
 use nalgebra::Vector3;
 
-use super::columns::{Column, Columns, FRAME, Subject};
+use super::columns::{Column, Columns, Subject, of_freedom};
 use crate::estimate::{Chain, Estimate};
-use crate::lie::{TargetTwist, rotation};
+use crate::lie::{Freedom, TargetTwist, rotation};
 
 /// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`
-/// (theory.md §5 (24)).
+/// (theory.md §5 (24)), of the motions that measurements show (25a): a frame has all six, a face that lies on planes three.
 ///
 /// ```
-/// use poecal::parameters::{Columns, TargetFrame};
-/// assert_eq!(TargetFrame { target: 0 }.columns().len(), 6);
+/// use poecal::{lie::Freedom, parameters::{Columns, TargetFrame}};
+/// assert_eq!(TargetFrame::new(0).columns().len(), 6);
+/// assert_eq!(TargetFrame { freedom: Freedom::PlaneZ, ..TargetFrame::new(0) }.columns()[1].name, "rx");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TargetFrame {
     /// Index of the target.
     pub target: usize,
+    /// What is seen of it, which is what is unknown.
+    pub freedom: Freedom,
+}
+
+impl TargetFrame {
+    /// A target of which all is seen.
+    #[must_use]
+    pub fn new(target: usize) -> Self {
+        TargetFrame { target, freedom: Freedom::Frame }
+    }
 }
 
 impl Columns for TargetFrame {
@@ -25,32 +36,38 @@ impl Columns for TargetFrame {
     }
 
     fn columns(&self) -> &'static [Column] {
-        &FRAME
+        of_freedom(self.freedom)
     }
 
     fn target_twists(&self, chain: &Chain, target: usize, out: &mut [TargetTwist]) {
         let zero = Vector3::zeros();
-        for k in 0..3 {
-            let axis =
-                if target == self.target { chain.target.rotation.column(k).into_owned() } else { zero };
-            out[k] = (axis, zero);
-            out[3 + k] = (zero, axis);
-        }
-        if chain.shared == Some(self.target) {
-            // The device's frame moves with it: the base in the device's axes by the inverse.
-            for k in 0..3 {
-                let axis = Vector3::ith(k, 1.0);
-                out[k].0 -= axis;
-                out[3 + k].0 -= axis.cross(&chain.target.translation);
-                out[3 + k].1 -= axis;
+        for (out, &motion) in out.iter_mut().zip(self.freedom.motions()) {
+            let own = if target == self.target {
+                chain.target.rotation.column(motion % 3).into_owned()
+            } else {
+                zero
+            };
+            *out = if motion < 3 { (own, zero) } else { (zero, own) };
+            if chain.shared == Some(self.target) {
+                // The device's frame moves with it: the base in the device's axes by the inverse.
+                let axis = Vector3::ith(motion % 3, 1.0);
+                if motion < 3 {
+                    out.0 -= axis;
+                } else {
+                    out.0 -= axis.cross(&chain.target.translation);
+                    out.1 -= axis;
+                }
             }
         }
     }
 
     fn retract(&self, estimate: &mut Estimate, step: &[f64]) {
+        let mut motion = [0.0; 6];
+        self.freedom.motions().iter().zip(step).for_each(|(&at, value)| motion[at] = *value);
+        let [x, y, z, rx, ry, rz] = motion;
         let pose = &mut estimate.base_from_target[self.target];
-        pose.translation += pose.rotation * Vector3::new(step[0], step[1], step[2]);
-        pose.rotation *= rotation::exp(&Vector3::new(step[3], step[4], step[5]));
+        pose.translation += pose.rotation * Vector3::new(x, y, z);
+        pose.rotation *= rotation::exp(&Vector3::new(rx, ry, rz));
         *pose = pose.orthonormalized();
     }
 }

@@ -3,6 +3,7 @@
 use super::row_group::Form;
 use super::{Layout, Problem};
 use crate::estimate::{Estimate, Passed, Sight};
+use crate::lie::Freedom;
 use crate::lanes::{DevicePlan, JointPlan, Plan, TermPlan};
 use crate::parameters::{OtherScrew, Parameter, Subject, ValueTerm};
 use crate::robot::{JointKind, Term};
@@ -77,6 +78,25 @@ impl ColumnMap {
         self.form.numbers()
     }
 
+    /// Places of the six motions of a frame of which some are unknowns.
+    fn frame_places(freedom: Freedom, places: &[(usize, f64)]) -> [Option<(usize, f64)>; 6] {
+        let mut all = [None; 6];
+        freedom.motions().iter().zip(places).for_each(|(&motion, &place)| all[motion] = Some(place));
+        all
+    }
+
+    /// Adds translation columns of a frame, and rotation columns about their directions if it turns.
+    fn add_frame(&mut self, places: [Option<(usize, f64)>; 6], turns: bool, sign: f64) {
+        let first = self.shift_places.len();
+        let of = |place: Option<(usize, f64)>| place.map_or(Place::NONE, |(at, _)| Place { at, sign });
+        let [shifts @ .., a, b, c] = places;
+        self.shift_places.extend(shifts.map(of));
+        if turns {
+            self.turn_places.extend([a, b, c].map(of));
+            self.plan.turns.extend(first..first + 3);
+        }
+    }
+
     fn shift(&mut self, places: &[(usize, f64)], sign: f64) {
         self.shift_places.extend(places.iter().map(|&(at, _)| Place { at, sign }));
     }
@@ -95,14 +115,15 @@ impl ColumnMap {
             if model.subject() != subject || self.plan.device.is_some() {
                 continue;
             }
-            let (about, sign) = match parameter {
-                Parameter::DeviceFrame(device) => (device.about.into(), 1.0),
-                Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => ([0.0; 3], -1.0),
+            let (about, freedom, sign) = match parameter {
+                Parameter::DeviceFrame(device) => (device.about.into(), device.freedom, 1.0),
+                Parameter::TargetFrame(frame) => ([0.0; 3], frame.freedom, -1.0),
+                Parameter::TargetPlace(_) => ([0.0; 3], Freedom::Place, -1.0),
                 Parameter::ScrewAxis(_) | Parameter::OtherScrew(_) | Parameter::ValueTerm(_) => continue,
             };
-            self.plan.device = Some(DevicePlan { about, turns: places.len() > 3 });
-            self.shift(&places[..3], sign);
-            self.turn(&places[3..], 0, sign);
+            let turns = freedom.turns();
+            self.plan.device = Some(DevicePlan { about, turns });
+            self.add_frame(Self::frame_places(freedom, places), turns, sign);
         }
     }
 
@@ -170,13 +191,20 @@ impl ColumnMap {
             {
                 continue;
             }
-            let first = self.shift_places.len();
-            self.plan.place = Some(first);
-            self.shift(&places[..3], 1.0);
-            if places.len() > 3 && self.plan.framed {
+            let freedom = match parameter {
+                Parameter::TargetFrame(frame) => frame.freedom,
+                Parameter::TargetPlace(_)
+                | Parameter::DeviceFrame(_)
+                | Parameter::ScrewAxis(_)
+                | Parameter::OtherScrew(_)
+                | Parameter::ValueTerm(_) => Freedom::Place,
+            };
+            let turns = freedom.turns() && self.plan.framed;
+            self.plan.place = Some(self.shift_places.len());
+            if turns {
                 self.plan.frame = Some(self.turn_places.len());
-                self.turn(&places[3..], first, 1.0);
             }
+            self.add_frame(Self::frame_places(freedom, places), turns, 1.0);
         }
     }
 }

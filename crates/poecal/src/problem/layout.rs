@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 ///
 /// ```
 /// use poecal::parameters::{Parameter, TargetFrame};
-/// let layout = poecal::problem::Layout::new(vec![Parameter::TargetFrame(TargetFrame { target: 0 })], 0.5);
+/// let layout = poecal::problem::Layout::new(vec![Parameter::TargetFrame(TargetFrame::new(0))], 0.5);
 /// assert_eq!((layout.dim(), layout.shifts()), (6, 3));
 /// ```
 #[derive(Clone, Debug, PartialEq)]

@@ -4,6 +4,7 @@ mod column_map;
 mod curvature;
 mod fast;
 mod layout;
+mod lengths;
 mod prior;
 mod refit;
 mod row_block;
@@ -132,8 +133,9 @@ impl<'a> Problem<'a> {
         self
     }
 
-    /// Adds the prior to the normal information of the measurements.
-    fn add_prior(&self, state: &Estimate, mut normal: Normal) -> Normal {
+    /// Adds known lengths and the prior to the normal information of the measurements.
+    fn with_all(&self, state: &Estimate, normal: Normal) -> Normal {
+        let mut normal = self.add_lengths(state, normal);
         if let Some((prior, weight)) = self.prior {
             prior.add(state, &self.layout, weight, &mut normal);
         }
@@ -234,15 +236,15 @@ impl LeastSquares for Problem<'_> {
     }
 
     fn normal(&self, state: &Estimate) -> Normal {
-        self.add_prior(state, self.fast(state).normal(self, state, Accumulate::All))
+        self.with_all(state, self.fast(state).normal(self, state, Accumulate::All))
     }
 
     fn nearly_normal(&self, state: &Estimate) -> Normal {
-        self.add_prior(state, self.fast(state).normal(self, state, Accumulate::GaussNewton))
+        self.with_all(state, self.fast(state).normal(self, state, Accumulate::GaussNewton))
     }
 
     fn gradient(&self, state: &Estimate) -> Option<Normal> {
-        Some(self.add_prior(state, self.fast(state).normal(self, state, Accumulate::Gradient)))
+        Some(self.with_all(state, self.fast(state).normal(self, state, Accumulate::Gradient)))
     }
 
     fn second_order(&self, state: &Estimate, step: &[f64]) -> Vec<f64> {

@@ -1,10 +1,10 @@
 //! Motions that change nothing, in a fit in which some things are held or joint offsets are unknown.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Vector6};
 
 use super::Layout;
 use crate::estimate::{Estimate, Session, Stand};
-use crate::lie::{Pose, Twist};
+use crate::lie::{Freedom, Pose, Twist};
 use crate::linalg;
 use crate::measurement::Dataset;
 use crate::parameters::{Parameter, Subject};
@@ -49,7 +49,7 @@ impl Layout {
                 |(parameter, _): (&Parameter, _)| parameter.model().subject() == Subject::Instrument(station);
             !self.parameters().any(of_it)
         };
-        let sees_axes = |station: usize| data.sees_axes(&data.seen_from(station, rows));
+        let sees_axes = |station: usize| data.device_freedom(station, rows) == Freedom::Frame;
         let of_base = if is_held(0) && estimate.tree.shared(0).is_none() && sees_axes(0) {
             // The first device frame holds the base.
             0
@@ -118,12 +118,12 @@ impl Layout {
                 }
             });
         }
-        let is_frame = data.frames(rows);
+        let freedoms = data.target_freedoms(rows);
         for (target, frame) in estimate.base_from_target.iter().enumerate() {
             let body = estimate.tree.targets().get(target).copied();
-            let seen = if is_frame.get(target).is_some_and(|&is_frame| is_frame) { 6 } else { 3 };
+            let freedom = freedoms.get(target).copied().unwrap_or(Freedom::Place);
             add(Subject::Target(target), body, &|twist| {
-                local(frame, twist).iter().copied().take(seen).collect()
+                seen_of(freedom, &local(frame, twist))
             });
         }
         for station in 0..=estimate.further_devices.len() {
@@ -137,13 +137,12 @@ impl Layout {
                     (own.station == station).then_some(own.about)
                 });
                 let device = estimate.device(station);
-                // Of a device without axes the origin is all that is held.
-                let seen = if data.sees_axes(&data.seen_from(station, rows)) { 6 } else { 3 };
+                // What does not show is not held.
+                let freedom = data.device_freedom(station, rows);
                 let at = Pose::from_translation(about.unwrap_or_default());
                 // `device_from_base G⁻¹`, stepped in the device's axes about a point. The base itself moves under those that stand on it.
                 add(Subject::Instrument(station), Some(body), &|twist| {
-                    let step = -at.inverse().transform(&device.transform(twist)).to_vector();
-                    step.iter().copied().take(seen).collect()
+                    seen_of(freedom, &-at.inverse().transform(&device.transform(twist)).to_vector())
                 });
             }
         }
@@ -157,10 +156,15 @@ impl Layout {
     }
 }
 
+/// The motions of a frame that are seen.
+fn seen_of(freedom: Freedom, motion: &Vector6<f64>) -> Vec<f64> {
+    freedom.motions().iter().filter_map(|&at| motion.get(at).copied()).collect()
+}
+
 /// The six motions of the base; rotations counted like lengths.
 fn base_motions(length_m: f64) -> Vec<Motion> {
     let motion = |k: usize| {
-        let mut twist = nalgebra::Vector6::zeros();
+        let mut twist = Vector6::zeros();
         twist[k] = if k < 3 { 1.0 } else { 1.0 / length_m };
         Motion { twist: Twist::from_vector(&twist), beyond: None, offset: None }
     };

@@ -2,6 +2,7 @@
 
 mod averaging;
 mod hand_eye;
+mod others;
 mod registration;
 mod robust;
 mod stations;

@@ -1,12 +1,12 @@
 //! Registration: device frame and targets are fitted, with fixed screws.
 
-use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+use nalgebra::{Matrix3, Vector3};
 
 use super::averaging::{mean_rotation, rigid_motion};
 use super::hand_eye;
+use super::others::{self, Other};
 use crate::estimate::{Chain, Estimate, Linkage, Session, Unknowns, sample_rows};
-use crate::lie::{Pose, rotation};
-use crate::linalg;
+use crate::lie::{Freedom, Pose, rotation};
 use crate::measurement::{Dataset, Noise};
 use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
 use crate::problem::Problem;
@@ -20,9 +20,6 @@ const FINALISTS: usize = 4;
 const ROUNDS: usize = 4;
 /// Root mean square distance, as a share of the data's own spread, above which the closed forms are not trusted alone.
 const GOOD_MISFIT: f64 = 0.05;
-
-/// Share of the information of distances about an anchor below which it is rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// A registration problem: rows, noise and unknowns.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +38,9 @@ pub struct Registration<'a> {
 pub(super) fn at_one_station(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64) {
     let sample = sample_rows(problem.rows, SAMPLE);
     let seen = SampledRows::new(problem, start, &sample);
+    if let Some(best) = seen.by_others(problem, start, &sample) {
+        return polish(problem, best, problem.rows.to_vec(), 50);
+    }
     let mut best = seen.best_of(problem, start, &sample, seen.closed_forms(problem, start), ROUNDS);
     if problem.session.device_free && problem.targets_free && seen.misfit(&best.0) > GOOD_MISFIT {
         let turned = cube_rotations().map(|turn| seen.at_rotation(turn, start)).collect();
@@ -60,6 +60,9 @@ pub(super) fn at_one_station(problem: &Registration<'_>, start: &Estimate) -> (E
 pub(crate) fn register_roughly(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     let sample = sample_rows(problem.rows, SAMPLE);
     let seen = SampledRows::new(problem, start, &sample);
+    if let Some(best) = seen.by_others(problem, start, &sample) {
+        return best;
+    }
     let candidates = seen.closed_forms(problem, start).into_iter().map(|device| {
         let candidate = seen.alternate(problem, start, device, ROUNDS);
         (polish(problem, candidate.clone(), sample.clone(), 0).1, candidate)
@@ -99,7 +102,9 @@ pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<P
     if problem.session.device_free {
         let data = problem.session.data;
         let unknowns = problem.session.unknowns;
-        let stations = (0..data.station_count()).filter(|&station| unknowns.moves_frame(station));
+        let is_seen = |station: usize| data.station_count() == 1 || !data.seen_from(station, rows).is_empty();
+        let is_free = |station: &usize| unknowns.moves_frame(*station) && is_seen(*station);
+        let stations = (0..data.station_count()).filter(is_free);
         let stations = stations.map(|station| device_parameter(data, station, rows));
         free.extend(stations);
     }
@@ -112,23 +117,19 @@ pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<P
 /// The free parameter of a station's frame: stepped about the middle of its rows; its place alone if no row sees its axes.
 pub(crate) fn device_parameter(data: &Dataset, station: usize, rows: &[u32]) -> Parameter {
     let own = data.seen_from(station, rows);
-    Parameter::DeviceFrame(if data.sees_axes(&own) {
-        DeviceFrame::new(station, data.mean_position(&own))
-    } else {
-        DeviceFrame::anchor(station)
+    Parameter::DeviceFrame(match data.device_freedom(station, &own) {
+        Freedom::Frame => DeviceFrame::new(station, data.mean_position(&own)),
+        freedom => DeviceFrame::showing(station, freedom),
     })
 }
 
 /// The free parameters of the targets: frames where these rows measured orientation, places elsewhere.
 pub(crate) fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = Parameter> {
     let unknowns = session.unknowns;
-    let targets = session.data.frames(rows).into_iter().enumerate();
-    targets.filter(|&(target, _)| unknowns.moves_target(target)).map(|(target, is_frame)| {
-        if is_frame {
-            Parameter::TargetFrame(TargetFrame { target })
-        } else {
-            Parameter::TargetPlace(TargetPlace { target })
-        }
+    let targets = session.data.target_freedoms(rows).into_iter().enumerate();
+    targets.filter(|&(target, _)| unknowns.moves_target(target)).map(|(target, freedom)| match freedom {
+        Freedom::Place => Parameter::TargetPlace(TargetPlace { target }),
+        freedom => Parameter::TargetFrame(TargetFrame { target, freedom }),
     })
 }
 
@@ -138,8 +139,8 @@ struct SampledRows {
     measured: Vec<Vector3<f64>>,
     turned: Vec<Option<Matrix3<f64>>>,
     target: Vec<usize>,
-    /// Of rows that tell no place: the arm's motion, the distance from the device, and the target.
-    ranges: Vec<(Pose, f64, usize)>,
+    /// Rows that tell no place.
+    others: Vec<Other>,
     /// Spread of the measured positions, metres.
     spread_m: f64,
 }
@@ -155,7 +156,7 @@ impl SampledRows {
             measured: Vec::new(),
             turned: Vec::new(),
             target: Vec::new(),
-            ranges: Vec::new(),
+            others: Vec::new(),
             spread_m: problem.session.data.spread_m(sample),
         };
         for &row in sample {
@@ -164,7 +165,7 @@ impl SampledRows {
             chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
             let motion = chain.target * start.base_from_target[observation.target].inverse();
             let Some(position) = model.position() else {
-                seen.ranges.extend(model.range().map(|range| (motion, range, observation.target)));
+                seen.others.push(Other { motion, measurement: observation.measurement, target: observation.target });
                 continue;
             };
             seen.base_motion.push(motion);
@@ -209,6 +210,22 @@ impl SampledRows {
         best
     }
 
+    /// The lowest optimum of a device that shows no places; `None` of another one.
+    fn by_others(&self, problem: &Registration<'_>, start: &Estimate, sample: &[u32]) -> Option<Estimate> {
+        if !self.measured.is_empty() || self.others.is_empty() || !problem.session.device_free {
+            return None;
+        }
+        let mut best: Option<(Estimate, f64)> = None;
+        for candidate in others::starts(&self.others, start, problem.targets_free) {
+            let found = polish(problem, candidate, sample.to_vec(), 20);
+            // A later start must be clearly better, so that rounding does not choose between equal ones.
+            if best.as_ref().is_none_or(|(_, cost)| found.1 < cost * (1.0 - 1e-6)) {
+                best = Some(found);
+            }
+        }
+        best.map(|(best, _)| best)
+    }
+
     /// Whether two device frames lead to the same optimum: at most a few degrees and a tenth of the data's spread apart.
     fn is_near(&self, a: &Pose, b: &Pose) -> bool {
         let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
@@ -237,7 +254,7 @@ impl SampledRows {
             return vec![start.device_from_base];
         }
         if self.measured.is_empty() {
-            return vec![self.by_ranges(start).unwrap_or(start.device_from_base)];
+            return vec![start.device_from_base];
         }
         let mut candidates = vec![self.rigid(&start.base_from_target)];
         let framed: Vec<usize> = (0..self.turned.len()).filter(|&k| self.turned[k].is_some()).collect();
@@ -261,31 +278,6 @@ impl SampledRows {
             candidates.push(self.rigid(&shrunk));
         }
         candidates
-    }
-
-    /// The device at the point a that has the measured distances d from the targets p: with `|a|²` as an unknown of its own,
-    /// `|p|² - d² = 2 p·a - |a|²` is linear. Its axes are those of the start.
-    fn by_ranges(&self, start: &Estimate) -> Option<Pose> {
-        let places = || {
-            self.ranges.iter().map(|(motion, range, target)| {
-                (motion.act(&start.base_from_target[*target].translation), *range)
-            })
-        };
-        let count = self.ranges.len();
-        let middle = places().map(|(place, _)| place).sum::<Vector3<f64>>() / count.max(1) as f64;
-        let (mut gram, mut right) = (Matrix4::zeros(), Vector4::zeros());
-        for (place, range) in places() {
-            let arm = place - middle;
-            let row = Vector4::new(2.0 * arm.x, 2.0 * arm.y, 2.0 * arm.z, -1.0);
-            gram += row * row.transpose();
-            right += row * (arm.norm_squared() - range * range);
-        }
-        let upper: Vec<f64> = gram.iter().copied().collect();
-        let factor = linalg::cholesky(&upper, 4, ROUNDING * gram.trace())?;
-        let found = linalg::cholesky_solve(&factor, right.as_slice());
-        let anchor = middle + Vector3::new(*found.first()?, *found.get(1)?, *found.get(2)?);
-        let turn = start.device_from_base.rotation;
-        Some(Pose::new(turn, -(turn * anchor)))
     }
 
     /// The target moved onto the last axis, where the last joint does not move it.
@@ -364,7 +356,7 @@ impl SampledRows {
 }
 
 /// The 24 proper rotations of a cube.
-fn cube_rotations() -> impl Iterator<Item = Matrix3<f64>> {
+pub(super) fn cube_rotations() -> impl Iterator<Item = Matrix3<f64>> {
     use std::f64::consts::FRAC_PI_2;
     (0..6).flat_map(|face| {
         let up = match face {

@@ -2,6 +2,7 @@
 
 use std::cmp::Reverse;
 
+use crate::lie::Freedom;
 use super::registration::{Registration, at_one_station, polish};
 use crate::estimate::{Estimate, Session, Unknowns};
 
@@ -29,7 +30,7 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         .collect();
     // What is held is known; a device that shows places finds its frame best.
     stations.sort_by_key(|(station, rows)| {
-        Reverse((!unknowns.moves_frame(*station), problem.session.data.sees_axes(rows), rows.len()))
+        Reverse((!unknowns.moves_frame(*station), problem.session.data.device_freedom(*station, rows) == Freedom::Frame, rows.len()))
     });
     let mut found = start.clone();
     let of_one = Unknowns { held_frames: Vec::new(), ..unknowns.clone() };

@@ -290,8 +290,7 @@ fn determined_by_rotations(
     rotation: &ResidualSums,
     total: f64,
 ) -> f64 {
-    let turned =
-        3.0 * view.session.data.frames(view.rows).iter().filter(|&&is_frame| is_frame).count() as f64;
+    let turned = view.session.data.turns_of_targets(view.rows) as f64;
     if rotation.components == 0 {
         return 0.0;
     }

@@ -209,7 +209,7 @@ impl Measured {
         free.extend(screw_axes(estimate.kinds()));
         free.extend(data.frames(&data.all_rows()).into_iter().enumerate().map(|(target, is_frame)| {
             if is_frame {
-                Parameter::TargetFrame(TargetFrame { target })
+                Parameter::TargetFrame(TargetFrame::new(target))
             } else {
                 Parameter::TargetPlace(TargetPlace { target })
             }

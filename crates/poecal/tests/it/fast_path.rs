@@ -166,7 +166,7 @@ fn parameters(robot: &Robot, data: &Dataset, case: &Case) -> Vec<Parameter> {
     let rows: Vec<u32> = data.all_rows();
     for (target, is_frame) in data.frames(&rows).into_iter().enumerate() {
         free.push(if is_frame {
-            Parameter::TargetFrame(TargetFrame { target })
+            Parameter::TargetFrame(TargetFrame::new(target))
         } else {
             Parameter::TargetPlace(TargetPlace { target })
         });
@@ -279,7 +279,7 @@ fn kernels_serve_the_kinds_that_they_know() {
             Parameter::ScrewAxis(ScrewAxis { joint: 0, kind }),
             Parameter::ValueTerm(ValueTerm { joint: 0, kind, term: Term::Offset }),
             Parameter::TargetPlace(TargetPlace { target: 0 }),
-            Parameter::TargetFrame(TargetFrame { target: 0 }),
+            Parameter::TargetFrame(TargetFrame::new(0)),
             Parameter::DeviceFrame(DeviceFrame::new(0, Vector3::zeros())),
         ] {
             session.free = vec![parameter];

@@ -42,7 +42,7 @@ fn parameters(robot: &Robot) -> Vec<(&'static str, Parameter)> {
         all.push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::Offset })));
     }
     all.push(("target place", Parameter::TargetPlace(TargetPlace { target: 0 })));
-    all.push(("target frame", Parameter::TargetFrame(TargetFrame { target: 0 })));
+    all.push(("target frame", Parameter::TargetFrame(TargetFrame::new(0))));
     all
 }
 

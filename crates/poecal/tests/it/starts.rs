@@ -173,7 +173,7 @@ fn cost_from_truth(session: estimate::Session<'_>, rows: &[u32], truth: Estimate
     let mut free = vec![Parameter::DeviceFrame(DeviceFrame::new(0, Vector3::zeros()))];
     free.extend((0..data.targets.len()).map(|target| {
         if data.target_is_frame(target) {
-            Parameter::TargetFrame(TargetFrame { target })
+            Parameter::TargetFrame(TargetFrame::new(target))
         } else {
             Parameter::TargetPlace(TargetPlace { target })
         }

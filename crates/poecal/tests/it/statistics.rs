@@ -37,7 +37,7 @@ fn parameters(robot: &Robot, kind: Kind) -> Vec<Parameter> {
         screws.map(|(joint, it)| Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })).collect();
     free.push(match kind {
         Kind::Point => Parameter::TargetPlace(TargetPlace { target: 0 }),
-        Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame { target: 0 }),
+        Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame::new(0)),
     });
     free
 }

@@ -13,6 +13,7 @@ use super::modes::Class;
 use super::promise::uncertainty;
 use super::unknowns::{estimate, moving, priors, unknowns, weights};
 use crate::analysis::coverage;
+use crate::calibration::located::{located, promised_rows};
 use crate::calibration::accuracy::model_accuracy;
 use crate::calibration::expected::{Expectations, expectations};
 use crate::calibration::fit::Task;
@@ -327,13 +328,15 @@ impl Geometry<'_> {
             let before = (&of_geometry, &calibration.models.calibrated);
             effects(&model, (&session, &estimate), before, rows, (uncertainty, &deviations), noise)
         });
+        let estimate = located(&session, rows, &estimate, noise).into_owned();
         let training = session.errors(rows, &estimate);
         let judged = &calibration.held_out_rows;
         let held_out = session.errors(judged, &estimate);
         let targets: Vec<usize> = (0..data.targets.len()).collect();
-        let kept = uncertainty.as_ref().filter(|_| !judged.is_empty()).map(|uncertainty| {
+        let promised = promised_rows(data, rows, judged);
+        let kept = uncertainty.as_ref().filter(|_| !promised.is_empty()).map(|uncertainty| {
             let predicted = PredictedUncertainty { uncertainty, targets: &targets, coverage: &coverage };
-            let some = sample_rows(judged, JUDGED);
+            let some = sample_rows(&promised, JUDGED);
             predicted.check(&session, &estimate, &some, &session.errors(&some, &estimate))
         });
         let (robot, targets) = place_tip(&model.robot, data, &data.frames(rows), &estimate);

@@ -1,5 +1,6 @@
 //! Judgement of each row, and which rows are suspected (theory.md §6 (34d) to (34f)).
 
+use crate::calibration::located::located;
 use super::alike::TAILS;
 use super::{Configurations, Loss, RowParts, Scale, parts};
 use crate::analysis::influence;
@@ -186,12 +187,13 @@ pub(in crate::calibration) fn judge_rows(
     loss: Option<Loss>,
 ) -> RowJudgements {
     let all: Vec<u32> = (0..u32::try_from(task.session.data.len()).unwrap_or(u32::MAX)).collect();
+    let estimate = &*located(&task.session, task.rows, fitted.estimate, fitted.noise);
     let mut is_fitted = vec![false; all.len()];
     task.rows.iter().for_each(|&row| is_fitted[row as usize] = true);
     let bounds = Bounds::suspected(all.len());
-    let parts = parts(&task.session, &all, fitted.estimate, fitted.noise);
+    let parts = parts(&task.session, &all, estimate, fitted.noise);
     let unknowns = configurations.repeats * fitted.unknowns;
-    let shares = configurations.shares(&task.session, fitted.estimate);
+    let shares = configurations.shares(&task.session, estimate);
     let judge = |scale: Scale| -> RowJudgements {
         // Influence is computed only where it may matter: rows with a leverage near 1 have no residual to judge them by.
         let lengths = parts.iter().map(|row| scale.length(row));

@@ -12,6 +12,7 @@ use crate::calibration::{
 };
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Estimate, Stand, Tree};
+use crate::lie::Freedom;
 use crate::measurement::{ByQuantity, Dataset, Measured, Quantity};
 use crate::parameters::{DeviceFrame, Names, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
 use crate::problem::Layout;
@@ -451,7 +452,7 @@ impl CalibrationFile {
         let mut estimate = Estimate::on(robot, tree, Vec::new(), self.base_from_device()?.inverse());
         estimate.base_from_axis = axes;
         estimate.terms.clone_from(&robot.terms);
-        let mut free = entry.joint_parameters(robot);
+        let mut free = entry.joint_parameters(robot, self.first_station());
         let is_known = |name: &str| self.targets.contains_key(name);
         let place = robot.places_of_targets();
         for (index, (name, is_frame)) in entry.targets.iter().enumerate() {
@@ -460,10 +461,11 @@ impl CalibrationFile {
             }
             let (body, pose) = place(Some(name));
             estimate = estimate.with_target(body, pose);
-            free.push(if *is_frame {
-                Parameter::TargetFrame(TargetFrame { target: index })
-            } else {
-                Parameter::TargetPlace(TargetPlace { target: index })
+            let usual = if *is_frame { Freedom::Frame } else { Freedom::Place };
+            let block = if name.is_empty() { "target".to_owned() } else { format!("target.{name}") };
+            free.push(match entry.freedom(&block).unwrap_or(usual) {
+                Freedom::Place => Parameter::TargetPlace(TargetPlace { target: index }),
+                freedom => Parameter::TargetFrame(TargetFrame { target: index, freedom }),
             });
         }
         if !entry.unknowns.is_empty() {
@@ -512,10 +514,10 @@ impl CalibrationFile {
 
 impl UncertaintyEntry {
     /// Parameters of the first device frame and the joints that may be among the unknowns, in the order of a fit.
-    fn joint_parameters(&self, robot: &Robot) -> Vec<Parameter> {
-        let turns = self.unknowns.iter().any(|name| name.starts_with("frame") && name.ends_with(".rx"));
-        let of =
-            |about: [f64; 3]| if turns { DeviceFrame::new(0, about.into()) } else { DeviceFrame::anchor(0) };
+    fn joint_parameters(&self, robot: &Robot, first_station: Option<&str>) -> Vec<Parameter> {
+        let block = first_station.map_or_else(|| "frame".to_owned(), |name| format!("frame.{name}"));
+        let freedom = self.freedom(&block).unwrap_or(Freedom::Frame);
+        let of = |about: [f64; 3]| DeviceFrame { station: 0, about: about.into(), freedom };
         let frame = self.frame_about_m.map(|about| Parameter::DeviceFrame(of(about)));
         let kinds: Vec<JointKind> = robot.joints.iter().map(|joint| joint.kind).collect();
         let terms = self.unknowns.iter().filter_map(|name| {
@@ -524,6 +526,14 @@ impl UncertaintyEntry {
             Some(Parameter::ValueTerm(ValueTerm { joint, kind: kinds[joint], term: term.parse().ok()? }))
         });
         frame.into_iter().chain(screw_axes(&kinds)).chain(terms).collect()
+    }
+
+    /// The motions of a frame that are among the unknowns, by the name of its block; `None` if none is.
+    fn freedom(&self, block: &str) -> Option<Freedom> {
+        const NAMES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+        let has = |motion: usize| NAMES.get(motion).is_some_and(|name| self.unknowns.contains(&format!("{block}.{name}")));
+        let motions: Vec<usize> = (0..NAMES.len()).filter(|&motion| has(motion)).collect();
+        Freedom::ALL.into_iter().find(|freedom| freedom.motions() == motions)
     }
 
     /// The names by which unknowns are called.

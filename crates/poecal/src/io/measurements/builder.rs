@@ -38,6 +38,30 @@ const OUR_NAMES: [&str; 19] = [
     "set",
 ];
 
+/// Names of columns that number joints from base to tip.
+const NUMBERED: [&str; 5] = ["q", "joint", "j", "a", "joint_"];
+
+/// Joints with their numbered columns, if the file names no joint and has a column `q1` (or [`NUMBERED`]) and so on for each, and no more.
+fn numbered(
+    header: &Header<'_>,
+    robot: &Robot,
+    map: &ColumnMap,
+    names: &[String],
+) -> Option<Vec<(String, String)>> {
+    let joints: Vec<&String> =
+        names.iter().filter(|name| robot.reading_kind(name) != ReadingKind::Factor).collect();
+    if !map.joints.is_empty() || joints.iter().any(|name| header.count(name) > 0) {
+        return None;
+    }
+    let has_all = |prefix: &&str| {
+        let has = |number: usize| header.count(&format!("{prefix}{number}")) == 1;
+        (1..=joints.len()).all(has) && !has(joints.len() + 1)
+    };
+    let prefix = NUMBERED.into_iter().find(|prefix| has_all(prefix))?;
+    let column = |(index, name): (usize, &String)| (name.clone(), format!("{prefix}{}", index + 1));
+    Some(joints.into_iter().enumerate().map(column).collect())
+}
+
 /// Whether a name has a meaning in every file.
 fn is_our_name(name: &str) -> bool {
     OUR_NAMES.contains(&name) || kinds::names().any(|known| known == name)
@@ -66,6 +90,8 @@ pub(super) struct Builder<'a> {
     readings: BTreeSet<String>,
     pub(super) inputs: Vec<Input>,
     used: Vec<bool>,
+    /// Joints with the numbered columns that are taken for them, where no column has the name of a joint.
+    pub(super) numbered: Option<Vec<(String, String)>>,
 }
 
 impl<'a> Builder<'a> {
@@ -78,14 +104,19 @@ impl<'a> Builder<'a> {
             return Err(Error::new(ErrorKind::Measurement, message).in_file(&map.path));
         }
         let used = vec![false; header.cells.len()];
-        let mut builder = Builder { header, map, readings, inputs: Vec::new(), used };
+        let numbered = numbered(header, robot, map, &names);
+        let mut builder = Builder { header, map, readings, inputs: Vec::new(), used, numbered };
         let default = ColumnSpec::default();
+        let numbers = builder.numbered.clone().into_iter().flatten();
+        let numbers: BTreeMap<String, ColumnSpec> = numbers
+            .map(|(joint, column)| (joint, ColumnSpec { column: Some(column), ..ColumnSpec::default() }))
+            .collect();
         for name in &names {
             if robot.reading_kind(name) == ReadingKind::Factor {
                 builder.factor_input(name)?;
                 continue;
             }
-            let spec = map.joints.get(name).unwrap_or(&default);
+            let spec = map.joints.get(name).or_else(|| numbers.get(name)).unwrap_or(&default);
             let purpose = format!("for joint `{name}`");
             builder.spec_input(name, spec, reading_quantity(robot, name), &purpose)?;
         }
@@ -304,20 +335,53 @@ impl<'a> Builder<'a> {
 
     /// The other kinds of measurements of which the header has columns.
     fn kinds(&mut self) -> Result<Vec<KindColumns>> {
-        let mut found = Vec::new();
+        let mut found: Vec<KindColumns> = Vec::new();
+        let mut known: BTreeMap<&str, usize> = BTreeMap::new();
         for (index, kind) in KINDS.iter().enumerate() {
-            let (names, dimension) = (kind.names(), kind.dimension());
-            if !names.iter().any(|name| self.has(name)) {
+            let has_number = kind.numbers.iter().any(|name| self.has(name));
+            if !(self.has(kind.key()) || kind.needs_numbers() && has_number) {
                 continue;
             }
-            let purpose = format!("for the {}", kind.quantity.name());
-            let number = |name: &&'static str| self.column_input(name, name, dimension, None, &purpose);
-            let numbers = names.iter().map(number).collect::<Result<Vec<_>>>()?;
-            let sigma = self.sigma(&format!("sigma_{}", kind.quantity.name()), None, dimension, true)?;
-            let place = self.optional_text_column(kind.place)?;
-            found.push(KindColumns::new(index, numbers, sigma, place));
+            let (dimension, purpose) = (kind.dimension(), format!("for the {}", kind.quantity().name()));
+            let mut numbers = Vec::with_capacity(kind.numbers.len());
+            let names = kind.numbers.iter().filter(|name| kind.needs_numbers() || self.has(name));
+            for &name in names.collect::<Vec<_>>() {
+                // Kinds that a word tells apart have their numbers in the same columns.
+                let input = match known.get(name) {
+                    Some(&input) => input,
+                    None => self.column_input(name, name, dimension, None, &purpose)?,
+                };
+                known.insert(name, input);
+                numbers.push(input);
+            }
+            let mut sigmas = Vec::with_capacity(kind.quantities.len());
+            for &quantity in kind.quantities {
+                let name = format!("sigma_{}", quantity.name());
+                let dimension = match quantity.unit() {
+                    crate::unit::Unit::Metre => Dimension::Length,
+                    crate::unit::Unit::Radian => Dimension::Angle,
+                    crate::unit::Unit::One => Dimension::Number,
+                };
+                let sigma = self.sigma(&name, None, dimension, true)?;
+                sigmas.extend(sigma.map(|input| (quantity, input)));
+            }
+            let mut places = Vec::with_capacity(kind.places.len());
+            for name in kind.places {
+                places.extend(self.shared_text_column(name)?);
+            }
+            let word = kind.word().map(|(column, _)| self.shared_text_column(column)).transpose()?.flatten();
+            found.push(KindColumns { kind: index, numbers, sigmas, places, word });
         }
         Ok(found)
+    }
+
+    /// Index of an optional column that several kinds may use.
+    fn shared_text_column(&mut self, name: &str) -> Result<Option<usize>> {
+        let index = self.header.find(name)?.filter(|_| !self.readings.contains(name));
+        if let Some(index) = index {
+            self.mark(index);
+        }
+        Ok(index)
     }
 
     fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {

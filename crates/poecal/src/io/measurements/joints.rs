@@ -99,7 +99,8 @@ fn of_blocks<'p>(
         let message = "found a header and no rows, expected at least one row of joint readings";
         return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
     }
-    let warnings = watch.finish(path, &layout, &inputs.ranges)?;
+    let mut warnings = watch.finish(path, &layout, &inputs.ranges)?;
+    warnings.extend(layout.numbered_words().map(|words| format!("{}: {words}", path.display())));
     joints.warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
     Ok(joints)
 }

@@ -32,6 +32,8 @@ pub(super) struct ColumnLayout {
     pub(super) pose: PoseDirection,
     /// Columns without meaning, each with a name of ours that may have been meant.
     pub(super) ignored: Vec<(String, Option<String>)>,
+    /// Joints with the numbered columns that were taken for them.
+    pub(super) numbered: Option<Vec<(String, String)>>,
 }
 
 impl ColumnLayout {
@@ -71,9 +73,18 @@ impl ColumnLayout {
             (None, Some(column)) => SetRule::Words(column),
             (None, None) => SetRule::Unstated,
         };
-        let ignored = builder.ignored();
-        let inputs = builder.inputs;
-        Ok(ColumnLayout { inputs, targets, target_column, instrument, id, set, pose: map.pose, ignored })
+        let (ignored, numbered) = (builder.ignored(), builder.numbered.clone());
+        let (inputs, pose) = (builder.inputs, map.pose);
+        Ok(ColumnLayout { inputs, targets, target_column, instrument, id, set, pose, ignored, numbered })
+    }
+
+    /// Which numbered columns were taken for the joints, in words.
+    pub(super) fn numbered_words(&self) -> Option<String> {
+        let (first, last) = (self.numbered.as_ref()?.first()?, self.numbered.as_ref()?.last()?);
+        Some(format!(
+            "no column has the name of a joint; took `{}` to `{}` for the joints from `{}` to `{}`, in the order of the chain",
+            first.1, last.1, first.0, last.0
+        ))
     }
 
     /// The layout of a file that is read for its joints alone.
@@ -81,6 +92,7 @@ impl ColumnLayout {
         let mut builder = Builder::new(header, robot, map)?;
         builder.check_distinct()?;
         let id = builder.id_column()?;
-        Ok(ColumnLayout { inputs: builder.inputs, id, ..ColumnLayout::default() })
+        let numbered = builder.numbered.clone();
+        Ok(ColumnLayout { inputs: builder.inputs, id, numbered, ..ColumnLayout::default() })
     }
 }

@@ -7,7 +7,6 @@ use serde::Serialize;
 
 use super::builder::TargetLayout;
 use super::inputs::InputReader;
-use super::kinds::KindColumns;
 use super::table::Row;
 use crate::error::{Error, Result};
 
@@ -59,7 +58,7 @@ impl LostBeams {
         let before = self.count;
         let mut seen = false;
         for target in targets {
-            match beam(target, inputs) {
+            match beam(row, target, inputs) {
                 Beam::Seen => seen = true,
                 // With several targets in a row, some may not have been measured.
                 Beam::Empty => {}
@@ -67,7 +66,7 @@ impl LostBeams {
                 Beam::Zero => {
                     self.add(row.line);
                     inputs.forget(target.position.as_ref().map_or(&[][..], |position| position));
-                    target.kinds.iter().for_each(|kind| inputs.forget(kind.numbers()));
+                    target.kinds.iter().for_each(|kind| inputs.forget(&kind.numbers));
                     inputs.forget(target.orientation.as_ref().map_or(&[], |(_, parts)| parts));
                 }
             }
@@ -114,9 +113,15 @@ pub(super) fn named_lines(count: usize, first_lines: &[usize]) -> String {
     format!("{word} {}{more}", lines.join(", "))
 }
 
+/// Whether the row has a position of a target.
+pub(super) fn has_position(target: &TargetLayout, inputs: &InputReader<'_>) -> bool {
+    target.position.iter().flatten().any(|&input| inputs.value(input).is_some())
+}
+
 /// State of a target in the current row.
-fn beam(target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
-    let mut measured = target.kinds.iter().filter(|kind| kind.is_measured(inputs));
+fn beam(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
+    let has_position = has_position(target, inputs);
+    let mut measured = target.kinds.iter().filter(|kind| kind.is_measured(row, inputs, has_position));
     if let Some(first) = measured.next() {
         return if first.is_lost(inputs) && target.position.is_none() { Beam::Zero } else { Beam::Seen };
     }
@@ -148,7 +153,7 @@ fn zero_words(target: &TargetLayout) -> &'static str {
 
 fn refused(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>, found: &str) -> Error {
     let first =
-        target.position.iter().flatten().chain(target.kinds.iter().flat_map(KindColumns::numbers)).next();
+        target.position.iter().flatten().chain(target.kinds.iter().flat_map(|kind| &kind.numbers)).next();
     let first = first.copied().unwrap_or(0);
     let message = format!("found {found}, as of a lost beam, expected what was measured; leave out the row");
     row.error(inputs.column(first), message)

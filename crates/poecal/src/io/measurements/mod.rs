@@ -20,6 +20,7 @@ mod orientation;
 mod read;
 mod row;
 mod scale;
+mod socket_distance;
 mod spread;
 mod table;
 mod template;
@@ -38,6 +39,7 @@ pub use lost::LostBeams;
 pub use mapping::ColumnMap;
 pub use number::DecimalSign;
 pub use read::{parse, read};
+pub use socket_distance::SocketDistances;
 pub(in crate::io) use template::{plan, template};
 pub use understanding::{ColumnUnderstanding, FileUnderstanding};
 pub use units::{Dimension, Unit, UnitSource};
@@ -68,6 +70,36 @@ pub struct ReadOptions {
     pub strict: bool,
     /// Rows with a common device frame.
     pub frames: Frames,
+    /// Known distances between the sockets of a place.
+    pub socket_distances: Option<SocketDistances>,
+    /// What rows with a `plane` are that do not say it in `contact`.
+    pub contact: PlaneContact,
+}
+
+/// How a target touches a plane.
+///
+/// ```
+/// use poecal::io::measurements::{PlaneContact, ReadOptions};
+/// assert_eq!(ReadOptions::default().contact, PlaneContact::Point);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PlaneContact {
+    /// By a point: a height.
+    #[default]
+    Point,
+    /// By a face: a height and two tilts.
+    Flush,
+}
+
+impl PlaneContact {
+    /// Its word in the column `contact`.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            PlaneContact::Point => "point",
+            PlaneContact::Flush => "flush",
+        }
+    }
 }
 
 /// Rows with a common device frame.

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use super::table::Row;
 use crate::error::Result;
 
-/// The names so far. `first` is whether the first row has a name, and its place.
+/// The names so far. `first` is whether the first row of each kind of name has one, and its place.
 #[derive(Default)]
 pub(super) struct Names {
-    first: Option<(bool, PathBuf, usize)>,
+    first: BTreeMap<&'static str, (bool, PathBuf, usize)>,
     indices: BTreeMap<String, usize>,
 }
 
@@ -19,7 +19,7 @@ impl Names {
         &mut self,
         row: &Row<'_>,
         column: Option<usize>,
-        what: (&str, &str),
+        what: (&'static str, &str),
         name: Option<&str>,
     ) -> Result<usize> {
         self.check(row, column, what, name)?;
@@ -37,11 +37,11 @@ impl Names {
         &mut self,
         row: &Row<'_>,
         column: Option<usize>,
-        (what, unnamed): (&str, &str),
+        (what, unnamed): (&'static str, &str),
         name: Option<&str>,
     ) -> Result<()> {
         let (named, path, line) =
-            self.first.get_or_insert_with(|| (name.is_some(), row.path.to_path_buf(), row.line));
+            self.first.entry(what).or_insert_with(|| (name.is_some(), row.path.to_path_buf(), row.line));
         if *named == name.is_some() {
             return Ok(());
         }

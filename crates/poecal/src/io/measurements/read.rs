@@ -2,17 +2,19 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::builder::TargetLayout;
 use super::inputs::InputReader;
+use super::kinds::KindColumns;
 use super::layout::{ColumnLayout, SetRule};
-use super::lost::LostBeams;
+use super::lost::{self, LostBeams};
 use super::mapping::ColumnMap;
 use super::naming::Names;
 use super::number::Numbers;
 use super::row::measurement;
 use super::scale::{self, JointWatch};
+use super::socket_distance::Sockets;
 use super::spread;
 use super::table::{Row, Table, refuse_more_rows};
 use super::text::Blocks;
@@ -77,6 +79,10 @@ struct Reader<'a> {
     map: &'a ColumnMap,
     targets: Names,
     stations: Names,
+    /// What each named place is, and where it was named first.
+    places: BTreeMap<String, (&'static str, PathBuf, usize)>,
+    /// The sockets of each place.
+    sockets: Sockets,
     /// Which of the values that mark a row to fit were seen.
     fit_values_seen: Vec<bool>,
     found: MeasurementFile,
@@ -90,6 +96,8 @@ impl<'a> Reader<'a> {
             map: options.mapping.as_ref().unwrap_or(no_map),
             targets: Names::default(),
             stations: Names::default(),
+            places: BTreeMap::new(),
+            sockets: Sockets::new(),
             fit_values_seen: Vec::new(),
             found: MeasurementFile {
                 data: Dataset::new(robot.reading_names()).with_factors(robot.factors.len()),
@@ -165,6 +173,7 @@ impl<'a> Reader<'a> {
             self.found.data.ids.resize(self.found.data.len(), String::new());
         }
         self.warn_of_ignored(path, &layout);
+        self.found.warnings.extend(layout.numbered_words().map(|words| format!("{}: {words}", path.display())));
         let turns = turns::warning(&table.header, &layout, self.map);
         self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
         self.found.understood.push(FileUnderstanding {
@@ -213,17 +222,10 @@ impl<'a> Reader<'a> {
                 stated.set(Quantity::Rotation, inputs.sigma(row, target.sigma_rotation)?);
                 self.observation(row, layout, (target, set, None), (measurement, stated), inputs)?;
             }
+            let has_position = lost::has_position(target, inputs);
             for kind in &target.kinds {
-                if let Some((measurement, quantity, sigma)) = kind.measurement(row, inputs)? {
-                    let mut stated = Stated::default();
-                    stated.set(quantity, sigma);
-                    self.observation(
-                        row,
-                        layout,
-                        (target, set, kind.place()),
-                        (measurement, stated),
-                        inputs,
-                    )?;
+                if let Some((measurement, stated)) = kind.measurement(row, inputs, (has_position, self.options.contact))? {
+                    self.observation(row, layout, (target, set, Some(kind)), (measurement, stated), inputs)?;
                 }
             }
         }
@@ -235,13 +237,13 @@ impl<'a> Reader<'a> {
         &mut self,
         row: &Row<'_>,
         layout: &ColumnLayout,
-        (target, set, place): (&TargetLayout, Option<Set>, Option<(&str, usize)>),
+        (target, set, kind): (&TargetLayout, Option<Set>, Option<&KindColumns>),
         (measurement, stated): (Measurement, Stated),
         inputs: &InputReader<'_>,
     ) -> Result<()> {
         let observation = Observation {
             target: self.target(row, layout, target)?,
-            station: self.station(row, layout, place)?,
+            station: self.station(row, layout, kind)?,
             from: None,
             measurement,
             stated,
@@ -299,41 +301,76 @@ impl<'a> Reader<'a> {
         Ok(index)
     }
 
-    /// Index of the row's station: of its instrument, or of the place from which it was measured. Either all rows name theirs or none does.
-    fn station(
-        &mut self,
-        row: &Row<'_>,
-        layout: &ColumnLayout,
-        place: Option<(&str, usize)>,
-    ) -> Result<usize> {
-        let is_named = |column: usize| row.cells.get(column).is_some_and(|cell| !cell.text().is_empty());
-        let instrument = layout.instrument.map(|column| ("instrument", column));
-        let named = place.filter(|(_, column)| is_named(*column));
-        if let (Some((what, column)), Some((_, other))) = (named, instrument.filter(|it| is_named(it.1))) {
-            let [own, other] =
-                [column, other].map(|at| row.cells.get(at).map(|cell| cell.text()).unwrap_or_default());
-            if own != other {
-                let message = format!(
-                    "found the {what} `{own}` beside the instrument `{other}`, expected one of the two: leave one cell empty"
-                );
-                return Err(row.error(column, message));
-            }
+    /// Index of the row's station: of its instrument, or of the place from which it was measured. Either all rows that are measured alike name
+    /// theirs or none does.
+    fn station(&mut self, row: &Row<'_>, layout: &ColumnLayout, kind: Option<&KindColumns>) -> Result<usize> {
+        let text = |column: usize| row.cells.get(column).map(|cell| cell.text()).filter(|it| !it.is_empty());
+        let own = kind.and_then(|kind| kind.place_name(row));
+        let instrument = layout.instrument.and_then(text);
+        if let (Some(kind), Some(own), Some(other)) = (kind, &own, &instrument)
+            && own != other
+        {
+            let (what, columns) = kind.place();
+            let message = format!(
+                "found the {what} `{own}` beside the instrument `{other}`, expected one of the two: leave one cell empty"
+            );
+            return Err(row.error(columns.last().copied().unwrap_or(0), message));
         }
-        let (what, column) = named.or(instrument).or(place).unzip();
-        let what = what.unwrap_or("instrument");
-        let name = match self.options.frames {
-            Frames::PerFile => Some(Cow::Owned(row.path.display().to_string())),
-            Frames::Common => column.and_then(|column| row.cells.get(column)).map(|cell| cell.text()),
+        let place = kind.map(KindColumns::place).filter(|(_, columns)| !columns.is_empty());
+        let (what, column) = match (&own, place, layout.instrument) {
+            (Some(_), Some((what, columns)), _) => (what, columns.last().copied()),
+            (_, _, Some(column)) => ("instrument", Some(column)),
+            (None, Some((what, columns)), None) => (what, columns.last().copied()),
+            (_, None, None) => ("instrument", None),
         };
-        let name = name.as_deref().filter(|name| !name.is_empty());
+        let name = match (own, self.options.frames) {
+            (Some(own), _) => Some(own),
+            (None, Frames::PerFile) => Some(Cow::Owned(row.path.display().to_string())),
+            (None, Frames::Common) => instrument,
+        };
+        let name = name.as_deref();
+        if let Some(name) = name {
+            self.refuse_other_place(row, column, what, name)?;
+        }
         let index = self.stations.index(row, column, (what, ""), name)?;
-        if let Some(name) = name.filter(|_| index == self.found.data.stations.len()) {
-            if self.options.frames == Frames::Common {
-                check_name(name, what).map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
+        let known = &mut self.found.data.stations;
+        if index >= known.len() && (name.is_some() || index > 0) {
+            if let Some(name) = name.filter(|_| self.options.frames == Frames::Common) {
+                check_name(&name.replace('/', "_"), what)
+                    .map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
             }
-            self.found.data.stations.push(Some(name.to_owned()));
+            // An unnamed instrument before the first name.
+            known.resize(index, None);
+            known.push(name.map(str::to_owned));
+            if what == "socket" {
+                let (place, socket) = name.and_then(|name| name.rsplit_once('/')).unwrap_or(("", name.unwrap_or_default()));
+                self.sockets.entry(place.to_owned()).or_default().push((socket.to_owned(), index));
+            }
         }
         Ok(index)
+    }
+
+    /// Refuses a name that places of two kinds share. An anchor may be an instrument that measures positions too.
+    fn refuse_other_place(
+        &mut self,
+        row: &Row<'_>,
+        column: Option<usize>,
+        what: &'static str,
+        name: &str,
+    ) -> Result<()> {
+        let place = |what: &'static str| if what == "anchor" { "instrument" } else { what };
+        let (known, path, line) = self
+            .places
+            .entry(name.to_owned())
+            .or_insert_with(|| (what, row.path.to_path_buf(), row.line));
+        if place(known) == place(what) {
+            return Ok(());
+        }
+        let message = format!(
+            "found the {what} `{name}`, which is the name of the {known} in {}:{line}, expected another name",
+            path.display()
+        );
+        Err(row.error(column.unwrap_or(0), message))
     }
 
     fn finish(self) -> Result<MeasurementFile> {
@@ -351,6 +388,10 @@ impl<'a> Reader<'a> {
             });
         }
         let mut found = self.found;
+        if let Some(distances) = &self.options.socket_distances {
+            found.data.lengths = distances.lengths(&self.sockets)?;
+        }
+        found.data.settle_faces(self.robot);
         found.warnings.iter_mut().for_each(|warning| *warning = visible(warning).into_owned());
         Ok(found)
     }

@@ -8,7 +8,6 @@ use serde::Serialize;
 use super::cells::Separator;
 use super::header::Header;
 use super::inputs::{Input, InputSource, Range};
-use super::kinds::KindColumns;
 use super::layout::{ColumnLayout, SetRule};
 use super::lost::LostBeams;
 use super::mapping::PoseDirection;
@@ -104,16 +103,22 @@ pub(super) fn columns(
         SetRule::Unstated => None,
         SetRule::Words(index) | SetRule::Where(index, _) => Some(index),
     };
-    let places: Vec<(&str, usize)> =
-        layout.targets.iter().flat_map(|target| &target.kinds).filter_map(KindColumns::place).collect();
+    let mut places: Vec<usize> = layout
+        .targets
+        .iter()
+        .flat_map(|target| &target.kinds)
+        .flat_map(|kind| kind.places.iter().chain(&kind.word).copied())
+        .collect();
+    places.dedup();
+    let places = places.into_iter().filter_map(|at| text(header.cells.get(at)?.name.as_str(), Some(at)));
     let texts = [
         text("target", layout.target_column),
         text("instrument", layout.instrument),
-        places.first().and_then(|&(name, column)| text(name, Some(column))),
         text("id", layout.id),
         text("set", set),
     ];
-    layout.inputs.iter().zip(ranges).map(number).chain(texts.into_iter().flatten()).collect()
+    let texts = texts.into_iter().flatten().chain(places);
+    layout.inputs.iter().zip(ranges).map(number).chain(texts).collect()
 }
 
 /// Orientation forms of the targets, without repetition.

@@ -1,0 +1,49 @@
+//! Height of a point over a plane.
+
+use super::{Channel, Channels, Observe, Quantity, Sensitivity};
+use crate::lie::{Freedom, Pose};
+
+/// Height of a target over a plane, the device's xy, `e = h - p_z`: zero of a probe that touches, the reading of a dial gauge that looks
+/// along z. The device shows its height and its tilts alone (theory.md §4 (15c)).
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use poecal::lie::Pose;
+/// use poecal::measurement::{HeightMeasurement, Observe};
+/// let mut e = [0.0];
+/// HeightMeasurement { height: 0.0 }.residual(&Pose::from_translation(Vector3::new(0.3, 0.1, 1e-4)), &mut e);
+/// assert_eq!(e, [-1e-4]);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct HeightMeasurement {
+    /// Height, metres.
+    pub height: f64,
+}
+
+const HEIGHT: Channels = Channels::new(&[Channel { name: "height", quantity: Quantity::Height }]);
+
+impl Observe for HeightMeasurement {
+    fn channels(&self) -> &'static Channels {
+        &HEIGHT
+    }
+
+    fn residual(&self, predicted: &Pose, out: &mut [f64]) {
+        out[0] = self.height - predicted.translation.z;
+    }
+
+    fn sensitivity(&self, _: &Pose, out: &mut [Sensitivity]) {
+        out[0] = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+    }
+
+    fn is_wrench(&self) -> bool {
+        true
+    }
+
+    fn device_freedom(&self) -> Freedom {
+        Freedom::PlaneZ
+    }
+
+    fn is_finite(&self) -> bool {
+        self.height.is_finite()
+    }
+}

@@ -1,0 +1,217 @@
+//! Closed forms of devices that show no places: anchors, sockets, planes, the direction of gravity.
+
+use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+
+use super::averaging::rotation_maximising;
+use super::registration::cube_rotations;
+use crate::estimate::Estimate;
+use crate::lie::{Pose, rotation};
+use crate::linalg;
+use crate::measurement::Measurement;
+
+/// Share of the information of distances about an anchor below which it is rounding.
+const ROUNDING: f64 = 1e-12;
+/// Steps of the search for the multiplier of a plane's normal: each halves the interval.
+const HALVINGS: usize = 200;
+/// Alternations of a direction with the turn of the target that sees it.
+const ROUNDS: usize = 20;
+
+/// A row: the arm's motion from zero in the base frame, what was measured, and the target.
+pub(super) struct Other {
+    pub(super) motion: Pose,
+    pub(super) measurement: Measurement,
+    pub(super) target: usize,
+}
+
+/// Estimates with the device at the places that the rows of one station tell, given the targets of the start; with targets that are free
+/// also turned, where the rows tell a direction alone.
+pub(super) fn starts(rows: &[Other], start: &Estimate, targets_free: bool) -> Vec<Estimate> {
+    let at = |device: Pose| {
+        let mut estimate = start.clone();
+        estimate.device_from_base = device;
+        estimate
+    };
+    let seen = Seen { rows, start };
+    let devices = [seen.by_ranges(), seen.by_sockets(), seen.by_heights()];
+    let mut found: Vec<Estimate> = devices.into_iter().flatten().map(at).collect();
+    if found.is_empty() {
+        found.extend(seen.by_directions(targets_free));
+    }
+    if found.is_empty() {
+        found.push(start.clone());
+    }
+    found
+}
+
+/// Rows as seen with the targets of a start.
+struct Seen<'a> {
+    rows: &'a [Other],
+    start: &'a Estimate,
+}
+
+impl Seen<'_> {
+    fn place(&self, row: &Other) -> Vector3<f64> {
+        row.motion.act(&self.start.base_from_target[row.target].translation)
+    }
+
+    /// The device's frame with its axes as at the start and its origin at a point of the base.
+    fn at(&self, point: &Vector3<f64>) -> Pose {
+        let turn = self.start.device_from_base.rotation;
+        Pose::new(turn, -(turn * point))
+    }
+
+    /// The device at the point a that has the measured distances d from the targets p: with `|a|²` as an unknown of its own,
+    /// `|p|² - d² = 2 p·a - |a|²` is linear. Its axes are those of the start.
+    fn by_ranges(&self) -> Option<Pose> {
+        let ranges: Vec<(Vector3<f64>, f64)> = self
+            .rows
+            .iter()
+            .filter_map(|row| Some((self.place(row), row.measurement.observe().range()?)))
+            .collect();
+        if ranges.is_empty() {
+            return None;
+        }
+        let middle = ranges.iter().map(|(place, _)| place).sum::<Vector3<f64>>() / ranges.len() as f64;
+        let (mut gram, mut right) = (Matrix4::zeros(), Vector4::zeros());
+        for (place, range) in ranges {
+            let arm = place - middle;
+            let row = Vector4::new(2.0 * arm.x, 2.0 * arm.y, 2.0 * arm.z, -1.0);
+            gram += row * row.transpose();
+            right += row * (arm.norm_squared() - range * range);
+        }
+        let upper: Vec<f64> = gram.iter().copied().collect();
+        let factor = linalg::cholesky(&upper, 4, ROUNDING * gram.trace())?;
+        let found = linalg::cholesky_solve(&factor, right.as_slice());
+        Some(self.at(&(middle + Vector3::new(*found.first()?, *found.get(1)?, *found.get(2)?))))
+    }
+
+    /// The middle of the balls.
+    fn by_sockets(&self) -> Option<Pose> {
+        let places = self.rows.iter().filter(|row| matches!(row.measurement, Measurement::Socket(_)));
+        let (sum, count) = places.fold((Vector3::zeros(), 0), |(sum, count), row| (sum + self.place(row), count + 1));
+        (count > 0).then(|| self.at(&(sum / f64::from(count))))
+    }
+
+    /// The plane from which the points have the measured heights.
+    fn by_heights(&self) -> Option<Pose> {
+        let heights: Vec<(Vector3<f64>, f64)> = self
+            .rows
+            .iter()
+            .filter_map(|row| {
+                let height = match row.measurement {
+                    Measurement::Height(it) => it.height,
+                    Measurement::Flush(it) => it.height,
+                    Measurement::Point(_)
+                    | Measurement::Pose(_)
+                    | Measurement::Distance(_)
+                    | Measurement::Socket(_)
+                    | Measurement::Direction(_) => return None,
+                };
+                Some((self.place(row), height))
+            })
+            .collect();
+        let count = heights.len() as f64;
+        let (place, height) =
+            heights.iter().fold((Vector3::zeros(), 0.0), |(place, height), it| (place + it.0, height + it.1));
+        let (middle, mean) = (place / count.max(1.0), height / count.max(1.0));
+        let normal = self.flush_normal().or_else(|| {
+            let arms = heights.iter().map(|(place, height)| (place - middle, height - mean));
+            (!heights.is_empty()).then(|| normal_of(arms, &self.start.device_from_base))
+        })?;
+        let turn = rotation::shortest_arc(&normal, &Vector3::z());
+        Some(Pose::new(turn, Vector3::z() * mean - turn * middle))
+    }
+
+    /// Mean of a plane's normals by faces that lay on it.
+    fn flush_normal(&self) -> Option<Vector3<f64>> {
+        let normals = self.rows.iter().filter_map(|row| {
+            let Measurement::Flush(it) = row.measurement else { return None };
+            Some(row.motion.rotation * self.start.base_from_target[row.target].rotation * it.normal)
+        });
+        normals.reduce(|a, b| a + b)?.try_normalize(f64::MIN_POSITIVE)
+    }
+
+    /// The device's z in the base from targets that see it, `u = Rᵀ e_z`: the mean of `R u` for the targets of the start; for free targets
+    /// also turned, from several turns and by turns.
+    fn by_directions(&self, targets_free: bool) -> Vec<Estimate> {
+        let seen: Vec<(&Other, Vector3<f64>)> = self
+            .rows
+            .iter()
+            .filter_map(|row| match row.measurement {
+                Measurement::Direction(it) => Some((row, it.direction)),
+                Measurement::Point(_)
+                | Measurement::Pose(_)
+                | Measurement::Distance(_)
+                | Measurement::Socket(_)
+                | Measurement::Height(_)
+                | Measurement::Flush(_) => None,
+            })
+            .collect();
+        if seen.is_empty() {
+            return Vec::new();
+        }
+        let turns: Vec<Matrix3<f64>> =
+            if targets_free { cube_rotations().collect() } else { vec![Matrix3::identity()] };
+        let mut found = Vec::with_capacity(turns.len());
+        for turn in turns {
+            let mut estimate = self.start.clone();
+            estimate.base_from_target.iter_mut().for_each(|pose| pose.rotation *= turn);
+            for round in 0..ROUNDS {
+                let sum: Vector3<f64> = seen
+                    .iter()
+                    .map(|(row, u)| row.motion.rotation * estimate.base_from_target[row.target].rotation * u)
+                    .sum();
+                let Some(up) = sum.try_normalize(f64::MIN_POSITIVE) else { break };
+                let device = rotation::shortest_arc(&up, &Vector3::z());
+                estimate.device_from_base = Pose::new(device, estimate.device_from_base.translation);
+                if !targets_free || round + 1 == ROUNDS {
+                    break;
+                }
+                for (target, pose) in estimate.base_from_target.iter_mut().enumerate() {
+                    let own = seen.iter().filter(|(row, _)| row.target == target);
+                    let sum: Matrix3<f64> =
+                        own.map(|(row, u)| u * (row.motion.rotation.transpose() * up).transpose()).sum();
+                    if sum != Matrix3::zeros() {
+                        pose.rotation = rotation_maximising(&sum);
+                    }
+                }
+            }
+            found.push(estimate);
+        }
+        found
+    }
+}
+
+/// The unit vector n that minimises `Σ (n·a - h)²` over arms a and heights h: `(A + λ 1) n = b` for the λ that makes its length one, found by
+/// halving. Without heights it is the direction of least spread, along the z that is given.
+fn normal_of(arms: impl Iterator<Item = (Vector3<f64>, f64)>, device: &Pose) -> Vector3<f64> {
+    let (mut gram, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for (arm, height) in arms {
+        gram += arm * arm.transpose();
+        right += arm * height;
+    }
+    let (values, vectors) = linalg::symmetric_eigen(gram.as_slice(), 3);
+    let axes = [0, 1, 2].map(|k| Vector3::new(vectors[(0, k)], vectors[(1, k)], vectors[(2, k)]));
+    let least = values.first().copied().unwrap_or(0.0);
+    let up = device.rotation.row(2).transpose();
+    let sign = if axes[0].dot(&up) < 0.0 { -1.0 } else { 1.0 };
+    let at = |above: f64| -> Vector3<f64> {
+        let along = axes.iter().zip(&values).skip(1);
+        let others: Vector3<f64> =
+            along.map(|(axis, value)| axis * (axis.dot(&right) / (value - least + above).max(f64::MIN_POSITIVE))).sum();
+        others + axes[0] * (axes[0].dot(&right) / above.max(f64::MIN_POSITIVE))
+    };
+    let scale = gram.trace().max(f64::MIN_POSITIVE);
+    if right.norm() <= 1e-9 * scale {
+        return axes[0] * sign;
+    }
+    let (mut low, mut high) = (0.0, right.norm() + scale);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if at(middle).norm() > 1.0 { low = middle } else { high = middle }
+    }
+    let found = at(high);
+    // With heights that do not depend on it, the axis of least spread completes the length.
+    let rest = (1.0 - found.norm_squared()).max(0.0).sqrt();
+    (found + axes[0] * (sign * rest)).normalize()
+}
