@@ -89,7 +89,8 @@ impl LeastSquares for Watched<'_> {
                 Parameter::ValueTerm(_)
                 | Parameter::TargetPlace(_)
                 | Parameter::TargetFrame(_)
-                | Parameter::DeviceFrame(_) => {}
+                | Parameter::DeviceFrame(_)
+                | Parameter::RangeUnknown(_) => {}
             }
         }
         WatchedState { estimate: self.0.retract(&state.estimate, step), screws, miss }

@@ -15,7 +15,8 @@ use crate::quantity::{sigma_m, sigma_rad};
 pub(crate) struct Identify {
     /// Robot model: URDF, TOML or calibration.json
     pub(crate) model: PathBuf,
-    /// Joint readings (CSV), joined; other columns than the joints' and `id` are ignored
+    /// Joint readings (CSV), joined; other columns than the joints' and `id` are ignored, but for kinds that touch something: these need the
+    /// columns that name it
     #[arg(required = true)]
     pub(crate) joints: Vec<PathBuf>,
     #[command(flatten)]

@@ -95,12 +95,30 @@ pub(super) const SIMULATED_KIND: Words<Kind> = &[
     ("pose", "Positions and orientations", Kind::Pose),
     ("point", "Positions", Kind::Point),
     ("mixed", "Both in turn", Kind::Mixed),
+    ("distance", "Distances from anchors, as of a draw-wire", Kind::Distance),
+    ("distance-change", "Changes of distances, as of an interferometer", Kind::Change),
+    ("sphere", "Points of a sphere of unknown radius", Kind::Sphere),
+    ("socket", "A ball in sockets", Kind::Socket),
+    ("plane", "Points of planes", Kind::Plane),
+    ("flush", "A face that lies flush on planes", Kind::Flush),
+    ("direction", "The direction of gravity, as of an inclinometer", Kind::Direction),
+    ("ball-bar", "Distances between two configurations", Kind::BallBar),
+    ("relative", "Poses from one configuration in another", Kind::Relative),
 ];
 
 /// What will be measured.
 pub(super) const MEASURED: Words<Kind> = &[
     ("points", "Positions of a target, as a laser tracker sees them", Kind::Point),
     ("poses", "Positions and orientations", Kind::Pose),
+    ("distances", "Distances from anchors, as of a draw-wire", Kind::Distance),
+    ("distance-changes", "Changes of distances, as of an interferometer", Kind::Change),
+    ("spheres", "Points of spheres", Kind::Sphere),
+    ("sockets", "A ball in sockets, or a fixed point touched in many ways", Kind::Socket),
+    ("planes", "Points of planes; heights over them, as of a dial gauge", Kind::Plane),
+    ("flush", "A face that lies flush on planes", Kind::Flush),
+    ("directions", "The direction of gravity, as of an inclinometer", Kind::Direction),
+    ("ball-bars", "Distances between two configurations", Kind::BallBar),
+    ("relative", "Poses from one configuration in another", Kind::Relative),
 ];
 
 /// Whether a frame is the same in both models.

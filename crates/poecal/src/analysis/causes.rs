@@ -293,7 +293,10 @@ impl Rules<'_> {
                     (estimate.base_from_target[*target].rotation, tool)
                 }
                 Parameter::ScrewAxis(axis) => (estimate.base_from_axis[axis.joint].rotation, -seen),
-                Parameter::OtherScrew(_) | Parameter::ValueTerm(_) | Parameter::DeviceFrame(_) => continue,
+                Parameter::OtherScrew(_)
+                | Parameter::ValueTerm(_)
+                | Parameter::DeviceFrame(_)
+                | Parameter::RangeUnknown(_) => continue,
             };
             let columns = parameter.model().columns().iter().zip(places);
             let shifting = columns.filter(|(column, _)| column.unit == Unit::Metre);
@@ -364,7 +367,10 @@ pub(super) fn joint_of(parameter: &Parameter) -> Option<usize> {
         Parameter::ScrewAxis(axis) => Some(axis.joint),
         Parameter::OtherScrew(screw) => Some(screw.joint),
         Parameter::ValueTerm(offset) => Some(offset.joint),
-        Parameter::TargetPlace(_) | Parameter::TargetFrame(_) | Parameter::DeviceFrame(_) => None,
+        Parameter::TargetPlace(_)
+        | Parameter::TargetFrame(_)
+        | Parameter::DeviceFrame(_)
+        | Parameter::RangeUnknown(_) => None,
     }
 }
 

@@ -181,7 +181,8 @@ impl Excitation {
                 Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
                 | Parameter::ValueTerm(_)
-                | Parameter::DeviceFrame(_) => continue,
+                | Parameter::DeviceFrame(_)
+                | Parameter::RangeUnknown(_) => continue,
             };
             if self.seen.get(target) == Some(&1) {
                 let name = target_name(setup, target);

@@ -9,16 +9,17 @@ use super::identifiability::{Identifiability, identifiability};
 use super::setup::Setup;
 use super::spectrum::PLAUSIBLE;
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Chain, Linkage, Packed, Session, delivered};
+use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
 use crate::measurement::{
     Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Source, Stated,
 };
-use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
+use crate::parameters::{Parameter, screw_axes};
 use crate::problem::{MOST_UNKNOWNS, Problem};
 use crate::robot::Robot;
 use crate::simulate::{Kind, pairs, random_configuration, seen};
 use crate::solve::LeastSquares;
+use crate::start::{Registration, device_parameter, range_parameters, register, target_parameters};
 
 /// Number of random configurations for the expected error, and their seed.
 const CONFIGURATIONS: usize = 1000;
@@ -107,31 +108,78 @@ pub struct Foresight {
 /// ```
 pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<Foresight> {
     let frames = robot.instruments.len().saturating_sub(1) + robot.mounted.len().max(1);
-    let unknowns = 4 * robot.joints.len() + 6 * frames;
-    if unknowns > MOST_UNKNOWNS {
+    check_unknowns(robot, frames)?;
+    if planned.kind.is_touched() {
         let message = format!(
-            "found about {unknowns} unknowns of {} joints, expected at most {MOST_UNKNOWNS} in one fit: identify a \
-             shorter chain",
-            robot.joints.len()
+            "found the kind `{}` and configurations alone, expected a measurement file that names what each row touches",
+            planned.kind.word()
         );
-        return Err(Error::new(ErrorKind::Problem, message));
+        return Err(Error::new(ErrorKind::Option, message));
     }
-    let data = predicted_data(robot, readings, planned)?;
-    let packed = Packed::of(robot, &data);
-    let rows: Vec<u32> = data.all_rows();
-    let session = Session::new(robot, &data, &packed, planned.device_free);
+    let (data, devices) = predicted_data(robot, readings, planned)?;
     let mut estimate = delivered(robot, &data);
+    for (station, device) in devices.into_iter().enumerate() {
+        *estimate.device_mut(station) = device;
+    }
+    foresee(robot, &data, estimate, planned)
+}
+
+/// The same for rows that touch something, by the measurements that name it: balls in sockets, points and faces on planes, points of spheres
+/// (`poecal::io::measurements` reads them). What they touch is where the nominal robot touches it best.
+///
+/// # Errors
+/// As [`identify`].
+///
+/// ```
+/// use poecal::analysis::{PlannedSession, identify_touching};
+/// use poecal::simulate::{Kind, Simulation, elbow};
+/// let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::Socket)?;
+/// let planned = PlannedSession { kind: Kind::Socket, ..PlannedSession::default() };
+/// let found = identify_touching(&elbow(), &made.data, &planned)?;
+/// assert_eq!(found.identifiability.rank, 26);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+pub fn identify_touching(robot: &Robot, data: &Dataset, planned: &PlannedSession) -> Result<Foresight> {
+    check_unknowns(robot, data.station_count() + data.targets.len())?;
+    let packed = Packed::of(robot, data);
+    let rows: Vec<u32> = data.all_rows();
+    let session = Session::new(robot, data, &packed, planned.device_free);
+    let registration = Registration { session, rows: &rows, noise: planned.noise, targets_free: false };
+    let estimate = register(&registration, &delivered(robot, data)).0;
+    foresee(robot, data, estimate, planned)
+}
+
+/// Refuses robots with more unknowns than one fit allows.
+fn check_unknowns(robot: &Robot, frames: usize) -> Result<()> {
+    let unknowns = 4 * robot.joints.len() + 6 * frames;
+    if unknowns <= MOST_UNKNOWNS {
+        return Ok(());
+    }
+    let message = format!(
+        "found about {unknowns} unknowns of {} joints, expected at most {MOST_UNKNOWNS} in one fit: identify a \
+         shorter chain",
+        robot.joints.len()
+    );
+    Err(Error::new(ErrorKind::Problem, message))
+}
+
+/// What data would determine, at an estimate that predicts them.
+fn foresee(
+    robot: &Robot,
+    data: &Dataset,
+    mut estimate: Estimate,
+    planned: &PlannedSession,
+) -> Result<Foresight> {
+    let packed = Packed::of(robot, data);
+    let rows: Vec<u32> = data.all_rows();
+    let session = Session::new(robot, data, &packed, planned.device_free);
     estimate.recentre(&session, &rows);
     let mut free = screw_axes(estimate.kinds());
-    free.extend((0..data.targets.len()).map(|target| match planned.kind {
-        Kind::Point => Parameter::TargetPlace(TargetPlace { target }),
-        Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame::new(target)),
-    }));
+    free.extend(target_parameters(&session, &rows));
     // The first instrument's frame is a choice of the base.
-    free.extend((1..data.station_count()).map(|station| {
-        let about = data.mean_position(&data.seen_from(station, &rows));
-        Parameter::DeviceFrame(DeviceFrame::new(station, about))
-    }));
+    let further = (1..data.station_count()).filter(|&station| estimate.tree.shared(station).is_none());
+    free.extend(further.map(|station| device_parameter(data, station, &rows)));
+    free.extend(range_parameters(&session, &rows).map(Parameter::RangeUnknown));
     let problem = Problem::new(session, rows.clone(), free, planned.noise);
     let setup =
         Setup { session, rows: &rows, estimate: &estimate, layout: problem.layout(), noise: planned.noise };
@@ -142,8 +190,9 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     }
     let identifiability = identifiability(&setup, &gram, 1.0);
     let expected = expected(&setup, &identifiability);
+    let further = data.further_readings().len() / robot.reading_names().len().max(1);
     Ok(Foresight {
-        count: readings.len() / robot.reading_names().len().max(1),
+        count: data.len() + further,
         coverage: coverage(&session, &rows),
         identifiability,
         expected,
@@ -151,8 +200,8 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     })
 }
 
-/// The measurements that the nominal model predicts.
-fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<Dataset> {
+/// The measurements that the nominal model predicts, and device frames that are not the model's.
+fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Result<(Dataset, Vec<Pose>)> {
     let mut data = Dataset::new(robot.reading_names());
     let width = data.reading_names().len();
     if readings.is_empty() || !readings.len().is_multiple_of(width.max(1)) {
@@ -162,6 +211,9 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
             data.reading_names().join(", ")
         );
         return Err(Error::new(ErrorKind::Measurement, message));
+    }
+    if !planned.kind.has_device() {
+        return planned.kind.plan(robot, readings);
     }
     let pairs = pairs(robot);
     if pairs.is_empty() {
@@ -177,11 +229,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
             (None, None) => robot.forward_kinematics(readings),
             pair => seen(robot, &Pose::identity(), pair, readings),
         };
-        let as_pose = match planned.kind {
-            Kind::Pose => true,
-            Kind::Point => false,
-            Kind::Mixed => row.is_multiple_of(2),
-        };
+        let as_pose = planned.kind == Kind::Pose || planned.kind == Kind::Mixed && row.is_multiple_of(2);
         let measurement = if as_pose {
             Measurement::Pose(PoseMeasurement { pose })
         } else {
@@ -200,7 +248,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
         };
         data.push_observation(readings, observation)?;
     }
-    Ok(data)
+    Ok((data, Vec::new()))
 }
 
 /// Expected error of predicted positions in random configurations: theory.md §7 (36c).

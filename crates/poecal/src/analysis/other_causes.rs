@@ -146,6 +146,9 @@ impl Rules<'_> {
                     format!("the frame of {}", self.setup.session.data.station_words(it.station))
                 }
                 Parameter::DeviceFrame(_) => "the device's frame".to_owned(),
+                Parameter::RangeUnknown(it) => {
+                    format!("the {} of {}", it.term.name(), self.setup.session.data.station_words(it.station))
+                }
             });
         }
         (joints, parts)

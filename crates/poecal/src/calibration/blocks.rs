@@ -51,7 +51,8 @@ impl BlockChoice {
     pub fn unknowns(&self, robot: &Robot, data: &Dataset) -> Result<Unknowns> {
         let names = names(robot, data);
         let blocks = names.blocks();
-        let mut is_free: Vec<bool> = blocks.iter().map(|block| !matches!(block, Block::Term(..))).collect();
+        let usual = |block: &Block| !matches!(block, Block::Term(..) | Block::Range(..));
+        let mut is_free: Vec<bool> = blocks.iter().map(usual).collect();
         let mut further = Vec::new();
         for (words, value) in [(&self.fix, false), (&self.free, true)] {
             for word in words {
@@ -73,7 +74,13 @@ impl BlockChoice {
                 Block::Target(target) if !is_free => unknowns.held_targets.push(target),
                 Block::Frame(station) if !is_free => unknowns.held_frames.push(station),
                 Block::Term(joint, term) if *is_free => unknowns.terms.push((joint, term)),
-                Block::Axis(_) | Block::Target(_) | Block::Frame(_) | Block::Term(..) => {}
+                Block::Range(station, term) if *is_free => {
+                    if !data.is_ranging(station) {
+                        return Err(no_range(&names.of(block)));
+                    }
+                    unknowns.ranges.push((station, term));
+                }
+                Block::Axis(_) | Block::Target(_) | Block::Frame(_) | Block::Term(..) | Block::Range(..) => {}
             }
         }
         further.sort_unstable();
@@ -134,9 +141,19 @@ fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
             let is_joint = names.joints.get(*joint).is_some_and(|name| name == word);
             is_joint && !["targets", "frames"].contains(&word) || pattern.matches(&names.of(*block))
         }
+        // Of all instruments by the name of the term alone.
+        (_, Block::Range(_, term)) => {
+            word == term.name() || word != "*" && pattern.matches(&names.of(*block))
+        }
         (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => pattern.matches(&names.of(*block)),
     };
     blocks.iter().map(is_meant).collect()
+}
+
+fn no_range(name: &str) -> Error {
+    let message =
+        format!("found `{name}` to be fitted, expected an instrument that measures distances alone");
+    Error::new(ErrorKind::Option, message)
 }
 
 fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {

@@ -3,8 +3,8 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-use super::located::stations_to_locate;
 use super::found::{Fitted, OngoingFit, SolverReport};
+use super::located::stations_to_locate;
 use super::noise::stated;
 use super::{CalibrationOptions, Formulation, Minimum, NoiseSource, delivered, estimate_noise};
 use crate::analysis::effective_unknowns;
@@ -17,7 +17,7 @@ use crate::parameters::{Parameter, Subject, ValueTerm, screw_axes};
 use crate::problem::{Layout, Prior, Problem};
 use crate::simulate::random;
 use crate::solve::{LeastSquares, Normal, Options, Summary};
-use crate::start::{device_parameter, target_parameters};
+use crate::start::{device_parameter, range_parameters, target_parameters};
 
 /// A fit of many rows begins on a subsample: at least so many rows, for each unknown, and times the root of the number of rows. After that,
 /// one step with the first `JᵀJ` of all rows is about enough, however many they are.
@@ -50,13 +50,17 @@ pub(super) fn free_parameters(
     let stations = usize::from(is_fixed)..=estimate.further_devices.len();
     let absent = stations_to_locate(data, rows);
     let is_free = |station: &usize| {
-        unknowns.moves_frame(*station) && estimate.tree.shared(*station).is_none() && !absent.contains(station)
+        unknowns.moves_frame(*station)
+            && estimate.tree.shared(*station).is_none()
+            && !absent.contains(station)
     };
     let frames = stations.filter(is_free).map(|station| device_parameter(data, station, rows));
     let is_free = |parameter: &Parameter| match parameter.model().subject() {
         Subject::Joint(joint) => unknowns.moves_axis(joint),
-        Subject::Instrument(_) | Subject::Target(_) => true,
+        Subject::Instrument(_) | Subject::Target(_) | Subject::Range(_) => true,
     };
+    let ranges = range_parameters(session, rows).filter(|it| !absent.contains(&it.station));
+    let ranges = ranges.map(Parameter::RangeUnknown);
     let terms = unknowns.terms.iter().filter_map(|&(joint, term)| {
         let kind = *estimate.kinds().get(joint)?;
         Some(Parameter::ValueTerm(ValueTerm { joint, kind, term }))
@@ -65,6 +69,7 @@ pub(super) fn free_parameters(
         .chain(joints.into_iter().filter(is_free))
         .chain(terms)
         .chain(target_parameters(session, rows))
+        .chain(ranges)
         .collect()
 }
 

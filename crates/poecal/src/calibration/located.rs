@@ -34,7 +34,8 @@ pub(super) fn located<'e>(
     noise: Noise,
 ) -> Cow<'e, Estimate> {
     let mut stations = stations_to_locate(session.data, fitted);
-    stations.retain(|&station| session.unknowns.moves_frame(station) && estimate.tree.shared(station).is_none());
+    stations
+        .retain(|&station| session.unknowns.moves_frame(station) && estimate.tree.shared(station).is_none());
     if stations.is_empty() || !session.device_free {
         return Cow::Borrowed(estimate);
     }

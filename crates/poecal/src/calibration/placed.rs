@@ -1,6 +1,6 @@
 //! Targets, instruments and tip at their calibrated places.
 
-use crate::estimate::{Estimate, Session};
+use crate::estimate::{Estimate, Range, Session};
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
 use crate::robot::{Mount, Robot};
@@ -34,6 +34,8 @@ pub struct CalibratedStation {
     pub base_from_device: Pose,
     /// Noise of its rows that state none.
     pub noise: Noise,
+    /// Zero and scale of its distances.
+    pub range: Range,
 }
 
 /// The stations of the device.
@@ -41,6 +43,7 @@ pub(super) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise)
     let data = session.data;
     let of = |station| CalibratedStation {
         noise: session.usual_noise(station, noise),
+        range: estimate.range(station),
         name: data.stations.get(station).cloned().flatten(),
         base_from_device: estimate.device_at_zero(station).inverse(),
     };

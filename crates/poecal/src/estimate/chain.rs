@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 
 use super::packing::Bases;
-use super::{Estimate, Packed, Passed, Sight, Tree};
+use super::{Estimate, Packed, Passed, Range, Sight, Tree};
 use crate::lanes::FixedMotion;
 use crate::lie::Pose;
 use crate::robot::{JointKind, JointTerm, Term};
@@ -35,6 +35,8 @@ pub struct Linkage {
     /// Of each sight, its first step, or the device frame if no joint moves between the two; and the target after the last step.
     ends: Vec<(Pose, Pose)>,
     first_device: Pose,
+    /// Zero and scale of the distances of each station; empty if all are plain.
+    ranges: Vec<Range>,
     /// Terms of the value of each joint, with their places among all; empty if there are none.
     terms: Vec<Vec<(usize, JointTerm)>>,
 }
@@ -50,6 +52,7 @@ impl Linkage {
             base_from_target,
             device_from_base: _,
             further_devices: _,
+            ranges,
         } = estimate;
         let devices: Vec<Pose> =
             (0..tree.instruments().len()).map(|station| estimate.device_at_zero(station)).collect();
@@ -84,7 +87,16 @@ impl Linkage {
         let of = |joint: usize| terms.iter().copied().enumerate().filter(move |(_, it)| it.joint == joint);
         let joints = if estimate.has_terms() { tree.kinds().len() } else { 0 };
         let terms = (0..joints).map(|joint| of(joint).collect()).collect();
-        Linkage { tree: Arc::clone(tree), steps, further_from_first, ends, first_device: first, terms }
+        let ranges = if ranges.iter().all(Range::is_plain) { Vec::new() } else { ranges.clone() };
+        Linkage {
+            tree: Arc::clone(tree),
+            steps,
+            further_from_first,
+            ends,
+            first_device: first,
+            terms,
+            ranges,
+        }
     }
 
     /// `device_from_axis` of the first joint on the way from an instrument to a target, then each axis in the one before, at zero joint
@@ -100,6 +112,11 @@ impl Linkage {
         self.steps[self.tree.route_index(sight)]
             .is_empty()
             .then(|| &self.ends[self.tree.sight_index(sight)].0)
+    }
+
+    /// Zero and scale of a station's distances, unless these are plain.
+    pub(crate) fn range(&self, station: usize) -> Option<&Range> {
+        self.ranges.get(station).filter(|it| !it.is_plain())
     }
 
     /// `device_from_base` of the first station.

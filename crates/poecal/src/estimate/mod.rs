@@ -4,9 +4,9 @@
 //! the screw. A local step `A_i ← A_i exp(ε)` is the adjoint update `ξ_i ← Ad_exp(η) ξ_i` with `η = Ad_A_i ε` (theory.md §5 (18)).
 
 mod chain;
-mod faces;
 mod packing;
 mod predictions;
+mod range;
 mod row_error;
 mod session;
 mod sight;
@@ -16,6 +16,7 @@ mod unknowns;
 pub use chain::{Chain, JointView, Linkage};
 pub use packing::{Packed, sample_rows};
 pub(crate) use predictions::turn_to_first;
+pub use range::{Range, RangeTerm};
 pub use row_error::RowError;
 pub(crate) use row_error::rms_m;
 pub use session::Session;
@@ -57,6 +58,8 @@ pub struct Estimate {
     pub device_from_base: Pose,
     /// The base in the device frame of each further station ([`Dataset::stations`]).
     pub further_devices: Vec<Pose>,
+    /// Zero and scale of the distances of each station; those beyond the last are plain.
+    pub ranges: Vec<Range>,
 }
 
 impl Estimate {
@@ -84,6 +87,7 @@ impl Estimate {
             base_from_target,
             device_from_base,
             further_devices: vec![device_from_base; further],
+            ranges: Vec::new(),
         }
     }
 
@@ -115,12 +119,27 @@ impl Estimate {
         }
     }
 
+    /// Zero and scale of a station's distances.
+    #[must_use]
+    pub fn range(&self, station: usize) -> Range {
+        self.ranges.get(station).copied().unwrap_or_default()
+    }
+
+    /// [`Estimate::range`], mutable.
+    pub(crate) fn range_mut(&mut self, station: usize) -> &mut Range {
+        if self.ranges.len() <= station {
+            self.ranges.resize(station + 1, Range::default());
+        }
+        &mut self.ranges[station]
+    }
+
     /// The same estimate with the device frame of one station only.
     #[must_use]
     pub(crate) fn seen_from(&self, station: usize) -> Self {
         let device_from_base = *self.device(station);
         let tree = Arc::new(self.tree.seen_from(station));
-        Estimate { tree, device_from_base, further_devices: Vec::new(), ..self.clone() }
+        let ranges = vec![self.range(station)];
+        Estimate { tree, device_from_base, further_devices: Vec::new(), ranges, ..self.clone() }
     }
 
     /// The same estimate with device frames of further stations on the base.
@@ -177,6 +196,7 @@ impl Estimate {
             base_from_target: self.base_from_target.iter().map(|&pose| *motion * pose).collect(),
             device_from_base: self.device_from_base * motion.inverse(),
             further_devices: self.further_devices.iter().map(|&device| device * motion.inverse()).collect(),
+            ranges: self.ranges.clone(),
         }
     }
 

@@ -203,7 +203,11 @@ impl<'a> SideBySide<'a> {
 
     fn error(&self, lane: usize, seen: &Observation) -> RowError {
         match seen.measurement.seen() {
-            Seen::Other(model) => RowError::new(model, &self.predicted(lane, seen)),
+            Seen::Other(model) => {
+                let target = self.predicted(lane, seen);
+                let range = self.linkage.range(seen.station);
+                RowError::new(model, &range.map_or(target, |range| range.seen(&target)))
+            }
             Seen::Point(_) | Seen::Frame(_) => {
                 let mut values = [0.0; NUMBERS];
                 for (values, [x, y, z]) in values.chunks_exact_mut(3).zip(&self.errors) {

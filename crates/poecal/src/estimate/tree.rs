@@ -75,16 +75,17 @@ impl Tree {
     }
 
     /// The tree of a robot with the instruments and targets of a data set, by their names. An instrument without a place in the model stands
-    /// on the base; one with the name of a target, whose rows have two configurations, sees from that target's frame.
+    /// on the base; one whose rows have two configurations sees from the frame of the target with its name, or else of the target that they see.
     #[must_use]
     pub fn of(robot: &Robot, data: &Dataset) -> Self {
         let stand = |station: usize| {
             let name = data.stations.get(station).and_then(Option::as_deref);
             let mount = robot.instruments.iter().find(|mount| Some(mount.name.as_str()) == name);
             let body = mount.map_or(Body::Base, |mount| mount.body);
-            let shared = data.targets.iter().position(|target| name.is_some() && target.as_deref() == name);
-            let in_two = || data.observations.iter().any(|row| row.station == station && row.from.is_some());
-            shared.filter(|_| mount.is_none() && in_two()).map_or(Stand::On(body), Stand::Target)
+            let named = data.targets.iter().position(|target| name.is_some() && target.as_deref() == name);
+            let in_two = || data.observations.iter().find(|row| row.station == station && row.from.is_some());
+            let shared = if mount.is_none() { in_two() } else { None };
+            shared.map_or(Stand::On(body), |row| Stand::Target(named.unwrap_or(row.target)))
         };
         let instruments = (0..data.station_count()).map(stand).collect();
         let place = robot.places_of_targets();

@@ -1,5 +1,6 @@
 //! Which parts of a session are unknown.
 
+use super::RangeTerm;
 use crate::robot::Term;
 
 /// What a fit changes: the axes of all joints, all targets and all frames of instruments, but for what is held as in the model; and terms of
@@ -21,6 +22,8 @@ pub struct Unknowns {
     pub held_frames: Vec<usize>,
     /// Terms of joint values that are unknown.
     pub terms: Vec<(usize, Term)>,
+    /// Zeros and scales of stations that are unknown beside those of which the rows say so.
+    pub ranges: Vec<(usize, RangeTerm)>,
 }
 
 impl Unknowns {
@@ -30,6 +33,7 @@ impl Unknowns {
         held_targets: Vec::new(),
         held_frames: Vec::new(),
         terms: Vec::new(),
+        ranges: Vec::new(),
     };
 
     /// Whether they are the usual ones.

@@ -130,6 +130,8 @@ pub(super) enum Stream {
 pub(super) fn like(data: &Dataset) -> Dataset {
     let mut empty = Dataset::new(data.reading_names().to_vec());
     empty.targets.clone_from(&data.targets);
+    empty.stations.clone_from(&data.stations);
+    empty.lengths.clone_from(&data.lengths);
     empty
 }
 

@@ -1,16 +1,17 @@
 //! Registrations and short calibrations by which hypotheses are compared, on a subsample of the rows.
 
 use super::change::{like, push};
-use crate::estimate::{Estimate, Packed, RowError, Session, delivered, sample_rows};
+use nalgebra::Vector3;
+
+use crate::estimate::{Chain, Estimate, Linkage, Packed, RowError, Session, Stand, delivered, sample_rows};
 use crate::gauge;
-use crate::lie::{Pose, Screw};
+use crate::lie::{Freedom, Pose, Screw};
 use crate::measurement::{Dataset, Noise, Observation, Stated};
-use crate::parameters::{DeviceFrame, Parameter, ScrewAxis, ValueTerm};
-use crate::problem::Problem;
-use crate::robot::Term;
-use crate::robot::{Joint, JointKind, Robot};
+use crate::parameters::{Parameter, ScrewAxis, ValueTerm};
+use crate::problem::{Prior, Problem};
+use crate::robot::{Body, Joint, JointKind, Robot, Term, Tolerance};
 use crate::solve::{Options, minimize};
-use crate::start::{Registration, register, register_roughly, target_parameters};
+use crate::start::{Registration, device_parameter, register, register_roughly, target_parameters};
 
 /// Rows of the subsample.
 pub(super) const SAMPLE: usize = 90;
@@ -64,6 +65,8 @@ pub(super) struct Fitter<'a> {
     pub(super) length_m: f64,
     pub(super) start: Estimate,
     pub(super) noise: Noise,
+    /// Of measurements that may have no length of their own: the prior of the axes, and how far the nominal robot moves the targets.
+    pub(super) constrained: Option<(Prior, f64)>,
 }
 
 impl<'a> Fitter<'a> {
@@ -71,7 +74,46 @@ impl<'a> Fitter<'a> {
         // Not from strokes in the data, whose unit may be wrong.
         let length_m = robot.reach_m() / 3.0;
         let noise = Noise::new(NOISE_M, NOISE_M / length_m);
-        Fitter { robot, device_free, length_m, start: delivered(robot, data), noise }
+        let start = delivered(robot, data);
+        let mut fitter = Fitter { robot, device_free, length_m, start, noise, constrained: None };
+        let rows = data.all_rows();
+        let is_constrained = |station: usize| data.device_freedom(station, &rows) != Freedom::Frame;
+        if (0..data.station_count()).any(is_constrained) {
+            let prior = Prior::new(robot, Tolerance::WIDE, device_free);
+            fitter.constrained = Some((prior, fitter.spread_m(data)));
+        }
+        fitter
+    }
+
+    /// Whether measurements may have no length of their own.
+    pub(super) fn is_constrained(&self) -> bool {
+        self.constrained.is_some()
+    }
+
+    /// Root mean square distance of the targets from their mean, by the nominal robot, metres.
+    fn spread_m(&self, data: &Dataset) -> f64 {
+        let mut in_base = self.start.clone();
+        (0..data.station_count()).for_each(|station| {
+            if matches!(in_base.tree.instruments().get(station), Some(Stand::On(Body::Base))) {
+                *in_base.device_mut(station) = Pose::identity();
+            }
+        });
+        let (linkage, packed, mut chain) = (Linkage::new(&in_base), self.packed(data), Chain::default());
+        let mut place = |row: usize| {
+            chain.evaluate(&linkage, &packed, row, &data.observations[row]);
+            chain.target.translation
+        };
+        let places: Vec<Vector3<f64>> = (0..data.len()).map(&mut place).collect();
+        let count = places.len().max(1) as f64;
+        let mean = places.iter().sum::<Vector3<f64>>() / count;
+        (places.iter().map(|place| (place - mean).norm_squared()).sum::<f64>() / count).sqrt()
+    }
+
+    /// Factor on errors of data whose targets move less than those that were given: without a length of their own, smaller motions have
+    /// smaller errors.
+    fn enlarged(&self, data: &Dataset) -> f64 {
+        let ratio = |(_, given): &(Prior, f64)| (given / self.spread_m(data).max(f64::MIN_POSITIVE)).max(1.0);
+        self.constrained.as_ref().map_or(1.0, ratio)
     }
 
     /// Reach of the robot, metres.
@@ -120,9 +162,10 @@ impl<'a> Fitter<'a> {
         iterations: usize,
     ) -> (Estimate, Misfit) {
         let kinds = registered.kinds().iter().enumerate();
-        // The device frame stays: beside the screws it is redundant.
-        let screws = kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind })).collect();
-        self.fit(data, registered, screws, iterations)
+        // The first device frame stays: beside the screws it is redundant.
+        let screws = kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
+        let free = self.devices(data, 1).into_iter().chain(screws).collect();
+        self.fit(data, registered, free, iterations)
     }
 
     /// Fits one joint's offset from a registration, with an unknown device frame refitted.
@@ -134,12 +177,17 @@ impl<'a> Fitter<'a> {
                 .get(joint)
                 .map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Offset })),
         );
-        if self.device_free {
-            let about = data.mean_position(&data.all_rows());
-            free.push(Parameter::DeviceFrame(DeviceFrame::new(0, about)));
-        }
+        free.extend(self.devices(data, 0));
         let (estimate, misfit) = self.fit(data, registered, free, 30);
         (estimate.coefficient(joint, Term::Offset), misfit)
+    }
+
+    /// The unknown device frames from this one on.
+    fn devices(&self, data: &Dataset, first: usize) -> Vec<Parameter> {
+        let rows = data.all_rows();
+        let is_seen = |station: &usize| !data.seen_from(*station, &rows).is_empty();
+        let stations = (first..data.station_count()).filter(|station| self.device_free && is_seen(station));
+        stations.map(|station| device_parameter(data, station, &rows)).collect()
     }
 
     fn fit(
@@ -155,7 +203,8 @@ impl<'a> Fitter<'a> {
         free.extend(target_parameters(&session, &rows));
         let mut start = registered.clone();
         start.recentre(&session, &rows);
-        let problem = Problem::new(session, rows, free, self.noise);
+        let prior = self.constrained.as_ref().map(|(prior, _)| (prior, 1.0));
+        let problem = Problem::new(session, rows, free, self.noise).with_prior(prior);
         // Without geodesic steps: hypotheses that explain nothing would take most of the time.
         let options = Options { iterations, acceleration: false, ..Options::default() };
         let (estimate, _, _) = minimize(&problem, start, &options);
@@ -212,11 +261,11 @@ impl<'a> Fitter<'a> {
             rotation += error.square_rad2();
             turned += usize::from(error.has_angle());
         }
-        let count = errors.len().max(1) as f64;
+        let (count, factor) = (errors.len().max(1) as f64, self.enlarged(session.data));
         Misfit {
-            position_m: (position / count).sqrt(),
-            rotation_rad: (rotation / turned.max(1) as f64).sqrt(),
-            total_m: ((position + rotation * self.length_m.powi(2)) / count).sqrt(),
+            position_m: factor * (position / count).sqrt(),
+            rotation_rad: factor * (rotation / turned.max(1) as f64).sqrt(),
+            total_m: factor * ((position + rotation * self.length_m.powi(2)) / count).sqrt(),
         }
     }
 }

@@ -145,10 +145,11 @@ pub fn diagnose(
         // The searches change the readings of one configuration only.
         return Vec::new();
     }
-    if data.station_count() > 1 {
+    let fitter = Fitter::new(robot, data, options.device_free);
+    // Frames tell enough each by itself; what shows less tells something together only.
+    if data.station_count() > 1 && !fitter.is_constrained() {
         return station_by_station(robot, data, &rows, options);
     }
-    let fitter = Fitter::new(robot, data, options.device_free);
     let Repeats { repeated, contradicting, unnamed } = repeats::diagnose(&fitter, data, &rows);
     let mut found: Vec<Diagnosis> = repeated.into_iter().collect();
     if data.reading_names().len() > MOST_READINGS {

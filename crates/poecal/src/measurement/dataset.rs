@@ -347,6 +347,21 @@ impl Dataset {
         shown(own.map(|it| it.measurement.observe().device_freedom())).unwrap_or(Freedom::Frame)
     }
 
+    /// Whether some of these rows are readings of a station whose zero is unknown.
+    #[must_use]
+    pub fn zero_is_unknown(&self, station: usize, rows: &[u32]) -> bool {
+        let mut own =
+            rows.iter().map(|&row| &self.observations[row as usize]).filter(|it| it.station == station);
+        own.any(|it| it.measurement.observe().zero_is_unknown())
+    }
+
+    /// Whether a station's rows are all distances, so that it has a zero and a scale.
+    #[must_use]
+    pub fn is_ranging(&self, station: usize) -> bool {
+        let mut own = self.observations.iter().filter(|it| it.station == station);
+        own.all(|it| it.measurement.observe().range().is_some())
+    }
+
     /// What some of these rows show of each target; of one that none sees, its place.
     #[must_use]
     pub fn target_freedoms(&self, rows: &[u32]) -> Vec<Freedom> {
@@ -482,7 +497,8 @@ impl Dataset {
             (_, named) => named.iter().map(|name| self.station_index(name.as_deref())).collect(),
         };
         let station = |at: usize| stations.get(at).copied().unwrap_or_default();
-        let lengths = other.lengths.iter().map(|it| KnownLength { stations: it.stations.map(station), ..*it });
+        let lengths =
+            other.lengths.iter().map(|it| KnownLength { stations: it.stations.map(station), ..*it });
         for length in lengths {
             if !self.lengths.contains(&length) {
                 self.lengths.push(length);
@@ -514,7 +530,10 @@ impl Dataset {
 /// What measurements show together.
 fn shown(mut parts: impl Iterator<Item = Freedom>) -> Option<Freedom> {
     let first = parts.next()?;
-    Some(parts.fold(first, |all, part| if all == Freedom::Frame || all == part { all } else { all.with(part) }))
+    Some(
+        parts
+            .fold(first, |all, part| if all == Freedom::Frame || all == part { all } else { all.with(part) }),
+    )
 }
 
 fn is_finite(numbers: &[f64]) -> bool {

@@ -38,6 +38,13 @@ impl DirectionMeasurement {
         DirectionMeasurement { direction: rotation::exp(&Vector3::new(-x, -y, 0.0)) * Vector3::z() }
     }
 
+    /// The readings of such an inclinometer, radians.
+    #[must_use]
+    pub fn tilts(&self) -> [f64; 2] {
+        let turn = rotation::log(&rotation::shortest_arc(&self.direction, &Vector3::z()));
+        [turn.x, turn.y]
+    }
+
     /// From any vector along it, such as an accelerometer's at rest.
     #[must_use]
     pub fn along(vector: &Vector3<f64>) -> Self {

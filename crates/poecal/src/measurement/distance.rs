@@ -10,13 +10,31 @@ use crate::lie::{Freedom, Pose};
 /// use poecal::lie::Pose;
 /// use poecal::measurement::{DistanceMeasurement, Observe};
 /// let mut e = [0.0];
-/// DistanceMeasurement { distance: 5.5 }.residual(&Pose::from_translation(Vector3::new(3.0, 0.0, 4.0)), &mut e);
+/// DistanceMeasurement::new(5.5).residual(&Pose::from_translation(Vector3::new(3.0, 0.0, 4.0)), &mut e);
 /// assert_eq!(e, [0.5]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DistanceMeasurement {
     /// Distance, metres.
     pub distance: f64,
+    /// Whether the zero of the instrument's readings is unknown, so that only changes count: of an interferometer, of a sphere whose radius
+    /// is unknown (theory.md §4 (15d)).
+    #[serde(default)]
+    pub zero_is_unknown: bool,
+}
+
+impl DistanceMeasurement {
+    /// A distance from the instrument's origin.
+    #[must_use]
+    pub fn new(distance: f64) -> Self {
+        DistanceMeasurement { distance, zero_is_unknown: false }
+    }
+
+    /// A reading of an instrument whose zero is unknown.
+    #[must_use]
+    pub fn from_unknown_zero(distance: f64) -> Self {
+        DistanceMeasurement { distance, zero_is_unknown: true }
+    }
 }
 
 const DISTANCE: Channels = Channels::new(&[Channel { name: "distance", quantity: Quantity::Distance }]);
@@ -37,6 +55,10 @@ impl Observe for DistanceMeasurement {
 
     fn range(&self) -> Option<f64> {
         Some(self.distance)
+    }
+
+    fn zero_is_unknown(&self) -> bool {
+        self.zero_is_unknown
     }
 
     fn device_freedom(&self) -> Freedom {

@@ -116,17 +116,22 @@ impl Measurement {
     pub fn apart(&self, other: &Measurement) -> Option<(f64, f64)> {
         let angle = |a: &Vector3<f64>, b: &Vector3<f64>| a.cross(b).norm().atan2(a.dot(b));
         match (self, other) {
-            (Measurement::Distance(a), Measurement::Distance(b)) => Some(((a.distance - b.distance).abs(), 0.0)),
+            (Measurement::Distance(a), Measurement::Distance(b)) => {
+                Some(((a.distance - b.distance).abs(), 0.0))
+            }
             (Measurement::Socket(a), Measurement::Socket(b)) => Some(((a.place - b.place).norm(), 0.0)),
             (Measurement::Height(a), Measurement::Height(b)) => Some(((a.height - b.height).abs(), 0.0)),
             (Measurement::Flush(a), Measurement::Flush(b)) => {
                 Some(((a.height - b.height).abs(), angle(&a.normal, &b.normal)))
             }
-            (Measurement::Direction(a), Measurement::Direction(b)) => Some((0.0, angle(&a.direction, &b.direction))),
+            (Measurement::Direction(a), Measurement::Direction(b)) => {
+                Some((0.0, angle(&a.direction, &b.direction)))
+            }
             (Measurement::Point(_) | Measurement::Pose(_), Measurement::Point(_) | Measurement::Pose(_)) => {
                 let (a, b) = (self.pose(), other.pose());
                 let both = self.sees_orientation() && other.sees_orientation();
-                let turn = if both { rotation::log(&(a.rotation * b.rotation.transpose())).norm() } else { 0.0 };
+                let turn =
+                    if both { rotation::log(&(a.rotation * b.rotation.transpose())).norm() } else { 0.0 };
                 Some(((a.translation - b.translation).norm(), turn))
             }
             (

@@ -131,6 +131,11 @@ pub trait Observe {
         None
     }
 
+    /// Whether the zero of the readings is an unknown of the device.
+    fn zero_is_unknown(&self) -> bool {
+        false
+    }
+
     /// What it shows of the device: its frame, or only where it is.
     fn device_freedom(&self) -> Freedom {
         Freedom::Frame

@@ -1,5 +1,6 @@
 //! Blocks of unknowns and their names.
 
+use crate::estimate::RangeTerm;
 use crate::robot::Term;
 
 use super::{Parameter, Subject};
@@ -20,6 +21,8 @@ pub enum Block {
     Target(usize),
     /// The frame of an instrument.
     Frame(usize),
+    /// A term of what an instrument reads.
+    Range(usize, RangeTerm),
 }
 
 /// Names of joints, targets and instruments, from which blocks and unknowns have theirs.
@@ -41,7 +44,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// All blocks: of each joint the axis and its terms, then the targets and the frames.
+    /// All blocks: of each joint the axis and its terms, then the targets, the frames, and what instruments read.
     #[must_use]
     pub fn blocks(&self) -> Vec<Block> {
         let joints = (0..self.joints.len()).flat_map(|joint| {
@@ -50,10 +53,13 @@ impl Names {
         });
         let targets = (0..self.targets.len()).map(Block::Target);
         let frames = (0..self.stations.len().max(1)).map(Block::Frame);
-        joints.chain(targets).chain(frames).collect()
+        let ranges = (0..self.stations.len().max(1))
+            .flat_map(|station| RangeTerm::ALL.map(|term| Block::Range(station, term)));
+        joints.chain(targets).chain(frames).chain(ranges).collect()
     }
 
-    /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`; `target` of the tip, `frame` of a single instrument.
+    /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`, `zero.NAME`, `scale.NAME`; `target` of the tip, `frame`,
+    /// `zero`, `scale` of a single instrument.
     #[must_use]
     pub fn of(&self, block: Block) -> String {
         let joint = |joint: usize| self.joints.get(joint).map_or("", String::as_str);
@@ -66,6 +72,7 @@ impl Names {
             Block::Term(at, term) => format!("{}.{}", joint(at), term.model().name()),
             Block::Target(at) => among("target", &self.targets, at),
             Block::Frame(at) => among("frame", &self.stations, at),
+            Block::Range(at, term) => among(term.name(), &self.stations, at),
         }
     }
 
@@ -88,6 +95,10 @@ impl Parameter {
             (Subject::Joint(joint), None) => Block::Axis(joint),
             (Subject::Target(target), _) => Block::Target(target),
             (Subject::Instrument(station), _) => Block::Frame(station),
+            (Subject::Range(station), _) => {
+                let zero = RangeTerm::Zero;
+                Block::Range(station, if let Parameter::RangeUnknown(it) = self { it.term } else { zero })
+            }
         }
     }
 }

@@ -104,6 +104,8 @@ pub enum Subject {
     Joint(usize),
     /// The target of this index.
     Target(usize),
+    /// The readings of the instrument of this index.
+    Range(usize),
 }
 
 /// Interface of a parameter with at most six unknowns: columns of the Jacobian, second derivatives, retraction.

@@ -5,6 +5,7 @@ mod block;
 mod columns;
 mod device_frame;
 mod other_screw;
+mod range_unknown;
 mod screw_axis;
 mod target_frame;
 mod target_place;
@@ -15,6 +16,7 @@ pub use block::{Block, Names};
 pub use columns::{Column, Columns, Subject, Wrench};
 pub use device_frame::DeviceFrame;
 pub use other_screw::{OtherScrew, ScrewModel};
+pub use range_unknown::RangeUnknown;
 pub use screw_axis::ScrewAxis;
 pub use target_frame::TargetFrame;
 pub use target_place::TargetPlace;
@@ -43,6 +45,8 @@ pub enum Parameter {
     TargetFrame(TargetFrame),
     /// Device frame: the base in the measuring device's frame (6).
     DeviceFrame(DeviceFrame),
+    /// Zero or scale of an instrument's distances (1).
+    RangeUnknown(RangeUnknown),
 }
 
 /// The screws of joints of these kinds as unknowns, in the minimal basis: `ξ ← Ad_exp(η) ξ` without constraints or offsets (lou2009 (16)
@@ -73,6 +77,7 @@ impl Parameter {
             Parameter::TargetPlace(place) => place,
             Parameter::TargetFrame(frame) => frame,
             Parameter::DeviceFrame(frame) => frame,
+            Parameter::RangeUnknown(range) => range,
         }
     }
 
@@ -84,7 +89,8 @@ impl Parameter {
             | Parameter::OtherScrew(_)
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
-            | Parameter::DeviceFrame(_) => None,
+            | Parameter::DeviceFrame(_)
+            | Parameter::RangeUnknown(_) => None,
         }
     }
 
@@ -96,7 +102,8 @@ impl Parameter {
             | Parameter::ValueTerm(_)
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
-            | Parameter::DeviceFrame(_) => None,
+            | Parameter::DeviceFrame(_)
+            | Parameter::RangeUnknown(_) => None,
         }
     }
 }

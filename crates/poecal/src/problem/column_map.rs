@@ -2,9 +2,9 @@
 
 use super::row_group::Form;
 use super::{Layout, Problem};
-use crate::estimate::{Estimate, Passed, Sight};
-use crate::lie::Freedom;
+use crate::estimate::{Estimate, Passed, RangeTerm, Sight};
 use crate::lanes::{DevicePlan, JointPlan, Plan, TermPlan};
+use crate::lie::Freedom;
 use crate::parameters::{OtherScrew, Parameter, Subject, ValueTerm};
 use crate::robot::{JointKind, Term};
 
@@ -20,6 +20,8 @@ pub(super) struct ColumnMap {
     given_places: Vec<Place>,
     /// Screws in another parameterisation, with the scale of each of their unknowns.
     pub(super) screws: Vec<(OtherScrew, Vec<f64>)>,
+    /// Terms of the range that are unknown, the last of the given columns, with the scale of each.
+    pub(super) ranges: Vec<(RangeTerm, f64)>,
     /// Joint and term of each of the plan's terms, and its column in a step over that of the kernels.
     pub(super) terms: Vec<(Passed, Term, f64)>,
 }
@@ -52,6 +54,7 @@ impl ColumnMap {
             turn_places: Vec::new(),
             given_places: Vec::new(),
             screws: Vec::new(),
+            ranges: Vec::new(),
             terms: Vec::new(),
         };
         // The kernels' order: device frame, joints, target.
@@ -59,6 +62,7 @@ impl ColumnMap {
         made.add_joints(&problem.layout, state.tree.route(sight));
         made.plan.tilts = made.turn_places.len();
         made.add_target(&problem.layout);
+        made.add_range(&problem.layout);
         made.plan.shifts = made.shift_places.len();
         made
     }
@@ -119,7 +123,10 @@ impl ColumnMap {
                 Parameter::DeviceFrame(device) => (device.about.into(), device.freedom, 1.0),
                 Parameter::TargetFrame(frame) => ([0.0; 3], frame.freedom, -1.0),
                 Parameter::TargetPlace(_) => ([0.0; 3], Freedom::Place, -1.0),
-                Parameter::ScrewAxis(_) | Parameter::OtherScrew(_) | Parameter::ValueTerm(_) => continue,
+                Parameter::ScrewAxis(_)
+                | Parameter::OtherScrew(_)
+                | Parameter::ValueTerm(_)
+                | Parameter::RangeUnknown(_) => continue,
             };
             let turns = freedom.turns();
             self.plan.device = Some(DevicePlan { about, turns });
@@ -141,7 +148,10 @@ impl ColumnMap {
                     Parameter::ScrewAxis(_) => self.add_axis(index, places),
                     Parameter::ValueTerm(term) => self.add_term(index, *passed, term, places),
                     Parameter::OtherScrew(screw) => self.add_given(screw, places),
-                    Parameter::DeviceFrame(_) | Parameter::TargetFrame(_) | Parameter::TargetPlace(_) => {}
+                    Parameter::DeviceFrame(_)
+                    | Parameter::TargetFrame(_)
+                    | Parameter::TargetPlace(_)
+                    | Parameter::RangeUnknown(_) => {}
                 }
             }
         }
@@ -185,6 +195,18 @@ impl ColumnMap {
         }
     }
 
+    /// Zero and scale of the instrument's distances, behind all other given columns.
+    fn add_range(&mut self, layout: &Layout) {
+        for (parameter, places) in layout.parameters() {
+            let Parameter::RangeUnknown(range) = parameter else { continue };
+            if range.station == self.sight.station && self.plan.shaped > 0 {
+                self.given_places.extend(places.iter().map(|&(at, _)| Place { at, sign: 1.0 }));
+                self.ranges.extend(places.iter().map(|&(_, scale)| (range.term, scale)));
+                self.plan.given += places.len();
+            }
+        }
+    }
+
     fn add_target(&mut self, layout: &Layout) {
         for (parameter, places) in layout.parameters() {
             if parameter.model().subject() != Subject::Target(self.sight.target) || self.plan.place.is_some()
@@ -197,7 +219,8 @@ impl ColumnMap {
                 | Parameter::DeviceFrame(_)
                 | Parameter::ScrewAxis(_)
                 | Parameter::OtherScrew(_)
-                | Parameter::ValueTerm(_) => Freedom::Place,
+                | Parameter::ValueTerm(_)
+                | Parameter::RangeUnknown(_) => Freedom::Place,
             };
             let turns = freedom.turns() && self.plan.framed;
             self.plan.place = Some(self.shift_places.len());

@@ -2,7 +2,7 @@
 
 use super::fast::{Accumulate, Fast, SecondDifference};
 use super::{Problem, ShapedRow};
-use crate::estimate::{Chain, Estimate, Linkage};
+use crate::estimate::{Chain, Estimate, Linkage, Range};
 use crate::lie::Pose;
 use crate::measurement::NUMBERS;
 use crate::parameters::Wrench;
@@ -35,7 +35,7 @@ impl Problem<'_> {
         let mut chain = Chain::default();
         let mut at = |linkage: &Linkage| {
             chain.evaluate(linkage, self.session.packed, row, observation);
-            self.shaped(row, &chain.target).residual
+            self.shaped(row, &chain.target, linkage.range(observation.station)).residual
         };
         let (ahead, behind) = (at(&second.ahead), at(&second.behind));
         for (e, (a, b)) in shaped.residual.iter_mut().zip(ahead.into_iter().zip(behind)) {
@@ -45,7 +45,7 @@ impl Problem<'_> {
 
     /// [`crate::solve::LeastSquares::curvature`]: the C of theory.md §6 (31a).
     pub(super) fn curvature_of(&self, state: &Estimate) -> Option<Vec<f64>> {
-        if !self.layout.has_curvature() {
+        if !self.layout.has_curvature() || !state.ranges.iter().all(Range::is_plain) {
             return None;
         }
         let linkage = Linkage::new(state);

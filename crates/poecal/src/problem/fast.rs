@@ -231,9 +231,12 @@ impl RowShapes<'_> {
 impl Shape for RowShapes<'_> {
     fn row(&self, place: usize, predicted: &Pose, given: &mut [[f64; NUMBERS]]) -> ShapedRow {
         let Some(&row) = self.rows.get(place) else { return ShapedRow::NONE };
-        let mut shaped = self.problem.shaped(row as usize, predicted);
+        let range = self.linkage.range(self.arranged.sight.station);
+        let mut shaped = self.problem.shaped(row as usize, predicted, range);
         if !given.is_empty() {
-            self.give(row as usize, &shaped, given);
+            let (screws, ranges) = given.split_at_mut(given.len() - self.arranged.ranges.len());
+            self.give(row as usize, &shaped, screws);
+            self.problem.range_columns(row as usize, predicted, range, &self.arranged.ranges, ranges);
         }
         if let Some(second) = self.second {
             self.problem.second_difference(row as usize, second, &mut shaped);

@@ -75,7 +75,8 @@ impl Layout {
             Parameter::ScrewAxis(_)
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
-            | Parameter::DeviceFrame(_) => true,
+            | Parameter::DeviceFrame(_)
+            | Parameter::RangeUnknown(_) => true,
         })
     }
 
@@ -137,7 +138,7 @@ impl Layout {
                     Subject::Joint(joint) => {
                         1 + chain.joints.iter().position(|view| view.joint == joint).unwrap_or(joint)
                     }
-                    Subject::Target(_) => usize::MAX,
+                    Subject::Target(_) | Subject::Range(_) => usize::MAX,
                 };
                 (place, parameter, places)
             })

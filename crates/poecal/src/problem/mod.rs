@@ -18,10 +18,10 @@ pub use prior::{Prior, TermPrior};
 pub use refit::Refit;
 pub(crate) use row_block::RowBlock;
 
-use crate::estimate::{Estimate, Session};
+use crate::estimate::{Estimate, Range, RangeTerm, Session};
 use crate::lanes::ShapedRow;
 use crate::lie::Pose;
-use crate::measurement::{Measurement, Noise, Seen, Written};
+use crate::measurement::{Measurement, NUMBERS, Noise, Seen, Written};
 use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
 use fast::{Accumulate, Fast};
@@ -200,12 +200,16 @@ impl<'a> Problem<'a> {
 
 impl Problem<'_> {
     /// Whitened residual and sensitivity of a row for its predicted target, theory.md §4 (17).
-    pub(crate) fn shaped(&self, row: usize, predicted: &Pose) -> ShapedRow {
+    pub(crate) fn shaped(&self, row: usize, predicted: &Pose, range: Option<&Range>) -> ShapedRow {
         let written = self.written(row);
         let (seen, noise) = (written.model(), self.noise(row));
         let mut shaped = ShapedRow::NONE;
-        seen.residual(predicted, &mut shaped.residual);
-        seen.sensitivity(predicted, &mut shaped.sensitivity);
+        let read = range.map_or(*predicted, |range| range.seen(predicted));
+        seen.residual(&read, &mut shaped.residual);
+        seen.sensitivity(&read, &mut shaped.sensitivity);
+        if let Some(range) = range {
+            range.pull_back(predicted, &mut shaped.sensitivity);
+        }
         let ShapedRow { residual, sensitivity } = &mut shaped;
         for ((e, numbers), channel) in residual.iter_mut().zip(sensitivity).zip(seen.channels()) {
             let sigma = noise[channel.quantity];
@@ -213,6 +217,27 @@ impl Problem<'_> {
             numbers.iter_mut().for_each(|number| *number /= sigma);
         }
         shaped
+    }
+
+    /// Whitened columns of terms of a row's range, for its predicted target: `S (p/|p|)` and `S p` (theory.md §5 (25b)), over the scale of each.
+    pub(crate) fn range_columns(
+        &self,
+        row: usize,
+        predicted: &Pose,
+        range: Option<&Range>,
+        terms: &[(RangeTerm, f64)],
+        out: &mut [[f64; NUMBERS]],
+    ) {
+        let written = self.written(row);
+        let (seen, noise) = (written.model(), self.noise(row));
+        let mut sensitivity = [[0.0; 6]; NUMBERS];
+        seen.sensitivity(&range.map_or(*predicted, |range| range.seen(predicted)), &mut sensitivity);
+        for (&(term, scale), out) in terms.iter().zip(out) {
+            let moved = Range::motion(predicted, term) / scale;
+            for ((out, [x, y, z, ..]), channel) in out.iter_mut().zip(&sensitivity).zip(seen.channels()) {
+                *out = (x * moved.x + y * moved.y + z * moved.z) / noise[channel.quantity];
+            }
+        }
     }
 
     /// The groups of rows, in the form of the kernels.

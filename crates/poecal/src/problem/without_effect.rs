@@ -122,9 +122,7 @@ impl Layout {
         for (target, frame) in estimate.base_from_target.iter().enumerate() {
             let body = estimate.tree.targets().get(target).copied();
             let freedom = freedoms.get(target).copied().unwrap_or(Freedom::Place);
-            add(Subject::Target(target), body, &|twist| {
-                seen_of(freedom, &local(frame, twist))
-            });
+            add(Subject::Target(target), body, &|twist| seen_of(freedom, &local(frame, twist)));
         }
         for station in 0..=estimate.further_devices.len() {
             let body = match estimate.tree.instruments().get(station) {

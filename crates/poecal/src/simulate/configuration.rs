@@ -40,6 +40,15 @@ impl Configurations {
         };
         self.readings.iter().map(one).collect()
     }
+
+    /// Whether all readings are within their ranges.
+    #[must_use]
+    pub fn contain(&self, readings: &[f64]) -> bool {
+        let within = |(&(_, lower, upper), reading): (&(ReadingKind, f64, f64), &f64)| {
+            (lower..=upper).contains(reading)
+        };
+        self.readings.len() == readings.len() && self.readings.iter().zip(readings).all(within)
+    }
 }
 
 /// Range of a reading within the limits of all joints that follow it.

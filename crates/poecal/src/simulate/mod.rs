@@ -2,11 +2,13 @@
 
 mod configuration;
 mod gross;
+mod places;
 pub mod random;
 mod robots;
 
 pub use configuration::{Configurations, random_configuration};
 pub use gross::Gross;
+pub use places::{SOCKETS_APART_M, SPHERE_M};
 pub use robots::{elbow, gantry, random_chain, scara, seven_axis};
 
 use nalgebra::Vector3;
@@ -35,31 +37,111 @@ pub enum Kind {
     Point,
     /// Poses and points in turn.
     Mixed,
+    /// Distances from three anchors.
+    Distance,
+    /// Changes of the distances from three instruments.
+    Change,
+    /// Points of a sphere.
+    Sphere,
+    /// A ball in one of two sockets.
+    Socket,
+    /// Points of three planes.
+    Plane,
+    /// A face that lies flush on one of three planes.
+    Flush,
+    /// The direction of gravity.
+    Direction,
+    /// Distances of the tip between two configurations.
+    BallBar,
+    /// Poses of the tip from one configuration in another.
+    Relative,
 }
 
 impl Kind {
-    /// The word used in files: `pose`, `point` or `mixed`.
+    /// All kinds.
+    pub const ALL: [Kind; 12] = [
+        Kind::Pose,
+        Kind::Point,
+        Kind::Mixed,
+        Kind::Distance,
+        Kind::Change,
+        Kind::Sphere,
+        Kind::Socket,
+        Kind::Plane,
+        Kind::Flush,
+        Kind::Direction,
+        Kind::BallBar,
+        Kind::Relative,
+    ];
+
+    /// Whether a device with a frame of its own measures.
+    #[must_use]
+    pub fn has_device(self) -> bool {
+        match self {
+            Kind::Pose | Kind::Point | Kind::Mixed => true,
+            Kind::Distance
+            | Kind::Change
+            | Kind::Sphere
+            | Kind::Socket
+            | Kind::Plane
+            | Kind::Flush
+            | Kind::Direction
+            | Kind::BallBar
+            | Kind::Relative => false,
+        }
+    }
+
+    /// The word used in files: `pose`, `point`, `mixed` and so on.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Kind::Pose => "pose",
             Kind::Point => "point",
             Kind::Mixed => "mixed",
+            Kind::Distance => "distance",
+            Kind::Change => "distance-change",
+            Kind::Sphere => "sphere",
+            Kind::Socket => "socket",
+            Kind::Plane => "plane",
+            Kind::Flush => "flush",
+            Kind::Direction => "direction",
+            Kind::BallBar => "ball-bar",
+            Kind::Relative => "relative",
         }
     }
 
     /// Whether some rows at least measure a quantity.
     #[must_use]
     pub fn has(self, quantity: Quantity) -> bool {
-        quantity == Quantity::Position || quantity == Quantity::Rotation && self.sees_orientation()
+        self.quantities().contains(&quantity)
+    }
+
+    /// What it measures.
+    #[must_use]
+    pub fn quantities(self) -> &'static [Quantity] {
+        match self {
+            Kind::Pose | Kind::Mixed | Kind::Relative => &[Quantity::Position, Quantity::Rotation],
+            Kind::Point => &[Quantity::Position],
+            Kind::Distance | Kind::Change | Kind::Sphere | Kind::BallBar => &[Quantity::Distance],
+            Kind::Socket => &[Quantity::Contact],
+            Kind::Plane => &[Quantity::Height],
+            Kind::Flush => &[Quantity::Height, Quantity::Tilt],
+            Kind::Direction => &[Quantity::Tilt],
+        }
     }
 
     /// Whether some rows at least measure the orientation of the tip.
     #[must_use]
     pub fn sees_orientation(self) -> bool {
         match self {
-            Kind::Pose | Kind::Mixed => true,
-            Kind::Point => false,
+            Kind::Pose | Kind::Mixed | Kind::Flush | Kind::Direction | Kind::Relative => true,
+            Kind::Point
+            | Kind::Distance
+            | Kind::Change
+            | Kind::Sphere
+            | Kind::Socket
+            | Kind::Plane
+            | Kind::BallBar => false,
         }
     }
 }
@@ -253,6 +335,9 @@ impl Simulation {
         kind: Kind,
         generator: &mut ChaCha8Rng,
     ) -> Result<Dataset> {
+        if !kind.has_device() {
+            return self.observe_places(nominal, actual, kind, generator);
+        }
         let mut data = Dataset::new(nominal.reading_names()).with_factors(nominal.factors.len());
         let configurations = Configurations::new(nominal);
         let pairs = pairs(actual);
@@ -277,11 +362,7 @@ impl Simulation {
             let noise = random::normal_vector(generator) * self.noise_position_m;
             let turn = random::normal_vector(generator) * self.noise_rotation_rad;
             let position = seen.translation + noise;
-            let as_pose = match kind {
-                Kind::Pose => true,
-                Kind::Point => false,
-                Kind::Mixed => row % 2 == 0,
-            };
+            let as_pose = kind == Kind::Pose || kind == Kind::Mixed && row % 2 == 0;
             let measurement = if as_pose {
                 let pose = Pose::new(rotation::exp(&turn) * seen.rotation, position);
                 Measurement::Pose(PoseMeasurement { pose })

@@ -44,6 +44,22 @@ pub(crate) fn mean_rotation(rotations: impl Iterator<Item = Matrix3<f64>>) -> Ma
     rotation_maximising(&sum.transpose())
 }
 
+/// The 24 proper rotations of a cube.
+pub(super) fn cube_rotations() -> impl Iterator<Item = Matrix3<f64>> {
+    use std::f64::consts::FRAC_PI_2;
+    (0..6).flat_map(|face| {
+        let up = match face {
+            0 => Matrix3::identity(),
+            1 => rotation::about(0, FRAC_PI_2),
+            2 => rotation::about(0, -FRAC_PI_2),
+            3 => rotation::about(0, 2.0 * FRAC_PI_2),
+            4 => rotation::about(1, FRAC_PI_2),
+            _ => rotation::about(1, -FRAC_PI_2),
+        };
+        (0..4).map(move |quarter| up * rotation::about(2, f64::from(quarter) * FRAC_PI_2))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,7 @@
 //! Device frame and targets without an initial guess, with nominal screws (theory.md §6, *Start*).
 
 mod averaging;
+mod faces;
 mod hand_eye;
 mod others;
 mod registration;
@@ -8,7 +9,9 @@ mod robust;
 mod stations;
 
 pub(crate) use averaging::mean_rotation;
+pub use faces::settle_faces;
 pub use registration::{Registration, register_again};
-pub(crate) use registration::{device_parameter, free_parameters, register_roughly, target_parameters};
+pub(crate) use registration::{device_parameter, free_parameters, range_parameters, target_parameters};
 pub use robust::register_robustly;
 pub use stations::register;
+pub(crate) use stations::register_roughly;

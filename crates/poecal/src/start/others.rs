@@ -1,9 +1,8 @@
 //! Closed forms of devices that show no places: anchors, sockets, planes, the direction of gravity.
 
-use nalgebra::{Matrix3, Matrix4, Vector3, Vector4};
+use nalgebra::{Matrix3, Vector3};
 
-use super::averaging::rotation_maximising;
-use super::registration::cube_rotations;
+use super::averaging::{cube_rotations, rotation_maximising};
 use crate::estimate::Estimate;
 use crate::lie::{Pose, rotation};
 use crate::linalg;
@@ -32,8 +31,15 @@ pub(super) fn starts(rows: &[Other], start: &Estimate, targets_free: bool) -> Ve
         estimate
     };
     let seen = Seen { rows, start };
-    let devices = [seen.by_ranges(), seen.by_sockets(), seen.by_heights()];
-    let mut found: Vec<Estimate> = devices.into_iter().flatten().map(at).collect();
+    let ranged = seen.by_ranges().map(|(device, zero_m)| {
+        let mut estimate = at(device);
+        if zero_m != 0.0 {
+            estimate.range_mut(0).zero_m = zero_m;
+        }
+        estimate
+    });
+    let devices = [seen.by_sockets(), seen.by_heights()];
+    let mut found: Vec<Estimate> = ranged.into_iter().chain(devices.into_iter().flatten().map(at)).collect();
     if found.is_empty() {
         found.extend(seen.by_directions(targets_free));
     }
@@ -60,9 +66,10 @@ impl Seen<'_> {
         Pose::new(turn, -(turn * point))
     }
 
-    /// The device at the point a that has the measured distances d from the targets p: with `|a|²` as an unknown of its own,
-    /// `|p|² - d² = 2 p·a - |a|²` is linear. Its axes are those of the start.
-    fn by_ranges(&self) -> Option<Pose> {
+    /// The device at the point a that has the measured distances d from the targets p, and the zero o of its readings: with `|a|² - o²` as an
+    /// unknown of its own, `|p|² - d² = 2 p·a - 2 d o - (|a|² - o²)` is linear. Readings that are all the same, as of a sphere, tell their zero
+    /// by that unknown. Its axes are those of the start.
+    fn by_ranges(&self) -> Option<(Pose, f64)> {
         let ranges: Vec<(Vector3<f64>, f64)> = self
             .rows
             .iter()
@@ -71,24 +78,43 @@ impl Seen<'_> {
         if ranges.is_empty() {
             return None;
         }
-        let middle = ranges.iter().map(|(place, _)| place).sum::<Vector3<f64>>() / ranges.len() as f64;
-        let (mut gram, mut right) = (Matrix4::zeros(), Vector4::zeros());
-        for (place, range) in ranges {
+        let count = ranges.len() as f64;
+        let middle = ranges.iter().map(|(place, _)| place).sum::<Vector3<f64>>() / count;
+        let mean = ranges.iter().map(|(_, range)| range).sum::<f64>() / count;
+        let has_zero = self.rows.iter().any(|row| row.measurement.observe().zero_is_unknown());
+        let varies =
+            ranges.iter().any(|(_, range)| (range - mean).abs() > ROUNDING.sqrt() * mean.abs().max(1.0));
+        let unknowns = if has_zero && varies { 5 } else { 4 };
+        let (mut gram, mut right) = (vec![0.0; unknowns * unknowns], vec![0.0; unknowns]);
+        for (place, range) in &ranges {
             let arm = place - middle;
-            let row = Vector4::new(2.0 * arm.x, 2.0 * arm.y, 2.0 * arm.z, -1.0);
-            gram += row * row.transpose();
-            right += row * (arm.norm_squared() - range * range);
+            let row = [2.0 * arm.x, 2.0 * arm.y, 2.0 * arm.z, -1.0, -2.0 * (range - mean)];
+            // Counted from the mean reading, so that its square does not drown the others.
+            let known = if varies { arm.norm_squared() - (range - mean).powi(2) } else { arm.norm_squared() };
+            let known = if has_zero { known } else { arm.norm_squared() - range * range };
+            for (i, a) in row.iter().enumerate().take(unknowns) {
+                right[i] += a * known;
+                (0..unknowns).for_each(|j| gram[i * unknowns + j] += a * row[j]);
+            }
         }
-        let upper: Vec<f64> = gram.iter().copied().collect();
-        let factor = linalg::cholesky(&upper, 4, ROUNDING * gram.trace())?;
-        let found = linalg::cholesky_solve(&factor, right.as_slice());
-        Some(self.at(&(middle + Vector3::new(*found.first()?, *found.get(1)?, *found.get(2)?))))
+        let trace: f64 = (0..unknowns).map(|k| gram[k * unknowns + k]).sum();
+        let factor = linalg::cholesky(&gram, unknowns, ROUNDING * trace)?;
+        let found = linalg::cholesky_solve(&factor, &right);
+        let arm = Vector3::new(*found.first()?, *found.get(1)?, *found.get(2)?);
+        let zero = match (has_zero, found.get(4)) {
+            (false, _) => 0.0,
+            // `d - mean = |p - a| + (o - mean)`.
+            (true, Some(from_mean)) => from_mean + mean,
+            (true, None) => mean - (arm.norm_squared() - found.get(3)?).max(0.0).sqrt(),
+        };
+        Some((self.at(&(middle + arm)), zero))
     }
 
     /// The middle of the balls.
     fn by_sockets(&self) -> Option<Pose> {
         let places = self.rows.iter().filter(|row| matches!(row.measurement, Measurement::Socket(_)));
-        let (sum, count) = places.fold((Vector3::zeros(), 0), |(sum, count), row| (sum + self.place(row), count + 1));
+        let (sum, count) =
+            places.fold((Vector3::zeros(), 0), |(sum, count), row| (sum + self.place(row), count + 1));
         (count > 0).then(|| self.at(&(sum / f64::from(count))))
     }
 
@@ -197,8 +223,9 @@ fn normal_of(arms: impl Iterator<Item = (Vector3<f64>, f64)>, device: &Pose) -> 
     let sign = if axes[0].dot(&up) < 0.0 { -1.0 } else { 1.0 };
     let at = |above: f64| -> Vector3<f64> {
         let along = axes.iter().zip(&values).skip(1);
-        let others: Vector3<f64> =
-            along.map(|(axis, value)| axis * (axis.dot(&right) / (value - least + above).max(f64::MIN_POSITIVE))).sum();
+        let others: Vector3<f64> = along
+            .map(|(axis, value)| axis * (axis.dot(&right) / (value - least + above).max(f64::MIN_POSITIVE)))
+            .sum();
         others + axes[0] * (axes[0].dot(&right) / above.max(f64::MIN_POSITIVE))
     };
     let scale = gram.trace().max(f64::MIN_POSITIVE);

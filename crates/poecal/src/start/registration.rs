@@ -2,13 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::averaging::{mean_rotation, rigid_motion};
+use super::averaging::{cube_rotations, mean_rotation, rigid_motion};
 use super::hand_eye;
 use super::others::{self, Other};
-use crate::estimate::{Chain, Estimate, Linkage, Session, Unknowns, sample_rows};
+
+use crate::estimate::{Chain, Estimate, Linkage, RangeTerm, Session, Unknowns, sample_rows};
 use crate::lie::{Freedom, Pose, rotation};
 use crate::measurement::{Dataset, Noise};
-use crate::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace};
+use crate::parameters::{DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace};
 use crate::problem::Problem;
 use crate::solve::{Options, minimize};
 
@@ -54,10 +55,8 @@ pub(super) fn at_one_station(problem: &Registration<'_>, start: &Estimate) -> (E
     polish(problem, best.0, problem.rows.to_vec(), 50)
 }
 
-/// Registers by the best closed form and a few iterations, to compare many hypotheses, of which the best are registered in full
-/// afterwards.
-#[must_use]
-pub(crate) fn register_roughly(problem: &Registration<'_>, start: &Estimate) -> Estimate {
+/// The best closed form and a few iterations.
+pub(super) fn roughly_at_one_station(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     let sample = sample_rows(problem.rows, SAMPLE);
     let seen = SampledRows::new(problem, start, &sample);
     if let Some(best) = seen.by_others(problem, start, &sample) {
@@ -107,6 +106,7 @@ pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<P
         let stations = (0..data.station_count()).filter(is_free);
         let stations = stations.map(|station| device_parameter(data, station, rows));
         free.extend(stations);
+        free.extend(range_parameters(&problem.session, rows).map(Parameter::RangeUnknown));
     }
     if problem.targets_free {
         free.extend(target_parameters(&problem.session, problem.rows));
@@ -120,6 +120,19 @@ pub(crate) fn device_parameter(data: &Dataset, station: usize, rows: &[u32]) -> 
     Parameter::DeviceFrame(match data.device_freedom(station, &own) {
         Freedom::Frame => DeviceFrame::new(station, data.mean_position(&own)),
         freedom => DeviceFrame::showing(station, freedom),
+    })
+}
+
+/// The unknown zeros and scales of distances in these rows: what the rows say, and what the session names.
+pub(crate) fn range_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = RangeUnknown> {
+    let (data, unknowns, rows) = (session.data, session.unknowns, rows.to_vec());
+    let is_seen = move |station: usize| data.zero_is_unknown(station, &rows);
+    let named = |station: usize, term: RangeTerm| unknowns.ranges.contains(&(station, term));
+    (0..data.station_count()).flat_map(move |station| {
+        let zero = is_seen(station) || named(station, RangeTerm::Zero);
+        let terms = [(zero, RangeTerm::Zero), (named(station, RangeTerm::Scale), RangeTerm::Scale)];
+        let terms = terms.into_iter().filter(|(is_unknown, _)| *is_unknown);
+        terms.map(move |(_, term)| RangeUnknown { station, term })
     })
 }
 
@@ -165,7 +178,11 @@ impl SampledRows {
             chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
             let motion = chain.target * start.base_from_target[observation.target].inverse();
             let Some(position) = model.position() else {
-                seen.others.push(Other { motion, measurement: observation.measurement, target: observation.target });
+                seen.others.push(Other {
+                    motion,
+                    measurement: observation.measurement,
+                    target: observation.target,
+                });
                 continue;
             };
             seen.base_motion.push(motion);
@@ -353,20 +370,4 @@ impl SampledRows {
             }
         }
     }
-}
-
-/// The 24 proper rotations of a cube.
-pub(super) fn cube_rotations() -> impl Iterator<Item = Matrix3<f64>> {
-    use std::f64::consts::FRAC_PI_2;
-    (0..6).flat_map(|face| {
-        let up = match face {
-            0 => Matrix3::identity(),
-            1 => rotation::about(0, FRAC_PI_2),
-            2 => rotation::about(0, -FRAC_PI_2),
-            3 => rotation::about(0, 2.0 * FRAC_PI_2),
-            4 => rotation::about(1, FRAC_PI_2),
-            _ => rotation::about(1, -FRAC_PI_2),
-        };
-        (0..4).map(move |quarter| up * rotation::about(2, f64::from(quarter) * FRAC_PI_2))
-    })
 }

@@ -2,9 +2,9 @@
 
 use std::cmp::Reverse;
 
-use crate::lie::Freedom;
-use super::registration::{Registration, at_one_station, polish};
+use super::registration::{Registration, at_one_station, polish, roughly_at_one_station};
 use crate::estimate::{Estimate, Session, Unknowns};
+use crate::lie::Freedom;
 
 /// Rows that determine a device frame if the targets are known: three points.
 const FEWEST: usize = 3;
@@ -19,6 +19,16 @@ pub fn register(problem: &Registration<'_>, start: &Estimate) -> (Estimate, f64)
     at_one_station(problem, start)
 }
 
+/// Registers by the best closed form and a few iterations, to compare many hypotheses, of which the best are registered in full
+/// afterwards.
+#[must_use]
+pub(crate) fn register_roughly(problem: &Registration<'_>, start: &Estimate) -> Estimate {
+    if problem.session.device_free && !start.further_devices.is_empty() {
+        return polish(problem, one_by_one(problem, start), problem.rows.to_vec(), 8).0;
+    }
+    roughly_at_one_station(problem, start)
+}
+
 /// Each frame from its own rows, that of most rows first; the targets found with it are known to the others (theory.md §6, *Start*).
 fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     let unknowns = problem.session.unknowns;
@@ -30,10 +40,13 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         .collect();
     // What is held is known; a device that shows places finds its frame best.
     stations.sort_by_key(|(station, rows)| {
-        Reverse((!unknowns.moves_frame(*station), problem.session.data.device_freedom(*station, rows) == Freedom::Frame, rows.len()))
+        Reverse((
+            !unknowns.moves_frame(*station),
+            problem.session.data.device_freedom(*station, rows) == Freedom::Frame,
+            rows.len(),
+        ))
     });
     let mut found = start.clone();
-    let of_one = Unknowns { held_frames: Vec::new(), ..unknowns.clone() };
     let is_known = |target| !problem.targets_free || !unknowns.moves_target(target);
     let mut known: Vec<bool> = (0..start.base_from_target.len()).map(is_known).collect();
     for (station, rows) in stations {
@@ -42,12 +55,18 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         let by_known = of_known.len() >= FEWEST.min(rows.len());
         let rows = if by_known { of_known } else { rows };
         let device_free = unknowns.moves_frame(station);
+        let ranges = unknowns.ranges.iter().filter(|(at, _)| *at == station).map(|&(_, term)| (0, term));
+        let of_one = Unknowns { held_frames: Vec::new(), ranges: ranges.collect(), ..unknowns.clone() };
         let session =
             Session { data: &alone, noise_ratios: &[], device_free, unknowns: &of_one, ..problem.session };
         let noise = problem.session.usual_noise(station, problem.noise);
         let one = Registration { noise, session, rows: &rows, targets_free: !by_known };
         let (seen, _) = at_one_station(&one, &found.seen_from(station));
         *found.device_mut(station) = seen.device_from_base;
+        let range = seen.range(0);
+        if range != found.range(station) {
+            *found.range_mut(station) = range;
+        }
         if !by_known {
             for row in &rows {
                 let target = target(row);

@@ -6,7 +6,7 @@ use crate::reference;
 use nalgebra::Vector3;
 use poecal::analysis::{Setup, identifiability};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
-use poecal::lie::{Pose, Screw, rotation};
+use poecal::lie::{Freedom, Pose, Screw, rotation};
 use poecal::measurement::{
     Dataset, DistanceMeasurement, Measurement, NUMBERS, Noise, Observation, PointMeasurement, PoseMeasurement,
 };
@@ -33,7 +33,7 @@ const POSE: Function = |pose| Measurement::Pose(PoseMeasurement { pose: *pose })
 const FUNCTIONS: [(&str, Function, usize); 3] = [
     ("poses", POSE, 6),
     ("points", POINT, 3),
-    ("distances", |pose| Measurement::Distance(DistanceMeasurement { distance: pose.translation.norm() }), 0),
+    ("distances", |pose| Measurement::Distance(DistanceMeasurement::new(pose.translation.norm())), 0),
 ];
 
 /// Something that an instrument sees, by their names; in two configurations if `apart`.
@@ -151,11 +151,9 @@ fn cells() -> Vec<Cell> {
 
 /// The frame of a station, or its place if no row sees its axes.
 fn device(data: &Dataset, station: usize, about: Vector3<f64>) -> Parameter {
-    let is_frame = data.sees_axes(&data.seen_from(station, &data.all_rows()));
-    Parameter::DeviceFrame(if is_frame {
-        DeviceFrame::new(station, about)
-    } else {
-        DeviceFrame::anchor(station)
+    Parameter::DeviceFrame(match data.device_freedom(station, &data.all_rows()) {
+        Freedom::Frame => DeviceFrame::new(station, about),
+        freedom => DeviceFrame::showing(station, freedom),
     })
 }
 

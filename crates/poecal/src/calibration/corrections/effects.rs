@@ -225,7 +225,8 @@ impl<'a> Gatherer<'a> {
             | Parameter::OtherScrew(_)
             | Parameter::TargetPlace(_)
             | Parameter::TargetFrame(_)
-            | Parameter::DeviceFrame(_) => None,
+            | Parameter::DeviceFrame(_)
+            | Parameter::RangeUnknown(_) => None,
         });
         Gatherer { model, session, estimate, uncertainty, deviations, places: terms.collect() }
     }

@@ -64,7 +64,7 @@ impl Columns {
             }
             match parameter.model().subject() {
                 Subject::Instrument(0) if holds_frame => held.extend(places.iter().map(at)),
-                Subject::Instrument(_) => {
+                Subject::Instrument(_) | Subject::Range(_) => {
                     devices.extend(known.len()..known.len() + places.len());
                     known.extend(places.iter().map(at));
                 }

@@ -1,11 +1,11 @@
 //! Judgement of each row, and which rows are suspected (theory.md §6 (34d) to (34f)).
 
-use crate::calibration::located::located;
 use super::alike::TAILS;
 use super::{Configurations, Loss, RowParts, Scale, parts};
 use crate::analysis::influence;
 use crate::calibration::SetAccuracy;
 use crate::calibration::fit::Task;
+use crate::calibration::located::located;
 use crate::distributions;
 use crate::estimate::Estimate;
 use crate::measurement::{ByQuantity, Dataset, Noise};

@@ -224,7 +224,8 @@ impl BlocksEntry {
                     unknowns.moves_frame(station) && calibration.frame == DeviceFrameKnowledge::Unknown
                 }
                 Block::Term(joint, term) if unknowns.terms.contains(&(joint, term)) => true,
-                Block::Term(..) => continue,
+                Block::Range(station, term) if unknowns.ranges.contains(&(station, term)) => true,
+                Block::Term(..) | Block::Range(..) => continue,
             };
             if is_free { &mut free } else { &mut held }.push(names.of(block));
         }

@@ -286,6 +286,7 @@ impl UncertaintyEntry {
         // Predictions are in the frame of the first station, so that those of others do not matter.
         let is_kept = |parameter: &Parameter| match parameter {
             Parameter::DeviceFrame(frame) => frame.station == 0,
+            Parameter::RangeUnknown(_) => false,
             Parameter::ScrewAxis(_)
             | Parameter::OtherScrew(_)
             | Parameter::ValueTerm(_)
@@ -309,7 +310,8 @@ impl UncertaintyEntry {
             | Parameter::OtherScrew(_)
             | Parameter::ValueTerm(_)
             | Parameter::TargetPlace(_)
-            | Parameter::TargetFrame(_) => None,
+            | Parameter::TargetFrame(_)
+            | Parameter::RangeUnknown(_) => None,
         });
         let upper = |matrix: &[f64]| -> Vec<f64> {
             let rows = kept.iter().enumerate();
@@ -531,7 +533,9 @@ impl UncertaintyEntry {
     /// The motions of a frame that are among the unknowns, by the name of its block; `None` if none is.
     fn freedom(&self, block: &str) -> Option<Freedom> {
         const NAMES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
-        let has = |motion: usize| NAMES.get(motion).is_some_and(|name| self.unknowns.contains(&format!("{block}.{name}")));
+        let has = |motion: usize| {
+            NAMES.get(motion).is_some_and(|name| self.unknowns.contains(&format!("{block}.{name}")))
+        };
         let motions: Vec<usize> = (0..NAMES.len()).filter(|&motion| has(motion)).collect();
         Freedom::ALL.into_iter().find(|freedom| freedom.motions() == motions)
     }

@@ -16,7 +16,7 @@ const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
 
 /// Names with a meaning in every file, beside those of joints.
-const OUR_NAMES: [&str; 19] = [
+const OUR_NAMES: [&str; 20] = [
     "x",
     "y",
     "z",
@@ -32,6 +32,7 @@ const OUR_NAMES: [&str; 19] = [
     "yaw",
     "target",
     "instrument",
+    "pair",
     "sigma_position",
     "sigma_rotation",
     "id",

@@ -34,26 +34,50 @@ pub(super) struct Kind {
 enum From {
     /// Its numbers, all of them; where they are above 0, zero is a lost beam.
     Numbers { above_zero: bool },
-    /// The name of its place, in a row without a position; its numbers, if there are any, else zero.
-    Name,
+    /// The name of its place, in a row without a position; its numbers, if there are any, else zero. A size is above 0.
+    Name { size: bool },
 }
 
 /// All of them. A new one is an entry here.
-pub(super) const KINDS: [Kind; 5] = [
+pub(super) const KINDS: [Kind; 7] = [
     Kind {
         quantities: &[Quantity::Distance],
         numbers: &["distance"],
         places: &["anchor"],
         word: None,
         from: From::Numbers { above_zero: true },
-        of: |numbers| Measurement::Distance(DistanceMeasurement { distance: number(numbers, 0) }),
+        of: |numbers| Measurement::Distance(DistanceMeasurement::new(number(numbers, 0))),
+    },
+    Kind {
+        quantities: &[Quantity::Distance],
+        numbers: &["distance_change"],
+        places: &["anchor"],
+        word: None,
+        from: From::Numbers { above_zero: false },
+        of: |numbers| Measurement::Distance(DistanceMeasurement::from_unknown_zero(number(numbers, 0))),
+    },
+    Kind {
+        quantities: &[Quantity::Distance],
+        numbers: &["radius"],
+        places: &["sphere"],
+        word: None,
+        from: From::Name { size: true },
+        of: |numbers| {
+            let radius = number(numbers, 0);
+            let is_known = radius > 0.0;
+            Measurement::Distance(if is_known {
+                DistanceMeasurement::new(radius)
+            } else {
+                DistanceMeasurement::from_unknown_zero(0.0)
+            })
+        },
     },
     Kind {
         quantities: &[Quantity::Contact],
         numbers: &[],
         places: &["place", "socket"],
         word: None,
-        from: From::Name,
+        from: From::Name { size: false },
         of: |_| Measurement::Socket(SocketMeasurement::default()),
     },
     Kind {
@@ -61,7 +85,7 @@ pub(super) const KINDS: [Kind; 5] = [
         numbers: &["height"],
         places: &["plane"],
         word: Some(("contact", "point")),
-        from: From::Name,
+        from: From::Name { size: false },
         of: |numbers| Measurement::Height(HeightMeasurement { height: number(numbers, 0) }),
     },
     Kind {
@@ -69,7 +93,7 @@ pub(super) const KINDS: [Kind; 5] = [
         numbers: &["height"],
         places: &["plane"],
         word: Some(("contact", "flush")),
-        from: From::Name,
+        from: From::Name { size: false },
         of: |numbers| {
             let height = number(numbers, 0);
             Measurement::Flush(FlushMeasurement { height, ..FlushMeasurement::default() })
@@ -110,14 +134,14 @@ impl Kind {
     pub(super) fn key(&self) -> &'static str {
         let of = match self.from {
             From::Numbers { .. } => self.numbers.first(),
-            From::Name => self.places.last(),
+            From::Name { .. } => self.places.last(),
         };
         of.copied().unwrap_or_default()
     }
 
     /// Whether its numbers must be there.
     pub(super) fn needs_numbers(&self) -> bool {
-        self.from != From::Name
+        matches!(self.from, From::Numbers { .. })
     }
 
     /// What it is measured from, in words.
@@ -132,7 +156,11 @@ impl Kind {
 
     /// Words of a column of words.
     fn words(column: &str) -> impl Iterator<Item = &'static str> {
-        KINDS.iter().filter_map(|kind| kind.word).filter(move |(name, _)| *name == column).map(|(_, word)| word)
+        KINDS
+            .iter()
+            .filter_map(|kind| kind.word)
+            .filter(move |(name, _)| *name == column)
+            .map(|(_, word)| word)
     }
 }
 
@@ -197,8 +225,12 @@ impl KindColumns {
         match self.kind().map(|kind| kind.from) {
             None => false,
             Some(From::Numbers { .. }) => has_number(),
-            Some(From::Name) => {
-                let is_named = self.places.last().and_then(|&at| row.cells.get(at)).is_some_and(|it| !it.text().is_empty());
+            Some(From::Name { .. }) => {
+                let is_named = self
+                    .places
+                    .last()
+                    .and_then(|&at| row.cells.get(at))
+                    .is_some_and(|it| !it.text().is_empty());
                 is_named && (!has_position || has_number())
             }
         }
@@ -225,15 +257,17 @@ impl KindColumns {
         for (number, &input) in numbers.iter_mut().zip(&self.numbers) {
             let value = match (inputs.value(input), kind.from) {
                 (Some(value), _) => value,
-                (None, From::Name) => 0.0,
+                (None, From::Name { .. }) => 0.0,
                 (None, From::Numbers { .. }) => {
                     let expected = "all numbers of a measurement, or none";
                     return Err(inputs.error(row, input, "found an empty cell", expected));
                 }
             };
-            if kind.from == (From::Numbers { above_zero: true }) && value <= 0.0 {
+            let is_size = kind.from == (From::Name { size: true }) && inputs.value(input).is_some();
+            if (is_size || kind.from == (From::Numbers { above_zero: true })) && value <= 0.0 {
                 let text = row.cells.get(inputs.column(input)).map_or("", |cell| cell.raw);
-                let expected = format!("a {} above 0", kind.quantity().name());
+                let what = if is_size { kind.numbers.first().copied() } else { Some(kind.quantity().name()) };
+                let expected = format!("a {} above 0", what.unwrap_or("number"));
                 return Err(inputs.error(row, input, &format!("found `{text}`"), &expected));
             }
             *number = value;

@@ -27,6 +27,8 @@ pub(super) struct ColumnLayout {
     pub(super) target_column: Option<usize>,
     /// Column with the name of the instrument or station.
     pub(super) instrument: Option<usize>,
+    /// Column with the name of a pair of configurations.
+    pub(super) pair: Option<usize>,
     pub(super) id: Option<usize>,
     pub(super) set: SetRule,
     pub(super) pose: PoseDirection,
@@ -58,6 +60,7 @@ impl ColumnLayout {
             Some(column) => Some(builder.text_column(column, "for the instrument's name")?),
             None => builder.optional_text_column("instrument")?,
         };
+        let pair = builder.optional_text_column("pair")?;
         let id = builder.id_column()?;
         let rule = options.fit_where.as_ref().or(map.set.as_ref()).cloned();
         let words = builder.optional_text_column("set")?.filter(|_| !options.ignore_sets);
@@ -75,7 +78,18 @@ impl ColumnLayout {
         };
         let (ignored, numbered) = (builder.ignored(), builder.numbered.clone());
         let (inputs, pose) = (builder.inputs, map.pose);
-        Ok(ColumnLayout { inputs, targets, target_column, instrument, id, set, pose, ignored, numbered })
+        Ok(ColumnLayout {
+            inputs,
+            targets,
+            target_column,
+            instrument,
+            pair,
+            id,
+            set,
+            pose,
+            ignored,
+            numbered,
+        })
     }
 
     /// Which numbered columns were taken for the joints, in words.

@@ -24,6 +24,7 @@ use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
 use crate::measurement::{Dataset, Measurement, Observation, Quantity, Seen, Set, Source, Stated};
 use crate::robot::{Robot, check_name};
+use crate::start::settle_faces;
 use crate::text::visible;
 
 /// Reads measurement files, joined in their order.
@@ -81,6 +82,8 @@ struct Reader<'a> {
     stations: Names,
     /// What each named place is, and where it was named first.
     places: BTreeMap<String, (&'static str, PathBuf, usize)>,
+    /// Pairs of rows: the first one's configuration until the second is read, and its line.
+    begun: BTreeMap<String, (Option<u32>, usize)>,
     /// The sockets of each place.
     sockets: Sockets,
     /// Which of the values that mark a row to fit were seen.
@@ -97,6 +100,7 @@ impl<'a> Reader<'a> {
             targets: Names::default(),
             stations: Names::default(),
             places: BTreeMap::new(),
+            begun: BTreeMap::new(),
             sockets: Sockets::new(),
             fit_values_seen: Vec::new(),
             found: MeasurementFile {
@@ -132,6 +136,9 @@ impl<'a> Reader<'a> {
                 rows += 1;
                 inputs.read(&row)?;
                 inputs.take_readings(&row)?;
+                if self.begins_pair(&row, &layout, &inputs)? {
+                    continue;
+                }
                 if lost.take_out(&row, &layout.targets, &mut inputs, self.options.strict)? {
                     continue;
                 }
@@ -141,6 +148,12 @@ impl<'a> Reader<'a> {
                 self.row(&row, &layout, &inputs)?;
                 refuse_more_rows(self.found.data.len(), &row)?;
             }
+        }
+        if let Some((name, (_, line))) = self.begun.iter().find(|(_, (index, _))| index.is_some()) {
+            let message = format!(
+                "found one row of the pair `{name}`, expected two: the instrument's configuration, then the target's with what was measured"
+            );
+            return Err(Error::new(ErrorKind::Measurement, message).at_line(path, *line));
         }
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         if rows == 0 {
@@ -173,7 +186,9 @@ impl<'a> Reader<'a> {
             self.found.data.ids.resize(self.found.data.len(), String::new());
         }
         self.warn_of_ignored(path, &layout);
-        self.found.warnings.extend(layout.numbered_words().map(|words| format!("{}: {words}", path.display())));
+        self.found
+            .warnings
+            .extend(layout.numbered_words().map(|words| format!("{}: {words}", path.display())));
         let turns = turns::warning(&table.header, &layout, self.map);
         self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
         self.found.understood.push(FileUnderstanding {
@@ -224,12 +239,38 @@ impl<'a> Reader<'a> {
             }
             let has_position = lost::has_position(target, inputs);
             for kind in &target.kinds {
-                if let Some((measurement, stated)) = kind.measurement(row, inputs, (has_position, self.options.contact))? {
+                if let Some((measurement, stated)) =
+                    kind.measurement(row, inputs, (has_position, self.options.contact))?
+                {
                     self.observation(row, layout, (target, set, Some(kind)), (measurement, stated), inputs)?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// Whether a row is the first one of a pair, the configuration from which the second is seen.
+    fn begins_pair(
+        &mut self,
+        row: &Row<'_>,
+        layout: &ColumnLayout,
+        inputs: &InputReader<'_>,
+    ) -> Result<bool> {
+        let Some((column, name)) = layout.pair.and_then(|at| Some((at, row.cells.get(at)?.text()))) else {
+            return Ok(false);
+        };
+        if name.is_empty() || self.begun.get(name.as_ref()).is_some_and(|(index, _)| index.is_some()) {
+            return Ok(false);
+        }
+        if let Some((_, line)) = self.begun.get(name.as_ref()) {
+            let message =
+                format!("found a third row of the pair `{name}` (line {line} is the first), expected two");
+            return Err(row.error(column, message));
+        }
+        let further = self.found.data.push_further(inputs.readings());
+        let further = further.map_err(|error| row.error(column, error.message()))?;
+        self.begun.insert(name.into_owned(), (Some(further), row.line));
+        Ok(true)
     }
 
     /// Adds a measurement of a row.
@@ -241,10 +282,13 @@ impl<'a> Reader<'a> {
         (measurement, stated): (Measurement, Stated),
         inputs: &InputReader<'_>,
     ) -> Result<()> {
+        let target = self.target(row, layout, target)?;
+        let pair = layout.pair.and_then(|at| row.cells.get(at)).map(|cell| cell.text());
+        let from = pair.and_then(|pair| self.begun.get_mut(pair.as_ref())?.0.take());
         let observation = Observation {
-            target: self.target(row, layout, target)?,
-            station: self.station(row, layout, kind)?,
-            from: None,
+            target,
+            station: self.station(row, layout, kind, from.map(|_| target))?,
+            from,
             measurement,
             stated,
             set,
@@ -303,7 +347,13 @@ impl<'a> Reader<'a> {
 
     /// Index of the row's station: of its instrument, or of the place from which it was measured. Either all rows that are measured alike name
     /// theirs or none does.
-    fn station(&mut self, row: &Row<'_>, layout: &ColumnLayout, kind: Option<&KindColumns>) -> Result<usize> {
+    fn station(
+        &mut self,
+        row: &Row<'_>,
+        layout: &ColumnLayout,
+        kind: Option<&KindColumns>,
+        shared: Option<usize>,
+    ) -> Result<usize> {
         let text = |column: usize| row.cells.get(column).map(|cell| cell.text()).filter(|it| !it.is_empty());
         let own = kind.and_then(|kind| kind.place_name(row));
         let instrument = layout.instrument.and_then(text);
@@ -323,7 +373,12 @@ impl<'a> Reader<'a> {
             (None, Some((what, columns)), None) => (what, columns.last().copied()),
             (_, None, None) => ("instrument", None),
         };
-        let name = match (own, self.options.frames) {
+        let pair = shared.filter(|_| own.is_none() && instrument.is_none()).map(|target| {
+            let target = self.found.data.targets.get(target).cloned().flatten();
+            Cow::Owned(target.map_or_else(|| "pair".to_owned(), |target| format!("pair/{target}")))
+        });
+        let (what, column) = if pair.is_some() { ("pair", layout.pair) } else { (what, column) };
+        let name = match (own.or(pair), self.options.frames) {
             (Some(own), _) => Some(own),
             (None, Frames::PerFile) => Some(Cow::Owned(row.path.display().to_string())),
             (None, Frames::Common) => instrument,
@@ -343,7 +398,8 @@ impl<'a> Reader<'a> {
             known.resize(index, None);
             known.push(name.map(str::to_owned));
             if what == "socket" {
-                let (place, socket) = name.and_then(|name| name.rsplit_once('/')).unwrap_or(("", name.unwrap_or_default()));
+                let (place, socket) =
+                    name.and_then(|name| name.rsplit_once('/')).unwrap_or(("", name.unwrap_or_default()));
                 self.sockets.entry(place.to_owned()).or_default().push((socket.to_owned(), index));
             }
         }
@@ -359,10 +415,8 @@ impl<'a> Reader<'a> {
         name: &str,
     ) -> Result<()> {
         let place = |what: &'static str| if what == "anchor" { "instrument" } else { what };
-        let (known, path, line) = self
-            .places
-            .entry(name.to_owned())
-            .or_insert_with(|| (what, row.path.to_path_buf(), row.line));
+        let (known, path, line) =
+            self.places.entry(name.to_owned()).or_insert_with(|| (what, row.path.to_path_buf(), row.line));
         if place(known) == place(what) {
             return Ok(());
         }
@@ -391,7 +445,7 @@ impl<'a> Reader<'a> {
         if let Some(distances) = &self.options.socket_distances {
             found.data.lengths = distances.lengths(&self.sockets)?;
         }
-        found.data.settle_faces(self.robot);
+        settle_faces(&mut found.data, self.robot);
         found.warnings.iter_mut().for_each(|warning| *warning = visible(warning).into_owned());
         Ok(found)
     }

@@ -22,7 +22,8 @@ pub(super) fn measurement(
     may_be_missing: bool,
 ) -> Result<Option<Measurement>> {
     let Some(columns) = target.position else { return Ok(None) };
-    let may_be_missing = may_be_missing || target.kinds.iter().any(|kind| kind.is_measured(row, inputs, false));
+    let may_be_missing =
+        may_be_missing || target.kinds.iter().any(|kind| kind.is_measured(row, inputs, false));
     let position = match inputs.all(columns) {
         [Some(x), Some(y), Some(z)] => Vector3::new(x, y, z),
         [None, None, None] if may_be_missing => return Ok(None),

@@ -55,7 +55,9 @@ fn metres(text: &str, whole: &str) -> Result<f64> {
 }
 
 fn bad(text: &str) -> Error {
-    let message = format!("found `{text}` as the distance of sockets, expected one like 50mm, or pairs by name like A-B=50mm,B-C=70mm");
+    let message = format!(
+        "found `{text}` as the distance of sockets, expected one like 50mm, or pairs by name like A-B=50mm,B-C=70mm"
+    );
     Error::new(ErrorKind::Option, message)
 }
 

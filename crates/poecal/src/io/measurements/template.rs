@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
 
-use super::write::{decimal, header, reading_header, reading_units};
+use super::write::{decimal, header, reading_header, reading_units, refuse_names};
 use crate::error::Result;
+use crate::measurement::Quantity;
 use crate::robot::Robot;
 use crate::simulate::{Configurations, Kind};
 use crate::text::visible;
@@ -17,16 +18,27 @@ const ROWS_BETWEEN_VISITS: usize = 20;
 /// A measurement file without rows: the columns for this robot, with instructions as comments.
 pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
     let names = robot.reading_names();
-    let mut columns = header(&names, &reading_units(&names, robot)?, kind.sees_orientation())?;
+    let units = reading_units(&names, robot)?;
+    let mut columns = if kind.has_device() {
+        header(&names, &units, kind.sees_orientation())?
+    } else {
+        let own = kind.columns().0;
+        refuse_names(&names, &own.iter().map(|it| it.split('[').next().unwrap_or(it)).collect::<Vec<_>>())?;
+        format!("{},{}", reading_header(&names, &units), own.join(","))
+    };
     for (column, mounts) in [(",instrument", &robot.instruments), (",target", &robot.mounted)] {
         columns.push_str(if mounts.is_empty() { "" } else { column });
     }
     let mut text = "# Measurements: a row for each configuration, below the line of column names. Lines that begin with # are ignored.\n\
          # Units stand in brackets. If your numbers have others, change them there: [rad], [deg], [m], [mm], [um].\n\
          #\n\
-         # Joints      what the controller shows while the robot stands still, not what it was told to do.\n\
-         # x, y, z     where the device sees the target, in the device's own frame, wherever the device stands.\n"
+         # Joints      what the controller shows while the robot stands still, not what it was told to do.\n"
         .to_owned();
+    if kind.has_device() {
+        text.push_str(
+            "# x, y, z     where the device sees the target, in the device's own frame, wherever the device stands.\n",
+        );
+    }
     text.push_str(match kind {
         Kind::Point => "",
         Kind::Pose => {
@@ -37,6 +49,7 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
             "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last); leave all four empty in rows\n\
              #             where a point was seen.\n"
         }
+        other => other.columns().1,
     });
     for (column, does, mounts) in
         [("instrument", "sees", &robot.instruments), ("target    ", "is seen", &robot.mounted)]
@@ -52,10 +65,23 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
          #   id                   name of the row, kept in the results\n\
          #   target               name of the measured tool point; several in one configuration are several rows. Without this\n\
          #                        column, the measured point becomes the tip of the calibrated model\n\
-         #   set                  fit, or held_out for rows to judge by [default: a random 30 % of the configurations]\n\
-         #   sigma_position[mm]   standard deviation of each of x, y, z, if the device states it [default: estimated]\n",
+         #   set                  fit, or held_out for rows to judge by [default: a random 30 % of the configurations]\n",
     );
-    if kind.sees_orientation() {
+    if kind.has_device() {
+        text.push_str(
+            "#   sigma_position[mm]   standard deviation of each of x, y, z, if the device states it [default: estimated]\n",
+        );
+    }
+    for name in
+        kind.quantities().iter().filter(|it| !it.is_of_pose()).map(|it| (it.name(), it.unit().symbol()))
+    {
+        let column = format!("sigma_{}[{}]", name.0, name.1);
+        let _ = writeln!(
+            text,
+            "#   {column:<20} standard deviation of its numbers, if it is known [default: estimated]"
+        );
+    }
+    if kind.quantities().contains(&Quantity::Rotation) {
         text.push_str("#   sigma_rotation[deg]  standard deviation of the rotation about each axis [default: estimated]\n");
     }
     Ok(format!("{text}{columns}\n"))
@@ -86,6 +112,61 @@ pub(in crate::io) fn plan(robot: &Robot, count: usize, seed: u64) -> Result<Stri
         let _ = writeln!(text, "{}", cells.join(","));
     }
     Ok(text)
+}
+
+impl Kind {
+    /// Columns of a kind without a device frame, and what they are.
+    fn columns(self) -> (&'static [&'static str], &'static str) {
+        match self {
+            Kind::Pose | Kind::Point | Kind::Mixed => (&[], ""),
+            Kind::Distance => (
+                &["anchor", "distance[mm]"],
+                "# anchor      from where the distance was measured; three places or more tell most. Where they are is found.\n\
+                 # distance    from there to the target.\n",
+            ),
+            Kind::Change => (
+                &["anchor", "distance_change[mm]"],
+                "# anchor           the instrument, or where it stood; another name whenever it was moved or set to zero.\n\
+                 # distance_change  what it shows: the distance from it, counted from any zero.\n",
+            ),
+            Kind::Sphere => (
+                &["sphere", "radius[mm]"],
+                "# sphere      the sphere that the target touches. Where it is is found.\n\
+                 # radius      its radius, and that of the probe; leave it empty if it is unknown (then it is found too).\n",
+            ),
+            Kind::Socket => (
+                &["place", "socket"],
+                "# place       where the sockets stood; another name whenever they were moved.\n\
+                 # socket      the socket in which the ball is, or the fixed point that is touched.\n",
+            ),
+            Kind::Plane => (
+                &["plane", "contact", "height[mm]"],
+                "# plane       the plane that is touched. Where it is is found.\n\
+                 # contact     point, or flush where a face lies on it.\n\
+                 # height      of the target over it, as a dial gauge shows; leave it empty where it is touched.\n",
+            ),
+            Kind::Flush => (
+                &["plane", "contact"],
+                "# plane       the plane on which a face of the tool lies. Where it is is found.\n\
+                 # contact     flush, or point where a point touches it.\n",
+            ),
+            Kind::Direction => (
+                &["direction", "tilt_x[deg]", "tilt_y[deg]"],
+                "# direction   the direction that is seen, such as gravity.\n\
+                 # tilt_x, y   the tilts of the target about its own x and y, as an inclinometer with two axes shows them.\n",
+            ),
+            Kind::BallBar => (
+                &["pair", "distance[mm]"],
+                "# pair        two rows with the same name are one measurement, of two configurations; the second has the number.\n\
+                 # distance    of the target between the two.\n",
+            ),
+            Kind::Relative => (
+                &["pair", "x[mm]", "y[mm]", "z[mm]", "qx", "qy", "qz", "qw"],
+                "# pair        two rows with the same name are one measurement, of two configurations; the second has the numbers.\n\
+                 # x to qw     the target in the second, seen from where it was in the first.\n",
+            ),
+        }
+    }
 }
 
 #[cfg(test)]

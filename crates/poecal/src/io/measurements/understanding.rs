@@ -114,6 +114,7 @@ pub(super) fn columns(
     let texts = [
         text("target", layout.target_column),
         text("instrument", layout.instrument),
+        text("pair", layout.pair),
         text("id", layout.id),
         text("set", set),
     ];

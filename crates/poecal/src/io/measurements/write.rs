@@ -1,16 +1,24 @@
 //! Measurement files of simulated rows.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::units::{Dimension, Unit};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::csv_text;
-use crate::measurement::{Dataset, Noise, Quantity};
+use crate::measurement::{Dataset, Measurement, Noise, Observation, Quantity, Seen};
 use crate::robot::{ReadingKind, Robot};
 
 /// Rows as a file with a leading comment: degrees and millimetres, orientations as quaternions, names where there are some. Readings are exact;
 /// measured numbers are rounded to less than a thousandth of their noise.
 pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
+    if data
+        .observations
+        .iter()
+        .any(|row| row.from.is_some() || matches!(row.measurement.seen(), Seen::Other(_)))
+    {
+        return other_text(data, robot, noise, comment);
+    }
     let mm = Unit::parse("mm", Dimension::Length)?;
     let number = Dimension::Number.si_unit();
     let orientations = data.observations.iter().any(|row| row.measurement.sees_orientation());
@@ -46,6 +54,114 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
     Ok(out)
 }
 
+/// The columns of rows of other kinds, in the order of a file.
+const OTHER_COLUMNS: [&str; 18] = [
+    "pair",
+    "anchor",
+    "socket",
+    "plane",
+    "contact",
+    "sphere",
+    "direction",
+    "distance[mm]",
+    "distance_change[mm]",
+    "tilt_x[deg]",
+    "tilt_y[deg]",
+    "x[mm]",
+    "y[mm]",
+    "z[mm]",
+    "qx",
+    "qy",
+    "qz",
+    "qw",
+];
+
+/// Rows of other kinds, each with the cells that it has; a pair of configurations as two rows.
+fn other_text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
+    let units = reading_units(data.reading_names(), robot)?;
+    let names: Vec<&str> = OTHER_COLUMNS.iter().map(|it| it.split('[').next().unwrap_or(it)).collect();
+    refuse_names(data.reading_names(), &names)?;
+    let readings = |readings: &[f64]| -> Vec<String> {
+        readings.iter().zip(&units).map(|(&reading, &unit)| decimal(reading, unit, None)).collect()
+    };
+    let width = data.reading_names().len();
+    let mut rows: Vec<(Vec<String>, BTreeMap<&str, String>)> = Vec::with_capacity(data.len());
+    for (row, observation) in data.observations.iter().enumerate() {
+        let mut cells = cells(data, observation, noise)?;
+        if let Some(from) = observation.from {
+            let pair = BTreeMap::from([("pair", (row + 1).to_string())]);
+            let first = width * from as usize;
+            rows.push((readings(&data.further_readings()[first..first + width]), pair.clone()));
+            cells.extend(pair);
+        }
+        rows.push((readings(data.readings(row)), cells));
+    }
+    let used: Vec<&str> = OTHER_COLUMNS
+        .into_iter()
+        .filter(|column| rows.iter().any(|(_, cells)| cells.contains_key(column)))
+        .collect();
+    let mut out =
+        format!("# {comment}\n{},{}\n", reading_header(data.reading_names(), &units), used.join(","));
+    for (readings, cells) in rows {
+        let own = used.iter().map(|column| cells.get(column).map_or("", String::as_str));
+        let line: Vec<&str> = readings.iter().map(String::as_str).chain(own).collect();
+        let _ = writeln!(out, "{}", line.join(","));
+    }
+    Ok(out)
+}
+
+/// The cells of a measurement, by their columns.
+fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTreeMap<&'static str, String>> {
+    let (mm, deg) = (Unit::parse("mm", Dimension::Length)?, Unit::parse("deg", Dimension::Angle)?);
+    let number = Dimension::Number.si_unit();
+    let length = |si: f64, quantity| decimal(si, mm, decimals(mm.from_si(noise[quantity])));
+    let station = data.stations.get(observation.station).and_then(Option::as_deref).unwrap_or_default();
+    let name = csv_text::cell(station).into_owned();
+    let mut cells = BTreeMap::new();
+    let is_pair = observation.from.is_some();
+    match &observation.measurement {
+        Measurement::Point(_) | Measurement::Pose(_) => {
+            let pose = observation.measurement.pose();
+            for (column, value) in ["x[mm]", "y[mm]", "z[mm]"].into_iter().zip(pose.translation.iter()) {
+                cells.insert(column, length(*value, Quantity::Position));
+            }
+            if observation.measurement.sees_orientation() {
+                let turn = decimals(noise[Quantity::Rotation] / 2.0);
+                for (column, part) in ["qx", "qy", "qz", "qw"].into_iter().zip(pose.quaternion_xyzw()) {
+                    cells.insert(column, decimal(part, number, turn));
+                }
+            }
+        }
+        Measurement::Distance(it) if it.zero_is_unknown && it.distance == 0.0 => {
+            cells.insert("sphere", name);
+        }
+        Measurement::Distance(it) => {
+            let column = if it.zero_is_unknown { "distance_change[mm]" } else { "distance[mm]" };
+            cells.insert(column, length(it.distance, Quantity::Distance));
+            if !is_pair {
+                cells.insert("anchor", name);
+            }
+        }
+        Measurement::Socket(_) => {
+            cells.insert("socket", name);
+        }
+        Measurement::Height(_) => {
+            cells.extend([("plane", name), ("contact", "point".to_owned())]);
+        }
+        Measurement::Flush(_) => {
+            cells.extend([("plane", name), ("contact", "flush".to_owned())]);
+        }
+        Measurement::Direction(it) => {
+            let digits = decimals(deg.from_si(noise[Quantity::Tilt]));
+            let [x, y] = it.tilts();
+            cells.insert("direction", name);
+            cells.insert("tilt_x[deg]", decimal(x, deg, digits));
+            cells.insert("tilt_y[deg]", decimal(y, deg, digits));
+        }
+    }
+    Ok(cells)
+}
+
 /// Units of the readings: degrees and millimetres.
 pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>> {
     let (deg, mm) = (Unit::parse("deg", Dimension::Angle)?, Unit::parse("mm", Dimension::Length)?);
@@ -61,7 +177,14 @@ pub(super) fn reading_units(names: &[String], robot: &Robot) -> Result<Vec<Unit>
 pub(super) fn header(names: &[String], units: &[Unit], orientations: bool) -> Result<String> {
     let measured_names: &[&str] =
         if orientations { &["x", "y", "z", "qx", "qy", "qz", "qw"] } else { &["x", "y", "z"] };
-    if let Some(name) = names.iter().find(|name| measured_names.contains(&name.as_str())) {
+    refuse_names(names, measured_names)?;
+    let measured = if orientations { "x[mm],y[mm],z[mm],qx,qy,qz,qw" } else { "x[mm],y[mm],z[mm]" };
+    Ok(format!("{},{measured}", reading_header(names, units)))
+}
+
+/// Refuses joints with names that could not be read back beside these columns.
+pub(super) fn refuse_names(names: &[String], measured: &[&str]) -> Result<()> {
+    if let Some(name) = names.iter().find(|name| measured.contains(&name.as_str())) {
         let message = format!(
             "found the joint `{name}` in the model, expected none with the name of a measured column, which could not be \
              read back: rename the joint in the model"
@@ -75,8 +198,7 @@ pub(super) fn header(names: &[String], units: &[Unit], orientations: bool) -> Re
         );
         return Err(Error::new(ErrorKind::Model, message));
     }
-    let measured = if orientations { "x[mm],y[mm],z[mm],qx,qy,qz,qw" } else { "x[mm],y[mm],z[mm]" };
-    Ok(format!("{},{measured}", reading_header(names, units)))
+    Ok(())
 }
 
 /// The columns of the readings.

@@ -1,0 +1,60 @@
+//! The axis of a target that is the normal of its face.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::estimate::{Chain, Linkage, Packed, delivered};
+use crate::lie::Pose;
+use crate::linalg;
+use crate::measurement::{Dataset, Measurement};
+use crate::robot::Robot;
+
+/// Finds, for each plane and each target that lay flush on it, the axis of the target that is nearest to the plane's normal by the model as
+/// it is: the pair of directions n (base) and m (target) with the largest `Σ nᵀ R m` over their rows. The plane's z is then up, or along
+/// the largest component of n if it is level (theory.md §6 (33a)).
+///
+/// ```
+/// use poecal::measurement::{Dataset, FlushMeasurement, Measurement};
+/// let robot = poecal::simulate::scara();
+/// let mut data = Dataset::new(robot.reading_names());
+/// let touch = Measurement::Flush(FlushMeasurement::default());
+/// data.push(&[0.0; 4], None, touch)?;
+/// poecal::start::settle_faces(&mut data, &robot);
+/// let Measurement::Flush(found) = data.observations[0].measurement else { unreachable!() };
+/// assert_eq!(found.normal.amax(), 1.0);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+pub fn settle_faces(data: &mut Dataset, robot: &Robot) {
+    let is_flush = |it: &Measurement| matches!(it, Measurement::Flush(_));
+    if !data.observations.iter().any(|row| is_flush(&row.measurement)) {
+        return;
+    }
+    let mut nominal = delivered(robot, data);
+    nominal.device_from_base = Pose::identity();
+    nominal.further_devices.iter_mut().for_each(|device| *device = Pose::identity());
+    let (linkage, packed, mut chain) = (Linkage::new(&nominal), Packed::of(robot, data), Chain::default());
+    let targets = data.targets.len();
+    let mut sums = vec![Matrix3::zeros(); data.station_count() * targets];
+    for (row, observation) in data.observations.iter().enumerate() {
+        if is_flush(&observation.measurement) {
+            chain.evaluate(&linkage, &packed, row, observation);
+            sums[observation.station * targets + observation.target] += chain.target.rotation;
+        }
+    }
+    let normals: Vec<Vector3<f64>> = sums.iter().map(face_normal).collect();
+    for observation in &mut data.observations {
+        if let Measurement::Flush(it) = &mut observation.measurement {
+            it.normal = normals[observation.station * targets + observation.target];
+        }
+    }
+}
+
+/// The axis, forward or backward, nearest to the m of the largest `nᵀ S m`, with n upward.
+fn face_normal(sum: &Matrix3<f64>) -> Vector3<f64> {
+    let gram = sum.transpose() * sum;
+    let (_, vectors) = linalg::symmetric_eigen(gram.as_slice(), 3);
+    let m = Vector3::new(vectors[(0, 2)], vectors[(1, 2)], vectors[(2, 2)]);
+    let n = sum * m;
+    let up = if n.z.abs() > 0.1 * n.norm() { n.z } else { n[n.iamax()] };
+    let k = m.iamax();
+    Vector3::ith(k, if (m[k] < 0.0) == (up < 0.0) { 1.0 } else { -1.0 })
+}
