@@ -13,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SKIPPED = 77
 SCRIPT = runpy.run_path(str(ROOT / "validation" / "run"))
 EXPECTED = json.loads((ROOT / "validation" / "expected.json").read_text(encoding="utf-8"))
+FIGURES = [(case, figure) for case in EXPECTED["constraints"] for figure in case["figures"]]
 CASES = pytest.mark.parametrize("case", EXPECTED["cases"], ids=lambda case: case["name"])
 
 
@@ -64,6 +65,26 @@ def test_expected_quantiles_are_those_of_the_expected_mean(case):
     if case["calibrated_mm"]:
         least = 0.25 * median + 0.2 * upper + 0.05 * most
         assert least < case["calibrated_mm"] < 0.5 * median + 0.25 * upper + 0.2 * most + 0.05 * largest
+
+
+@pytest.mark.parametrize(("case", "figure"), FIGURES, ids=lambda it: it.get("name") or it["words"])
+def test_a_bound_is_missed_by_its_model_and_those_after_it(case, figure):
+    judge, models, tolerance = SCRIPT["judge_constraint"], SCRIPT["MODELS"], EXPECTED["tolerance"]
+    most = figure.get("at_most", 1)
+    good = {"registered": 3 * most, "calibrated": most, "corrected": most}
+    assert judge(figure, good, tolerance) == []
+    assert len(judge(figure, {**good, "calibrated": 0.9 * most}, tolerance)) == 1
+    if "judged" in figure:
+        assert {"model", "measurements", "options", "source", "sha256"} <= case.keys()
+        for model in models[models.index(figure["judged"]) :]:
+            assert len(judge(figure, {**good, model: 1.001 * most}, tolerance)) == 1, model
+
+
+def test_a_figure_of_one_target_is_that_of_its_rows():
+    rows = [{"target": target, **{f"position_{model}[mm]": value for model in SCRIPT["MODELS"]}} for target, value in (("A", "3"), ("B", "9"), ("A", "4"))]
+    figure = {"of": "position_mm", "statistic": "rms", "target": "A"}
+    assert SCRIPT["constraint_figure"]({}, rows, figure)["corrected"] == pytest.approx(12.5**0.5)
+    assert SCRIPT["constraint_figure"]({}, rows, {**figure, "statistic": "mean"})["calibrated"] == pytest.approx(3.5)
 
 
 def test_quantiles_are_those_of_the_standard_library():

@@ -48,6 +48,7 @@ pub(super) fn explain(
     let offsets = rules.places(|parameter| matches!(parameter, Parameter::ValueTerm(_)));
     rules.take(&offsets);
     rules.unseen();
+    rules.size();
     rules.stood_still();
     rules.too_few();
     rules.point_on_axis();

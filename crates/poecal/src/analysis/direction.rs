@@ -32,6 +32,8 @@ pub enum Cause {
     SmallMotion,
     /// Joints moved in combinations that hide something; no simpler cause was found.
     DependentMotion,
+    /// Nothing that was measured has a length, so that the size of the robot does not show.
+    NoLength,
     /// A target was measured once, so that nothing checks it.
     SeenOnce,
     /// None of these.
@@ -56,6 +58,7 @@ impl Cause {
             | Cause::TooFew
             | Cause::PointOnAxis
             | Cause::SmallMotion
+            | Cause::NoLength
             | Cause::SeenOnce
             | Cause::Other => false,
         }

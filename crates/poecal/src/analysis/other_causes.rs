@@ -5,9 +5,10 @@ use super::direction::Cause;
 use super::excitation::target_name;
 use super::spectrum::{PLAUSIBLE, Spectrum, WEAK};
 use super::subspace;
-use crate::estimate::{Packed, Session, sample_rows};
+use crate::estimate::{Packed, RangeTerm, Session, sample_rows};
+use crate::linalg;
 use crate::measurement::Dataset;
-use crate::parameters::Parameter;
+use crate::parameters::{Parameter, TargetPlace};
 use crate::problem::Problem;
 use crate::robot::JointKind;
 use crate::solve::LeastSquares;
@@ -16,6 +17,68 @@ use crate::solve::LeastSquares;
 const SHUFFLED: usize = 400;
 
 impl Rules<'_> {
+    /// The size of everything: angles, contacts and directions alone do not show it.
+    pub(super) fn size(&mut self) {
+        let has_length = |row: &u32| self.setup.session.observation(*row).measurement.observe().has_length();
+        if self.setup.rows.iter().all(has_length) {
+            return;
+        }
+        let size = self.growth();
+        if self.take(std::slice::from_ref(&size)) == 0 {
+            return;
+        }
+        let words = self.degree_words("is not determined, and stays near the model's", false, &[size]);
+        let description = format!(
+            "nothing that was measured has a length: the size of the robot {words}; one known length gives it, such as the distance of two \
+             sockets (--socket-distance), the radius of a sphere, a height or a distance"
+        );
+        self.add(Cause::NoLength, &[], 1, description);
+    }
+
+    /// Everything grown about the first device's origin: axes, targets, other devices, zeros of distances.
+    fn growth(&self) -> Vec<f64> {
+        let estimate = self.setup.estimate;
+        let origin = |station: usize| estimate.device_at_zero(station).inverse().translation;
+        let about = origin(0);
+        let mut growth = vec![0.0; self.setup.layout.dim()];
+        for (parameter, places) in self.setup.layout.parameters() {
+            let moved: Vec<f64> = match parameter {
+                Parameter::ScrewAxis(axis) if axis.kind == JointKind::Revolute => {
+                    let frame = &estimate.base_from_axis[axis.joint];
+                    let local = frame.rotation.tr_mul(&(frame.translation - about));
+                    vec![local.x, local.y, 0.0, 0.0]
+                }
+                Parameter::TargetPlace(TargetPlace { target }) => {
+                    let frame = &estimate.base_from_target[*target];
+                    frame.rotation.tr_mul(&(frame.translation - about)).iter().copied().collect()
+                }
+                Parameter::TargetFrame(it) => {
+                    let frame = &estimate.base_from_target[it.target];
+                    let local = frame.rotation.tr_mul(&(frame.translation - about));
+                    let of = |&motion: &usize| if motion < 3 { local[motion] } else { 0.0 };
+                    it.freedom.motions().iter().map(of).collect()
+                }
+                Parameter::DeviceFrame(it) => {
+                    let device = estimate.device(it.station);
+                    let moved = -(device.rotation * (origin(it.station) - about));
+                    let of = |&motion: &usize| if motion < 3 { moved[motion] } else { 0.0 };
+                    it.freedom.motions().iter().map(of).collect()
+                }
+                Parameter::RangeUnknown(it) if it.term == RangeTerm::Zero => {
+                    vec![estimate.range(it.station).zero_m]
+                }
+                Parameter::ScrewAxis(_)
+                | Parameter::OtherScrew(_)
+                | Parameter::ValueTerm(_)
+                | Parameter::RangeUnknown(_) => Vec::new(),
+            };
+            places.iter().zip(moved).for_each(|(&(place, scale), moved)| growth[place] = moved * scale);
+        }
+        let length = linalg::dot(&growth, &growth).sqrt();
+        growth.iter_mut().for_each(|part| *part /= length.max(f64::MIN_POSITIVE));
+        growth
+    }
+
     pub(super) fn dependent_motion(&mut self) {
         let left = self.unexplained.ncols();
         let combined = self.found.iter().filter(|direction| direction.cause.is_combination());

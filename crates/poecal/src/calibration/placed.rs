@@ -36,6 +36,8 @@ pub struct CalibratedStation {
     pub noise: Noise,
     /// Zero and scale of its distances.
     pub range: Range,
+    /// What it is: an instrument, an anchor, a socket, a plane, a sphere, a direction.
+    pub kind: &'static str,
 }
 
 /// The stations of the device.
@@ -44,6 +46,7 @@ pub(super) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise)
     let of = |station| CalibratedStation {
         noise: session.usual_noise(station, noise),
         range: estimate.range(station),
+        kind: data.station_word(station),
         name: data.stations.get(station).cloned().flatten(),
         base_from_device: estimate.device_at_zero(station).inverse(),
     };

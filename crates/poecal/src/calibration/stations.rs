@@ -2,9 +2,10 @@
 
 use super::{CalibrationOptions, DeviceFrameKnowledge, measurements_words};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::Unknowns;
+use crate::estimate::{Session, Unknowns};
 use crate::lie::Freedom;
 use crate::measurement::Dataset;
+use crate::robot::JointKind;
 
 /// Fewest rows that determine a device frame: three points.
 const FEWEST_ROWS: usize = 3;
@@ -52,4 +53,27 @@ pub(super) fn check_stations(
         return Err(Error::new(ErrorKind::Problem, message));
     }
     Ok(())
+}
+
+/// Refuses a fit without a tolerance where nothing that was measured has a length: the robot that fits best is then a point.
+pub(super) fn check_length(
+    session: &Session<'_>,
+    options: &CalibrationOptions,
+    fitted: &[u32],
+) -> Result<()> {
+    let data = session.data;
+    let has_length = |row: &u32| data.observations[*row as usize].measurement.observe().has_length();
+    let slides = session.robot.joints.iter().any(|joint| joint.kind == JointKind::Prismatic);
+    let is_held = session.unknowns.held_axes.len() >= 2;
+    if options.tolerance.is_some()
+        || slides
+        || is_held
+        || !data.lengths.is_empty()
+        || fitted.iter().any(has_length)
+    {
+        return Ok(());
+    }
+    let message = "found no tolerance, and nothing measured that has a length: the robot that fits best would be a point; expected a tolerance \
+                   (--tolerance), or a known length, such as the distance of two sockets (--socket-distance)";
+    Err(Error::new(ErrorKind::Problem, message))
 }

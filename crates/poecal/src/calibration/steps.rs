@@ -12,7 +12,7 @@ use super::moves::{ChangeSearch, FrameSearch, FramesApart, Moved, frames_apart, 
 use super::noise_doubts::noise_doubts;
 use super::placed::{place_tip, stations};
 use super::robust::{self, RobustFit};
-use super::stations::check_stations;
+use super::stations::{check_length, check_stations};
 use super::trust::{Finished, trust};
 use super::verdict::{Grounds, verdict};
 use super::{
@@ -57,6 +57,7 @@ impl<'a> Prepared<'a> {
         let (fit_rows, held_out_rows) = split_rows(data, options)?;
         check_stations(data, [&fit_rows, &held_out_rows], options, session.unknowns)?;
         check_count(&session, &fit_rows)?;
+        check_length(&session, options, &fit_rows)?;
         let (delivered, prior) = (delivered(robot, data), options.prior(&session));
         Ok(Prepared { session, options, delivered, prior, fit_rows, held_out_rows })
     }

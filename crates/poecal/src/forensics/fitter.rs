@@ -79,7 +79,7 @@ impl<'a> Fitter<'a> {
         let rows = data.all_rows();
         let is_constrained = |station: usize| data.device_freedom(station, &rows) != Freedom::Frame;
         if (0..data.station_count()).any(is_constrained) {
-            let prior = Prior::new(robot, Tolerance::WIDE, device_free);
+            let prior = Prior::new(robot, Tolerance::default(), device_free);
             fitter.constrained = Some((prior, fitter.spread_m(data)));
         }
         fitter

@@ -26,7 +26,10 @@ pub(super) struct Repeats {
 
 /// Compares the rows of each configuration.
 pub(super) fn diagnose(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> Repeats {
-    let target = |row: u32| data.observations[row as usize].target;
+    let target = |row: u32| {
+        let seen = &data.observations[row as usize];
+        (seen.station, seen.target)
+    };
     let seen = |row: u32| &data.observations[row as usize].measurement;
     let mut repeats = data.repeated(rows);
     repeats.iter_mut().for_each(|group| group.sort_by_key(|&row| target(row)));

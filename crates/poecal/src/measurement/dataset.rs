@@ -241,12 +241,22 @@ impl Dataset {
         self.stations.len() - 1
     }
 
+    /// What a station is: a socket, a plane and so on, if all its rows say so; else an instrument.
+    #[must_use]
+    pub fn station_word(&self, station: usize) -> &'static str {
+        let own = self.observations.iter().filter(|it| it.station == station);
+        let mut words = own.map(|it| it.measurement.observe().device_word());
+        let first = words.next().unwrap_or("instrument");
+        if words.all(|word| word == first) { first } else { "instrument" }
+    }
+
     /// Name of a station in messages.
     #[must_use]
     pub fn station_words(&self, station: usize) -> String {
+        let word = self.station_word(station);
         match self.stations.get(station).and_then(Option::as_deref) {
-            Some(name) => format!("instrument `{name}`"),
-            None => "the instrument without a name".to_owned(),
+            Some(name) => format!("{word} `{name}`"),
+            None => format!("the {word} without a name"),
         }
     }
 

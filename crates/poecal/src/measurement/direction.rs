@@ -95,6 +95,14 @@ impl Observe for DirectionMeasurement {
         }
     }
 
+    fn has_length(&self) -> bool {
+        false
+    }
+
+    fn device_word(&self) -> &'static str {
+        "direction"
+    }
+
     fn device_freedom(&self) -> Freedom {
         Freedom::Direction
     }

@@ -61,6 +61,14 @@ impl Observe for DistanceMeasurement {
         self.zero_is_unknown
     }
 
+    fn has_length(&self) -> bool {
+        self.distance != 0.0
+    }
+
+    fn device_word(&self) -> &'static str {
+        if self.zero_is_unknown && self.distance == 0.0 { "sphere" } else { "anchor" }
+    }
+
     fn device_freedom(&self) -> Freedom {
         Freedom::Place
     }

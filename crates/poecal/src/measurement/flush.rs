@@ -57,6 +57,14 @@ impl Observe for FlushMeasurement {
         direction.sensitivity(predicted, &mut out[1..]);
     }
 
+    fn has_length(&self) -> bool {
+        self.height != 0.0
+    }
+
+    fn device_word(&self) -> &'static str {
+        "plane"
+    }
+
     fn device_freedom(&self) -> Freedom {
         Freedom::PlaneZ
     }

@@ -39,6 +39,14 @@ impl Observe for HeightMeasurement {
         true
     }
 
+    fn has_length(&self) -> bool {
+        self.height != 0.0
+    }
+
+    fn device_word(&self) -> &'static str {
+        "plane"
+    }
+
     fn device_freedom(&self) -> Freedom {
         Freedom::PlaneZ
     }

@@ -131,6 +131,16 @@ pub trait Observe {
         None
     }
 
+    /// Whether what it measures has a length, by which the size of the robot shows; zero has none.
+    fn has_length(&self) -> bool {
+        true
+    }
+
+    /// What the device is, in a word.
+    fn device_word(&self) -> &'static str {
+        "instrument"
+    }
+
     /// Whether the zero of the readings is an unknown of the device.
     fn zero_is_unknown(&self) -> bool {
         false

@@ -48,6 +48,14 @@ impl Observe for SocketMeasurement {
         true
     }
 
+    fn has_length(&self) -> bool {
+        self.place != Vector3::zeros()
+    }
+
+    fn device_word(&self) -> &'static str {
+        "socket"
+    }
+
     fn device_freedom(&self) -> Freedom {
         Freedom::Place
     }

@@ -8,7 +8,6 @@ mod robots;
 
 pub use configuration::{Configurations, random_configuration};
 pub use gross::Gross;
-pub use places::{SOCKETS_APART_M, SPHERE_M};
 pub use robots::{elbow, gantry, random_chain, scara, seven_axis};
 
 use nalgebra::Vector3;

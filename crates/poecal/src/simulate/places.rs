@@ -15,9 +15,9 @@ use crate::measurement::{
 use crate::robot::Robot;
 
 /// Distance of the two sockets, metres.
-pub const SOCKETS_APART_M: f64 = 0.2;
+const SOCKETS_APART_M: f64 = 0.2;
 /// Radius of the sphere, metres.
-pub const SPHERE_M: f64 = 0.05;
+const SPHERE_M: f64 = 0.05;
 /// Random configurations from which one that fulfils a constraint is sought, Newton steps from each, and the largest change of a joint.
 const ATTEMPTS: usize = 2000;
 const STEPS: usize = 40;

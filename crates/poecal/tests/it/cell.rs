@@ -5,12 +5,15 @@ use crate::largest::larger;
 use crate::reference;
 use nalgebra::Vector3;
 use poecal::analysis::{Setup, identifiability};
-use poecal::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
+use poecal::estimate::{Chain, Estimate, Linkage, Packed, Range, RangeTerm, Session, delivered};
 use poecal::lie::{Freedom, Pose, Screw, rotation};
 use poecal::measurement::{
-    Dataset, DistanceMeasurement, Measurement, NUMBERS, Noise, Observation, PointMeasurement, PoseMeasurement,
+    Dataset, DirectionMeasurement, DistanceMeasurement, FlushMeasurement, HeightMeasurement, Measurement,
+    NUMBERS, Noise, Observation, PointMeasurement, PoseMeasurement, SocketMeasurement,
 };
-use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes};
+use poecal::parameters::{
+    DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace, ValueTerm, screw_axes,
+};
 use poecal::problem::Problem;
 use poecal::robot::{
     Body, Gives, Gravity, Harmonic, Joint, JointKind, JointTerm, Mount, Robot, Sag, Statics, Term,
@@ -30,10 +33,26 @@ const POINT: Function = |pose| Measurement::Point(PointMeasurement { position: p
 const POSE: Function = |pose| Measurement::Pose(PoseMeasurement { pose: *pose });
 
 /// What can be measured, with the number of unknowns that one target and its first instrument add to those of the axes.
-const FUNCTIONS: [(&str, Function, usize); 3] = [
+const FUNCTIONS: [(&str, Function, usize); 4] = [
     ("poses", POSE, 6),
     ("points", POINT, 3),
     ("distances", |pose| Measurement::Distance(DistanceMeasurement::new(pose.translation.norm())), 0),
+    ("heights", |pose| Measurement::Height(HeightMeasurement { height: pose.translation.z }), 0),
+];
+
+/// What else can be measured, at numbers that no constraint would allow.
+const OTHERS: [(&str, Function); 4] = [
+    ("sockets", |pose| Measurement::Socket(SocketMeasurement { place: pose.translation })),
+    ("flush", |pose| {
+        let normal = pose.rotation.row(2).transpose();
+        Measurement::Flush(FlushMeasurement { height: pose.translation.z, normal })
+    }),
+    ("directions", |pose| {
+        Measurement::Direction(DirectionMeasurement { direction: pose.rotation.row(2).transpose() })
+    }),
+    ("changes", |pose| {
+        Measurement::Distance(DistanceMeasurement::from_unknown_zero(pose.translation.norm() + 0.3))
+    }),
 ];
 
 /// Something that an instrument sees, by their names; in two configurations if `apart`.
@@ -205,12 +224,10 @@ impl Measured {
             .map(|station| device(&data, station, Vector3::new(0.1, -0.2, 0.3)))
             .collect();
         free.extend(screw_axes(estimate.kinds()));
-        free.extend(data.frames(&data.all_rows()).into_iter().enumerate().map(|(target, is_frame)| {
-            if is_frame {
-                Parameter::TargetFrame(TargetFrame::new(target))
-            } else {
-                Parameter::TargetPlace(TargetPlace { target })
-            }
+        let targets = data.target_freedoms(&data.all_rows()).into_iter().enumerate();
+        free.extend(targets.map(|(target, freedom)| match freedom {
+            Freedom::Place => Parameter::TargetPlace(TargetPlace { target }),
+            freedom => Parameter::TargetFrame(TargetFrame { target, freedom }),
         }));
         Measured { robot, data, packed, estimate, free }
     }
@@ -274,6 +291,30 @@ fn sensitivities_of_every_way_are_those_of_differences() {
             *estimate.coefficient_mut(joint, term) = 0.02 * (1 + joint + k) as f64;
         }
         compare(&made, &estimate, with_terms(&made, terms.into_iter()), cell.name);
+    }
+}
+
+/// The same of what is touched, of a direction, and of instruments whose zero and scale are unknown.
+#[test]
+fn sensitivities_of_every_kind_are_those_of_differences() {
+    for (name, seen) in OTHERS {
+        for kinds in ["rrrrrr", "rrpr"] {
+            let two = vec![sees(Some("here"), None, seen), sees(Some("there"), None, seen)];
+            let made = Measured::new(&Cell { name, robot: chain(kinds, 1), sees: two, rank: 0 }, 25, 0.05);
+            let mut estimate = made.estimate.clone();
+            estimate.base_from_target[0] =
+                estimate.base_from_target[0] * Pose::from_xyz_rpy([0.0; 3], [0.02, -0.03, 0.01]);
+            estimate.further_devices[0] = place(&mut ChaCha8Rng::seed_from_u64(3), 0.7);
+            let mut free = with_terms(&made, std::iter::empty());
+            if name == "changes" {
+                estimate.ranges =
+                    vec![Range { zero_m: 0.2, scale: 0.03 }, Range { zero_m: -0.1, scale: -0.01 }];
+                let terms = RangeTerm::ALL.into_iter();
+                let ranges = terms.flat_map(|term| [0, 1].map(|station| RangeUnknown { station, term }));
+                free.extend(ranges.map(Parameter::RangeUnknown));
+            }
+            compare(&made, &estimate, free, name);
+        }
     }
 }
 

@@ -96,11 +96,10 @@ fn observed(robot: &Robot, actual: &Robot, kind: Kind, readings: &[Vec<f64>], se
         let seen = actual.forward_kinematics(real);
         let position = seen.translation + random::normal_vector(&mut generator) * NOISE_M;
         let turn = rotation::exp(&(random::normal_vector(&mut generator) * NOISE_RAD));
-        let measurement = match kind {
-            Kind::Point => Measurement::Point(PointMeasurement { position }),
-            Kind::Pose | Kind::Mixed => {
-                Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) })
-            }
+        let measurement = if kind == Kind::Point {
+            Measurement::Point(PointMeasurement { position })
+        } else {
+            Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) })
         };
         data.push(recorded, None, measurement).unwrap();
     }

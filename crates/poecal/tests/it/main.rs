@@ -48,6 +48,7 @@ mod reference;
 mod refit_promise;
 mod report_page;
 mod robust;
+mod shop;
 mod starts;
 mod stations;
 mod statistics;

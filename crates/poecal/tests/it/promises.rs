@@ -139,11 +139,10 @@ fn remeasured(made: &Simulated, kind: Kind, seed: u64, real: &impl Fn(&[f64]) ->
 fn measured(seen: &Pose, kind: Kind, generator: &mut ChaCha8Rng) -> Measurement {
     let position = seen.translation + random::normal_vector(generator) * NOISE_M;
     let turn = rotation::exp(&(random::normal_vector(generator) * NOISE_RAD));
-    match kind {
-        Kind::Point => Measurement::Point(PointMeasurement { position }),
-        Kind::Pose | Kind::Mixed => {
-            Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) })
-        }
+    if kind == Kind::Point {
+        Measurement::Point(PointMeasurement { position })
+    } else {
+        Measurement::Pose(PoseMeasurement { pose: Pose::new(turn * seen.rotation, position) })
     }
 }
 

@@ -35,9 +35,10 @@ fn parameters(robot: &Robot, kind: Kind) -> Vec<Parameter> {
     let screws = robot.joints.iter().enumerate();
     let mut free: Vec<Parameter> =
         screws.map(|(joint, it)| Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })).collect();
-    free.push(match kind {
-        Kind::Point => Parameter::TargetPlace(TargetPlace { target: 0 }),
-        Kind::Pose | Kind::Mixed => Parameter::TargetFrame(TargetFrame::new(0)),
+    free.push(if kind == Kind::Point {
+        Parameter::TargetPlace(TargetPlace { target: 0 })
+    } else {
+        Parameter::TargetFrame(TargetFrame::new(0))
     });
     free
 }

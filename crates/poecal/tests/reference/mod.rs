@@ -1,8 +1,10 @@
 //! The reference of the kernels: every measurement and parameter by its own formulas, row after row.
 
-use nalgebra::Vector3;
-use poecal::estimate::{Chain, Estimate, Linkage};
+use nalgebra::{Matrix3, Vector3};
+use poecal::estimate::{Chain, Estimate, Linkage, Range};
+use poecal::lie::{Pose, TargetTwist};
 use poecal::measurement::{Measurement, NUMBERS, PoseMeasurement};
+use poecal::parameters::Parameter;
 use poecal::problem::Problem;
 use poecal::solve::{LeastSquares as _, Normal};
 
@@ -20,6 +22,7 @@ pub(crate) fn for_rows(
         let observation = &session.data.observations[row as usize];
         chain.evaluate(&linkage, session.packed, row as usize, observation);
         problem.layout().target_twists(&chain, observation.target, &mut twists);
+        let seen_at = as_read(problem, state, &chain, &mut twists);
         let (mut residual, mut sensitivity) = ([0.0; NUMBERS], [[0.0; 6]; NUMBERS]);
         let seen = observation.measurement.observe();
         match (&observation.measurement, session.data.pose_residual) {
@@ -28,8 +31,8 @@ pub(crate) fn for_rows(
                 other.sensitivity(pose, &chain.target, &mut sensitivity);
             }
             _ => {
-                seen.residual(&chain.target, &mut residual);
-                seen.sensitivity(&chain.target, &mut sensitivity);
+                seen.residual(&seen_at, &mut residual);
+                seen.sensitivity(&seen_at, &mut sensitivity);
             }
         }
         let noise = problem.noise(row as usize);
@@ -45,6 +48,25 @@ pub(crate) fn for_rows(
         }
         each(row, &jacobian, &residual[..seen.dim()]);
     }
+}
+
+/// The target where its instrument's zero and scale have it, and the twists of all unknowns as motions of it (theory.md §4 (15d)).
+fn as_read(problem: &Problem<'_>, state: &Estimate, chain: &Chain, twists: &mut [TargetTwist]) -> Pose {
+    let range = state.range(chain.station);
+    if range == Range::default() {
+        return chain.target;
+    }
+    let place = chain.target.translation;
+    let direction = place.normalize();
+    let along = direction * direction.transpose();
+    let moved = Matrix3::identity() * (1.0 + range.scale)
+        + (Matrix3::identity() - along) * (range.zero_m / place.norm());
+    for (parameter, places) in problem.layout().parameters() {
+        if !matches!(parameter, Parameter::RangeUnknown(_)) {
+            places.iter().for_each(|&(at, _)| twists[at].0 = moved * twists[at].0);
+        }
+    }
+    range.seen(&chain.target)
 }
 
 /// Normal information of a problem without a prior, theory.md §6 (28).

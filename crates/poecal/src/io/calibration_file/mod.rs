@@ -202,6 +202,9 @@ impl StationEntry {
             instrument: it.name.clone(),
             base_from_device: (&it.base_from_device).into(),
             sigma: (it.noise != noise).then(|| measured(errors, it.noise)),
+            kind: (it.kind != "instrument").then(|| it.kind.to_owned()),
+            zero_mm: (it.range.zero_m != 0.0).then_some(1e3 * it.range.zero_m),
+            scale: (it.range.scale != 0.0).then_some(it.range.scale),
         };
         if is_plain { Vec::new() } else { stations.iter().map(entry).collect() }
     }

@@ -360,7 +360,7 @@ pub struct FrameEntry {
 /// ```
 /// use poecal::io::calibration_file::{PoseEntry, StationEntry};
 /// let base_from_device = PoseEntry { position_m: [1.0, 0.0, 0.5], quaternion_xyzw: [0.0, 0.0, 0.0, 1.0] };
-/// let station = StationEntry { instrument: Some("left".into()), base_from_device, sigma: None };
+/// let station = StationEntry::instrument(Some("left".into()), base_from_device);
 /// assert!(station.base_from_device.pose().is_ok());
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -372,6 +372,30 @@ pub struct StationEntry {
     /// Standard deviation of each component of its measurements that state none, if it differs from that of the first instrument.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma: Option<Measured<f64>>,
+    /// What it is, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<String>,
+    /// Reading of its distances at its own place, millimetres, if it is not 0; of a sphere that is touched, minus its radius.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub zero_mm: Option<f64>,
+    /// Growth of its readings with the distance, less 1, if it is not 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<f64>,
+}
+
+impl StationEntry {
+    /// An instrument with a frame of its own.
+    #[must_use]
+    pub fn instrument(name: Option<String>, base_from_device: PoseEntry) -> Self {
+        StationEntry {
+            instrument: name,
+            base_from_device,
+            sigma: None,
+            kind: None,
+            zero_mm: None,
+            scale: None,
+        }
+    }
 }
 
 /// A pose.

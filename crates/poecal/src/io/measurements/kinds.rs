@@ -144,9 +144,13 @@ impl Kind {
         matches!(self.from, From::Numbers { .. })
     }
 
-    /// What it is measured from, in words.
+    /// What it is measured from, in words. The zero of readings is one of an instrument, so that distances have another one.
     pub(super) fn place_word(&self) -> &'static str {
-        self.places.last().copied().unwrap_or("instrument")
+        match self.places.last() {
+            Some(_) if self.numbers == ["distance_change"] => "anchor of changes",
+            Some(place) => place,
+            None => "instrument",
+        }
     }
 
     /// The column of its word, and the word.

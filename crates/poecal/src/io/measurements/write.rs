@@ -258,6 +258,33 @@ mod tests {
         );
     }
 
+    /// What is written of each kind is read as it was, and a pair as two rows.
+    #[test]
+    fn sessions_of_every_kind_read_back_the_same() {
+        use crate::io::measurements::{ReadOptions, parse};
+        use crate::simulate::{Kind, Simulation, elbow};
+        let exact = Noise::new(0.0, 0.0);
+        for kind in Kind::ALL {
+            let simulation = Simulation {
+                count: 12,
+                noise_position_m: 0.0,
+                noise_rotation_rad: 0.0,
+                ..Simulation::default()
+            };
+            let made = simulation.run(&elbow(), kind).unwrap();
+            let text = text(&made.data, &made.nominal, &exact, "a session").unwrap();
+            let data = parse(&text, "a table", &made.nominal, &ReadOptions::default()).unwrap().data;
+            println!("{:16} {}", kind.word(), text.lines().nth(1).unwrap());
+            assert_eq!((data.len(), data.further_readings()), (12, made.data.further_readings()));
+            for (found, expected) in data.observations.iter().zip(&made.data.observations) {
+                // Faces lie on their planes up or down.
+                let (metres, radians) = found.measurement.apart(&expected.measurement).unwrap();
+                assert!(metres < 1e-12 && (radians < 1e-7 || kind == Kind::Flush), "{metres} {radians}");
+                assert_eq!(found.station, expected.station);
+            }
+        }
+    }
+
     #[test]
     fn measured_numbers_are_as_long_as_their_noise_deserves() {
         let mm = Unit::parse("mm", Dimension::Length).unwrap();

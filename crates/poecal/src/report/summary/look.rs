@@ -160,6 +160,7 @@ fn cause_words(cause: Cause) -> &'static str {
         Cause::MovedTogether => "moved in a fixed relation only",
         Cause::SmallMotion => "moved by little",
         Cause::DependentMotion => "moved in combinations that hide their axes",
+        Cause::NoLength => "size unknown: nothing measured has a length",
         Cause::SeenOnce => "a target was measured once",
         Cause::Other => "these configurations hardly determine their axes",
     }

@@ -74,9 +74,10 @@ fn measured(case: &Case, noise: f64) -> (Robot, Dataset) {
         let turn =
             rotation::exp(&(random::normal_vector(&mut generator) * noise * usual[Quantity::Rotation]));
         pose.rotation = turn * pose.rotation;
-        let measurement = match case.kind {
-            Kind::Point => Measurement::Point(PointMeasurement { position: pose.translation }),
-            Kind::Pose | Kind::Mixed => Measurement::Pose(PoseMeasurement { pose }),
+        let measurement = if case.kind == Kind::Point {
+            Measurement::Point(PointMeasurement { position: pose.translation })
+        } else {
+            Measurement::Pose(PoseMeasurement { pose })
         };
         data.push(&readings, None, measurement).unwrap();
     }
