@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use numpy::{PyArray1, PyArray2, PyArray3};
 use poecal::io::calibration_file::Inputs;
-use poecal::io::measurements::{self, ColumnMap, Frames, MeasurementFile, ReadOptions};
+use poecal::io::measurements::{self, ColumnMap, Frames, MeasurementFile, PlaneContact, ReadOptions};
 use poecal::io::named_files::refuse_repeats;
 use poecal::measurement::Set;
 use pyo3::prelude::*;
@@ -26,6 +26,9 @@ use crate::robot::Robot;
 use crate::rows;
 use crate::words::chosen;
 
+/// How planes are touched.
+const CONTACTS: [(&str, PlaneContact); 2] = [("point", PlaneContact::Point), ("flush", PlaneContact::Flush)];
+
 /// Options of a reader, from the arguments of the same names.
 fn options(
     columns: Option<&PathBuf>,
@@ -33,6 +36,7 @@ fn options(
     ignore_sets: bool,
     strict: bool,
     frames: Frames,
+    (socket_distance, contact): (Option<&str>, PlaneContact),
 ) -> poecal::Result<ReadOptions> {
     Ok(ReadOptions {
         frames,
@@ -40,7 +44,8 @@ fn options(
         fit_where: fit_where.map(str::parse).transpose()?,
         ignore_sets,
         strict,
-        ..ReadOptions::default()
+        socket_distances: socket_distance.map(str::parse).transpose()?,
+        contact,
     })
 }
 
@@ -65,6 +70,10 @@ impl Measurements {
     /// frames
     ///     Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
     ///     "per-file", those of a file.
+    /// socket_distance
+    ///     Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
+    /// contact
+    ///     What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
     ///
     /// Returns
     /// -------
@@ -78,7 +87,7 @@ impl Measurements {
     /// MeasurementError
     ///     It holds no measurements of this robot; the error tells the line and the column.
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common"))]
+    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", socket_distance=None, contact="point"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
@@ -89,13 +98,23 @@ impl Measurements {
         #[pyo3(from_py_with = arg::ignore_sets)] ignore_sets: bool,
         #[pyo3(from_py_with = arg::strict)] strict: bool,
         #[pyo3(from_py_with = arg::frames)] frames: &str,
+        #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
+        #[pyo3(from_py_with = arg::contact)] contact: &str,
     ) -> PyResult<Self> {
+        let contact = chosen("contact", contact, &CONTACTS)?;
         let words = [("common", Frames::Common), ("per-file", Frames::PerFile)];
         let frames = chosen("frames", frames, &words)?;
         let Paths(paths) = paths;
         let read = || {
             refuse_repeats(&paths)?;
-            let options = options(columns.as_ref(), fit_where, ignore_sets, strict, frames)?;
+            let options = options(
+                columns.as_ref(),
+                fit_where,
+                ignore_sets,
+                strict,
+                frames,
+                (socket_distance, contact),
+            )?;
             let file = measurements::read(&paths, &robot.model.robot, &options)?;
             let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
             sha256.extend(file.sha256.clone());
@@ -196,6 +215,10 @@ impl Measurements {
     ///     Whether the column `set` means nothing, as for rows that judge a calibration.
     /// strict
     ///     Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+    /// socket_distance
+    ///     Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
+    /// contact
+    ///     What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
     ///
     /// Returns
     /// -------
@@ -207,7 +230,8 @@ impl Measurements {
     /// MeasurementError
     ///     The table holds no measurements of this robot; the error tells the row.
     #[staticmethod]
-    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false))]
+    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, socket_distance=None, contact="point"))]
+    #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_dataframe(
         py: Python<'_>,
         frame: &Bound<'_, PyAny>,
@@ -216,10 +240,15 @@ impl Measurements {
         #[pyo3(from_py_with = arg::fit_where)] fit_where: Option<&str>,
         #[pyo3(from_py_with = arg::ignore_sets)] ignore_sets: bool,
         #[pyo3(from_py_with = arg::strict)] strict: bool,
+        #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
+        #[pyo3(from_py_with = arg::contact)] contact: &str,
     ) -> PyResult<Self> {
+        let contact = chosen("contact", contact, &CONTACTS)?;
         let text = from_dataframe::text(frame)?;
         let read = || {
-            let options = options(columns.as_ref(), fit_where, ignore_sets, strict, Frames::Common)?;
+            let touching = (socket_distance, contact);
+            let options =
+                options(columns.as_ref(), fit_where, ignore_sets, strict, Frames::Common, touching)?;
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)
         };
         let mut file = py.detach(read).map_err(from_dataframe::raise)?;

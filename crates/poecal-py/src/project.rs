@@ -26,7 +26,7 @@ const MOST: usize = 100_000;
 /// out
 ///     The folder; files in it are never overwritten.
 /// measure
-///     "points" or "poses".
+///     "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "flush", "directions", "ball-bars" or "relative".
 /// count
 ///     Number of configurations to suggest, from 1 to 100,000.
 /// seed
@@ -55,7 +55,20 @@ pub(crate) fn init(
     #[pyo3(from_py_with = arg::instruments)] instruments: Option<Links>,
     #[pyo3(from_py_with = arg::targets)] targets: Option<Links>,
 ) -> PyResult<Vec<String>> {
-    let kind = chosen("measure", measure, &[("points", Kind::Point), ("poses", Kind::Pose)])?;
+    let words = [
+        ("points", Kind::Point),
+        ("poses", Kind::Pose),
+        ("distances", Kind::Distance),
+        ("distance-changes", Kind::Change),
+        ("spheres", Kind::Sphere),
+        ("sockets", Kind::Socket),
+        ("planes", Kind::Plane),
+        ("flush", Kind::Flush),
+        ("directions", Kind::Direction),
+        ("ball-bars", Kind::BallBar),
+        ("relative", Kind::Relative),
+    ];
+    let kind = chosen("measure", measure, &words)?;
     if !(1..=MOST).contains(&count) {
         return Err(argument("count", format!("found {count}, expected a number from 1 to {MOST}")));
     }

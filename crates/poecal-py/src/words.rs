@@ -26,7 +26,7 @@ pub(crate) fn frame(word: &str) -> PyResult<DeviceFrameKnowledge> {
 }
 
 pub(crate) fn kind(word: &str) -> PyResult<Kind> {
-    chosen("kind", word, &[Kind::Pose, Kind::Point, Kind::Mixed].map(|kind| (kind.word(), kind)))
+    chosen("kind", word, &Kind::ALL.map(|kind| (kind.word(), kind)))
 }
 
 pub(crate) fn quantity(word: &str) -> PyResult<Quantity> {

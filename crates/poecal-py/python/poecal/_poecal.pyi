@@ -44,7 +44,20 @@ __all__ = [
 
 _Path: TypeAlias = str | PathLike[str]
 _Array: TypeAlias = NDArray[np.float64]
-_Kind: TypeAlias = Literal["pose", "point", "mixed"]
+_Kind: TypeAlias = Literal[
+    "pose",
+    "point",
+    "mixed",
+    "distance",
+    "distance-change",
+    "sphere",
+    "socket",
+    "plane",
+    "flush",
+    "direction",
+    "ball-bar",
+    "relative",
+]
 _Frame: TypeAlias = Literal["unknown", "base"]
 _End: TypeAlias = Literal["free", "kept"]
 _Form: TypeAlias = Literal["urdf", "toml"]
@@ -369,6 +382,8 @@ class Measurements:
         ignore_sets: bool = False,
         strict: bool = False,
         frames: Literal["common", "per-file"] = "common",
+        socket_distance: str | None = None,
+        contact: Literal["point", "flush"] = "point",
     ) -> Measurements:
         """Reads measurement files, joined in their order.
 
@@ -389,6 +404,10 @@ class Measurements:
         frames
             Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
             "per-file", those of a file.
+        socket_distance
+            Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
+        contact
+            What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
 
         Returns
         -------
@@ -463,6 +482,8 @@ class Measurements:
         fit_where: str | None = None,
         ignore_sets: bool = False,
         strict: bool = False,
+        socket_distance: str | None = None,
+        contact: Literal["point", "flush"] = "point",
     ) -> Measurements:
         """Measurements of a table in memory: a data frame of pandas or polars, a dict of columns, or a structured array of NumPy.
 
@@ -483,6 +504,10 @@ class Measurements:
             Whether the column `set` means nothing, as for rows that judge a calibration.
         strict
             Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+        socket_distance
+            Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
+        contact
+            What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
 
         Returns
         -------
@@ -1292,7 +1317,19 @@ def init(
     model: _Path,
     out: _Path,
     *,
-    measure: Literal["points", "poses"] = "points",
+    measure: Literal[
+        "points",
+        "poses",
+        "distances",
+        "distance-changes",
+        "spheres",
+        "sockets",
+        "planes",
+        "flush",
+        "directions",
+        "ball-bars",
+        "relative",
+    ] = "points",
     count: int = 60,
     seed: int = 1,
     base_link: str | None = None,
@@ -1311,7 +1348,7 @@ def init(
     out
         The folder; files in it are never overwritten.
     measure
-        "points" or "poses".
+        "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "flush", "directions", "ball-bars" or "relative".
     count
         Number of configurations to suggest, from 1 to 100,000.
     seed

@@ -144,8 +144,9 @@ pub(super) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// The same with another weight of the prior.
+    /// The same with another weight of the prior. Where nothing has a length it never counts less than it says: the robot would shrink.
     pub(super) fn with_prior_weight(&self, weight: f64) -> Self {
+        let weight = if self.session.lacks_length(self.rows) { weight.max(1.0) } else { weight };
         Task { prior: self.prior.map(|(prior, _)| (prior, weight)), ..*self }
     }
 
@@ -218,6 +219,9 @@ impl Task<'_> {
             }
             // The axes' deviations estimate how good the nominal model is.
             weight /= task.prior.map_or(1.0, |(prior, _)| prior.looseness(&found.estimate));
+            if self.session.lacks_length(self.rows) {
+                weight = weight.max(1.0);
+            }
             // Change of the ratios of noises: of the largest to the smallest change of any of them.
             let is_used = |quantity: Quantity| self.session.data.has(quantity) || quantity.is_of_pose();
             let used = || noise.iter().filter(|(quantity, _)| is_used(*quantity));

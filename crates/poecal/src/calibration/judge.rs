@@ -10,7 +10,7 @@ use super::coverage_check::{
 use super::verdict::Level;
 use super::{DeviceFrameKnowledge, delivered, measurements_words};
 use crate::error::{Error, ErrorKind, Result};
-use crate::estimate::{Packed, Session};
+use crate::estimate::{Packed, Range, Session};
 use crate::lie::Freedom;
 use crate::lie::Pose;
 use crate::measurement::{Dataset, Noise};
@@ -36,6 +36,7 @@ const TIMES: f64 = 2.0;
 ///     nominal: &calibration.nominal,
 ///     base_from_device: calibration.base_from_device,
 ///     further_base_from_device: &[],
+///     ranges: &[],
 ///     frame: DeviceFrameKnowledge::Unknown,
 ///     noise: calibration.noise,
 ///     refit_frame: false,
@@ -57,6 +58,8 @@ pub struct Subject<'a> {
     pub base_from_device: Pose,
     /// Those of further stations, in the order of the judging measurements.
     pub further_base_from_device: &'a [Pose],
+    /// Zeros and scales of the distances of the stations, in that order; empty if all are plain.
+    pub ranges: &'a [Range],
     /// What was known of the device's frame.
     pub frame: DeviceFrameKnowledge,
     /// Noise by which positions and rotations are weighted in a refit.
@@ -178,6 +181,7 @@ fn judged_rows<'a>(
     {
         *device = base_from_device.inverse();
     }
+    estimate.ranges = subject.ranges.to_vec();
     if subject.refit_frame || subject.refit_tool {
         let registration =
             Registration { session, rows: &rows, noise: subject.noise, targets_free: subject.refit_tool };

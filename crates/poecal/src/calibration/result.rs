@@ -142,7 +142,9 @@ impl Calibration {
             DeviceFrameKnowledge::Unknown => self.models.registered.clone(),
         };
         let prior = options.prior(&session);
-        let looseness = |prior: &Prior| prior.looseness(&self.models.calibrated);
+        let lacks_length = session.lacks_length(&self.fit_rows);
+        let of = |prior: &Prior| prior.looseness(&self.models.calibrated);
+        let looseness = |prior: &Prior| if lacks_length { 1.0 } else { of(prior) };
         let prior = prior.as_ref().map(|prior| (prior, 1.0 / looseness(prior)));
         fit_screws(session, &self.fit_rows, start, self.noise, prior, options).2
     }

@@ -5,7 +5,6 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Session, Unknowns};
 use crate::lie::Freedom;
 use crate::measurement::Dataset;
-use crate::robot::JointKind;
 
 /// Fewest rows that determine a device frame: three points.
 const FEWEST_ROWS: usize = 3;
@@ -61,16 +60,7 @@ pub(super) fn check_length(
     options: &CalibrationOptions,
     fitted: &[u32],
 ) -> Result<()> {
-    let data = session.data;
-    let has_length = |row: &u32| data.observations[*row as usize].measurement.observe().has_length();
-    let slides = session.robot.joints.iter().any(|joint| joint.kind == JointKind::Prismatic);
-    let is_held = session.unknowns.held_axes.len() >= 2;
-    if options.tolerance.is_some()
-        || slides
-        || is_held
-        || !data.lengths.is_empty()
-        || fitted.iter().any(has_length)
-    {
+    if options.tolerance.is_some() || !session.lacks_length(fitted) {
         return Ok(());
     }
     let message = "found no tolerance, and nothing measured that has a length: the robot that fits best would be a point; expected a tolerance \

@@ -3,7 +3,7 @@
 use super::unknowns::USUAL;
 use super::{Packed, Unknowns, radian_m};
 use crate::measurement::{ByQuantity, Dataset, Noise, Observation};
-use crate::robot::Robot;
+use crate::robot::{JointKind, Robot};
 
 /// A robot and its measurements: what every fit of them, and every judgement of a fit, begins with.
 ///
@@ -67,6 +67,16 @@ impl<'a> Session<'a> {
     #[must_use]
     pub fn with_noise_ratios(self, noise_ratios: &'a [Noise]) -> Self {
         Session { noise_ratios, ..self }
+    }
+
+    /// Whether nothing that these rows measure has a length, so that the size of the robot does not show. What is held has its own.
+    pub(crate) fn lacks_length(&self, rows: &[u32]) -> bool {
+        let has_length = |row: &u32| self.observation(*row).measurement.observe().has_length();
+        let slides = || self.robot.joints.iter().any(|joint| joint.kind == JointKind::Prismatic);
+        !rows.iter().any(has_length)
+            && self.data.lengths.is_empty()
+            && self.unknowns.held_axes.len() < 2
+            && !slides()
     }
 
     /// Noise of an instrument's rows that state none, where `usual` is that of the first instrument.

@@ -22,14 +22,20 @@ pub enum Freedom {
     PlaneZ,
     /// How it is turned.
     Turn,
+    /// The direction of x: the tilts of a face across x.
+    TiltX,
+    /// The direction of y.
+    TiltY,
     /// The direction of z.
     Direction,
 }
 
 impl Freedom {
     /// All of them, the one of fewest motions first.
-    pub const ALL: [Freedom; 7] = [
+    pub const ALL: [Freedom; 9] = [
         Freedom::Direction,
+        Freedom::TiltX,
+        Freedom::TiltY,
         Freedom::Place,
         Freedom::PlaneX,
         Freedom::PlaneY,
@@ -48,6 +54,8 @@ impl Freedom {
             Freedom::PlaneY => &[1, 3, 5],
             Freedom::PlaneZ => &[2, 3, 4],
             Freedom::Turn => &[3, 4, 5],
+            Freedom::TiltX => &[4, 5],
+            Freedom::TiltY => &[3, 5],
             Freedom::Direction => &[3, 4],
         }
     }
@@ -68,6 +76,22 @@ impl Freedom {
     #[must_use]
     pub fn turns(self) -> bool {
         self != Freedom::Place
+    }
+
+    /// The same without the height of a plane.
+    #[must_use]
+    pub fn without_height(self) -> Freedom {
+        match self {
+            Freedom::PlaneX => Freedom::TiltX,
+            Freedom::PlaneY => Freedom::TiltY,
+            Freedom::PlaneZ => Freedom::Direction,
+            Freedom::Frame
+            | Freedom::Place
+            | Freedom::Turn
+            | Freedom::TiltX
+            | Freedom::TiltY
+            | Freedom::Direction => self,
+        }
     }
 
     /// What shows these motions and others: the least that has both.

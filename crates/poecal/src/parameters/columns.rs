@@ -60,6 +60,8 @@ const PLANE_Y: [Column; 3] = [FRAME[1], FRAME[3], FRAME[5]];
 const PLANE_Z: [Column; 3] = [FRAME[2], FRAME[3], FRAME[4]];
 const TURN: [Column; 3] = [FRAME[3], FRAME[4], FRAME[5]];
 const DIRECTION: [Column; 2] = [FRAME[3], FRAME[4]];
+const TILT_X: [Column; 2] = [FRAME[4], FRAME[5]];
+const TILT_Y: [Column; 2] = [FRAME[3], FRAME[5]];
 
 /// Columns of the motions of a frame that are seen.
 pub(super) const fn of_freedom(freedom: Freedom) -> &'static [Column] {
@@ -70,6 +72,8 @@ pub(super) const fn of_freedom(freedom: Freedom) -> &'static [Column] {
         Freedom::PlaneY => &PLANE_Y,
         Freedom::PlaneZ => &PLANE_Z,
         Freedom::Turn => &TURN,
+        Freedom::TiltX => &TILT_X,
+        Freedom::TiltY => &TILT_Y,
         Freedom::Direction => &DIRECTION,
     }
 }

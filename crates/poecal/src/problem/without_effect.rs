@@ -121,7 +121,17 @@ impl Layout {
         let freedoms = data.target_freedoms(rows);
         for (target, frame) in estimate.base_from_target.iter().enumerate() {
             let body = estimate.tree.targets().get(target).copied();
-            let freedom = freedoms.get(target).copied().unwrap_or(Freedom::Place);
+            let own = self.parameters().find_map(|(parameter, _)| match parameter {
+                Parameter::TargetFrame(own) if own.target == target => Some(own.freedom),
+                Parameter::TargetFrame(_)
+                | Parameter::TargetPlace(_)
+                | Parameter::ScrewAxis(_)
+                | Parameter::OtherScrew(_)
+                | Parameter::ValueTerm(_)
+                | Parameter::DeviceFrame(_)
+                | Parameter::RangeUnknown(_) => None,
+            });
+            let freedom = own.or(freedoms.get(target).copied()).unwrap_or(Freedom::Place);
             add(Subject::Target(target), body, &|twist| seen_of(freedom, &local(frame, twist)));
         }
         for station in 0..=estimate.further_devices.len() {
@@ -129,7 +139,9 @@ impl Layout {
                 Some(Stand::On(body)) => *body,
                 Some(Stand::Target(_)) | None => Body::Base,
             };
-            if estimate.tree.shared(station).is_none() {
+            // What no row sees holds nothing.
+            let is_seen = data.station_count() == 1 || !data.seen_from(station, rows).is_empty();
+            if estimate.tree.shared(station).is_none() && is_seen {
                 let about = self.parameters().find_map(|(parameter, _)| {
                     let Parameter::DeviceFrame(own) = parameter else { return None };
                     (own.station == station).then_some(own.about)

@@ -92,7 +92,11 @@ impl Identify {
             "point" => (0, self.configurations),
             _ => (self.configurations.div_ceil(2), self.configurations / 2),
         };
-        line(&mut out, "to measure", &format!("{}: {}", kinds_words(poses, points), self.files.join(", ")));
+        let what = match self.kind {
+            "pose" | "point" | "mixed" => kinds_words(poses, points),
+            kind => format!("{} configurations, {kind}", self.configurations),
+        };
+        line(&mut out, "to measure", &format!("{what}: {}", self.files.join(", ")));
         line(&mut out, "noise", &noise_words(&self.noise));
         identifiability_lines(&mut out, &self.identifiability);
         line(&mut out, "observability", &self.observability_words());

@@ -1,5 +1,7 @@
 //! The axis of a target that is the normal of its face.
 
+use std::borrow::Cow;
+
 use nalgebra::{Matrix3, Vector3};
 
 use crate::estimate::{Chain, Linkage, Packed, delivered};
@@ -24,9 +26,44 @@ use crate::robot::Robot;
 /// # Ok::<(), poecal::Error>(())
 /// ```
 pub fn settle_faces(data: &mut Dataset, robot: &Robot) {
+    let Some(sums) = turns_of_faces(data, robot) else { return };
+    let normals: Vec<Vector3<f64>> = sums.iter().map(face_normal).collect();
+    let targets = data.targets.len();
+    for observation in &mut data.observations {
+        if let Measurement::Flush(it) = &mut observation.measurement {
+            it.normal = normals[observation.station * targets + observation.target];
+        }
+    }
+}
+
+/// The data with faces that lie on their planes as these are known, by the frames of their stations in the base: a plane's z may be either of
+/// its sides.
+#[must_use]
+pub fn faces_on_known_planes<'a>(
+    data: &'a Dataset,
+    robot: &Robot,
+    base_from_plane: &[Pose],
+) -> Cow<'a, Dataset> {
+    let Some(sums) = turns_of_faces(data, robot) else { return Cow::Borrowed(data) };
+    let (mut data, targets) = (data.clone(), data.targets.len());
+    for observation in &mut data.observations {
+        if let (Measurement::Flush(it), Some(plane)) =
+            (&mut observation.measurement, base_from_plane.get(observation.station))
+        {
+            let turns: &Matrix3<f64> = &sums[observation.station * targets + observation.target];
+            if (turns.transpose() * plane.rotation.column(2)).dot(&it.normal) < 0.0 {
+                it.normal = -it.normal;
+            }
+        }
+    }
+    Cow::Owned(data)
+}
+
+/// Sum of the rotations of the targets that lay flush, in the base, of each station and target; `None` if none did.
+fn turns_of_faces(data: &Dataset, robot: &Robot) -> Option<Vec<Matrix3<f64>>> {
     let is_flush = |it: &Measurement| matches!(it, Measurement::Flush(_));
     if !data.observations.iter().any(|row| is_flush(&row.measurement)) {
-        return;
+        return None;
     }
     let mut nominal = delivered(robot, data);
     nominal.device_from_base = Pose::identity();
@@ -40,12 +77,7 @@ pub fn settle_faces(data: &mut Dataset, robot: &Robot) {
             sums[observation.station * targets + observation.target] += chain.target.rotation;
         }
     }
-    let normals: Vec<Vector3<f64>> = sums.iter().map(face_normal).collect();
-    for observation in &mut data.observations {
-        if let Measurement::Flush(it) = &mut observation.measurement {
-            it.normal = normals[observation.station * targets + observation.target];
-        }
-    }
+    Some(sums)
 }
 
 /// The axis, forward or backward, nearest to the m of the largest `nᵀ S m`, with n upward.

@@ -9,7 +9,7 @@ mod robust;
 mod stations;
 
 pub(crate) use averaging::mean_rotation;
-pub use faces::settle_faces;
+pub use faces::{faces_on_known_planes, settle_faces};
 pub use registration::{Registration, register_again};
 pub(crate) use registration::{device_parameter, free_parameters, range_parameters, target_parameters};
 pub use robust::register_robustly;

@@ -8,7 +8,7 @@ use super::others::{self, Other};
 
 use crate::estimate::{Chain, Estimate, Linkage, RangeTerm, Session, Unknowns, sample_rows};
 use crate::lie::{Freedom, Pose, rotation};
-use crate::measurement::{Dataset, Noise};
+use crate::measurement::{Dataset, Measurement, Noise};
 use crate::parameters::{DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace};
 use crate::problem::Problem;
 use crate::solve::{Options, minimize};
@@ -139,7 +139,15 @@ pub(crate) fn range_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iter
 /// The free parameters of the targets: frames where these rows measured orientation, places elsewhere.
 pub(crate) fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = Parameter> {
     let unknowns = session.unknowns;
-    let targets = session.data.target_freedoms(rows).into_iter().enumerate();
+    let data = session.data;
+    // Where all planes are unknown, the height of a face is one with theirs (theory.md §4 (15c)).
+    let has_known = rows.iter().any(|&row| {
+        let seen = session.observation(row);
+        matches!(seen.measurement, Measurement::Flush(_))
+            && (!session.device_free || !unknowns.moves_frame(seen.station))
+    });
+    let height = move |freedom: Freedom| if has_known { freedom } else { freedom.without_height() };
+    let targets = data.target_freedoms(rows).into_iter().map(height).enumerate();
     targets.filter(|&(target, _)| unknowns.moves_target(target)).map(|(target, freedom)| match freedom {
         Freedom::Place => Parameter::TargetPlace(TargetPlace { target }),
         freedom => Parameter::TargetFrame(TargetFrame { target, freedom }),

@@ -221,6 +221,7 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
         nominal: &found.nominal,
         base_from_device: found.base_from_device,
         further_base_from_device: &[],
+        ranges: &[],
         frame: found.frame,
         noise: found.noise,
         refit_frame: false,

@@ -19,7 +19,7 @@ const KINDS: [(Kind, i32, usize); 8] = [
     (Kind::Sphere, 0, 1),
     (Kind::Socket, 2, 1),
     (Kind::Plane, 5, 1),
-    (Kind::Flush, 5, 1),
+    (Kind::Flush, 4, 1),
     (Kind::BallBar, -3, 0),
     (Kind::Relative, 0, 0),
 ];
@@ -59,6 +59,9 @@ fn each_kind_alone_finds_the_robot_and_has_the_rank_of_the_closed_form() {
         for (kind, more, lacks) in KINDS {
             let made = exact(150, 1).run(&robot, kind).unwrap();
             let found = fit(&made);
+            // A slide has a length.
+            let slides = robot.joints.iter().any(|joint| joint.screw.is_prismatic());
+            let (more, lacks) = if slides { (more + lacks as i32, 0) } else { (more, lacks) };
             let rank = (g(&robot) as i32 + more) as usize;
             let identified = &found.identifiability;
             println!(

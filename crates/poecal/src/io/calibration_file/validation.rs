@@ -5,8 +5,10 @@ use crate::calibration::{
     CoverageCheck, JudgedModel, Judgement, PartCoverage, PredictedUncertainty, Refitted, Subject, judge,
 };
 use crate::error::Result;
+use crate::estimate::Range;
 use crate::measurement::{Dataset, Quantity};
 use crate::robot::Body;
+use crate::start::faces_on_known_planes;
 use crate::uncertainty::Uncertainty;
 
 /// Ratio to the calibration's own error above which a device frame that is not refitted must have moved.
@@ -45,6 +47,14 @@ impl CalibrationFile {
         let usual = self.base_from_device()?;
         let (first, further) =
             devices.split_first().map_or((usual, &[][..]), |(first, further)| (*first, further));
+        let range = |name: &Option<String>| {
+            let own = self.stations.iter().find(|it| it.instrument == *name);
+            let zero_m = own.and_then(|it| it.zero_mm).map_or(0.0, |zero| 1e-3 * zero);
+            Range { zero_m, scale: own.and_then(|it| it.scale).unwrap_or(0.0) }
+        };
+        let ranges: Vec<Range> = data.stations.iter().map(range).collect();
+        let turned = faces_on_known_planes(data, &calibrated, &devices);
+        let data = &*turned;
         let noise = self.noise()?;
         // Refitted targets are not those of the calibration.
         let known = data.targets.iter().map(Option::as_deref).filter(|_| !refit_tool);
@@ -60,6 +70,7 @@ impl CalibrationFile {
             nominal: &nominal,
             base_from_device: first,
             further_base_from_device: further,
+            ranges: &ranges,
             frame: self.frame(),
             noise,
             refit_frame,

@@ -40,10 +40,8 @@ impl Names {
         (what, unnamed): (&'static str, &str),
         name: Option<&str>,
     ) -> Result<()> {
-        // An anchor may be an instrument that measures positions too.
-        let kind = if what == "anchor" { "instrument" } else { what };
         let (named, path, line) =
-            self.first.entry(kind).or_insert_with(|| (name.is_some(), row.path.to_path_buf(), row.line));
+            self.first.entry(what).or_insert_with(|| (name.is_some(), row.path.to_path_buf(), row.line));
         if *named == name.is_some() {
             return Ok(());
         }

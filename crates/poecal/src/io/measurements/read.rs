@@ -155,6 +155,7 @@ impl<'a> Reader<'a> {
             );
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, *line));
         }
+        self.begun.clear();
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         if rows == 0 {
             let message = "found a header and no rows, expected at least one measurement";

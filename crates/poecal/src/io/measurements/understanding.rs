@@ -109,6 +109,7 @@ pub(super) fn columns(
         .flat_map(|target| &target.kinds)
         .flat_map(|kind| kind.places.iter().chain(&kind.word).copied())
         .collect();
+    places.sort_unstable();
     places.dedup();
     let places = places.into_iter().filter_map(|at| text(header.cells.get(at)?.name.as_str(), Some(at)));
     let texts = [

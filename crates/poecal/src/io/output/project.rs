@@ -85,12 +85,27 @@ impl Project<'_> {
             .iter()
             .flat_map(|(key, mounts)| pairs(mounts).into_iter().map(move |pair| option(key, &pair)));
         let orientation = if self.kind.sees_orientation() { ROTATION_NOISE } else { "" };
+        let touching = match self.kind {
+            Kind::Socket => KNOWN_DISTANCE,
+            Kind::Plane | Kind::Flush => CONTACT,
+            Kind::Pose
+            | Kind::Point
+            | Kind::Mixed
+            | Kind::Distance
+            | Kind::Change
+            | Kind::Sphere
+            | Kind::Direction
+            | Kind::BallBar
+            | Kind::Relative => "",
+        };
         let name = visible(&self.model.robot.name).into_owned();
         let replaced = [
+            ("{before measuring}", (if self.kind.is_touched() { TOUCHED } else { PLANNED }).to_owned()),
             ("{model}", self.model_name().to_owned()),
             ("{chain}\n", links().map(line).chain(lists).collect()),
             ("{chain options}", links().map(words).chain(typed).collect()),
             ("{rotation noise}\n", orientation.to_owned()),
+            ("{touching}\n", touching.to_owned()),
             ("{kind}", self.kind.word().to_owned()),
             ("{count}", self.count.to_string()),
             ("{robot}", name),
@@ -98,6 +113,17 @@ impl Project<'_> {
         replaced.iter().fold(text.to_owned(), |text, (place, words)| text.replace(place, words))
     }
 }
+
+/// First step of the instructions.
+const PLANNED: &str = "1. **Before measuring**: which unknowns would these configurations determine, and with which expected error? Change \
+`joints.csv` and ask again, as often as you like.\n\n   ```sh\n   poecal identify {model} joints.csv --kind {kind}{chain options}\n   ```";
+/// The same where something is touched: random configurations do not.
+const TOUCHED: &str = "1. **Before measuring**: `joints.csv` has random configurations, to start from; in each, the robot must then be led to what it \
+touches. When a dozen rows are in `measurements.csv`, ask which unknowns they determine, and what is missing.\n\n   ```sh\n   \
+poecal identify {model} measurements.csv --kind {kind}{chain options}\n   ```";
+
+const KNOWN_DISTANCE: &str = "# The known distance of the two sockets of each place; without it the size of the robot is not told.\n#socket_distance = \"50mm\"\n\n";
+const CONTACT: &str = "# What rows with a plane are that do not say it in the column contact: \"point\" or \"flush\".\n#contact = \"flush\"\n\n";
 
 const ROTATION_NOISE: &str =
     "# And of the measured rotation about each axis.\n#sigma_rotation = \"0.01deg\"\n\n";
