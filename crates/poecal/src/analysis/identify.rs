@@ -121,7 +121,8 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     for (station, device) in devices.into_iter().enumerate() {
         *estimate.device_mut(station) = device;
     }
-    foresee(robot, &data, estimate, planned)
+    let count = readings.len() / robot.reading_names().len().max(1);
+    Ok(Foresight { count, ..foresee(robot, &data, estimate, planned)? })
 }
 
 /// The same for rows that touch something, by the measurements that name it: balls in sockets, points and faces on planes, points of spheres
@@ -190,9 +191,8 @@ fn foresee(
     }
     let identifiability = identifiability(&setup, &gram, 1.0);
     let expected = expected(&setup, &identifiability);
-    let further = data.further_readings().len() / robot.reading_names().len().max(1);
     Ok(Foresight {
-        count: data.len() + further,
+        count: data.len(),
         coverage: coverage(&session, &rows),
         identifiability,
         expected,

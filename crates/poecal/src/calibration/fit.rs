@@ -144,10 +144,14 @@ pub(super) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// The same with another weight of the prior. Where nothing has a length it never counts less than it says: the robot would shrink.
+    /// The same with another weight of the prior.
     pub(super) fn with_prior_weight(&self, weight: f64) -> Self {
-        let weight = if self.session.lacks_length(self.rows) { weight.max(1.0) } else { weight };
         Task { prior: self.prior.map(|(prior, _)| (prior, weight)), ..*self }
+    }
+
+    /// A weight of the prior, at least 1 where nothing has a length: noise would have the robot shrink.
+    pub(super) fn counted(&self, weight: f64) -> f64 {
+        if self.session.lacks_length(self.rows) { weight.max(1.0) } else { weight }
     }
 
     /// The prior's weight in the first fit. An estimated noise is then mostly error of the screws, so the prior counts as beside the usual
@@ -155,7 +159,7 @@ impl Task<'_> {
     pub(super) fn with_first_prior_weight(&self, noise: Noise, source: NoiseSource) -> Self {
         let usual = 0.1 * SUSPICIOUS * 3.0 * self.session.length_m / noise.of_lengths();
         let is_open = source == NoiseSource::Estimated;
-        self.with_prior_weight(if is_open { (usual * usual).min(1.0) } else { 1.0 })
+        self.with_prior_weight(self.counted(if is_open { (usual * usual).min(1.0) } else { 1.0 }))
     }
 
     /// The first fit from a registration.
@@ -219,8 +223,8 @@ impl Task<'_> {
             }
             // The axes' deviations estimate how good the nominal model is.
             weight /= task.prior.map_or(1.0, |(prior, _)| prior.looseness(&found.estimate));
-            if self.session.lacks_length(self.rows) {
-                weight = weight.max(1.0);
+            if source != NoiseSource::Exact {
+                weight = self.counted(weight);
             }
             // Change of the ratios of noises: of the largest to the smallest change of any of them.
             let is_used = |quantity: Quantity| self.session.data.has(quantity) || quantity.is_of_pose();

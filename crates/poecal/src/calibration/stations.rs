@@ -12,10 +12,8 @@ const FEWEST_ROWS: usize = 3;
 /// Fewest rows that determine what a station shows of its frame.
 fn fewest(data: &Dataset, station: usize, rows: &[u32]) -> usize {
     let numbers = rows.iter().map(|&row| data.observations[row as usize].measurement.observe().dim()).max();
-    match data.device_freedom(station, rows) {
-        Freedom::Frame => FEWEST_ROWS,
-        freedom => freedom.count().div_ceil(numbers.unwrap_or(1)),
-    }
+    let freedom = data.device_freedom(station, rows);
+    if freedom == Freedom::Frame { FEWEST_ROWS } else { freedom.count().div_ceil(numbers.unwrap_or(1)) }
 }
 
 /// Refuses stations whose frame cannot be determined, and several stations if measurements are in the base frame.

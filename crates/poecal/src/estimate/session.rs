@@ -4,6 +4,7 @@ use super::unknowns::USUAL;
 use super::{Packed, Unknowns, radian_m};
 use crate::measurement::{ByQuantity, Dataset, Noise, Observation};
 use crate::robot::{JointKind, Robot};
+use crate::unit::Unit;
 
 /// A robot and its measurements: what every fit of them, and every judgement of a fit, begins with.
 ///
@@ -71,9 +72,13 @@ impl<'a> Session<'a> {
 
     /// Whether nothing that these rows measure has a length, so that the size of the robot does not show. What is held has its own.
     pub(crate) fn lacks_length(&self, rows: &[u32]) -> bool {
-        let has_length = |row: &u32| self.observation(*row).measurement.observe().has_length();
+        let seen = |row: &u32| self.observation(*row).measurement;
+        let has_length = |row: &u32| seen(row).observe().has_length();
+        let is_place =
+            |row: &u32| seen(row).observe().channels().iter().any(|it| it.quantity.unit() == Unit::Metre);
         let slides = || self.robot.joints.iter().any(|joint| joint.kind == JointKind::Prismatic);
         !rows.iter().any(has_length)
+            && rows.iter().any(is_place)
             && self.data.lengths.is_empty()
             && self.unknowns.held_axes.len() < 2
             && !slides()

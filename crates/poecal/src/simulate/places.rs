@@ -46,6 +46,11 @@ impl Kind {
         }
     }
 
+    /// Whether each measurement is of two configurations.
+    fn is_paired(self) -> bool {
+        self == Kind::BallBar || self == Kind::Relative
+    }
+
     /// Whether its configurations fulfil a constraint: something is touched in each.
     #[must_use]
     pub fn is_touched(self) -> bool {
@@ -72,7 +77,7 @@ impl Kind {
         let mut data = Dataset::new(robot.reading_names());
         let target = data.target_index(None);
         let places = exact.places(robot, self);
-        let is_paired = matches!(self, Kind::BallBar | Kind::Relative);
+        let is_paired = self.is_paired();
         let width = data.reading_names().len().max(1) * if is_paired { 2 } else { 1 };
         for (row, own) in readings.chunks_exact(width).enumerate() {
             let place = &places[row % places.len()];
@@ -120,13 +125,12 @@ impl Simulation {
             } else {
                 let readings = configurations.random(generator);
                 let tip = actual.forward_kinematics(&readings);
-                let device_from_base = match kind {
-                    Kind::BallBar | Kind::Relative => {
-                        let other = configurations.random(generator);
-                        observation.from = Some(data.push_further(&other)?);
-                        actual.forward_kinematics(&other).inverse()
-                    }
-                    _ => place.device_from_base,
+                let device_from_base = if kind.is_paired() {
+                    let other = configurations.random(generator);
+                    observation.from = Some(data.push_further(&other)?);
+                    actual.forward_kinematics(&other).inverse()
+                } else {
+                    place.device_from_base
                 };
                 observation.measurement = self.seen(kind, place, &(device_from_base * tip), generator);
                 readings
@@ -154,22 +158,18 @@ impl Simulation {
         let apart = random::direction(&mut generator) * SOCKETS_APART_M;
         let place = |(index, &name): (usize, &&'static str)| {
             let turn = random::rotation(&mut generator);
-            let (point, turn) = match kind {
-                Kind::Distance | Kind::Change => {
-                    (random::direction(&mut generator) * (1.5 * actual.reach_m()), turn)
-                }
-                Kind::Socket => (middle + apart * index as f64, turn),
+            let (point, turn) = if matches!(kind, Kind::Distance | Kind::Change) {
+                (random::direction(&mut generator) * (1.5 * actual.reach_m()), turn)
+            } else if kind == Kind::Socket {
+                (middle + apart * index as f64, turn)
+            } else if kind == Kind::Direction {
                 // Gravity is nearly along the base's z.
-                Kind::Direction => {
-                    (Vector3::zeros(), rotation::exp(&(random::direction(&mut generator) * 0.02)))
-                }
-                _ => (middle, turn),
+                (Vector3::zeros(), rotation::exp(&(random::direction(&mut generator) * 0.02)))
+            } else {
+                (middle, turn)
             };
-            let zero_m = match kind {
-                Kind::Change => random::uniform(&mut generator) - 0.5,
-                Kind::Sphere => -SPHERE_M,
-                _ => 0.0,
-            };
+            let is_counted = kind == Kind::Change;
+            let zero_m = if is_counted { random::uniform(&mut generator) - 0.5 } else { 0.0 };
             Place { name, device_from_base: Pose::new(turn, -(turn * point)), zero_m }
         };
         names.iter().take(kind.places().max(1)).enumerate().map(place).collect()
@@ -199,21 +199,20 @@ impl Simulation {
         let length_m = random::normal(generator) * self.noise_position_m;
         let turn = random::normal_vector(generator) * self.noise_rotation_rad;
         let distance = target.translation.norm() + length_m;
-        match kind {
-            Kind::Change => {
-                Measurement::Distance(DistanceMeasurement::from_unknown_zero(distance + place.zero_m))
-            }
-            Kind::Direction => {
-                let up = (rotation::exp(&turn) * target.rotation).row(2).transpose();
-                Measurement::Direction(DirectionMeasurement::along(&up))
-            }
-            Kind::Relative => {
-                let shift = random::normal_vector(generator) * self.noise_position_m;
-                let pose = Pose::new(rotation::exp(&turn) * target.rotation, target.translation + shift);
-                Measurement::Pose(PoseMeasurement { pose })
-            }
-            _ => Measurement::Distance(DistanceMeasurement::new(distance)),
+        if kind == Kind::Change {
+            let reading = distance + place.zero_m;
+            return Measurement::Distance(DistanceMeasurement::from_unknown_zero(reading));
         }
+        if kind == Kind::Direction {
+            let up = (rotation::exp(&turn) * target.rotation).row(2).transpose();
+            return Measurement::Direction(DirectionMeasurement::along(&up));
+        }
+        if kind == Kind::Relative {
+            let shift = random::normal_vector(generator) * self.noise_position_m;
+            let pose = Pose::new(rotation::exp(&turn) * target.rotation, target.translation + shift);
+            return Measurement::Pose(PoseMeasurement { pose });
+        }
+        Measurement::Distance(DistanceMeasurement::new(distance))
     }
 
     /// A configuration in which the tip touches a place, up to the noise, with what is said of it.
@@ -228,23 +227,24 @@ impl Simulation {
         let length = random::normal_vector(generator) * self.noise_position_m;
         let turn = random::normal_vector(generator) * self.noise_rotation_rad;
         let flush = |height, normal| Measurement::Flush(FlushMeasurement { height, normal });
-        let (exact, said) = match kind {
-            Kind::Plane => (
+        let (exact, said) = if kind == Kind::Plane {
+            (
                 Measurement::Height(HeightMeasurement { height: length.x }),
                 Measurement::Height(HeightMeasurement { height: 0.0 }),
-            ),
-            Kind::Flush => {
-                let normal = DirectionMeasurement::of_tilts([turn.x, turn.y]).direction;
-                (flush(length.x, normal), flush(0.0, Vector3::z()))
-            }
-            Kind::Sphere => (
+            )
+        } else if kind == Kind::Flush {
+            let normal = DirectionMeasurement::of_tilts([turn.x, turn.y]).direction;
+            (flush(length.x, normal), flush(0.0, Vector3::z()))
+        } else if kind == Kind::Sphere {
+            (
                 Measurement::Distance(DistanceMeasurement::new(SPHERE_M + length.x)),
                 Measurement::Distance(DistanceMeasurement::from_unknown_zero(0.0)),
-            ),
-            _ => (
+            )
+        } else {
+            (
                 Measurement::Socket(SocketMeasurement { place: length }),
                 Measurement::Socket(SocketMeasurement::default()),
-            ),
+            )
         };
         for _ in 0..ATTEMPTS {
             let start = configurations.random(generator);

@@ -117,9 +117,11 @@ pub(crate) fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<P
 /// The free parameter of a station's frame: stepped about the middle of its rows; its place alone if no row sees its axes.
 pub(crate) fn device_parameter(data: &Dataset, station: usize, rows: &[u32]) -> Parameter {
     let own = data.seen_from(station, rows);
-    Parameter::DeviceFrame(match data.device_freedom(station, &own) {
-        Freedom::Frame => DeviceFrame::new(station, data.mean_position(&own)),
-        freedom => DeviceFrame::showing(station, freedom),
+    let freedom = data.device_freedom(station, &own);
+    Parameter::DeviceFrame(if freedom == Freedom::Frame {
+        DeviceFrame::new(station, data.mean_position(&own))
+    } else {
+        DeviceFrame::showing(station, freedom)
     })
 }
 
@@ -148,10 +150,17 @@ pub(crate) fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Ite
     });
     let height = move |freedom: Freedom| if has_known { freedom } else { freedom.without_height() };
     let targets = data.target_freedoms(rows).into_iter().map(height).enumerate();
-    targets.filter(|&(target, _)| unknowns.moves_target(target)).map(|(target, freedom)| match freedom {
-        Freedom::Place => Parameter::TargetPlace(TargetPlace { target }),
-        freedom => Parameter::TargetFrame(TargetFrame { target, freedom }),
-    })
+    let targets = targets.filter(|&(target, _)| unknowns.moves_target(target));
+    targets.map(|(target, freedom)| target_parameter(target, freedom))
+}
+
+/// The parameter of a target of which these motions show.
+fn target_parameter(target: usize, freedom: Freedom) -> Parameter {
+    if freedom == Freedom::Place {
+        Parameter::TargetPlace(TargetPlace { target })
+    } else {
+        Parameter::TargetFrame(TargetFrame { target, freedom })
+    }
 }
 
 /// The sampled rows: the arm's motion from zero in the base frame, and the measurements.

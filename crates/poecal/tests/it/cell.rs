@@ -170,9 +170,11 @@ fn cells() -> Vec<Cell> {
 
 /// The frame of a station, or its place if no row sees its axes.
 fn device(data: &Dataset, station: usize, about: Vector3<f64>) -> Parameter {
-    Parameter::DeviceFrame(match data.device_freedom(station, &data.all_rows()) {
-        Freedom::Frame => DeviceFrame::new(station, about),
-        freedom => DeviceFrame::showing(station, freedom),
+    let freedom = data.device_freedom(station, &data.all_rows());
+    Parameter::DeviceFrame(if freedom == Freedom::Frame {
+        DeviceFrame::new(station, about)
+    } else {
+        DeviceFrame::showing(station, freedom)
     })
 }
 
@@ -225,9 +227,12 @@ impl Measured {
             .collect();
         free.extend(screw_axes(estimate.kinds()));
         let targets = data.target_freedoms(&data.all_rows()).into_iter().enumerate();
-        free.extend(targets.map(|(target, freedom)| match freedom {
-            Freedom::Place => Parameter::TargetPlace(TargetPlace { target }),
-            freedom => Parameter::TargetFrame(TargetFrame { target, freedom }),
+        free.extend(targets.map(|(target, freedom)| {
+            if freedom == Freedom::Place {
+                Parameter::TargetPlace(TargetPlace { target })
+            } else {
+                Parameter::TargetFrame(TargetFrame { target, freedom })
+            }
         }));
         Measured { robot, data, packed, estimate, free }
     }

@@ -256,9 +256,8 @@ impl<'c> Reweighted<'c> {
     /// The task with the prior weighted by the robust scale.
     fn with_prior_weight<'t>(&self, task: &Task<'t>, source: NoiseSource) -> Task<'t> {
         let variance = if source == NoiseSource::Estimated { 1.0 } else { self.scale.0.of_lengths().powi(2) };
-        task.with_prior_weight(
-            variance / task.prior.map_or(1.0, |(prior, _)| prior.looseness(&self.estimate)),
-        )
+        let weight = variance / task.prior.map_or(1.0, |(prior, _)| prior.looseness(&self.estimate));
+        task.with_prior_weight(task.counted(weight))
     }
 
     /// Reweights until the weights have settled.

@@ -465,9 +465,11 @@ impl CalibrationFile {
             estimate = estimate.with_target(body, pose);
             let usual = if *is_frame { Freedom::Frame } else { Freedom::Place };
             let block = if name.is_empty() { "target".to_owned() } else { format!("target.{name}") };
-            free.push(match entry.freedom(&block).unwrap_or(usual) {
-                Freedom::Place => Parameter::TargetPlace(TargetPlace { target: index }),
-                freedom => Parameter::TargetFrame(TargetFrame { target: index, freedom }),
+            let freedom = entry.freedom(&block).unwrap_or(usual);
+            free.push(if freedom == Freedom::Place {
+                Parameter::TargetPlace(TargetPlace { target: index })
+            } else {
+                Parameter::TargetFrame(TargetFrame { target: index, freedom })
             });
         }
         if !entry.unknowns.is_empty() {

@@ -370,6 +370,7 @@ impl<'a> Reader<'a> {
         let place = kind.map(KindColumns::place).filter(|(_, columns)| !columns.is_empty());
         let (what, column) = match (&own, place, layout.instrument) {
             (Some(_), Some((what, columns)), _) => (what, columns.last().copied()),
+            (None, Some((what, columns)), Some(_)) if instrument.is_none() => (what, columns.last().copied()),
             (_, _, Some(column)) => ("instrument", Some(column)),
             (None, Some((what, columns)), None) => (what, columns.last().copied()),
             (_, None, None) => ("instrument", None),

@@ -39,17 +39,14 @@ pub(in crate::io) fn template(robot: &Robot, kind: Kind) -> Result<String> {
             "# x, y, z     where the device sees the target, in the device's own frame, wherever the device stands.\n",
         );
     }
-    text.push_str(match kind {
-        Kind::Point => "",
-        Kind::Pose => {
-            "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last). Instead, name the columns\n\
-             #             rx,ry,rz[deg] for a rotation vector, or roll,pitch,yaw[deg] for turns about the fixed x, then y, then z.\n"
-        }
-        Kind::Mixed => {
-            "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last); leave all four empty in rows\n\
-             #             where a point was seen.\n"
-        }
-        other => other.columns().1,
+    text.push_str(if kind == Kind::Pose {
+        "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last). Instead, name the columns\n\
+         #             rx,ry,rz[deg] for a rotation vector, or roll,pitch,yaw[deg] for turns about the fixed x, then y, then z.\n"
+    } else if kind == Kind::Mixed {
+        "# qx to qw    the target's orientation in the device's frame, as a quaternion (w last); leave all four empty in rows\n\
+         #             where a point was seen.\n"
+    } else {
+        kind.columns().1
     });
     for (column, does, mounts) in
         [("instrument", "sees", &robot.instruments), ("target    ", "is seen", &robot.mounted)]
