@@ -37,8 +37,15 @@ pub(crate) fn usage(error: &clap::Error) {
     let add = |said: &mut Said| {
         if error.use_stderr() { said.err.push_str(&text) } else { said.out.push_str(&text) }
     };
-    if !kept(add) {
-        let _ = error.print();
+    if kept(add) {
+        return;
+    }
+    match width_of(&std::io::stderr()).filter(|_| error.use_stderr()) {
+        // Lists of words are longer than a terminal is wide.
+        Some(width) => anstream::eprint!("{}", style::listed(&error.render().ansi().to_string(), width)),
+        None => {
+            let _ = error.print();
+        }
     }
 }
 

@@ -36,6 +36,43 @@ pub(crate) fn written(folder: &Path, files: &[String]) -> String {
     labelled("written", &format!("{}\n{}", shown(folder), files.join(", ")))
 }
 
+/// Lines with colours, broken behind commas where they are wider than a terminal.
+pub(crate) fn listed(text: &str, width: usize) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        if visible_width(line.trim_end()) <= width || !line.contains(", ") {
+            out.push_str(line);
+            continue;
+        }
+        let mut used = 0;
+        for part in line.split_inclusive(", ") {
+            let own = visible_width(part.trim_end());
+            if used > 0 && used + own > width {
+                out.truncate(out.trim_end().len());
+                out.push_str("\n   ");
+                used = 3;
+            }
+            out.push_str(part);
+            used += visible_width(part);
+        }
+    }
+    out
+}
+
+/// Characters of a text that are shown, without the codes of colours.
+fn visible_width(text: &str) -> usize {
+    let (mut width, mut is_code) = (0, false);
+    for letter in text.chars() {
+        match (is_code, letter) {
+            (false, '\x1b') => is_code = true,
+            (false, _) => width += 1,
+            (true, 'm') => is_code = false,
+            (true, _) => {}
+        }
+    }
+    width
+}
+
 /// A message in lines of a width; the first begins after `before` characters, the others are indented by two.
 pub(crate) fn wrapped(message: &str, before: usize, width: usize) -> String {
     broken(message, before, 2, width)

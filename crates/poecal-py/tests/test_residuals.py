@@ -62,7 +62,7 @@ def test_arrays_of_residuals_fit_together(calibrations):
         nominal = residuals.errors(quantity, model="nominal")
         assert np.array_equal(nominal, getattr(residuals, f"{quantity}_nominal_{unit}"), equal_nan=True)
     assert list(calibrations["point"].residuals.quantities) == ["position"]
-    with pytest.raises(poecal.OptionError, match="quantity: found `positon`, expected one of position, rotation, distance; did you mean `position`"):
+    with pytest.raises(poecal.OptionError, match="quantity: found `positon`, expected one of position, rotation, distance, contact, height, tilt; did you mean `position`"):
         residuals.components("positon")
     with pytest.raises(poecal.OptionError, match="model: found `best`, expected one of nominal, registered, calibrated"):
         residuals.errors("position", model="best")
