@@ -26,7 +26,8 @@ const MOST: usize = 100_000;
 /// out
 ///     The folder; files in it are never overwritten.
 /// measure
-///     "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "flush", "directions", "ball-bars" or "relative".
+///     "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "heights", "flush", "directions",
+///     "ball-bars" or "relative".
 /// count
 ///     Number of configurations to suggest, from 1 to 100,000.
 /// seed
@@ -63,6 +64,7 @@ pub(crate) fn init(
         ("spheres", Kind::Sphere),
         ("sockets", Kind::Socket),
         ("planes", Kind::Plane),
+        ("heights", Kind::Height),
         ("flush", Kind::Flush),
         ("directions", Kind::Direction),
         ("ball-bars", Kind::BallBar),

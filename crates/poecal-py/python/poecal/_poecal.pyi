@@ -53,6 +53,7 @@ _Kind: TypeAlias = Literal[
     "sphere",
     "socket",
     "plane",
+    "height",
     "flush",
     "direction",
     "ball-bar",
@@ -1325,6 +1326,7 @@ def init(
         "spheres",
         "sockets",
         "planes",
+        "heights",
         "flush",
         "directions",
         "ball-bars",
@@ -1348,7 +1350,8 @@ def init(
     out
         The folder; files in it are never overwritten.
     measure
-        "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "flush", "directions", "ball-bars" or "relative".
+        "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "heights", "flush", "directions",
+        "ball-bars" or "relative".
     count
         Number of configurations to suggest, from 1 to 100,000.
     seed

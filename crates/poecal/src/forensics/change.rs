@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix3, Vector4};
 
 use crate::lie::{Pose, rotation};
-use crate::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Seen};
+use crate::measurement::{
+    Dataset, DirectionMeasurement, Measurement, Observation, PointMeasurement, PoseMeasurement,
+};
 
 /// A change of every row. Columns are indices of readings.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +22,14 @@ pub(super) enum Change {
     Add(usize, f64),
     /// Each reading paired with the measurement so many rows later in the same stream.
     Shift(i32, Stream),
-    /// Positions times a factor.
-    Resize(f64),
+    /// Lengths of a kind times a factor; the last says whether no other kind is measured.
+    Resize(f64, Lengths, bool),
+    /// The zero of all distances unknown.
+    FreeZero,
+    /// Heights over all planes, or over one, counted the other way.
+    NegateHeights(Option<usize>),
+    /// Tilts of directions, the first and the second, times factors.
+    ScaleTilts([f64; 2]),
     /// Parts of the quaternion to be taken as x, y, z, w.
     Quaternion([usize; 4]),
     /// Poses inverted.
@@ -41,12 +49,13 @@ impl Change {
             return shifted(data, *by, *stream);
         }
         let mut changed = like(data);
+        changed.change_further(|readings| self.change_readings(readings));
         let mut readings = Vec::new();
         for (row, observation) in data.observations.iter().enumerate() {
             readings.clear();
             readings.extend_from_slice(data.readings(row));
             self.change_readings(&mut readings);
-            let measurement = self.measurement(row, &observation.measurement);
+            let measurement = self.measurement(row, observation);
             push(&mut changed, &readings, Observation { measurement, ..*observation });
         }
         changed
@@ -63,7 +72,10 @@ impl Change {
             }
             Change::Add(column, offset) => readings[*column] += offset,
             Change::Shift(..)
-            | Change::Resize(_)
+            | Change::Resize(..)
+            | Change::FreeZero
+            | Change::NegateHeights(_)
+            | Change::ScaleTilts(_)
             | Change::Quaternion(_)
             | Change::Invert
             | Change::Transpose
@@ -72,34 +84,65 @@ impl Change {
         }
     }
 
-    fn measurement(&self, row: usize, seen: &Measurement) -> Measurement {
-        let Pose { rotation: turned, translation } = match seen.seen() {
-            Seen::Other(_) => return *seen,
-            Seen::Point(&position) => {
-                return point(match self {
-                    Change::Resize(factor) => position * *factor,
-                    Change::Mirror(mirror, _) => mirror * position,
-                    Change::Scale(..)
-                    | Change::Exchange(..)
-                    | Change::Combine { .. }
-                    | Change::Add(..)
-                    | Change::Shift(..)
-                    | Change::Quaternion(_)
-                    | Change::Invert
-                    | Change::Transpose
-                    | Change::Turn(_) => position,
-                });
+    fn measurement(&self, row: usize, observation: &Observation) -> Measurement {
+        let mut changed = observation.measurement;
+        match &mut changed {
+            Measurement::Point(PointMeasurement { position }) => {
+                if let Change::Resize(factor, Lengths::Positions, _) = self {
+                    *position *= *factor;
+                } else if let Change::Mirror(mirror, _) = self {
+                    *position = mirror * *position;
+                }
             }
-            Seen::Frame(pose) => *pose,
-        };
-        frame(match self {
-            Change::Resize(factor) => Pose::new(turned, translation * *factor),
+            Measurement::Pose(PoseMeasurement { pose }) => *pose = self.pose(row, pose),
+            Measurement::Distance(seen) => {
+                if let Change::Resize(factor, Lengths::Distances, _) = self {
+                    seen.distance *= factor;
+                }
+                seen.zero_is_unknown |= *self == Change::FreeZero;
+            }
+            Measurement::Height(seen) => seen.height *= self.of_heights(observation.station),
+            Measurement::Flush(seen) => seen.height *= self.of_heights(observation.station),
+            Measurement::Direction(seen) => {
+                if let Change::ScaleTilts(factors) = self {
+                    let [x, y] = seen.tilts();
+                    *seen = DirectionMeasurement::of_tilts([factors[0] * x, factors[1] * y]);
+                }
+            }
+            Measurement::Socket(_) => {}
+        }
+        changed
+    }
+
+    /// Factor on the heights over a plane.
+    fn of_heights(&self, station: usize) -> f64 {
+        if let Change::Resize(factor, Lengths::Heights, _) = self {
+            return *factor;
+        }
+        let is_negated = |which: &Option<usize>| which.is_none_or(|plane| plane == station);
+        if matches!(self, Change::NegateHeights(which) if is_negated(which)) { -1.0 } else { 1.0 }
+    }
+
+    /// A measured pose with the change.
+    fn pose(&self, row: usize, seen: &Pose) -> Pose {
+        let Pose { rotation: turned, translation } = *seen;
+        match self {
+            Change::Resize(factor, Lengths::Positions, _) => Pose::new(turned, translation * *factor),
+            Change::Scale(..)
+            | Change::Exchange(..)
+            | Change::Combine { .. }
+            | Change::Add(..)
+            | Change::Shift(..)
+            | Change::Resize(..)
+            | Change::FreeZero
+            | Change::NegateHeights(_)
+            | Change::ScaleTilts(_) => *seen,
             Change::Quaternion(places) => {
                 let q = rotation::to_quaternion_xyzw(&turned);
                 let [x, y, z, w] = places.map(|place| q[place]);
                 Pose::new(rotation::from_quaternion_xyzw(&Vector4::new(x, y, z, w)), translation)
             }
-            Change::Invert => seen.pose().inverse(),
+            Change::Invert => seen.inverse(),
             Change::Transpose => Pose::new(turned.transpose(), translation),
             Change::Turn(others) => {
                 Pose::new(others.get(row).copied().flatten().unwrap_or(turned), translation)
@@ -108,12 +151,43 @@ impl Change {
                 let turned = if *turns { mirror * turned * mirror } else { turned };
                 Pose::new(turned, mirror * translation)
             }
-            Change::Scale(..)
-            | Change::Exchange(..)
-            | Change::Combine { .. }
-            | Change::Add(..)
-            | Change::Shift(..) => seen.pose(),
-        })
+        }
+    }
+}
+
+/// What is measured as a length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lengths {
+    /// Coordinates of positions.
+    Positions,
+    /// Distances, and radii of spheres.
+    Distances,
+    /// Heights over planes.
+    Heights,
+}
+
+impl Lengths {
+    /// All of them.
+    pub(super) const ALL: [Lengths; 3] = [Lengths::Positions, Lengths::Distances, Lengths::Heights];
+
+    /// Its name.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Lengths::Positions => "positions",
+            Lengths::Distances => "distances",
+            Lengths::Heights => "heights",
+        }
+    }
+
+    /// Whether a measurement has one, other than zero.
+    pub(super) fn is_of(self, seen: &Measurement) -> bool {
+        match seen {
+            Measurement::Point(_) | Measurement::Pose(_) => self == Lengths::Positions,
+            Measurement::Distance(seen) => self == Lengths::Distances && seen.distance != 0.0,
+            Measurement::Height(seen) => self == Lengths::Heights && seen.height != 0.0,
+            Measurement::Flush(seen) => self == Lengths::Heights && seen.height != 0.0,
+            Measurement::Socket(_) | Measurement::Direction(_) => false,
+        }
     }
 }
 
@@ -126,26 +200,16 @@ pub(super) enum Stream {
     File,
 }
 
-/// An empty data set with the same readings and targets.
+/// A data set without rows, with the same readings, targets and places.
 pub(super) fn like(data: &Dataset) -> Dataset {
-    let mut empty = Dataset::new(data.reading_names().to_vec());
-    empty.targets.clone_from(&data.targets);
-    empty.stations.clone_from(&data.stations);
-    empty.lengths.clone_from(&data.lengths);
+    let mut empty = data.only(&[]);
+    empty.pose_residual = None;
     empty
 }
 
 /// Adds a row, unless the change made it not finite.
 pub(super) fn push(data: &mut Dataset, readings: &[f64], observation: Observation) {
     data.push_observation(readings, observation).ok();
-}
-
-fn point(position: nalgebra::Vector3<f64>) -> Measurement {
-    Measurement::Point(PointMeasurement { position })
-}
-
-fn frame(pose: Pose) -> Measurement {
-    Measurement::Pose(PoseMeasurement { pose })
 }
 
 /// Readings of each row with the measurement of the same stream and file `by` such rows later.

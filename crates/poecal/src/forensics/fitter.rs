@@ -11,7 +11,9 @@ use crate::parameters::{Parameter, ScrewAxis, ValueTerm};
 use crate::problem::{Prior, Problem};
 use crate::robot::{Body, Joint, JointKind, Robot, Term, Tolerance};
 use crate::solve::{Options, minimize};
-use crate::start::{Registration, device_parameter, register, register_roughly, target_parameters};
+use crate::start::{
+    Registration, device_parameter, range_parameters, register, register_roughly, target_parameters,
+};
 
 /// Rows of the subsample.
 pub(super) const SAMPLE: usize = 90;
@@ -200,6 +202,7 @@ impl<'a> Fitter<'a> {
         let packed = self.packed(data);
         let rows = data.all_rows();
         let session = self.session(data, &packed);
+        free.extend(range_parameters(&session, &rows).map(Parameter::RangeUnknown));
         free.extend(target_parameters(&session, &rows));
         let mut start = registered.clone();
         start.recentre(&session, &rows);

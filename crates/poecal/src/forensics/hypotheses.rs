@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 
 use super::DiagnosisKind;
-use super::change::{Change, Stream};
+use super::change::{Change, Lengths, Stream};
 use crate::measurement::Dataset;
 use crate::robot::{ReadingKind, Robot};
 
@@ -25,9 +25,10 @@ impl Hypothesis {
         Hypothesis { kind, changes: vec![change], action, advice }
     }
 
-    /// The factor on positions.
+    /// The factor on all that was measured.
     pub(super) fn resized(&self) -> f64 {
-        let factor = |change: &Change| if let Change::Resize(factor) = change { *factor } else { 1.0 };
+        let factor =
+            |change: &Change| if let Change::Resize(factor, _, true) = change { *factor } else { 1.0 };
         self.changes.iter().map(factor).product()
     }
 
@@ -184,13 +185,15 @@ pub(super) fn row_shifts(targets: usize) -> Vec<Hypothesis> {
     all
 }
 
-/// Positions in another unit.
-pub(super) fn position_units() -> Vec<Hypothesis> {
+/// Lengths of a kind in another unit.
+pub(super) fn length_units(lengths: Lengths, is_all: bool) -> Vec<Hypothesis> {
+    let kind =
+        if lengths == Lengths::Positions { DiagnosisKind::PositionUnit } else { DiagnosisKind::LengthUnit };
     let one = |(factor, words): (f64, &str)| {
         Hypothesis::new(
-            DiagnosisKind::PositionUnit,
-            Change::Resize(factor),
-            format!("multiplying the positions by {factor}"),
+            kind,
+            Change::Resize(factor, lengths, is_all),
+            format!("multiplying the {} by {factor}", lengths.words()),
             format!(
                 "check their unit, since it looks as if {words} (or the model's lengths are in another one)"
             ),
@@ -211,6 +214,65 @@ pub(super) fn position_units() -> Vec<Hypothesis> {
     .into_iter()
     .map(one)
     .collect()
+}
+
+/// Distances that do not count from their anchor, or radii of other spheres.
+pub(super) fn zeros() -> Hypothesis {
+    Hypothesis::new(
+        DiagnosisKind::DistanceZero,
+        Change::FreeZero,
+        "taking the zero of the distances as unknown".to_owned(),
+        "check what they count from, and whether the radius of a ball or the length of a hook is missing or counted twice \
+         (`--free zero` finds it)"
+            .to_owned(),
+    )
+}
+
+/// Heights that count the other way: over all planes, or over one.
+pub(super) fn height_signs(data: &Dataset) -> Vec<Hypothesis> {
+    let has_heights = |station: usize| {
+        let mut own = data.observations.iter().filter(|row| row.station == station);
+        own.any(|row| Lengths::Heights.is_of(&row.measurement))
+    };
+    let planes: Vec<usize> = (0..data.station_count()).filter(|&station| has_heights(station)).collect();
+    let single = if planes.len() > 1 { planes.as_slice() } else { &[] };
+    let which = std::iter::once(None).filter(|_| !planes.is_empty()).chain(single.iter().copied().map(Some));
+    let one = |which: Option<usize>| {
+        let over = which.map_or_else(String::new, |plane| format!(" over {}", data.station_words(plane)));
+        Hypothesis::new(
+            DiagnosisKind::HeightSign,
+            Change::NegateHeights(which),
+            format!("counting the heights{over} the other way"),
+            "check on which side of the plane they are and which way the gauge counts, since a height grows away from the \
+             plane on the side of the tool"
+                .to_owned(),
+        )
+    };
+    which.map(one).collect()
+}
+
+/// Tilts of another sign or unit. A tool that may be turned about its own axis makes all mirrored tilts alike.
+pub(super) fn tilts() -> Vec<Hypothesis> {
+    let unit = |factor: f64, meant: &str, read: &str| {
+        Hypothesis::new(
+            DiagnosisKind::TiltUnit,
+            Change::ScaleTilts([factor; 2]),
+            format!("taking the tilts as {meant} instead of {read}"),
+            "state the unit of tilt_x and tilt_y in the header".to_owned(),
+        )
+    };
+    vec![
+        Hypothesis::new(
+            DiagnosisKind::TiltSign,
+            Change::ScaleTilts([-1.0, 1.0]),
+            "counting one of the two tilts the other way".to_owned(),
+            "check the signs of tilt_x and tilt_y, and whether they are exchanged, since each is the turn of the tool about its \
+             own axis"
+                .to_owned(),
+        ),
+        unit(180.0 / PI, "radians", "degrees"),
+        unit(PI / 180.0, "degrees", "radians"),
+    ]
 }
 
 /// Quaternions in another order, and inverted poses.

@@ -2,17 +2,17 @@
 
 use rayon::prelude::*;
 
-use super::change::Change;
+use super::change::{Change, Lengths};
 use super::conventions::conventions;
 use super::few::FewTargets;
 use super::fitter::{Fitter, SHORT, Score, sampled};
 use super::hypotheses::{
-    Hypothesis, ReadingColumns, joint_couplings, joint_exchanges, joint_signs, joint_units, mirrors,
-    pose_forms, position_units, row_shifts,
+    Hypothesis, ReadingColumns, height_signs, joint_couplings, joint_exchanges, joint_signs, joint_units,
+    length_units, mirrors, pose_forms, row_shifts, tilts, zeros,
 };
 use super::zero::joint_zeros;
 use super::{Diagnosis, DiagnosisKind};
-use crate::measurement::Dataset;
+use crate::measurement::{Dataset, Measurement, Observation};
 
 /// Number of joints above which only neighbours are tested for wrong signs together.
 const MANY_JOINTS: usize = 12;
@@ -62,11 +62,18 @@ pub(super) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) ->
 }
 
 fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Dataset) -> Vec<Hypothesis> {
-    let turned = sample.observations.iter().any(|row| row.measurement.sees_orientation());
+    let turned = sample.observations.iter().any(|row| row.measurement.observe().orientation().is_some());
     let mut all = joint_units(columns);
     let placed = sample.observations.iter().any(|row| row.measurement.observe().position().is_some());
-    if placed {
-        all.extend(position_units());
+    for lengths in Lengths::ALL {
+        let is_of = |row: &Observation| lengths.is_of(&row.measurement);
+        if sample.observations.iter().any(is_of) {
+            all.extend(length_units(lengths, sample.observations.iter().all(is_of)));
+        }
+    }
+    all.extend(of_places(sample));
+    if sample.observations.iter().any(|row| matches!(row.measurement, Measurement::Direction(_))) {
+        all.extend(tilts());
     }
     all.extend(joint_signs(columns));
     all.extend(joint_exchanges(columns));
@@ -81,6 +88,28 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
     all.extend(row_shifts(sample.targets.len()));
     all.extend(joint_zeros(fitter, columns, sample));
     all
+}
+
+/// Mistakes that a calibration may take in: lengths that count from elsewhere, or the other way.
+fn of_places(sample: &Dataset) -> Vec<Hypothesis> {
+    let mut all = height_signs(sample);
+    let is_counted = |row: &Observation| {
+        Lengths::Distances.is_of(&row.measurement) && !row.measurement.observe().zero_is_unknown()
+    };
+    all.extend(sample.observations.iter().any(is_counted).then(zeros));
+    all
+}
+
+/// A mistake of lengths in data that a calibration explains.
+pub(super) fn of_lengths(few: &FewTargets<'_, '_>, all: &Dataset) -> Option<Diagnosis> {
+    let sample = sampled(&few.data);
+    let hypotheses = of_places(&sample);
+    if hypotheses.is_empty() {
+        return None;
+    }
+    let base = few.fitter.judged(&sample).1;
+    let (index, score) = best_of(few, all, &sample, &base, &hypotheses)?;
+    Some(diagnosis(&hypotheses[index], &base, &score))
 }
 
 /// Two or three joints with wrong signs.

@@ -6,10 +6,12 @@
 mod change;
 mod conventions;
 mod euler;
+mod exchange;
 mod few;
 mod fitter;
 mod hypotheses;
 mod judge;
+mod places;
 mod repeats;
 mod targets;
 mod unnamed;
@@ -55,6 +57,20 @@ pub enum DiagnosisKind {
     TargetsSwapped,
     /// Several targets were measured under one name.
     TargetsUnnamed,
+    /// Distances or heights in another unit than stated.
+    LengthUnit,
+    /// Distances that do not count from their anchor, or a radius that is another.
+    DistanceZero,
+    /// A known distance that is another.
+    KnownLength,
+    /// Heights that count the other way.
+    HeightSign,
+    /// Tilts that count the other way or are exchanged.
+    TiltSign,
+    /// Tilts in another unit than stated.
+    TiltUnit,
+    /// Rows that name another anchor, socket or plane.
+    PlacesSwapped,
     /// Rows that repeat or contradict each other.
     DuplicateRows,
 }
@@ -141,10 +157,6 @@ pub fn diagnose(
     if rows.len() < FEWEST_ROWS || robot.reading_names() != data.reading_names() {
         return Vec::new();
     }
-    if !data.further_readings().is_empty() {
-        // The searches change the readings of one configuration only.
-        return Vec::new();
-    }
     let fitter = Fitter::new(robot, data, options.device_free);
     // Frames tell enough each by itself; what shows less tells something together only.
     if data.station_count() > 1 && !fitter.is_constrained() {
@@ -208,17 +220,28 @@ fn of_rows(
     options: &DiagnosisOptions<'_>,
 ) -> Option<Diagnosis> {
     let whole = taken(data, &sample_rows(rows, WHOLE));
+    let of_lengths = || {
+        if !fitter.is_constrained() {
+            return None;
+        }
+        let all = taken(data, rows);
+        let few = FewTargets::of(fitter, &all);
+        places::known_length(fitter, data, &all).or_else(|| judge::of_lengths(&few, &all))
+    };
     if let Some(estimate) = options.calibrated
         && fitter.is_sound(&whole, estimate)
     {
-        return targets::names(fitter, data, estimate);
+        return targets::names(fitter, data, estimate).or_else(of_lengths);
     }
     let all = taken(data, rows);
     let few = FewTargets::of(fitter, &all);
     let (estimate, base) = few.fitter.judged(&sampled(&few.data));
     let placed = few.placed(fitter, &all, &estimate);
     if fitter.is_sound(&whole, &placed) {
-        return targets::names(fitter, data, &placed);
+        return targets::names(fitter, data, &placed).or_else(of_lengths);
     }
-    targets::rows(fitter, data, &all, rows, &base).or_else(|| judge::diagnose(&few, &all, &base))
+    places::known_length(fitter, data, &all)
+        .or_else(|| targets::rows(fitter, data, &all, rows, &base))
+        .or_else(|| places::names(fitter, data, &all, rows, &placed, &base))
+        .or_else(|| judge::diagnose(&few, &all, &base))
 }

@@ -1,31 +1,24 @@
 //! Names of two targets exchanged: in all rows, from a row on, or in single rows.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::exchange::{Names, exchanged, starts};
 use super::few::{FewTargets, TARGETS, for_links};
-use super::fitter::{Fitter, SHORT, Score, sampled, taken};
-use super::judge::{CALIBRATED_SHARE, short};
+use super::fitter::{Fitter, Score, sampled, taken};
+use super::judge::short;
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::Estimate;
 use crate::measurement::Dataset;
 
 /// Least ratio of two targets' distances from their nominal places before and after the exchange.
 const NEARER: f64 = 3.0;
-/// Most rounds of reassigning rows and refitting.
-const ROUNDS: usize = 6;
-/// Least reduction of the error of the rows concerned, and of all rows.
-const ROW_GAIN: f64 = 5.0;
-const GAIN: f64 = 1.5;
 /// Most targets whose names are compared: those that are farthest from nominal.
 const MOVED: usize = 200;
 /// Most pairs of targets that are tested, and most rows that vote for them.
 const PAIRS: usize = 15;
 const SUSPECTS: usize = 500;
-/// Most rows in a statement.
-const NAMED: usize = 5;
 
 /// Two targets of the model at each other's places: their names are exchanged in all rows.
 pub(super) fn names(fitter: &Fitter<'_>, data: &Dataset, found: &Estimate) -> Option<Diagnosis> {
@@ -79,50 +72,22 @@ pub(super) fn rows(
 ) -> Option<Diagnosis> {
     let found = pairs(fitter, all).into_iter().filter_map(|pair| {
         if all.targets.len() <= TARGETS {
-            return exchanged(fitter, all, pair, base);
+            return exchanged(fitter, all, Names::Targets, pair, base);
         }
         let few = FewTargets::with(fitter, all, &[pair.0, pair.1]);
         let numbers = (few.number(pair.0)?, few.number(pair.1)?);
         let base = few.fitter.judged(&sampled(&few.data)).1;
-        let (error, _, concerned, before, after) = exchanged(&few.fitter, &few.data, numbers, &base)?;
+        let mut found = exchanged(&few.fitter, &few.data, Names::Targets, numbers, &base)?;
         let rows = few.rows(all);
-        let concerned = concerned.into_iter().filter_map(|row| rows.get(row).copied()).collect();
-        Some((error, pair, concerned, before, after))
+        found.rows = found.rows.into_iter().filter_map(|row| rows.get(row).copied()).collect();
+        found.pair = pair;
+        Some(found)
     });
-    let (_, pair, concerned, before, after) = found.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let best = found.min_by(|a, b| a.error_m.total_cmp(&b.error_m))?;
     let name =
         |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
-    let concerned: Vec<u32> = concerned.into_iter().filter_map(|row| rows.get(row).copied()).collect();
-    let where_ = where_words(data, rows, pair, &concerned);
-    Some(Diagnosis {
-        kind: DiagnosisKind::TargetsSwapped,
-        statement: format!(
-            "exchanging the names of {} and {} {where_} lowers the calibrated error of {} from {} to {} mm (RMS): check the \
-             targets' names there",
-            name(pair.0),
-            name(pair.1),
-            if concerned.len() == 1 { "that row" } else { "those rows" },
-            short(before * 1e3),
-            short(after * 1e3)
-        ),
-        rows: concerned,
-        before_mm: before * 1e3,
-        after_mm: after * 1e3,
-    })
-}
-
-/// Place of some of a pair's rows: from a row on, up to a row, or single rows.
-fn where_words(data: &Dataset, rows: &[u32], pair: (usize, usize), concerned: &[u32]) -> String {
-    let own = |row: &u32| [pair.0, pair.1].contains(&data.observations[*row as usize].target);
-    let own: Vec<u32> = rows.iter().copied().filter(own).collect();
-    match concerned {
-        [first, .., _] if own.ends_with(concerned) => format!("from {} on", data.place(*first)),
-        [_, .., last] if own.starts_with(concerned) => format!("up to {}", data.place(*last)),
-        _ => {
-            let named: Vec<String> = concerned.iter().take(NAMED).map(|&row| data.place(row)).collect();
-            format!("in {}{}", named.join(", "), if concerned.len() > NAMED { ", …" } else { "" })
-        }
-    }
+    let names = best.pair;
+    Some(best.told(data, rows, Names::Targets, [name(names.0), name(names.1)]))
 }
 
 /// Pairs of targets that may be exchanged: all pairs of few targets, of many those with the most votes of single rows.
@@ -164,98 +129,4 @@ fn vote(fitter: &Fitter<'_>, all: &Dataset, estimate: &Estimate, votes: &mut BTr
             *votes.entry((target.min(other), target.max(other))).or_default() += own - squared;
         }
     }
-}
-
-/// Rows of the first models: all, the first half, and the second.
-fn starts(all: &Dataset) -> [Range<usize>; 3] {
-    let half = all.len() / 2;
-    [0..all.len(), 0..half, half..all.len()]
-}
-
-/// Error after the exchange, the pair, its rows, and their errors before and after.
-type Exchange = (f64, (usize, usize), Vec<usize>, f64, f64);
-
-/// The rows of a pair that fit better exchanged, from first models of all rows and of either half.
-fn exchanged(fitter: &Fitter<'_>, all: &Dataset, pair: (usize, usize), base: &Score) -> Option<Exchange> {
-    let best = starts(all)
-        .into_iter()
-        .filter_map(|range| {
-            let part: Vec<u32> = range.map(|row| row as u32).collect();
-            reassigned(fitter, all, &taken(all, &part), pair, base.calibrated.total_m)
-        })
-        .min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let (error, concerned, before, after, rest) = best;
-    let plausible = !concerned.is_empty()
-        && before > ROW_GAIN * after
-        && after < ROW_GAIN * rest
-        && base.calibrated.total_m > GAIN * error
-        && error < CALIBRATED_SHARE * fitter.reach_m();
-    plausible.then_some((error, pair, concerned, before, after))
-}
-
-/// Error of all rows, exchanged rows, their error before and after, and the error of the others.
-type Reassigned = (f64, Vec<usize>, f64, f64, f64);
-
-/// Reassigns rows to the target that they fit better and refits, until nothing changes.
-fn reassigned(
-    fitter: &Fitter<'_>,
-    all: &Dataset,
-    first: &Dataset,
-    pair: (usize, usize),
-    base_m: f64,
-) -> Option<Reassigned> {
-    let exchanged = with_exchanged(all, pair, |_| true);
-    let mut estimate = fitter.roughly_registered(&sampled(first)).0;
-    let mut swapped = vec![false; all.len()];
-    let packed = fitter.packed(all);
-    let errors = |data: &Dataset, estimate: &Estimate| -> Vec<f64> {
-        let errors = fitter.session(data, &packed).errors(&data.all_rows(), estimate);
-        errors.iter().map(|error| fitter.squared_m2(error)).collect()
-    };
-    let mut least = base_m;
-    for _ in 0..ROUNDS {
-        let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
-        let next: Vec<bool> = kept.iter().zip(&other).map(|(kept, other)| other < kept).collect();
-        let data = sampled(&with_exchanged(all, pair, |row| next[row]));
-        let registered = fitter.roughly_registered(&data).0;
-        let (calibrated, misfit) = fitter.calibrated(&data, &registered, SHORT);
-        estimate = calibrated;
-        let unchanged = next == swapped;
-        swapped = next;
-        if unchanged || misfit.total_m > least {
-            break;
-        }
-        least = misfit.total_m;
-    }
-    let members = all.observations.iter().filter(|row| row.target == pair.0 || row.target == pair.1).count();
-    let chosen = swapped.iter().filter(|swapped| **swapped).count();
-    // The data do not show which of the two names is right: the smaller set of rows counts as exchanged.
-    if 2 * chosen > members {
-        let turned = all.observations.iter().map(|row| row.target == pair.0 || row.target == pair.1);
-        swapped.iter_mut().zip(turned).for_each(|(swapped, member)| *swapped = member && !*swapped);
-        estimate.base_from_target.swap(pair.0, pair.1);
-    }
-    let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
-    let concerned: Vec<usize> = (0..all.len()).filter(|&row| swapped[row]).collect();
-    let rms = |values: Vec<f64>| (values.iter().sum::<f64>() / values.len().max(1) as f64).sqrt();
-    let before = rms(concerned.iter().map(|&row| kept[row]).collect());
-    let after = rms(concerned.iter().map(|&row| other[row]).collect());
-    let rest = rms((0..all.len()).filter(|&row| !swapped[row]).map(|row| kept[row]).collect());
-    let error = rms((0..all.len()).map(|row| if swapped[row] { other[row] } else { kept[row] }).collect());
-    error.is_finite().then_some((error, concerned, before, after, rest))
-}
-
-/// The data with a pair of targets exchanged in some rows.
-fn with_exchanged(all: &Dataset, pair: (usize, usize), which: impl Fn(usize) -> bool) -> Dataset {
-    let mut data = all.clone();
-    for (row, observation) in data.observations.iter_mut().enumerate() {
-        if which(row) {
-            observation.target = match observation.target {
-                target if target == pair.0 => pair.1,
-                target if target == pair.1 => pair.0,
-                target => target,
-            };
-        }
-    }
-    data
 }

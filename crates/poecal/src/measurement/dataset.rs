@@ -437,6 +437,12 @@ impl Dataset {
         Ok(u32::try_from(index).unwrap_or(u32::MAX))
     }
 
+    /// Changes each configuration in which an instrument stood.
+    pub(crate) fn change_further(&mut self, change: impl FnMut(&mut [f64])) {
+        let width = self.reading_names.len().max(1);
+        self.further_readings.chunks_exact_mut(width).for_each(change);
+    }
+
     /// Some of the rows, in this order.
     #[must_use]
     pub(crate) fn only(&self, rows: &[u32]) -> Dataset {

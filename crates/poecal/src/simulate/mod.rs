@@ -46,6 +46,8 @@ pub enum Kind {
     Socket,
     /// Points of three planes.
     Plane,
+    /// Heights over three planes.
+    Height,
     /// A face that lies flush on one of three planes.
     Flush,
     /// The direction of gravity.
@@ -58,7 +60,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 12] = [
+    pub const ALL: [Kind; 13] = [
         Kind::Pose,
         Kind::Point,
         Kind::Mixed,
@@ -67,6 +69,7 @@ impl Kind {
         Kind::Sphere,
         Kind::Socket,
         Kind::Plane,
+        Kind::Height,
         Kind::Flush,
         Kind::Direction,
         Kind::BallBar,
@@ -83,6 +86,7 @@ impl Kind {
             | Kind::Sphere
             | Kind::Socket
             | Kind::Plane
+            | Kind::Height
             | Kind::Flush
             | Kind::Direction
             | Kind::BallBar
@@ -102,6 +106,7 @@ impl Kind {
             Kind::Sphere => "sphere",
             Kind::Socket => "socket",
             Kind::Plane => "plane",
+            Kind::Height => "height",
             Kind::Flush => "flush",
             Kind::Direction => "direction",
             Kind::BallBar => "ball-bar",
@@ -123,7 +128,7 @@ impl Kind {
             Kind::Point => &[Quantity::Position],
             Kind::Distance | Kind::Change | Kind::Sphere | Kind::BallBar => &[Quantity::Distance],
             Kind::Socket => &[Quantity::Contact],
-            Kind::Plane => &[Quantity::Height],
+            Kind::Plane | Kind::Height => &[Quantity::Height],
             Kind::Flush => &[Quantity::Height, Quantity::Tilt],
             Kind::Direction => &[Quantity::Tilt],
         }
@@ -140,6 +145,7 @@ impl Kind {
             | Kind::Sphere
             | Kind::Socket
             | Kind::Plane
+            | Kind::Height
             | Kind::BallBar => false,
         }
     }

@@ -18,6 +18,8 @@ use crate::robot::Robot;
 const SOCKETS_APART_M: f64 = 0.2;
 /// Radius of the sphere, metres.
 const SPHERE_M: f64 = 0.05;
+/// Range of the gauge that shows heights, metres.
+const GAUGE_M: f64 = 0.02;
 /// Random configurations from which one that fulfils a constraint is sought, Newton steps from each, and the largest change of a joint.
 const ATTEMPTS: usize = 2000;
 const STEPS: usize = 40;
@@ -40,7 +42,7 @@ impl Kind {
     fn places(self) -> usize {
         match self {
             Kind::Pose | Kind::Point | Kind::Mixed => 0,
-            Kind::Distance | Kind::Change | Kind::Plane | Kind::Flush => 3,
+            Kind::Distance | Kind::Change | Kind::Plane | Kind::Height | Kind::Flush => 3,
             Kind::Socket => 2,
             Kind::Sphere | Kind::Direction | Kind::BallBar | Kind::Relative => 1,
         }
@@ -55,7 +57,7 @@ impl Kind {
     #[must_use]
     pub fn is_touched(self) -> bool {
         match self {
-            Kind::Socket | Kind::Plane | Kind::Flush | Kind::Sphere => true,
+            Kind::Socket | Kind::Plane | Kind::Height | Kind::Flush | Kind::Sphere => true,
             Kind::Pose
             | Kind::Point
             | Kind::Mixed
@@ -147,7 +149,7 @@ impl Simulation {
         let names: &[&'static str] = match kind {
             Kind::Pose | Kind::Point | Kind::Mixed => &[""],
             Kind::Distance | Kind::Change => &["wall", "floor", "door"],
-            Kind::Plane | Kind::Flush => &["table", "side", "front"],
+            Kind::Plane | Kind::Height | Kind::Flush => &["table", "side", "front"],
             Kind::Socket => &["left", "right"],
             Kind::Sphere => &["ball"],
             Kind::Direction => &["gravity"],
@@ -231,6 +233,12 @@ impl Simulation {
             (
                 Measurement::Height(HeightMeasurement { height: length.x }),
                 Measurement::Height(HeightMeasurement { height: 0.0 }),
+            )
+        } else if kind == Kind::Height {
+            let height = random::uniform(generator) * GAUGE_M;
+            (
+                Measurement::Height(HeightMeasurement { height: height + length.x }),
+                Measurement::Height(HeightMeasurement { height }),
             )
         } else if kind == Kind::Flush {
             let normal = DirectionMeasurement::of_tilts([turn.x, turn.y]).direction;

@@ -33,6 +33,7 @@ mod measurement_errors;
 mod measurement_forms;
 mod measurement_long;
 mod mistakes;
+mod mistakes_of_places;
 mod mixed_cell;
 mod model_convert;
 mod model_errors;

@@ -37,11 +37,11 @@ pub(crate) fn robot(index: usize) -> Robot {
     }
 }
 
-fn pick(generator: &mut ChaCha8Rng, count: usize) -> usize {
+pub(crate) fn pick(generator: &mut ChaCha8Rng, count: usize) -> usize {
     ((uniform(generator) * count as f64) as usize).min(count - 1)
 }
 
-fn between(generator: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
+pub(crate) fn between(generator: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * uniform(generator)
 }
 
@@ -271,8 +271,15 @@ impl Session {
                 })
             }
             DiagnosisKind::TargetsSwapped => self.renamed(g),
-            // These sessions see one target in each configuration.
-            DiagnosisKind::TargetsUnnamed => None,
+            // These sessions see one target in each configuration, from a device with a frame.
+            DiagnosisKind::TargetsUnnamed
+            | DiagnosisKind::LengthUnit
+            | DiagnosisKind::DistanceZero
+            | DiagnosisKind::KnownLength
+            | DiagnosisKind::HeightSign
+            | DiagnosisKind::TiltSign
+            | DiagnosisKind::TiltUnit
+            | DiagnosisKind::PlacesSwapped => None,
             DiagnosisKind::DuplicateRows => {
                 let mut data = self.data.clone();
                 let copies = 1 + pick(g, 3);

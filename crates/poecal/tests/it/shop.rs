@@ -13,12 +13,13 @@ use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain, seven_a
 
 /// Kinds without a device frame, with the rank that they add to 4 of each joint that turns and 2 of each that slides, and what it lacks of the
 /// unknowns: the size of the robot where nothing has a length.
-const KINDS: [(Kind, i32, usize); 8] = [
+const KINDS: [(Kind, i32, usize); 9] = [
     (Kind::Distance, 6, 0),
     (Kind::Change, 9, 0),
     (Kind::Sphere, 0, 1),
     (Kind::Socket, 2, 1),
     (Kind::Plane, 5, 1),
+    (Kind::Height, 6, 0),
     (Kind::Flush, 4, 1),
     (Kind::BallBar, -3, 0),
     (Kind::Relative, 0, 0),

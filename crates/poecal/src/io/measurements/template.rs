@@ -136,7 +136,7 @@ impl Kind {
                 "# place       where the sockets stood; another name whenever they were moved.\n\
                  # socket      the socket in which the ball is, or the fixed point that is touched.\n",
             ),
-            Kind::Plane => (
+            Kind::Plane | Kind::Height => (
                 &["plane", "contact", "height[mm]"],
                 "# plane       the plane that is touched. Where it is is found.\n\
                  # contact     point, or flush where a face lies on it.\n\

@@ -87,7 +87,7 @@ impl Project<'_> {
         let orientation = if self.kind.sees_orientation() { ROTATION_NOISE } else { "" };
         let touching = match self.kind {
             Kind::Socket => KNOWN_DISTANCE,
-            Kind::Plane | Kind::Flush => CONTACT,
+            Kind::Plane | Kind::Height | Kind::Flush => CONTACT,
             Kind::Pose
             | Kind::Point
             | Kind::Mixed

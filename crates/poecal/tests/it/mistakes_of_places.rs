@@ -1,0 +1,263 @@
+//! Mistakes in sessions of anchors, spheres, sockets, planes, gravity and pairs are named, and clean ones are left in peace.
+
+use std::collections::BTreeMap;
+
+use crate::mistakes::{between, pick};
+use crate::trials::trials;
+use poecal::forensics::{Diagnosis, DiagnosisKind, DiagnosisOptions, diagnose};
+use poecal::lie::Pose;
+use poecal::measurement::{
+    Dataset, DirectionMeasurement, DistanceMeasurement, KnownLength, Measurement, Observation,
+    PoseMeasurement,
+};
+use poecal::robot::Robot;
+use poecal::simulate::random::uniform;
+use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain, seven_axis};
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+use rayon::prelude::*;
+
+/// Distance of the two sockets and radius of the sphere in simulated sessions, metres.
+const SOCKETS_M: f64 = 0.2;
+const SPHERE_M: f64 = 0.05;
+
+/// Sessions, each with the mistakes that it can have.
+const CASES: [(Kind, DiagnosisKind); 17] = [
+    (Kind::Distance, DiagnosisKind::PlacesSwapped),
+    (Kind::Distance, DiagnosisKind::LengthUnit),
+    (Kind::Distance, DiagnosisKind::DistanceZero),
+    (Kind::Change, DiagnosisKind::PlacesSwapped),
+    (Kind::Change, DiagnosisKind::LengthUnit),
+    (Kind::Sphere, DiagnosisKind::DistanceZero),
+    (Kind::Socket, DiagnosisKind::PlacesSwapped),
+    (Kind::Socket, DiagnosisKind::KnownLength),
+    (Kind::Plane, DiagnosisKind::PlacesSwapped),
+    (Kind::Height, DiagnosisKind::HeightSign),
+    (Kind::Height, DiagnosisKind::LengthUnit),
+    (Kind::Flush, DiagnosisKind::PlacesSwapped),
+    (Kind::Direction, DiagnosisKind::TiltSign),
+    (Kind::Direction, DiagnosisKind::TiltUnit),
+    (Kind::BallBar, DiagnosisKind::LengthUnit),
+    (Kind::Relative, DiagnosisKind::PositionUnit),
+    (Kind::Relative, DiagnosisKind::InvertedPose),
+];
+
+/// A session of a robot that is not quite as its model says.
+struct Session {
+    robot: Robot,
+    data: Dataset,
+    words: String,
+}
+
+/// A robot whose tool stands beside its last axis.
+fn robot(index: usize) -> Robot {
+    let mut robot = match index % 5 {
+        0 => elbow(),
+        1 => seven_axis(),
+        2 => random_chain(6, 2),
+        3 => random_chain(6, 3),
+        _ => random_chain(7, 5),
+    };
+    robot.home = robot.home * Pose::from_xyz_rpy([0.12, 0.06, 0.03], [0.3, 0.2, 0.1]);
+    robot
+}
+
+/// A session drawn by its seed: errors of 0.5 to 2 degrees and 1 to 3 mm, noise, 60 to 180 rows. Where
+/// a robot does not reach its places, another is drawn.
+fn drawn(kind: Kind, seed: u64) -> Session {
+    let g = &mut ChaCha8Rng::seed_from_u64(seed ^ 0x9_1ace5);
+    let simulation = Simulation {
+        error_rotation_rad: between(g, 0.5, 2.0).to_radians(),
+        error_position_m: between(g, 1e-3, 3e-3),
+        noise_position_m: between(g, 2e-5, 1e-4),
+        noise_rotation_rad: between(g, 5e-3, 2e-2).to_radians(),
+        count: 60 + pick(g, 120),
+        seed,
+        ..Simulation::default()
+    };
+    // Not every robot can lay a face on planes of any direction.
+    let robot = robot(if kind == Kind::Flush { 0 } else { seed as usize });
+    let Some(Simulated { mut data, .. }) = simulation.run(&robot, kind).ok() else {
+        return drawn(kind, seed + 1_000_003);
+    };
+    if kind == Kind::Sphere {
+        // The radius is known.
+        each(&mut data, |_, row| row.measurement = Measurement::Distance(DistanceMeasurement::new(SPHERE_M)));
+    }
+    if kind == Kind::Socket {
+        let known = KnownLength { stations: [0, 1], length_m: SOCKETS_M, sigma_m: KnownLength::SIGMA_M };
+        data.lengths.push(known);
+    }
+    let words = format!(
+        "{}: seed {seed}, {}, {} rows, errors {:.1} deg",
+        kind.word(),
+        robot.name,
+        data.len(),
+        simulation.error_rotation_rad.to_degrees()
+    );
+    Session { robot, data, words }
+}
+
+fn each(data: &mut Dataset, mut change: impl FnMut(usize, &mut Observation)) {
+    data.observations.iter_mut().enumerate().for_each(|(row, observation)| change(row, observation));
+}
+
+/// The session's data with a mistake of a kind, and what it is.
+fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, String) {
+    let g = &mut ChaCha8Rng::seed_from_u64(seed ^ 0x0ddb_a115);
+    let mut data = session.data.clone();
+    let words = match kind {
+        DiagnosisKind::PlacesSwapped => renamed(&mut data, g),
+        DiagnosisKind::LengthUnit => {
+            let factor = [25.4, 1.0 / 25.4, 10.0, 0.1, 1e3, 1e-3][pick(g, 6)];
+            each(&mut data, |_, row| match &mut row.measurement {
+                Measurement::Distance(seen) => seen.distance *= factor,
+                Measurement::Height(seen) => seen.height *= factor,
+                other => panic!("{other:?} has no length"),
+            });
+            format!("lengths times {factor}")
+        }
+        DiagnosisKind::DistanceZero => {
+            // The radius of a probe's ball, a hook: 4 % to 20 % of a sphere's radius, or some of a wire.
+            let by_m = if uniform(g) < 0.5 { -1.0 } else { 1.0 } * between(g, 2e-3, 1e-2);
+            each(&mut data, |_, row| {
+                if let Measurement::Distance(seen) = &mut row.measurement {
+                    seen.distance += by_m;
+                }
+            });
+            format!("{:.2} mm longer", by_m * 1e3)
+        }
+        DiagnosisKind::KnownLength => {
+            let factor = [0.5, 2.0, 10.0, 0.1, 25.4, 1.2, 0.8][pick(g, 7)];
+            data.lengths[0].length_m *= factor;
+            format!("distance of the sockets times {factor}")
+        }
+        DiagnosisKind::HeightSign => {
+            let which = pick(g, 4);
+            each(&mut data, |_, row| {
+                if let Measurement::Height(seen) = &mut row.measurement {
+                    seen.height *= if which == 3 || which == row.station { -1.0 } else { 1.0 };
+                }
+            });
+            format!("plane {which}")
+        }
+        DiagnosisKind::TiltSign | DiagnosisKind::TiltUnit => {
+            let way = pick(g, 3);
+            each(&mut data, |_, row| {
+                if let Measurement::Direction(seen) = &mut row.measurement {
+                    let [x, y] = seen.tilts();
+                    let tilts = match (kind, way) {
+                        (DiagnosisKind::TiltUnit, _) => [x.to_radians(), y.to_radians()],
+                        (_, 0) => [-x, y],
+                        (_, 1) => [x, -y],
+                        _ => [y, x],
+                    };
+                    *seen = DirectionMeasurement::of_tilts(tilts);
+                }
+            });
+            format!("way {way}")
+        }
+        DiagnosisKind::PositionUnit | DiagnosisKind::InvertedPose => {
+            let factor = [25.4, 1e-3, 1e3][pick(g, 3)];
+            each(&mut data, |_, row| {
+                let mut pose = row.measurement.pose();
+                if kind == DiagnosisKind::PositionUnit {
+                    pose.translation *= factor;
+                } else {
+                    pose = pose.inverse();
+                }
+                row.measurement = Measurement::Pose(PoseMeasurement { pose });
+            });
+            format!("times {factor}")
+        }
+        other => panic!("{other:?} is no mistake of these sessions"),
+    };
+    (data, words)
+}
+
+/// Rows of one place that name another: a part of the session, or both names exchanged in it.
+fn renamed(data: &mut Dataset, g: &mut ChaCha8Rng) -> String {
+    let places = data.station_count();
+    let (first, both) = (pick(g, places), uniform(g) < 0.5);
+    let second = (first + 1 + pick(g, places - 1)) % places;
+    let count = data.len() as f64;
+    let start = (count * between(g, 0.0, 0.6)) as usize;
+    let end = start + (count * between(g, 0.1, 0.4)) as usize;
+    each(data, |row, observation| {
+        if (start..end).contains(&row) {
+            if observation.station == first {
+                observation.station = second;
+            } else if both && observation.station == second {
+                observation.station = first;
+            }
+        }
+    });
+    format!("rows {start} to {end} of {first} name {second}, both ways: {both}")
+}
+
+fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
+    diagnose(&session.robot, data, &data.all_rows(), &DiagnosisOptions::default())
+}
+
+#[test]
+fn mistakes_of_places_are_named() {
+    let sessions = trials(200);
+    let count = sessions.count;
+    let results: Vec<(usize, bool)> = (sessions.seeds())
+        .into_par_iter()
+        .map(|index| {
+            let case = index as usize % CASES.len();
+            let (measured, kind) = CASES[case];
+            let session = drawn(measured, index);
+            let (data, words) = mistaken(&session, kind, index);
+            let found = found(&session, &data);
+            let right = found.len() == 1 && found[0].kind == kind;
+            if !right {
+                println!("MISSED {index} {kind:?} ({words}); {}", session.words);
+                found.iter().for_each(|one| println!("    found {:?}: {}", one.kind, one.statement));
+            }
+            (case, right)
+        })
+        .collect();
+    let mut by_case: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+    for (case, right) in &results {
+        let entry = by_case.entry(*case).or_default();
+        entry.0 += usize::from(*right);
+        entry.1 += 1;
+    }
+    for (case, (right, all)) in &by_case {
+        println!("{:?}: {right} of {all}", CASES[*case]);
+    }
+    let right = results.iter().filter(|(_, right)| *right).count();
+    println!("named correctly: {right} of {count}");
+    assert!(right as f64 >= (0.95 - sessions.more_of_a_share(0.95)) * count as f64, "{right} of {count}");
+}
+
+#[test]
+fn clean_sessions_of_places_raise_no_alarm() {
+    const KINDS: [Kind; 10] = [
+        Kind::Distance,
+        Kind::Change,
+        Kind::Sphere,
+        Kind::Socket,
+        Kind::Plane,
+        Kind::Height,
+        Kind::Flush,
+        Kind::Direction,
+        Kind::BallBar,
+        Kind::Relative,
+    ];
+    let sessions = trials(200);
+    let count = sessions.count;
+    let alarms: Vec<String> = (sessions.seeds())
+        .into_par_iter()
+        .flat_map_iter(|index| {
+            let session = drawn(KINDS[index as usize % KINDS.len()], index + 7_000_000);
+            let found = found(&session, &session.data);
+            found.into_iter().map(move |one| format!("{}: {:?}: {}", session.words, one.kind, one.statement))
+        })
+        .collect();
+    alarms.iter().for_each(|alarm| println!("ALARM {alarm}"));
+    println!("alarms: {} of {count}", alarms.len());
+    assert!(alarms.len() as f64 <= (0.01 + sessions.more_of_a_share(0.01)) * count as f64);
+}
