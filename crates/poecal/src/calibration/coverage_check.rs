@@ -205,7 +205,7 @@ impl Observed<'_> {
 /// let parts = Measured::of(|quantity| (quantity == Quantity::Position).then_some(part));
 /// let promised = CoverageCheck { parts, inside_sampled_range: 1.0 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
-/// assert!(InSampledRange { count: 20, calibrated, promised }.promised.least_inside() > 0.9);
+/// assert!(InSampledRange { count: 20, calibrated: calibrated.into(), promised }.promised.least_inside() > 0.9);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct InSampledRange {

@@ -88,7 +88,8 @@ pub enum Refitted {
 /// use poecal::{Measured, Quantity, calibration::{Judgement, Statistic}};
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
-/// let judgement = Judgement { count: 20, refitted: vec![], calibrated, corrected: None, nominal: None, promised: None, in_sampled_range: None };
+/// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
+///     in_sampled_range: None };
 /// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -114,7 +115,7 @@ pub struct Judgement {
 ///
 /// ```
 /// use poecal::{Measured, calibration::JudgedModel};
-/// let none = JudgedModel { errors: Measured::of(|_| None), promised: None, in_sampled_range: None };
+/// let none = JudgedModel { errors: Measured::of(|_| None).into(), promised: None, in_sampled_range: None };
 /// assert!(none.errors.leading().is_none());
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
