@@ -6,7 +6,8 @@ use nalgebra::{Matrix3, Vector4};
 
 use crate::lie::{Pose, rotation};
 use crate::measurement::{
-    Dataset, DirectionMeasurement, Measurement, Observation, PointMeasurement, PoseMeasurement,
+    Dataset, DirectionMeasurement, FlushMeasurement, HeightMeasurement, Measurement, Observation,
+    PointMeasurement, PoseMeasurement,
 };
 
 /// A change of every row. Columns are indices of readings.
@@ -26,10 +27,8 @@ pub(super) enum Change {
     Resize(f64, Lengths, bool),
     /// The zero of all distances unknown.
     FreeZero,
-    /// Heights over all planes, or over one, counted the other way.
-    NegateHeights(Option<usize>),
-    /// Tilts of directions, the first and the second, times factors.
-    ScaleTilts([f64; 2]),
+    /// Tilts of directions times a factor.
+    ScaleTilts(f64),
     /// Parts of the quaternion to be taken as x, y, z, w.
     Quaternion([usize; 4]),
     /// Poses inverted.
@@ -74,7 +73,6 @@ impl Change {
             Change::Shift(..)
             | Change::Resize(..)
             | Change::FreeZero
-            | Change::NegateHeights(_)
             | Change::ScaleTilts(_)
             | Change::Quaternion(_)
             | Change::Invert
@@ -101,26 +99,20 @@ impl Change {
                 }
                 seen.zero_is_unknown |= *self == Change::FreeZero;
             }
-            Measurement::Height(seen) => seen.height *= self.of_heights(observation.station),
-            Measurement::Flush(seen) => seen.height *= self.of_heights(observation.station),
+            Measurement::Height(HeightMeasurement { height })
+            | Measurement::Flush(FlushMeasurement { height, .. }) => {
+                if let Change::Resize(factor, Lengths::Heights, _) = self {
+                    *height *= factor;
+                }
+            }
             Measurement::Direction(seen) => {
-                if let Change::ScaleTilts(factors) = self {
-                    let [x, y] = seen.tilts();
-                    *seen = DirectionMeasurement::of_tilts([factors[0] * x, factors[1] * y]);
+                if let Change::ScaleTilts(factor) = self {
+                    *seen = DirectionMeasurement::of_tilts(seen.tilts().map(|tilt| factor * tilt));
                 }
             }
             Measurement::Socket(_) => {}
         }
         changed
-    }
-
-    /// Factor on the heights over a plane.
-    fn of_heights(&self, station: usize) -> f64 {
-        if let Change::Resize(factor, Lengths::Heights, _) = self {
-            return *factor;
-        }
-        let is_negated = |which: &Option<usize>| which.is_none_or(|plane| plane == station);
-        if matches!(self, Change::NegateHeights(which) if is_negated(which)) { -1.0 } else { 1.0 }
     }
 
     /// A measured pose with the change.
@@ -135,7 +127,6 @@ impl Change {
             | Change::Shift(..)
             | Change::Resize(..)
             | Change::FreeZero
-            | Change::NegateHeights(_)
             | Change::ScaleTilts(_) => *seen,
             Change::Quaternion(places) => {
                 let q = rotation::to_quaternion_xyzw(&turned);

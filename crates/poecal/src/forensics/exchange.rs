@@ -1,18 +1,28 @@
-//! Two names that are exchanged in some rows: of targets, or of places.
+//! Two names that are exchanged in some rows: of targets, of places, or of the sides of a plane.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use super::change::Lengths;
 use super::fitter::{Fitter, SHORT, Score, sampled, taken};
 use super::judge::{CALIBRATED_SHARE, short};
 use super::{Diagnosis, DiagnosisKind};
 use crate::estimate::Estimate;
-use crate::measurement::{Dataset, Observation};
+use crate::lie::{Pose, rotation};
+use crate::measurement::{Dataset, FlushMeasurement, HeightMeasurement, Measurement, Observation};
 
 /// Most rounds of reassigning rows and refitting.
 const ROUNDS: usize = 6;
 /// Least reduction of the error of the rows concerned, and of all rows.
 const ROW_GAIN: f64 = 5.0;
 const GAIN: f64 = 1.5;
+/// Parts of a session of which blocks are made, blocks that are fitted, and those of them from which rows are assigned.
+const BLOCKS: usize = 8;
+const NEARER: usize = 16;
+const FIRSTS: usize = 4;
 /// Most rows in a statement.
 const NAMED: usize = 5;
 
@@ -23,20 +33,60 @@ pub(super) enum Names {
     Targets,
     /// From where it was seen, or what it touched.
     Stations,
+    /// The sides of planes: the names of heights are their signs.
+    Sides,
 }
 
 impl Names {
-    fn of(self, row: &Observation) -> usize {
+    /// By how many mean squared errors a row must fit better: heights near zero hardly show their sign.
+    fn margin(self) -> f64 {
+        if self == Names::Sides { 1.0 } else { 0.0 }
+    }
+
+    /// Whether an exchange changes a row: a touched plane has no side.
+    fn counts(self, row: &Observation, pair: (usize, usize)) -> bool {
         match self {
-            Names::Targets => row.target,
-            Names::Stations => row.station,
+            Names::Targets => [pair.0, pair.1].contains(&row.target),
+            Names::Stations => [pair.0, pair.1].contains(&row.station),
+            Names::Sides => Lengths::Heights.is_of(&row.measurement),
         }
     }
 
-    fn of_mut(self, row: &mut Observation) -> &mut usize {
+    /// Rows of which the exchange of all is as good as that of none.
+    fn groups(self, all: &Dataset, pair: (usize, usize)) -> Vec<Vec<usize>> {
+        let counts = |&row: &usize| self.counts(&all.observations[row], pair);
+        let rows: Vec<usize> = (0..all.len()).filter(counts).collect();
+        if self != Names::Sides {
+            return vec![rows];
+        }
+        let of_plane = |plane: usize| {
+            rows.iter().copied().filter(|&row| all.observations[row].station == plane).collect()
+        };
+        (0..all.station_count()).map(of_plane).collect()
+    }
+
+    /// The two names of a row, or its plane twice.
+    fn pair(self, row: &Observation, pair: (usize, usize)) -> (usize, usize) {
+        if self == Names::Sides { (row.station, row.station) } else { pair }
+    }
+
+    /// Exchanges two in a row.
+    fn exchange_in(self, row: &mut Observation, pair: (usize, usize)) {
+        let other = |name: usize| match name {
+            name if name == pair.0 => pair.1,
+            name if name == pair.1 => pair.0,
+            name => name,
+        };
         match self {
-            Names::Targets => &mut row.target,
-            Names::Stations => &mut row.station,
+            Names::Targets => row.target = other(row.target),
+            Names::Stations => row.station = other(row.station),
+            Names::Sides => {
+                if let Measurement::Height(HeightMeasurement { height })
+                | Measurement::Flush(FlushMeasurement { height, .. }) = &mut row.measurement
+                {
+                    *height = -*height;
+                }
+            }
         }
     }
 
@@ -50,6 +100,11 @@ impl Names {
                 let (first, second) = (estimate.range(pair.0), estimate.range(pair.1));
                 *estimate.range_mut(pair.0) = second;
                 *estimate.range_mut(pair.1) = first;
+            }
+            Names::Sides => {
+                let turned = Pose::new(rotation::exp(&Vector3::new(PI, 0.0, 0.0)), Vector3::zeros());
+                let device = estimate.device_mut(pair.0);
+                *device = turned * *device;
             }
         }
     }
@@ -87,11 +142,19 @@ impl Exchange {
         let (kind, what) = match names {
             Names::Targets => (DiagnosisKind::TargetsSwapped, "the targets' names"),
             Names::Stations => (DiagnosisKind::PlacesSwapped, "which of them was meant"),
+            Names::Sides => (
+                DiagnosisKind::HeightSign,
+                "on which side of the plane they are, and which way the gauge counts",
+            ),
         };
         let [first, second] = words;
         let (before_mm, after_mm) = (self.before_m * 1e3, self.after_m * 1e3);
+        let action = match names {
+            Names::Targets | Names::Stations => format!("exchanging the names of {first} and {second}"),
+            Names::Sides => "counting the heights the other way".to_owned(),
+        };
         let statement = format!(
-            "exchanging the names of {first} and {second} {where_} lowers the calibrated error of {} from {} to {} mm (RMS): \
+            "{action} {where_} lowers the calibrated error of {} from {} to {} mm (RMS): \
              check {what} there",
             if rows.len() == 1 { "that row" } else { "those rows" },
             short(before_mm),
@@ -101,7 +164,40 @@ impl Exchange {
     }
 }
 
-/// The rows of a pair that fit better exchanged, from first models of all rows and of either half.
+/// First models: of all rows, and of either half; of sides, with those blocks of rows exchanged that fit best so.
+fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: Names, pair: (usize, usize)) -> Vec<Estimate> {
+    if names != Names::Sides {
+        let part = |range: Range<usize>| {
+            let part = taken(all, &range.map(|row| row as u32).collect::<Vec<_>>());
+            fitter.roughly_registered(&sampled(&part)).0
+        };
+        return starts(all).into_iter().map(part).collect();
+    }
+    let planes = std::iter::once(None).chain((0..all.station_count()).map(Some));
+    let ends = |plane| (0..BLOCKS).flat_map(move |a| (a + 1..=BLOCKS).map(move |b| (plane, a, b)));
+    let blocks: Vec<(Option<usize>, usize, usize)> = planes.flat_map(ends).collect();
+    let exchanged = |&(plane, a, b): &(Option<usize>, usize, usize)| {
+        let rows = a * all.len() / BLOCKS..b * all.len() / BLOCKS;
+        let is_of = |row: usize| plane.is_none_or(|plane| all.observations[row].station == plane);
+        with_exchanged(all, names, pair, |row| rows.contains(&row) && is_of(row))
+    };
+    let strong = fitter.with_strong_prior();
+    let rough = |block| {
+        let data = exchanged(block);
+        let (estimate, misfit) = fitter.roughly_registered(&sampled(&data));
+        (misfit.total_m, estimate, data)
+    };
+    let mut found: Vec<_> = blocks.par_iter().map(rough).collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.truncate(NEARER);
+    let firmly =
+        |(_, estimate, data): (f64, Estimate, Dataset)| strong.calibrated(&sampled(&data), &estimate, SHORT);
+    let mut found: Vec<_> = found.into_par_iter().map(firmly).collect();
+    found.sort_by(|a, b| a.1.total_m.total_cmp(&b.1.total_m));
+    found.into_iter().take(FIRSTS).map(|(estimate, _)| estimate).collect()
+}
+
+/// The rows of a pair that fit better exchanged, from several first models.
 pub(super) fn exchanged(
     fitter: &Fitter<'_>,
     all: &Dataset,
@@ -109,12 +205,9 @@ pub(super) fn exchanged(
     pair: (usize, usize),
     base: &Score,
 ) -> Option<Exchange> {
-    let best = starts(all)
+    let best = firsts(fitter, all, names, pair)
         .into_iter()
-        .filter_map(|range| {
-            let part: Vec<u32> = range.map(|row| row as u32).collect();
-            reassigned(fitter, all, &taken(all, &part), names, pair, base.calibrated.total_m)
-        })
+        .filter_map(|first| reassigned(fitter, all, first, names, pair, base.calibrated.total_m))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (error_m, rows, before_m, after_m, rest) = best;
     let plausible = !rows.is_empty()
@@ -132,42 +225,50 @@ type Reassigned = (f64, Vec<usize>, f64, f64, f64);
 fn reassigned(
     fitter: &Fitter<'_>,
     all: &Dataset,
-    first: &Dataset,
+    mut estimate: Estimate,
     names: Names,
     pair: (usize, usize),
     base_m: f64,
 ) -> Option<Reassigned> {
     let exchanged = with_exchanged(all, names, pair, |_| true);
-    let mut estimate = fitter.roughly_registered(&sampled(first)).0;
     let mut swapped = vec![false; all.len()];
     let packed = fitter.packed(all);
     let errors = |data: &Dataset, estimate: &Estimate| -> Vec<f64> {
         let errors = fitter.session(data, &packed).errors(&data.all_rows(), estimate);
         errors.iter().map(|error| fitter.squared_m2(error)).collect()
     };
-    let mut least = base_m;
-    for _ in 0..ROUNDS {
-        let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
-        let next: Vec<bool> = kept.iter().zip(&other).map(|(kept, other)| other < kept).collect();
-        let data = sampled(&with_exchanged(all, names, pair, |row| next[row]));
-        let registered = fitter.roughly_registered(&data).0;
-        let (calibrated, misfit) = fitter.calibrated(&data, &registered, SHORT);
-        estimate = calibrated;
-        let unchanged = next == swapped;
-        swapped = next;
-        if unchanged || misfit.total_m > least {
-            break;
+    let strong = fitter.with_strong_prior();
+    let firmly = fitter.is_constrained().then_some((&strong, f64::INFINITY));
+    for (fitter, mut least) in firmly.into_iter().chain([(fitter, base_m)]) {
+        for _ in 0..ROUNDS {
+            let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
+            let margin = names.margin()
+                * kept.iter().zip(&other).map(|(kept, other)| kept.min(*other)).sum::<f64>()
+                / all.len().max(1) as f64;
+            let next: Vec<bool> =
+                kept.iter().zip(&other).map(|(kept, other)| other + margin < *kept).collect();
+            let data = sampled(&with_exchanged(all, names, pair, |row| next[row]));
+            let registered = fitter.roughly_registered(&data).0;
+            let (calibrated, misfit) = fitter.calibrated(&data, &registered, SHORT);
+            estimate = calibrated;
+            let unchanged = next == swapped;
+            swapped = next;
+            if unchanged || misfit.total_m > least {
+                break;
+            }
+            least = misfit.total_m;
         }
-        least = misfit.total_m;
     }
-    let is_member = |row: &Observation| [pair.0, pair.1].contains(&names.of(row));
-    let members = all.observations.iter().filter(|row| is_member(row)).count();
-    let chosen = swapped.iter().filter(|swapped| **swapped).count();
     // The data do not show which of the two names is right: the smaller set of rows counts as exchanged.
-    if 2 * chosen > members {
-        let turned = all.observations.iter().map(is_member);
-        swapped.iter_mut().zip(turned).for_each(|(swapped, member)| *swapped = member && !*swapped);
-        names.exchange(&mut estimate, pair);
+    for group in names.groups(all, pair) {
+        let chosen = group.iter().filter(|&&row| swapped[row]).count();
+        if 2 * chosen > group.len() {
+            group.iter().for_each(|&row| swapped[row] = !swapped[row]);
+            names.exchange(
+                &mut estimate,
+                group.first().map_or(pair, |&row| names.pair(&all.observations[row], pair)),
+            );
+        }
     }
     let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
     let concerned: Vec<usize> = (0..all.len()).filter(|&row| swapped[row]).collect();
@@ -189,12 +290,7 @@ fn with_exchanged(
     let mut data = all.clone();
     for (row, observation) in data.observations.iter_mut().enumerate() {
         if which(row) {
-            let name = names.of_mut(observation);
-            *name = match *name {
-                name if name == pair.0 => pair.1,
-                name if name == pair.1 => pair.0,
-                name => name,
-            };
+            names.exchange_in(observation, pair);
         }
     }
     data
@@ -208,7 +304,7 @@ fn where_words(
     pair: (usize, usize),
     concerned: &[u32],
 ) -> String {
-    let own = |row: &u32| [pair.0, pair.1].contains(&names.of(&data.observations[*row as usize]));
+    let own = |row: &u32| names.counts(&data.observations[*row as usize], pair);
     let own: Vec<u32> = rows.iter().copied().filter(own).collect();
     match concerned {
         [first, .., _] if own.ends_with(concerned) => format!("from {} on", data.place(*first)),

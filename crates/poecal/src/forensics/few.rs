@@ -55,6 +55,12 @@ impl<'a, 'd> FewTargets<'a, 'd> {
         FewTargets { fitter, data, kept: Some(kept) }
     }
 
+    /// The same rows, fitted with a weak prior.
+    pub(super) fn with_weak_prior(&self) -> FewTargets<'a, '_> {
+        let fitter = Cow::Owned(self.fitter.with_weak_prior());
+        FewTargets { fitter, data: Cow::Borrowed(&*self.data), kept: self.kept.clone() }
+    }
+
     /// The rows of these targets in changed data.
     pub(super) fn among(&self, changed: Dataset) -> Dataset {
         match &self.kept {

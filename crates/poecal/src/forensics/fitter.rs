@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use crate::estimate::{Chain, Estimate, Linkage, Packed, RowError, Session, Stand, delivered, sample_rows};
 use crate::gauge;
 use crate::lie::{Freedom, Pose, Screw};
-use crate::measurement::{Dataset, Noise, Observation, Stated};
+use crate::measurement::{Dataset, Noise, Observation, Quantity, Stated};
 use crate::parameters::{Parameter, ScrewAxis, ValueTerm};
 use crate::problem::{Prior, Problem};
 use crate::robot::{Body, Joint, JointKind, Robot, Term, Tolerance};
@@ -27,6 +27,10 @@ const OUTSTANDING: f64 = 8.0;
 const QUIET_TILT_RAD: f64 = 0.07;
 /// The same for the shift of an axis, as a share of the reach.
 const QUIET_SHIFT_SHARE: f64 = 0.01;
+/// Weight of the prior in the end: enough for what the measurements do not show, too little to be seen in the errors.
+const WEAK: f64 = 1e-3;
+/// Weight of a prior by which gross errors are not taken in.
+const STRONG: f64 = 100.0;
 /// Iterations of a calibration to the optimum.
 const LONG: usize = 60;
 /// Iterations of a calibration for comparison.
@@ -69,6 +73,8 @@ pub(super) struct Fitter<'a> {
     pub(super) noise: Noise,
     /// Of measurements that may have no length of their own: the prior of the axes, and how far the nominal robot moves the targets.
     pub(super) constrained: Option<(Prior, f64)>,
+    /// Weight of the prior.
+    pub(super) weight: f64,
 }
 
 impl<'a> Fitter<'a> {
@@ -77,7 +83,10 @@ impl<'a> Fitter<'a> {
         let length_m = robot.reach_m() / 3.0;
         let noise = Noise::new(NOISE_M, NOISE_M / length_m);
         let start = delivered(robot, data);
-        let mut fitter = Fitter { robot, device_free, length_m, start, noise, constrained: None };
+        // Of directions no smaller robot fits better.
+        let has_lengths = [Quantity::Position, Quantity::Distance, Quantity::Contact, Quantity::Height];
+        let weight = if has_lengths.iter().any(|&quantity| data.has(quantity)) { 1.0 } else { WEAK };
+        let mut fitter = Fitter { robot, device_free, length_m, start, noise, constrained: None, weight };
         let rows = data.all_rows();
         let is_constrained = |station: usize| data.device_freedom(station, &rows) != Freedom::Frame;
         if (0..data.station_count()).any(is_constrained) {
@@ -170,6 +179,16 @@ impl<'a> Fitter<'a> {
         self.fit(data, registered, free, iterations)
     }
 
+    /// The same, with a prior that leaves errors to what the measurements show.
+    pub(super) fn with_weak_prior(&self) -> Self {
+        Fitter { weight: WEAK, ..self.clone() }
+    }
+
+    /// The same, with a prior that keeps the axes near nominal whatever the errors.
+    pub(super) fn with_strong_prior(&self) -> Self {
+        Fitter { weight: STRONG, ..self.clone() }
+    }
+
     /// Fits one joint's offset from a registration, with an unknown device frame refitted.
     pub(super) fn offset(&self, data: &Dataset, registered: &Estimate, joint: usize) -> (f64, Misfit) {
         let mut free: Vec<Parameter> = Vec::new();
@@ -206,7 +225,7 @@ impl<'a> Fitter<'a> {
         free.extend(target_parameters(&session, &rows));
         let mut start = registered.clone();
         start.recentre(&session, &rows);
-        let prior = self.constrained.as_ref().map(|(prior, _)| (prior, 1.0));
+        let prior = self.constrained.as_ref().map(|(prior, _)| (prior, self.weight));
         let problem = Problem::new(session, rows, free, self.noise).with_prior(prior);
         // Without geodesic steps: hypotheses that explain nothing would take most of the time.
         let options = Options { iterations, acceleration: false, ..Options::default() };
@@ -218,7 +237,15 @@ impl<'a> Fitter<'a> {
     /// Estimate and errors of the given data.
     pub(super) fn judged(&self, data: &Dataset) -> (Estimate, Score) {
         let (start, registered) = self.registered(data);
-        let (estimate, calibrated) = self.calibrated(data, &start, LONG);
+        let (mut estimate, mut calibrated) = self.calibrated(data, &start, LONG);
+        if self.is_constrained() {
+            // Less is seen of each row, so that a fit ends in another valley sooner: not from a model that is near nominal.
+            let near = self.with_strong_prior().calibrated(data, &start, LONG).0;
+            let (other, misfit) = self.calibrated(data, &near, LONG);
+            if misfit.total_m < calibrated.total_m {
+                (estimate, calibrated) = (other, misfit);
+            }
+        }
         (estimate, Score { registered, calibrated })
     }
 

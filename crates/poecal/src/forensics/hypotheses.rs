@@ -228,51 +228,17 @@ pub(super) fn zeros() -> Hypothesis {
     )
 }
 
-/// Heights that count the other way: over all planes, or over one.
-pub(super) fn height_signs(data: &Dataset) -> Vec<Hypothesis> {
-    let has_heights = |station: usize| {
-        let mut own = data.observations.iter().filter(|row| row.station == station);
-        own.any(|row| Lengths::Heights.is_of(&row.measurement))
-    };
-    let planes: Vec<usize> = (0..data.station_count()).filter(|&station| has_heights(station)).collect();
-    let single = if planes.len() > 1 { planes.as_slice() } else { &[] };
-    let which = std::iter::once(None).filter(|_| !planes.is_empty()).chain(single.iter().copied().map(Some));
-    let one = |which: Option<usize>| {
-        let over = which.map_or_else(String::new, |plane| format!(" over {}", data.station_words(plane)));
-        Hypothesis::new(
-            DiagnosisKind::HeightSign,
-            Change::NegateHeights(which),
-            format!("counting the heights{over} the other way"),
-            "check on which side of the plane they are and which way the gauge counts, since a height grows away from the \
-             plane on the side of the tool"
-                .to_owned(),
-        )
-    };
-    which.map(one).collect()
-}
-
-/// Tilts of another sign or unit. A tool that may be turned about its own axis makes all mirrored tilts alike.
-pub(super) fn tilts() -> Vec<Hypothesis> {
+/// Tilts in another unit. Mirrored ones are those of the opposite direction, seen by a tool that is turned.
+pub(super) fn tilt_units() -> Vec<Hypothesis> {
     let unit = |factor: f64, meant: &str, read: &str| {
         Hypothesis::new(
             DiagnosisKind::TiltUnit,
-            Change::ScaleTilts([factor; 2]),
+            Change::ScaleTilts(factor),
             format!("taking the tilts as {meant} instead of {read}"),
             "state the unit of tilt_x and tilt_y in the header".to_owned(),
         )
     };
-    vec![
-        Hypothesis::new(
-            DiagnosisKind::TiltSign,
-            Change::ScaleTilts([-1.0, 1.0]),
-            "counting one of the two tilts the other way".to_owned(),
-            "check the signs of tilt_x and tilt_y, and whether they are exchanged, since each is the turn of the tool about its \
-             own axis"
-                .to_owned(),
-        ),
-        unit(180.0 / PI, "radians", "degrees"),
-        unit(PI / 180.0, "degrees", "radians"),
-    ]
+    vec![unit(180.0 / PI, "radians", "degrees"), unit(PI / 180.0, "degrees", "radians")]
 }
 
 /// Quaternions in another order, and inverted poses.

@@ -7,8 +7,8 @@ use super::conventions::conventions;
 use super::few::FewTargets;
 use super::fitter::{Fitter, SHORT, Score, sampled};
 use super::hypotheses::{
-    Hypothesis, ReadingColumns, height_signs, joint_couplings, joint_exchanges, joint_signs, joint_units,
-    length_units, mirrors, pose_forms, row_shifts, tilts, zeros,
+    Hypothesis, ReadingColumns, joint_couplings, joint_exchanges, joint_signs, joint_units, length_units,
+    mirrors, pose_forms, row_shifts, tilt_units, zeros,
 };
 use super::zero::joint_zeros;
 use super::{Diagnosis, DiagnosisKind};
@@ -22,6 +22,8 @@ const FINALISTS: usize = 6;
 /// Least reduction of the registered error, or of the calibrated one.
 const REGISTERED_GAIN: f64 = 2.0;
 const CALIBRATED_GAIN: f64 = 3.0;
+/// Least reduction of the calibrated error by one more unknown.
+const FREED_GAIN: f64 = 1.25;
 /// Least reduction of the registered error by the zero of a joint, which the calibrated error does not show.
 const ZERO_GAIN: f64 = 1.7;
 /// Largest growth of the other error.
@@ -31,6 +33,8 @@ const REGISTERED_SHARE: f64 = 0.12;
 pub(super) const CALIBRATED_SHARE: f64 = 5e-3;
 /// Calibrated errors below this share of the reach are noise.
 const NOISE_SHARE: f64 = 3e-5;
+/// The same of one more unknown: nothing else is compared with it.
+const FREED_SHARE: f64 = 3e-6;
 /// Factor on the score of a hypothesis with a fitted number: half a turn of one joint is often the sign of its neighbour.
 const FITTED: f64 = 3.0;
 /// Hypotheses whose scores differ by less than this factor are equivalent: the simplest is named.
@@ -68,12 +72,14 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
     for lengths in Lengths::ALL {
         let is_of = |row: &Observation| lengths.is_of(&row.measurement);
         if sample.observations.iter().any(is_of) {
-            all.extend(length_units(lengths, sample.observations.iter().all(is_of)));
+            // A height is small beside how far the target moves.
+            let is_all = lengths != Lengths::Heights && sample.observations.iter().all(is_of);
+            all.extend(length_units(lengths, is_all));
         }
     }
-    all.extend(of_places(sample));
+    all.extend(of_zeros(sample));
     if sample.observations.iter().any(|row| matches!(row.measurement, Measurement::Direction(_))) {
-        all.extend(tilts());
+        all.extend(tilt_units());
     }
     all.extend(joint_signs(columns));
     all.extend(joint_exchanges(columns));
@@ -90,26 +96,23 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
     all
 }
 
-/// Mistakes that a calibration may take in: lengths that count from elsewhere, or the other way.
-fn of_places(sample: &Dataset) -> Vec<Hypothesis> {
-    let mut all = height_signs(sample);
+/// Distances that count from elsewhere, which a calibration may take in.
+fn of_zeros(sample: &Dataset) -> Option<Hypothesis> {
     let is_counted = |row: &Observation| {
         Lengths::Distances.is_of(&row.measurement) && !row.measurement.observe().zero_is_unknown()
     };
-    all.extend(sample.observations.iter().any(is_counted).then(zeros));
-    all
+    let counted = |row: &Observation| row.from.is_none() && is_counted(row);
+    sample.observations.iter().any(counted).then(zeros)
 }
 
 /// A mistake of lengths in data that a calibration explains.
 pub(super) fn of_lengths(few: &FewTargets<'_, '_>, all: &Dataset) -> Option<Diagnosis> {
     let sample = sampled(&few.data);
-    let hypotheses = of_places(&sample);
-    if hypotheses.is_empty() {
-        return None;
-    }
+    let zero = of_zeros(&sample)?;
+    let few = few.with_weak_prior();
     let base = few.fitter.judged(&sample).1;
-    let (index, score) = best_of(few, all, &sample, &base, &hypotheses)?;
-    Some(diagnosis(&hypotheses[index], &base, &score))
+    let (_, score) = best_of(&few, all, &sample, &base, std::slice::from_ref(&zero))?;
+    Some(diagnosis(&zero, &base, &score))
 }
 
 /// Two or three joints with wrong signs.
@@ -196,11 +199,13 @@ impl Fitter<'_> {
     /// Whether a hypothesis reduces the errors enough, to a plausible size.
     fn explains(&self, base: &Score, one: &Candidate) -> bool {
         let (reach, after) = (self.reach_m(), one.errors_m());
-        let noise = NOISE_SHARE * reach;
+        let is_freed = one.kind == DiagnosisKind::DistanceZero;
+        let noise = if is_freed { FREED_SHARE } else { NOISE_SHARE } * reach;
         let registered = base.registered.total_m / after.0;
         let calibrated = base.calibrated.total_m.max(noise) / after.1.max(noise);
         let least = if one.kind == DiagnosisKind::JointZero { ZERO_GAIN } else { REGISTERED_GAIN };
-        (registered > least || calibrated > CALIBRATED_GAIN)
+        let enough = if is_freed { FREED_GAIN } else { CALIBRATED_GAIN };
+        (registered > least || calibrated > enough)
             && registered.min(calibrated) * SLACK > 1.0
             && one.score.registered.total_m < REGISTERED_SHARE * reach
             && one.score.calibrated.total_m < CALIBRATED_SHARE * reach

@@ -63,10 +63,8 @@ pub enum DiagnosisKind {
     DistanceZero,
     /// A known distance that is another.
     KnownLength,
-    /// Heights that count the other way.
+    /// Heights that count the other way in some rows.
     HeightSign,
-    /// Tilts that count the other way or are exchanged.
-    TiltSign,
     /// Tilts in another unit than stated.
     TiltUnit,
     /// Rows that name another anchor, socket or plane.
@@ -240,8 +238,8 @@ fn of_rows(
     if fitter.is_sound(&whole, &placed) {
         return targets::names(fitter, data, &placed).or_else(of_lengths);
     }
-    places::known_length(fitter, data, &all)
-        .or_else(|| targets::rows(fitter, data, &all, rows, &base))
+    targets::rows(fitter, data, &all, rows, &base)
         .or_else(|| places::names(fitter, data, &all, rows, &placed, &base))
+        .or_else(|| places::known_length(fitter, data, &all))
         .or_else(|| judge::diagnose(&few, &all, &base))
 }

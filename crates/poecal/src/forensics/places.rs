@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::change::Lengths;
 use super::exchange::{Names, exchanged};
 use super::fitter::{Fitter, Score, sampled};
 use super::judge::{CALIBRATED_SHARE, short};
@@ -15,7 +16,7 @@ const PAIRS: usize = 15;
 const OTHER_SHARE: f64 = 0.05;
 const OTHER_ERRORS: f64 = 4.0;
 
-/// Two places whose names are exchanged in some rows. `rows` are those of `all` in the data.
+/// Two places whose names are exchanged in some rows, or the two sides of one. `rows` are those of `all` in the data.
 pub(super) fn names(
     fitter: &Fitter<'_>,
     data: &Dataset,
@@ -27,12 +28,16 @@ pub(super) fn names(
     if !fitter.is_constrained() {
         return None;
     }
-    let pairs = pairs(fitter, all, estimate);
-    let found = pairs.into_iter().filter_map(|pair| exchanged(fitter, all, Names::Stations, pair, base));
-    let best = found.min_by(|a, b| a.error_m.total_cmp(&b.error_m))?;
+    let pairs = pairs(fitter, all, estimate).into_iter().map(|pair| (Names::Stations, pair));
+    let has_heights = all.observations.iter().any(|row| Lengths::Heights.is_of(&row.measurement));
+    let sides = has_heights.then_some((Names::Sides, (0, 0)));
+    let found = pairs
+        .chain(sides)
+        .filter_map(|(names, pair)| Some((names, exchanged(fitter, all, names, pair, base)?)));
+    let (names, best) = found.min_by(|a, b| a.1.error_m.total_cmp(&b.1.error_m))?;
     let (first, second) = best.pair;
     let words = [data.station_words(first), data.station_words(second)];
-    Some(best.told(data, rows, Names::Stations, words))
+    Some(best.told(data, rows, names, words))
 }
 
 /// Pairs of places that may be exchanged: all pairs of a few of one kind, of many those with the most votes of single rows.

@@ -277,7 +277,6 @@ impl Session {
             | DiagnosisKind::DistanceZero
             | DiagnosisKind::KnownLength
             | DiagnosisKind::HeightSign
-            | DiagnosisKind::TiltSign
             | DiagnosisKind::TiltUnit
             | DiagnosisKind::PlacesSwapped => None,
             DiagnosisKind::DuplicateRows => {

@@ -61,6 +61,7 @@ const OTHER_COLUMNS: [&str; 18] = [
     "socket",
     "plane",
     "contact",
+    "height[mm]",
     "sphere",
     "direction",
     "distance[mm]",
@@ -145,11 +146,17 @@ fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTr
         Measurement::Socket(_) => {
             cells.insert("socket", name);
         }
-        Measurement::Height(_) => {
+        Measurement::Height(it) => {
             cells.extend([("plane", name), ("contact", "point".to_owned())]);
+            if it.height != 0.0 {
+                cells.insert("height[mm]", length(it.height, Quantity::Height));
+            }
         }
-        Measurement::Flush(_) => {
+        Measurement::Flush(it) => {
             cells.extend([("plane", name), ("contact", "flush".to_owned())]);
+            if it.height != 0.0 {
+                cells.insert("height[mm]", length(it.height, Quantity::Height));
+            }
         }
         Measurement::Direction(it) => {
             let digits = decimals(deg.from_si(noise[Quantity::Tilt]));
