@@ -55,7 +55,7 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
 }
 
 /// The columns of rows of other kinds, in the order of a file.
-const OTHER_COLUMNS: [&str; 18] = [
+const OTHER_COLUMNS: [&str; 19] = [
     "pair",
     "anchor",
     "socket",
