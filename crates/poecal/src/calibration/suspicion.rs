@@ -16,6 +16,11 @@ pub struct JointCorrection {
     pub sigma_tilt_rad: Option<f64>,
     /// Expected root mean square error of the axis' place at the joint, metres; `None` where it is not determined.
     pub sigma_shift_m: Option<f64>,
+    /// The measurements' share in what is known of the tilt, the rest being the tolerance's: from 0 to 1 (theory.md §9 (39a)); `None` without
+    /// a tolerance.
+    pub tilt_from_data: Option<f64>,
+    /// The same of the shift; `None` of a joint that slides.
+    pub shift_from_data: Option<f64>,
     /// Root mean square position error with this screw alone nominal, tool and device frame refitted, metres.
     pub left_nominal_rms_m: f64,
     /// Why the joint is suspicious, if it is.

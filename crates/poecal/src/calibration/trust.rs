@@ -10,7 +10,7 @@ use crate::problem::Layout;
 use crate::solve::Normal;
 use crate::start::{Registration, register_again};
 use crate::uncertainty::{
-    Bootstrap, CrossValidation, Discrepancy, Remainder, Uncertainty, View, bootstrap, cross_validate,
+    Bootstrap, CrossValidation, Discrepancy, Remainder, Shares, Uncertainty, View, bootstrap, cross_validate,
     discrepancy,
 };
 
@@ -92,6 +92,9 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
     let deviations = screw_deviations(calibrated, robot, finished.layout, length_m, view.session.base_free());
     let nominal: Vec<_> = robot.joints.iter().map(|joint| joint.screw).collect();
     let rows = sample_rows(view.rows, EFFECT_SAMPLE);
+    let normal = finished.normal;
+    let shares = Shares::new(view, &normal.gram, normal.dim());
+    let from_data = |rows: &[Vec<f64>; 3]| shares.as_ref()?.of_measurements(rows);
     let mut joints: Vec<JointCorrection> = deviations
         .into_iter()
         .enumerate()
@@ -105,6 +108,8 @@ fn joints(finished: &Finished<'_>, uncertainty: Option<&Uncertainty>) -> Vec<Joi
                 shift_m: deviation.shift_m,
                 sigma_tilt_rad,
                 sigma_shift_m,
+                tilt_from_data: from_data(&deviation.tilt_by_step),
+                shift_from_data: from_data(&deviation.shift_by_step),
                 left_nominal_rms_m: rms_m(&view.session.errors(&rows, &left)),
                 suspicious: None,
             }

@@ -11,6 +11,7 @@ mod pattern;
 mod prediction;
 mod refit;
 mod remainder;
+mod share;
 mod view;
 
 pub use bootstrap::{Bootstrap, bootstrap};
@@ -21,6 +22,7 @@ pub use pattern::{Pattern, strongest_pattern};
 pub use prediction::{PredictedError, Quantile, bound};
 pub use refit::Refit;
 pub use remainder::{Attribution, Part, Remainder, Settled, remainder};
+pub(crate) use share::Shares;
 pub use view::{PriorInformation, View};
 
 use motions::{motions, products};

@@ -4,11 +4,11 @@ use crate::common::geometry;
 use crate::common::with_threads;
 use crate::trials::trials;
 use nalgebra::Vector3;
-use poecal::calibration::{CalibrationOptions, calibrate};
+use poecal::calibration::{CalibrationOptions, JointCorrection, calibrate};
 use poecal::estimate::{Chain, Linkage, Packed};
 use poecal::lie::rotation;
-use poecal::measurement::Noise;
-use poecal::robot::Robot;
+use poecal::measurement::{Dataset, Noise};
+use poecal::robot::{Robot, Tolerance};
 use poecal::simulate::{Kind, Simulation, elbow, gantry, random, random_configuration, scara, seven_axis};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -225,4 +225,33 @@ fn drawing_rows_anew_sees_what_neighbours_share() {
     println!("six alike: drawn anew {:.4} mm, {ratio:.2} times the formal", 1e3 * bootstrap.sigma_m);
     // Rows that are all alike in groups of six would make it the root of six, 2.4; neighbourhoods of four see about the root of four.
     assert!((1.5..2.6).contains(&ratio));
+}
+
+/// Least shares of the measurements in what is known of the axes' tilts and shifts.
+fn least_shares(robot: &Robot, data: &Dataset, tolerance: Option<Tolerance>) -> [Option<f64>; 2] {
+    let options = CalibrationOptions { tolerance, ..geometry() };
+    let found = calibrate(robot, data, &options).unwrap();
+    let least = |of: fn(&JointCorrection) -> Option<f64>| {
+        found.trust.joints.iter().filter_map(of).min_by(f64::total_cmp)
+    };
+    [least(|it| it.tilt_from_data), least(|it| it.shift_from_data)]
+}
+
+/// Points far beyond the unknowns say nearly all; a tolerance far below the noise of what they tell says nearly all else; no tolerance says
+/// nothing. Touched planes do not tell the size, which the tolerance alone gives.
+#[test]
+fn what_the_data_said_and_what_the_tolerance_said_are_told_apart() {
+    let tolerance = |angle_rad, length_m| Some(Tolerance { angle_rad, length_m });
+    let points = Simulation { count: 100, ..Simulation::default() }.run(&elbow(), Kind::Pose).unwrap();
+    let of = |data: &Dataset, tolerance| least_shares(&points.nominal, data, tolerance);
+    let (usual, tight) =
+        (of(&points.data, Tolerance::default().into()), of(&points.data, tolerance(1e-7, 1e-7)));
+    let none = of(&points.data, None);
+    let planes = Simulation { count: 120, ..Simulation::default() }.run(&elbow(), Kind::Plane).unwrap();
+    let touched = of(&planes.data, Tolerance::default().into());
+    println!("poses: {usual:?}, tight {tight:?}, none {none:?}; touched planes {touched:?}");
+    assert!(usual.iter().all(|share| share.unwrap() > 0.99));
+    assert!(tight.iter().all(|share| share.unwrap() < 0.01));
+    assert_eq!(none, [None, None]);
+    assert!(touched[1].unwrap() < 0.9);
 }

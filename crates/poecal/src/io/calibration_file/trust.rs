@@ -108,6 +108,12 @@ pub struct CorrectionEntry {
     pub sigma_tilt_deg: Option<f64>,
     /// Standard deviation of the axis' place at the joint, millimetres; null where it is not determined.
     pub sigma_shift_mm: Option<f64>,
+    /// The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Null without a tolerance.
+    #[serde(default)]
+    pub tilt_from_data: Option<f64>,
+    /// The same of the axis' place; null of a joint that slides.
+    #[serde(default)]
+    pub shift_from_data: Option<f64>,
     /// Root mean square position error with this screw alone nominal, millimetres.
     pub left_nominal_rms_mm: f64,
     /// Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position.
@@ -232,6 +238,8 @@ impl CorrectionEntry {
             shift_mm: found.shift_m * 1e3,
             sigma_tilt_deg: found.sigma_tilt_rad.map(f64::to_degrees),
             sigma_shift_mm: found.sigma_shift_m.map(|sigma| sigma * 1e3),
+            tilt_from_data: found.tilt_from_data,
+            shift_from_data: found.shift_from_data,
             left_nominal_rms_mm: found.left_nominal_rms_m * 1e3,
             suspicious: found.suspicious.clone(),
         }

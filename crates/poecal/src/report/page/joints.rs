@@ -93,7 +93,16 @@ fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
 }
 
 fn corrections(file: &CalibrationFile) -> Markup {
-    let head = ["joint", "tilt, °", "± (1 σ)", "shift, mm", "± (1 σ)", "left nominal, mm (RMS)"];
+    let head = [
+        "joint",
+        "tilt, °",
+        "± (1 σ)",
+        "by data",
+        "shift, mm",
+        "± (1 σ)",
+        "by data",
+        "left nominal, mm (RMS)",
+    ];
     let mut table = HtmlTable::new("Corrections of the joints", 1, &head);
     for (k, found) in file.corrections.iter().enumerate() {
         let slides =
@@ -110,15 +119,18 @@ fn corrections(file: &CalibrationFile) -> Markup {
             &quoted(&found.joint, format_args!("corrections.{k}.joint")),
             &figure(Some(found.tilt_deg), "tilt_deg"),
             &figure(found.sigma_tilt_deg, "sigma_tilt_deg"),
+            &figure_or(found.tilt_from_data, format_args!("corrections.{k}.tilt_from_data"), "–"),
             &shift(Some(found.shift_mm), "shift_mm"),
             &shift(found.sigma_shift_mm, "sigma_shift_mm"),
+            &figure_or(found.shift_from_data, format_args!("corrections.{k}.shift_from_data"), "–"),
             &figure(Some(found.left_nominal_rms_mm), "left_nominal_rms_mm"),
         ]);
     }
     let content = html! {
         p {
             "Correction of each axis from nominal, its standard deviation, and its effect: the error that would remain if this axis alone \
-             stayed nominal, with tool and device refitted."
+             stayed nominal, with tool and device refitted. By data: the measurements' share in what is known of the axis, from 0 to 1; the \
+             rest was said by the tolerance."
         }
         (plots(&figures::corrections(file), "Dots: corrections. Lines: two standard deviations to each side; none where a correction is not determined."))
         (table)
