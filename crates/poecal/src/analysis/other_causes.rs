@@ -28,18 +28,24 @@ impl Rules<'_> {
             return;
         }
         let words = self.degree_words("is not determined, and stays near the model's", false, &[size]);
-        let description = format!(
-            "nothing that was measured has a length: the size of the robot {words}; one known length gives it, such as the distance of two \
-             sockets (--socket-distance), the radius of a sphere, a height or a distance"
-        );
+        let description = if self.setup.session.lacks_length(self.setup.rows) {
+            format!(
+                "nothing that was measured has a length: the size of the robot {words}; one known length gives it, such as the distance of \
+                 two sockets (--socket-distance), the radius of a sphere, a height or a distance"
+            )
+        } else {
+            format!(
+                "the lengths that were measured are short: the size of the robot {words}; a longer or a more exact one gives it"
+            )
+        };
         self.add(Cause::NoLength, &[], 1, description);
     }
 
-    /// Everything grown about the first device's origin: axes, targets, other devices, zeros of distances.
+    /// Everything grown about the origin of the first device of the rows: axes, targets, other devices, zeros of distances.
     fn growth(&self) -> Vec<f64> {
         let estimate = self.setup.estimate;
         let origin = |station: usize| estimate.device_at_zero(station).inverse().translation;
-        let about = origin(0);
+        let about = origin(self.setup.session.data.first_station(self.setup.rows));
         let mut growth = vec![0.0; self.setup.layout.dim()];
         for (parameter, places) in self.setup.layout.parameters() {
             let moved: Vec<f64> = match parameter {

@@ -269,6 +269,15 @@ impl Dataset {
         rows.iter().copied().filter(|&row| self.observations[row as usize].station == station).collect()
     }
 
+    /// The first station of some rows, whose frame stays where the base frame is a choice.
+    #[must_use]
+    pub(crate) fn first_station(&self, rows: &[u32]) -> usize {
+        if self.station_count() == 1 {
+            return 0;
+        }
+        rows.iter().map(|&row| self.observations[row as usize].station).min().unwrap_or_default()
+    }
+
     /// The same rows as if all had been measured from one station.
     #[must_use]
     pub(crate) fn without_stations(&self) -> Self {

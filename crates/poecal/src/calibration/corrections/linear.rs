@@ -60,7 +60,8 @@ impl Linear {
     ) -> Option<Self> {
         let session = &task.session;
         let mut free = task.free(estimate);
-        let held = session.base_free().then(|| device_parameter(session.data, 0, sample));
+        let first = session.data.first_station(sample);
+        let held = session.base_free().then(|| device_parameter(session.data, first, sample));
         free.extend(held);
         let problem = Problem::new(*session, sample.to_vec(), free, noise);
         let problem = match task.weights {
@@ -68,7 +69,7 @@ impl Linear {
             None => problem,
         };
         let layout = problem.layout().clone();
-        let columns = Columns::new(&layout, model, classes, held.is_some());
+        let columns = Columns::new(&layout, model, classes, held.map(|_| first));
         let sample = problem.rows().to_vec();
         let (starts, quantities) = numbers(&problem, &sample);
         let total = quantities.len();

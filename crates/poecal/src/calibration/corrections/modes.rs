@@ -47,7 +47,7 @@ impl Columns {
         layout: &Layout,
         model: &CorrectionModel,
         classes: &[Class],
-        holds_frame: bool,
+        held_station: Option<usize>,
     ) -> Self {
         let groups: Vec<_> = model.terms().zip(model.groups.iter().zip(model.shares())).collect();
         let (mut known, mut devices, mut held, mut terms) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -63,7 +63,9 @@ impl Columns {
                 continue;
             }
             match parameter.model().subject() {
-                Subject::Instrument(0) if holds_frame => held.extend(places.iter().map(at)),
+                Subject::Instrument(station) if Some(station) == held_station => {
+                    held.extend(places.iter().map(at));
+                }
                 Subject::Instrument(_) | Subject::Range(_) => {
                     devices.extend(known.len()..known.len() + places.len());
                     known.extend(places.iter().map(at));
