@@ -206,9 +206,15 @@ impl Simulation {
             mounted => mounted.iter().cloned().map(Some).collect(),
         };
         let body = |it: &Option<Mount>| it.as_ref().map_or_else(|| actual.tip_body(), |mount| mount.body);
-        let all = targets.iter().flat_map(|target| {
-            places.iter().map(|place| Sight { place: place.clone(), target: target.clone() })
-        });
+        let sight = |place: &Place, target: &Option<Mount>| {
+            let mut place = place.clone();
+            // As files name the pairs of a target.
+            if let (Stands::Before, Some(mount)) = (&place.stands, target) {
+                place.name = format!("{}/{}", place.name, mount.name);
+            }
+            Sight { place, target: target.clone() }
+        };
+        let all = targets.iter().flat_map(|target| places.iter().map(move |place| sight(place, target)));
         let moves = |sight: &Sight| match &sight.place.stands {
             Stands::On(mount) => mount.body != body(&sight.target),
             Stands::Beside(_) | Stands::Before => body(&sight.target) != Body::Base,

@@ -61,7 +61,7 @@ impl Device {
         Some(match self {
             Device::Instrument => "instruments as their frames, x in red, y in green, z in blue",
             Device::Anchor => {
-                "anchors as balls with thin lines to some of the places that they measured, and a dashed one to the chosen"
+                "anchors as balls, those beside the robot with thin lines to some of the places that they measured"
             }
             Device::Socket => "sockets as cups",
             Device::Plane => "planes as sheets under the places that touched them, with their normals",
@@ -90,6 +90,12 @@ pub(super) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Marku
     let arrows: Vec<&str> = all.iter().filter_map(|it| it.arrow_words()).collect();
     let has_dots = all.iter().any(|it| it.arrow_words().is_none());
     let drawn: Vec<&str> = all.iter().filter_map(|it| it.drawn_words()).collect();
+    let seeing = match [Device::Instrument, Device::Anchor].map(|it| all.contains(&it)) {
+        [true, true] => Some("instrument or anchor"),
+        [true, false] => Some("instrument"),
+        [false, true] => Some("anchor"),
+        [false, false] => None,
+    };
     html! {
         @if !arrows.is_empty() {
             " Arrows go from the place of a target by the calibrated model " (arrows.join(", or ")) "."
@@ -99,9 +105,9 @@ pub(super) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Marku
             ": the stronger the colour, the larger the error."
         }
         @if draws_places && !drawn.is_empty() {
-            " Drawn beside the robot: " (drawn.join("; ")) "."
-            @if all.contains(&Device::Instrument) {
-                " A dashed line goes from the instrument of the chosen measurement to its target."
+            " Also drawn: " (drawn.join("; ")) "."
+            @if let Some(seeing) = seeing {
+                " A dashed line goes from the " (seeing) " of the chosen measurement to its target."
             }
         }
     }
