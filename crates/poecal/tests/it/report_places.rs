@@ -37,11 +37,13 @@ fn every_kind_is_drawn_as_what_it_is() {
         for (it, station) in drawn.iter().zip(&file.stations) {
             assert_eq!((&it["kind"], &it["on"]), (&Value::from(word), &Value::Null), "{}", kind.word());
             assert_eq!(numbers(&it["pose"]["position_m"]), station.base_from_device.position_m);
-            assert_eq!(numbers(&it["pose"]["quaternion_xyzw"]), station.base_from_device.quaternion_xyzw);
+            let turn = numbers(&it["pose"]["quaternion_xyzw"]);
+            let known = station.base_from_device.quaternion_xyzw;
+            // Read back and normalised again: rounding.
+            assert!(turn.iter().zip(known).all(|(a, b)| (a - b).abs() < 1e-15), "{turn:?} {known:?}");
         }
         // A device frame is not spoken of where there is none.
-        let in_axes = kind.quantities().iter().any(|it| it.is_of_pose());
-        assert_eq!(page.contains("in the axes of the measuring device"), in_axes, "{}", kind.word());
+        assert!(!page.contains("in the axes of the measuring device"), "{}", kind.word());
         assert!(!page.contains("contact_x") && !page.contains("tilt_x"), "{}", kind.word());
     }
 }
@@ -99,7 +101,12 @@ fn both_arms_are_drawn_with_what_they_hold() {
     let page = session.page();
     let data = data_of(&page);
     assert_eq!(ons(&data, "joints"), arms);
-    assert_eq!((ons(&data, "instruments"), ons(&data, "targets")), (vec![5.into()], vec![11.into()]));
+    // The arm of the target comes first, since its target is the tip.
+    let named = |list: &str| {
+        let joint = data[list][0]["on"].as_u64().unwrap() as usize;
+        data["joints"][joint]["name"].as_str().unwrap().to_owned()
+    };
+    assert_eq!((&*named("instruments"), &*named("targets")), ("left6", "right6"));
     assert_eq!(data["instruments"][0]["kind"], "anchor");
     assert!(page.contains("<td class=\"word\">anchor</td>"), "the table of what stands where");
 }

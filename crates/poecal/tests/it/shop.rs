@@ -243,3 +243,18 @@ fn a_single_unnamed_socket_is_a_fixed_point() {
     let of = |data: &Dataset| data.observations.iter().all(|row| row.measurement.has(Quantity::Contact));
     assert!(of(&file.data));
 }
+
+/// Rows that show an orientation without a position are neither poses nor points.
+#[test]
+fn flush_faces_and_directions_are_no_poses() {
+    let robot = poecal::simulate::scara();
+    for (header, row, quantity) in
+        [("plane,contact", "table,flush", "height"), ("direction,tilt_x,tilt_y", "gravity,0.1,0", "tilt")]
+    {
+        let text = format!("joint1,joint2,joint3,joint4,{header}\n0,0.1,0.1,0,{row}\n0.2,0.1,0.1,0,{row}\n");
+        let file = parse(&text, "a table", &robot, &ReadOptions::default()).unwrap();
+        let found = &file.understood[0];
+        println!("{header}: {} points, {} poses, {:?}", found.points, found.poses, found.others);
+        assert_eq!((found.points, found.poses, found.others.get(quantity)), (0, 0, Some(&2)));
+    }
+}

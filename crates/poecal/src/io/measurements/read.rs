@@ -174,15 +174,18 @@ impl<'a> Reader<'a> {
         scale::check_positions(path, self.robot, &layout, slides_m, new_rows)?;
         scale::check_ranges(path, self.robot, slides_m, new_rows)?;
         spread::check(path, &table.header, self.robot, &layout, &self.found.data, first)?;
-        let poses = new_rows.iter().filter(|row| row.measurement.sees_orientation()).count();
-        let mut others = BTreeMap::new();
+        let (mut points, mut poses, mut others) = (0, 0, BTreeMap::new());
         for row in new_rows {
-            if let Seen::Other(model) = row.measurement.seen() {
-                let name = model.channels().first().map_or("", |channel| channel.quantity.name());
-                *others.entry(name).or_default() += 1;
+            match row.measurement.seen() {
+                Seen::Point(_) => points += 1,
+                Seen::Frame(_) => poses += 1,
+                // A flush face shows its orientation too, and is no pose.
+                Seen::Other(model) => {
+                    let name = model.channels().first().map_or("", |channel| channel.quantity.name());
+                    *others.entry(name).or_default() += 1;
+                }
             }
         }
-        let points = new_rows.len() - poses - others.values().sum::<usize>();
         if !self.found.data.ids.is_empty() {
             self.found.data.ids.resize(self.found.data.len(), String::new());
         }

@@ -45,7 +45,7 @@ impl<'a> FrameData<'a> {
     }
 
     /// The same as what a station is.
-    fn as_station(self, station: Option<&StationEntry>) -> Self {
+    fn of_station(self, station: Option<&StationEntry>) -> Self {
         let place = station.map(Device::of).filter(|it| *it != Device::Instrument);
         FrameData {
             kind: place.map(Device::word),
@@ -88,11 +88,11 @@ impl<'a> Frames<'a> {
             let station = file.stations.iter().find(own);
             if let Some((body, pose)) = mount(robot, &robot.instruments, name) {
                 let nominal = mount(&nominal, &nominal.instruments, name).map_or(pose, |it| it.1);
-                return Ok(FrameData::new(shown, body, &pose, Some(&nominal)).as_station(station));
+                return Ok(FrameData::new(shown, body, &pose, Some(&nominal)).of_station(station));
             }
             let pose =
                 station.map_or(&file.measurement_frame.base_from_device, |it| &it.base_from_device).pose()?;
-            Ok(FrameData::new(shown, Body::Base, &pose, Some(&pose)).as_station(station))
+            Ok(FrameData::new(shown, Body::Base, &pose, Some(&pose)).of_station(station))
         };
         let instruments = seeing.iter().copied().chain(unused).map(instrument).collect::<Result<_>>()?;
         let tip = FrameData::new("tip", robot.tip_body(), &robot.home, Some(&nominal.home));

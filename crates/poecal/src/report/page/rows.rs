@@ -3,6 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place};
+use super::devices::Device;
 use super::first::{capital, error_table, error_words};
 use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, plots, section};
 use super::lead::{Lead, component_words, sign, spaced};
@@ -28,7 +29,7 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let (shown, all) = (drawn(residuals).len(), residuals.rows().len());
     let lead = Lead::of(residuals).name();
     let content = html! {
-        p { "Residual of each measurement: measured minus predicted by the calibrated model" (axes_words(residuals)) "." }
+        p { "Residual of each measurement: measured minus predicted by the calibrated model" (axes_words(file, residuals)) "." }
         @if shown < all {
             p.note {
                 "Charts draw " (shown) " of " (all) " rows: the suspected ones, those of the largest errors, and others at equal distances, "
@@ -76,16 +77,20 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
 }
 
 /// In which axes residuals are, if they have any.
-fn axes_words(residuals: &Residuals) -> &'static str {
+fn axes_words(file: &CalibrationFile, residuals: &Residuals) -> &'static str {
     let has_axes = residuals.measured().iter().any(|it| it.is_of_pose());
-    if has_axes { ", in the axes of the measuring device" } else { "" }
+    match (has_axes, Device::all(file) == [Device::Pair]) {
+        (false, _) => "",
+        (true, false) => ", in the axes of the measuring device",
+        (true, true) => ", in the axes of the target in the first of the two configurations",
+    }
 }
 
 /// What the components of each quantity are.
 fn component_note(residuals: &Residuals) -> String {
     let words = |quantity: &Quantity| match quantity {
-        Quantity::Position => "of positions along the device's axes",
-        Quantity::Rotation => "of rotations about the device's axes",
+        Quantity::Position => "of positions along these axes",
+        Quantity::Rotation => "of rotations about these axes",
         Quantity::Distance => "of distances, above zero where more was measured",
         Quantity::Contact => {
             "of contacts along three axes square to each other, from the ball to the middle of its socket"
