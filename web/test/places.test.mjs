@@ -10,8 +10,8 @@ import { CHROMIUM, launch, open } from "./browser.mjs";
 import { ofKind } from "./cases.mjs";
 
 const skip = CHROMIUM ? false : "found no Chromium; install it (Debian: apt install chromium), or name it: CHROMIUM=/path";
-/** The page has six digits of readings: micrometres of a place. */
-const ROUNDED_M = 1e-5;
+/** The page has six digits of each reading: up to 0.0005° of each of six joints, at a metre or less. */
+const ROUNDED_M = 5e-5;
 
 let browser;
 before(async () => {
@@ -66,6 +66,8 @@ for (const [kind, { names, label, row, at }] of Object.entries(KINDS)) {
         const off = Math.abs(at(instruments[rows.instrument[k]], end));
         assert.ok(off < ROUNDED_M, `${rows.place[k]} ends ${off} m beside ${instruments[rows.instrument[k]].name}`);
       });
+      const largest = Math.max(...shifts.map(length));
+      assert.ok(1e-3 * largest > 5 * ROUNDED_M, `${largest} mm: residuals are no larger than rounding`);
     });
   });
 }
