@@ -1,9 +1,12 @@
 // The arm in three dimensions with its controls.
-import { readingsOf, shown } from "./data.js";
+import { offBy, readingsOf, shown, withUnit } from "./data.js";
 import { CALIBRATED, NOMINAL, configure, subtract } from "./kinematics.js";
-import { withUnit } from "./plot.js";
+import { kindWords } from "./places.js";
 import { Scene } from "./scene.js";
 import { onColours } from "./theme.js";
+
+/** Share of random places that were not measured from which on they would hide the arm: they are then shown if asked for. */
+const MOST_REACH = 0.7;
 
 /** Fills `place` with the picture and its controls. */
 export function showArm(place, data) {
@@ -100,11 +103,13 @@ function measurementControls(view) {
   return set;
 }
 
-function describe({ rows, targets, instruments, draws_instruments, lead }, row) {
+function describe({ rows, targets, instruments, draws_instruments }, row) {
   const set = rows.held_out[row] ? "held out" : "fitted";
   const target = targets[rows.target[row]].name;
-  const instrument = draws_instruments && instruments[rows.instrument[row]].name;
-  return `${rows.place[row]}, ${set}${target ? `, target ${target}` : ""}${instrument ? `, instrument ${instrument}` : ""}: off by ${withUnit(rows.error_mm[row], lead.unit)}`;
+  const instrument = instruments[rows.instrument[row]];
+  const kind = instrument.kind ?? "instrument";
+  const from = draws_instruments && kind !== "pair" && instrument.name && `${kind} ${instrument.name}`;
+  return `${rows.place[row]}, ${set}${target ? `, target ${target}` : ""}${from ? `, ${from}` : ""}: off by ${offBy(rows, row)}`;
 }
 
 function slider(label, { min, max, step, value, spoken }, changedTo) {
@@ -180,7 +185,7 @@ function sizeControls(view) {
     set.append(line);
   };
   add("nominal against calibrated", scene.axisScale, 1000, (value) => (scene.axisScale = value));
-  add("residual arrows", scene.arrowScale, 1e5, (value) => (scene.arrowScale = value));
+  if (scene.has.arrows) add("residual arrows", scene.arrowScale, 1e5, (value) => (scene.arrowScale = value));
   return set;
 }
 
@@ -200,9 +205,9 @@ function shownControls(view) {
     set.append(line);
   };
   add("nominal arm", "nominal", true);
-  add("residual arrows", "arrows", true);
-  add("where it could reach but was not measured", "reach", true);
-  if (view.scene.instruments) add("instruments and names", "instruments", true);
+  add(residualWords(view.scene), "arrows", true);
+  add("where it could reach but was not measured", "reach", view.scene.reachShare < MOST_REACH);
+  if (view.scene.instruments) add(`${kindWords(view.data)}${kindWords(view.data) ? " and " : ""}names`, "instruments", true);
   return set;
 }
 
@@ -241,7 +246,7 @@ function stateText(view) {
 function colourLine(data) {
   const line = element("ul", "keys");
   const keys = [["calibrated", "s0"], ["nominal", "soft"], ["axes of the joints", "s2"], ["chosen measurement", "alarm"]];
-  if (data.draws_instruments) keys.push(["instruments", "s3"]);
+  if (data.draws_instruments && kindWords(data)) keys.push([kindWords(data), "s3"]);
   for (const [text, name] of keys) {
     const item = element("li");
     const sign = element("i");
@@ -252,12 +257,21 @@ function colourLine(data) {
   return line;
 }
 
+/** What stands for the residuals of the rows. */
+function residualWords({ has }, arrows = "residual arrows", dots = "measured places") {
+  if (has.arrows && has.dots) return `${arrows} and ${dots}`;
+  return has.dots ? dots : arrows;
+}
+
 function scaleLine(scene) {
   const line = element("p", "scale");
   const { least, most, square } = scene.legend;
   const ramp = element("span", "ramp");
   ramp.style.setProperty("--from", "var(--arrow-least)");
   ramp.style.setProperty("--to", "var(--arrow-most)");
-  line.append(`Arrows: ${least}`, ramp, `${withUnit(most, scene.data.lead.unit)} and more. Grid: ${square} mm. Drag to turn, wheel to come nearer.`);
+  const { name, unit } = scene.data.lead;
+  const what = residualWords(scene, "arrows", "dots");
+  const of = name === "position" ? "" : ` of ${name}`;
+  line.append(`${what[0].toUpperCase()}${what.slice(1)}: ${least}`, ramp, `${withUnit(most, unit)}${of} and more. Grid: ${square} mm. Drag to turn, wheel to come nearer.`);
   return line;
 }

@@ -1,6 +1,6 @@
 // The charts of the rows.
-import { shown } from "./data.js";
-import { bars, dots, keys, line, plot, readoutLine, steps, withUnit } from "./plot.js";
+import { shown, withUnit } from "./data.js";
+import { bars, dots, keys, line, plot, readoutLine, steps } from "./plot.js";
 import { interpolate, normalQuantile, quantile, smooth } from "./statistics.js";
 
 /** Residuals by component: name, values, unit. */

@@ -1,5 +1,6 @@
 // The page's data, with what follows from them: where each row's target was predicted, and how its residual lies in the base frame.
-import { CALIBRATED, configure, motions, poseOf, rotate, subtract } from "./kinematics.js";
+import { CALIBRATED, act, configure, invert, motions, poseOf, rotate, scale, subtract } from "./kinematics.js";
+import { patchOf } from "./places.js";
 
 export function readData() {
   return complete(JSON.parse(document.getElementById("report-data").textContent));
@@ -24,30 +25,66 @@ export function complete(data) {
   rows.predicted = [];
   rows.reached = [];
   rows.residual = [];
+  const touched = instruments.map(() => []);
   rows.motion = data.readings.map(() => []);
   for (let row = 0; row < rows.count; row++) {
     const found = configure(data, readingsOf(data, row), CALIBRATED);
     const [target, instrument] = [targets[rows.target[row]], instruments[rows.instrument[row]]];
     const place = found.at(target).t;
-    const shift = shiftOf(rows, row);
-    const residual = shift && rotate(found.at(instrument).r, shift);
+    const device = found.at(instrument);
+    const seen = act(invert(device), place);
+    // The axes of a pair are those of the target in another configuration, which the page does not know.
+    const shift = instrument.kind === "pair" ? undefined : shiftOf(rows, row, seen);
+    const residual = shift && rotate(device.r, shift);
     rows.predicted.push(place);
+    touched[rows.instrument[row]].push(seen);
     // A camera that looks at a target beside the robot is itself what moves.
     const moving = target.on === null ? instrument : target;
     if (!reaching.has(moving.on)) reaching.set(moving.on, moving);
     rows.reached.push(found.at(moving).t);
-    rows.residual.push(residual ?? [0, 0, 0]);
-    motions(data, found, place, target, instrument).forEach((motion, reading) => rows.motion[reading].push(along(residual, motion)));
+    rows.residual.push(residual ?? null);
+    // Of one number along a line, the part along another says nothing.
+    const vector = isVector(rows, row) ? residual : undefined;
+    motions(data, found, place, target, instrument).forEach((motion, reading) => rows.motion[reading].push(along(vector, motion)));
   }
+  for (const [k, it] of instruments.entries()) if (it.kind === "plane") it.patch = patchOf(touched[k]);
   data.reaching = [...reaching.values()];
   return data;
 }
 
-/** The residual of a row's position in the axes of the device, millimetres; none if no position was measured. */
-function shiftOf({ residuals }, row) {
-  const position = residuals.find(({ name }) => name === "position");
-  const shift = position?.components.map(({ values }) => values[row]);
-  return shift?.includes(null) ? undefined : shift;
+/** The residual of a quantity in a row, by component; none if the row did not measure it. */
+function residualOf({ residuals }, row, quantity) {
+  const found = residuals.find(({ name }) => name === quantity)?.components.map(({ values }) => values[row]);
+  return found?.includes(null) ? undefined : found;
+}
+
+/**
+ * The residual of a row as a shift in the axes of the device, millimetres, with the target seen at a place there: of a distance along the
+ * line to it, of a height along the plane's normal. None of angles.
+ */
+function shiftOf(rows, row, seen) {
+  const vector = residualOf(rows, row, "position") ?? residualOf(rows, row, "contact");
+  if (vector) return vector;
+  const [height] = residualOf(rows, row, "height") ?? [];
+  if (height !== undefined) return [0, 0, height];
+  const [distance] = residualOf(rows, row, "distance") ?? [];
+  const far = Math.hypot(...seen);
+  return distance === undefined || far === 0 ? undefined : scale(seen, distance / far);
+}
+
+function isVector(rows, row) {
+  return Boolean(residualOf(rows, row, "position") ?? residualOf(rows, row, "contact"));
+}
+
+/** By how much each quantity of a row is off, in words. */
+export function offBy(rows, row) {
+  const parts = rows.residuals.flatMap(({ name, unit }) => {
+    const found = residualOf(rows, row, name);
+    return found ? [[name, withUnit(Math.hypot(...found), unit)]] : [];
+  });
+  // The unit of a position and of a rotation tells which of the two it is.
+  const isOfPose = parts.every(([name]) => name === "position" || name === "rotation");
+  return parts.map(([name, words]) => (isOfPose ? words : `${words} of ${name}`)).join(" and ");
 }
 
 /** The readings of a row, radians or metres. */
@@ -67,6 +104,11 @@ export function shown(value, digits = 3) {
   const size = Math.abs(value);
   const text = size !== 0 && (size < 1e-3 || size >= 1e6) ? value.toExponential(1) : value.toFixed(decimals(size, digits));
   return text.replace("-", "−");
+}
+
+/** Text with a number and its unit. */
+export function withUnit(value, unit) {
+  return unit === "°" ? `${shown(value)}°` : `${shown(value)} ${unit}`;
 }
 
 function decimals(size, digits) {

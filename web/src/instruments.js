@@ -1,6 +1,8 @@
-// Instruments as their frames, the line of sight of the chosen measurement, and names on the picture.
+// Instruments as their frames, places as what they are, the line of sight of the chosen measurement, and names on the picture.
 import { BufferAttribute, BufferGeometry, CylinderGeometry, Group, LineSegments, Matrix4, Mesh, SphereGeometry, Vector3 } from "three";
+import { act } from "./kinematics.js";
 import { flat, solid } from "./materials.js";
+import { drawingOf, hasPlace, isSeenFromAfar } from "./places.js";
 
 const DASHES = 24;
 /** Names that are shown at once; of more, only that of the chosen measurement's instrument. */
@@ -9,17 +11,20 @@ const ARROWS = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
 const MARGIN = 6;
 
 export class Instruments {
-  constructor({ instruments, mounted }, size) {
-    this.materials = { body: solid(), x: solid(), y: solid(), z: solid(), sight: flat(), plumb: flat() };
+  constructor(data, size) {
+    const { instruments, mounted } = data;
+    this.materials = { body: solid(), x: solid(), y: solid(), z: solid(), sight: flat(), plumb: flat(), wire: flat(), sheet: solid(0.22, true), edge: flat() };
     this.group = new Group();
-    this.frames = instruments.map(() => frame(this.materials, size));
+    this.kinds = instruments;
+    this.frames = instruments.map((it) => (it.kind ? drawingOf(it, data, size, this.materials) : frame(this.materials, size)));
     const dashes = new BufferGeometry();
     dashes.setAttribute("position", new BufferAttribute(new Float32Array(6 * DASHES), 3));
     this.sight = new LineSegments(dashes, this.materials.sight);
     this.sight.frustumCulled = false;
     this.group.add(...this.frames, this.sight);
     // Those beside the robot stand above or below a place on the grid.
-    const beside = instruments.filter((it) => it.on === null).flatMap(({ pose: { t: [x, y, z] } }) => [x, y, z, x, y, 0]);
+    const stand = (it) => it.on === null && hasPlace(it) && it.kind !== "plane";
+    const beside = instruments.filter(stand).flatMap(({ pose: { t: [x, y, z] } }) => [x, y, z, x, y, 0]);
     const plumb = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(beside), 3));
     this.group.add(new LineSegments(plumb, this.materials.plumb));
     this.names = document.createElement("div");
@@ -36,16 +41,20 @@ export class Instruments {
     this.targets = mounted.map(tag("target"));
   }
 
-  /** Puts instruments and names to their places, and the line of sight from the chosen instrument to the target's place, if there is one. */
-  pose(poses, places, chosen, seen) {
-    poses.forEach(({ r, t }, k) => {
+  /** Puts instruments and names to their places, and the line of sight from the chosen instrument to the target's place `seen`, if there is one. */
+  pose(poses, places, chosen, { seen, tip }) {
+    const chosenPlace = seen ?? tip;
+    poses.forEach((pose, k) => {
+      const it = this.kinds[k];
+      // A direction has no place: it stands at what shows it.
+      const { r, t } = it.kind === "direction" ? { r: pose.r, t: chosenPlace } : pose;
       this.frames[k].matrix.copy(new Matrix4().set(...r[0], t[0], ...r[1], t[1], ...r[2], t[2], 0, 0, 0, 1));
-      this.instruments[k].place.set(...t);
-      this.instruments[k].text.hidden = poses.length > MOST_NAMES && k !== chosen;
+      this.instruments[k].place.set(...(it.kind === "plane" ? act({ r, t }, [it.patch.x, it.patch.y, 0]) : t));
+      this.instruments[k].text.hidden = it.kind === "pair" || (poses.length > MOST_NAMES && k !== chosen);
     });
     places.forEach((place, k) => this.targets[k].place.set(...place));
-    this.sight.visible = seen !== null;
-    if (seen === null) return;
+    this.sight.visible = seen !== null && isSeenFromAfar(this.kinds[chosen]);
+    if (!this.sight.visible) return;
     const from = this.instruments[chosen].place;
     const points = this.sight.geometry.attributes.position;
     for (let k = 0; k < 2 * DASHES; k++) {

@@ -44,6 +44,11 @@ export function act({ r, t }, point) {
   return add(rotate(r, point), t);
 }
 
+export function invert({ r, t }) {
+  const inverse = [0, 1, 2].map((k) => r.map((row) => row[k]));
+  return { r: inverse, t: rotate(inverse, t).map((value) => -value) };
+}
+
 export function compose(a, b) {
   const column = (k) => rotate(a.r, b.r.map((row) => row[k]));
   const columns = [column(0), column(1), column(2)];

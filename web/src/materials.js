@@ -1,9 +1,10 @@
 // Small shaders: one for solid things and one for dots. They compile at once even where a processor has to draw.
-import { Color, ShaderMaterial } from "three";
+import { Color, DoubleSide, FrontSide, ShaderMaterial } from "three";
 
-/** Solid things: lighter where they face the eye. Instances may have colours of their own. */
-export function solid(opacity = 1) {
+/** Solid things: lighter where they face the eye. Instances may have colours of their own. A sheet is seen from both sides. */
+export function solid(opacity = 1, isSheet = false) {
   return new ShaderMaterial({
+    side: isSheet ? DoubleSide : FrontSide,
     uniforms: { tint: { value: new Color() }, opacity: { value: opacity } },
     transparent: opacity < 1,
     depthWrite: opacity === 1,

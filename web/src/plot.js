@@ -1,6 +1,5 @@
 // One chart: dots, lines and bars over two axes, by uPlot, in the page's colours and as wide as its place.
 import uPlot from "uplot";
-import { shown } from "./data.js";
 import { colour, onColours } from "./theme.js";
 
 const FONT = '12px system-ui, "Segoe UI", Roboto, "Liberation Sans", Arial, sans-serif';
@@ -157,9 +156,4 @@ export function readoutLine(place) {
   text.setAttribute("aria-hidden", "true");
   place.append(text);
   return text;
-}
-
-/** Text with a number and its unit. */
-export function withUnit(value, unit) {
-  return `${shown(value)} ${unit}`;
 }

@@ -6,8 +6,9 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { readingsOf } from "./data.js";
 import { Instruments } from "./instruments.js";
-import { CALIBRATED, NOMINAL, add, configure, scale, subtract } from "./kinematics.js";
+import { CALIBRATED, NOMINAL, act, add, configure, scale, subtract } from "./kinematics.js";
 import { dot, flat, solid } from "./materials.js";
+import { extent, hasPlace, roomForArrows } from "./places.js";
 import { quantile } from "./statistics.js";
 import { colour } from "./theme.js";
 
@@ -55,7 +56,9 @@ export class Scene {
   measure() {
     const { rows } = this.data;
     const { count } = rows;
-    const errors = rows.error_mm.slice().sort((a, b) => a - b);
+    const errors = rows.error_mm.filter((error) => error !== null).sort((a, b) => a - b);
+    const isArrow = (shift) => shift !== null;
+    this.has = { arrows: rows.residual.some(isArrow), dots: !rows.residual.every(isArrow) };
     const ends = [[0, 0, 0], ...rows.predicted, ...elbows(this.data)];
     const bounds = boundsOf(ends);
     this.size = Math.max(Math.hypot(...bounds.map(([a, b]) => b - a)) * 0.6, 0.1);
@@ -71,7 +74,8 @@ export class Scene {
     this.legend = { least: 0, most: quantile(errors, 0.95) || 1e-9, square: 0 };
     this.legend.square = 1e3 * [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01].find((it) => it <= this.size / 3 || it === 0.01);
     // Many arrows are shorter, so that they stay apart.
-    const length = 0.09 * this.size * Math.min(1, Math.sqrt(300 / count));
+    this.room = Math.min(0.09 * this.size * Math.min(1, Math.sqrt(300 / count)), ...this.data.instruments.map((it) => roomForArrows(it, this.size)));
+    const length = this.room;
     this.arrowScale = round(length / (this.legend.most * 1e-3));
     this.axisScale = round((0.05 * this.size) / this.deviation());
   }
@@ -101,13 +105,15 @@ export class Scene {
 
   buildArrows() {
     const { rows } = this.data;
-    const width = this.size * (rows.count > 800 ? 0.0016 : 0.003);
+    const width = Math.min(this.size * (rows.count > 800 ? 0.0016 : 0.003), this.room / 30);
+    this.dots = new InstancedMesh(new SphereGeometry(this.size * (rows.count > 800 ? 0.004 : 0.0075), 10, 8), this.materials.arrow, rows.count);
     const shaft = new CylinderGeometry(width, width, 1, 5);
     const head = new ConeGeometry(width * 3, 1, 8);
     this.shafts = new InstancedMesh(shaft, this.materials.arrow, rows.count);
     this.heads = new InstancedMesh(head, this.materials.arrow, rows.count);
     this.parts.arrows = new Group();
     this.parts.arrows.add(this.shafts, this.heads);
+    if (this.has.dots) this.parts.arrows.add(this.dots);
     this.headLength = width * 8;
     this.world.add(this.parts.arrows);
   }
@@ -119,11 +125,13 @@ export class Scene {
     this.world.add(this.parts.instruments);
   }
 
-  /** Puts every arrow where its target was predicted. */
+  /** Puts every arrow where its target was predicted, or a dot where the residual is no shift in the picture. */
   placeArrows() {
     const { rows } = this.data;
     rows.predicted.forEach((from, row) => {
-      const arrow = scale(rows.residual[row], 1e-3 * this.arrowScale);
+      const shift = rows.residual[row];
+      this.dots.setMatrixAt(row, shift ? new Matrix4().makeScale(0, 0, 0) : new Matrix4().makeTranslation(...from));
+      const arrow = scale(shift ?? [0, 0, 0], 1e-3 * this.arrowScale);
       const length = Math.max(Math.hypot(...arrow), 1e-6);
       const direction = new Vector3(...arrow).divideScalar(length);
       const turn = new Quaternion().setFromUnitVectors(UP, direction);
@@ -132,7 +140,7 @@ export class Scene {
       this.shafts.setMatrixAt(row, new Matrix4().compose(at((length - head) / 2), turn, new Vector3(1, length - head, 1)));
       this.heads.setMatrixAt(row, new Matrix4().compose(at(length - head / 2), turn, new Vector3(head / this.headLength, head, head / this.headLength)));
     });
-    for (const mesh of [this.shafts, this.heads]) {
+    for (const mesh of [this.shafts, this.heads, this.dots]) {
       mesh.instanceMatrix.needsUpdate = true;
       mesh.computeBoundingSphere();
     }
@@ -142,6 +150,7 @@ export class Scene {
   /** Random places within the limits that are farther from every measurement than those are from each other. */
   buildReach() {
     const places = unsampled(this.data, this.size);
+    this.reachShare = places.length / REACH_POINTS;
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(places.flat(), 3));
     this.parts.reach = new Points(geometry, this.materials.reach);
@@ -153,7 +162,7 @@ export class Scene {
     this.renderer.setClearColor(of("card"));
     const colours = { calibrated: "s0", nominal: "soft", axis: "s2", chosen: "alarm", grid: "rule", reach: "soft" };
     for (const [material, name] of Object.entries(colours)) this.materials[material].uniforms.tint.value = of(name);
-    const ofInstruments = { body: "s3", x: "alarm", y: "s2", z: "s0", sight: "alarm", plumb: "soft" };
+    const ofInstruments = { body: "s3", x: "alarm", y: "s2", z: "s0", sight: "alarm", plumb: "soft", wire: "rule", sheet: "s3", edge: "s3" };
     for (const [material, name] of Object.entries(ofInstruments)) if (this.instruments) this.instruments.materials[material].uniforms.tint.value = of(name);
     // One hue, from near the page's colour to full: the larger the residual, the stronger.
     const [least, most] = [of("s1").lerp(of("card"), 0.7), of("s1").lerp(of("ink"), 0.15)];
@@ -164,8 +173,9 @@ export class Scene {
       const shade = least.clone().lerp(most, Math.min(error / this.legend.most, 1));
       this.shafts.setColorAt(row, shade);
       this.heads.setColorAt(row, shade);
+      this.dots.setColorAt(row, shade);
     });
-    this.shafts.instanceColor.needsUpdate = this.heads.instanceColor.needsUpdate = true;
+    for (const mesh of [this.shafts, this.heads, this.dots]) mesh.instanceColor.needsUpdate = true;
     this.render();
   }
 
@@ -184,28 +194,27 @@ export class Scene {
     const { rows, targets, instruments, mounted, tip } = this.data;
     const nominal = configure(this.data, readings, NOMINAL);
     const calibrated = configure(this.data, readings, CALIBRATED);
+    // The calibrated robot stands where it is, at what it touched; the nominal one is moved away from it.
     const apart = (a, b) => add(b, scale(subtract(a, b), this.axisScale));
-    const axes = calibrated.axes.map((axis, k) => {
-      const direction = new Vector3(...apart(axis.direction, nominal.axes[k].direction)).normalize().toArray();
-      return { point: apart(axis.point, nominal.axes[k].point), direction };
+    const axes = nominal.axes.map((axis, k) => {
+      const direction = new Vector3(...apart(axis.direction, calibrated.axes[k].direction)).normalize().toArray();
+      return { point: apart(axis.point, calibrated.axes[k].point), direction };
     });
+    const placeOf = (frame) => calibrated.at(frame).t;
     // Tools and instruments are no error of the arm: they stand at the last axis as it is.
-    const moved = (frame) => {
-      const { r, t } = calibrated.at(frame);
-      return { r, t: frame.on === null ? t : add(t, subtract(axes[frame.on].point, calibrated.axes[frame.on].point)) };
-    };
-    const links = this.links(axes, (frame) => moved(frame).t);
+    const nominalPlace = (frame) => (frame.on === null ? nominal.at(frame).t : add(nominal.at(frame).t, subtract(axes[frame.on].point, nominal.axes[frame.on].point)));
+    const links = this.links(calibrated.axes, placeOf);
     const target = targets[rows.target[row]];
-    if (target && !target.nominal_pose) links.push([moved(tip).t, moved(target).t]);
+    if (target && !target.nominal_pose) links.push([placeOf(tip), placeOf(target)]);
     for (const { on, pose } of mounted) if (on === null) links.push([pose.t, pose.t]);
-    if (this.data.draws_instruments) this.drawn = links.flat();
-    this.fill(this.parts.calibrated, axes, links, this.materials.calibrated, this.materials.axis);
-    const nominalLinks = this.links(nominal.axes, (frame) => nominal.at(frame).t);
-    this.fill(this.parts.nominal, nominal.axes, nominalLinks, this.materials.nominal, this.materials.nominal);
+    const nominalLinks = this.links(axes, nominalPlace);
+    if (this.data.draws_instruments) this.drawn = [...links, ...nominalLinks].flat();
+    this.fill(this.parts.calibrated, calibrated.axes, links, this.materials.calibrated, this.materials.axis);
+    this.fill(this.parts.nominal, axes, nominalLinks, this.materials.nominal, this.materials.nominal);
     const seen = row === null ? null : rows.predicted[row];
     this.chosen.visible = row !== null;
     if (seen) this.chosen.position.set(...seen);
-    this.instruments?.pose(instruments.map(moved), mounted.map((frame) => moved(frame).t), rows.instrument[row], seen);
+    this.instruments?.pose(instruments.map(calibrated.at), mounted.map(placeOf), rows.instrument[row], { seen, tip: placeOf(tip) });
     if (this.placedScale !== this.arrowScale) this.placeArrows();
     this.render();
   }
@@ -356,7 +365,8 @@ function elbows(data) {
 
 /** Instruments beside the robot that the picture has room for: of those farther away, it shows the direction. */
 function nearInstruments({ draws_instruments, instruments }, centre, size) {
-  const places = instruments.filter((it) => draws_instruments && it.on === null).map((it) => it.pose.t);
+  const beside = instruments.filter((it) => draws_instruments && it.on === null && hasPlace(it));
+  const places = beside.flatMap((it) => extent(it).map((place) => act(it.pose, place)));
   return places.filter((place) => Math.hypot(...subtract(place, centre)) < 2.5 * size);
 }
 

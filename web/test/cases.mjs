@@ -98,6 +98,12 @@ export const TREES = {
   "two trackers": fromTwoPlaces,
 };
 
+/** A simulated session of a kind that has no device frame, calibrated, with noise that shows where a residual goes. */
+export function ofKind(kind, ...words) {
+  const model = join(ELBOW, "robot.urdf");
+  return calibrate(kind, model, simulated(kind, model, "--kind", kind, "--count", "120", "--noise", "1mm,0.1deg"), ...words);
+}
+
 /** Every case: its name, a function that gives the folder with its results, and whether it is looked at in one width only. */
 export const CASES = [
   ["the paper's elbow", () => calibrate("elbow", join(ELBOW, "robot.urdf"), join(ELBOW, "points.csv"))],

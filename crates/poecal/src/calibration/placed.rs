@@ -36,8 +36,10 @@ pub struct CalibratedStation {
     pub noise: Noise,
     /// Zero and scale of its distances.
     pub range: Range,
-    /// What it is: an instrument, an anchor, a socket, a plane, a sphere, a direction.
+    /// What it is: an instrument, an anchor, a socket, a plane, a sphere, a direction, a pair of configurations.
     pub kind: &'static str,
+    /// Radius of a sphere with that of the probe, known or found, metres.
+    pub radius_m: Option<f64>,
 }
 
 /// The stations of the device.
@@ -47,6 +49,7 @@ pub(super) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise)
         noise: session.usual_noise(station, noise),
         range: estimate.range(station),
         kind: data.station_word(station),
+        radius_m: data.sphere_reading(station).map(|reading| reading - estimate.range(station).zero_m),
         name: data.stations.get(station).cloned().flatten(),
         base_from_device: estimate.device_at_zero(station).inverse(),
     };

@@ -101,7 +101,7 @@ fn pattern_words(pattern: &Pattern, kind: JointKind) -> String {
         JointKind::Prismatic => (format!("{:.3} mm", 1e3 * pattern.rms), "scale, spindle or guide"),
     };
     format!(
-        "{:.0} % of the squared position residuals follow its position, like a joint error of {size} (RMS): {parts}",
+        "{:.0} % of the squared residuals follow its position, like a joint error of {size} (RMS): {parts}",
         100.0 * pattern.share
     )
 }

@@ -205,8 +205,16 @@ impl<'a> SideBySide<'a> {
         match seen.measurement.seen() {
             Seen::Other(model) => {
                 let target = self.predicted(lane, seen);
-                let range = self.linkage.range(seen.station);
-                RowError::new(model, &range.map_or(target, |range| range.seen(&target)))
+                match (self.linkage.range(seen.station), model.range()) {
+                    // The length of the seen place would lose the sign of a reading below zero.
+                    (Some(range), Some(measured)) => {
+                        let mut values = [0.0; NUMBERS];
+                        values[0] = measured - range.reading(&target);
+                        RowError::of(model, values)
+                    }
+                    (Some(range), None) => RowError::new(model, &range.seen(&target)),
+                    (None, _) => RowError::new(model, &target),
+                }
             }
             Seen::Point(_) | Seen::Frame(_) => {
                 let mut values = [0.0; NUMBERS];

@@ -54,6 +54,12 @@ impl Range {
         *self == Range::default()
     }
 
+    /// What the instrument reads of a target at this pose: below zero inside a sphere that is touched.
+    #[must_use]
+    pub(crate) fn reading(&self, target: &Pose) -> f64 {
+        target.translation.norm() * (1.0 + self.scale) + self.zero_m
+    }
+
     /// The target's pose at the place that has the read distance, in the direction where it is.
     #[must_use]
     pub fn seen(&self, target: &Pose) -> Pose {

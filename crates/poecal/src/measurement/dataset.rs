@@ -241,13 +241,33 @@ impl Dataset {
         self.stations.len() - 1
     }
 
-    /// What a station is: a socket, a plane and so on, if all its rows say so; else an instrument.
+    /// What a station is: a socket, a plane and so on, if all its rows say so; a pair, if each of its rows is of two configurations; else an
+    /// instrument.
     #[must_use]
     pub fn station_word(&self, station: usize) -> &'static str {
         let own = self.observations.iter().filter(|it| it.station == station);
-        let mut words = own.map(|it| it.measurement.observe().device_word());
+        let word = |it: &Observation| match it.from {
+            Some(_) => "pair",
+            None => it.measurement.observe().device_word(),
+        };
+        let mut words = own.map(word);
         let first = words.next().unwrap_or("instrument");
-        if words.all(|word| word == first) { first } else { "instrument" }
+        match words.all(|word| word == first) {
+            true if self.sphere_reading(station).is_some() => "sphere",
+            true => first,
+            false => "instrument",
+        }
+    }
+
+    /// The one distance that all rows of a station have, if it has several rows and they are distances alone: its targets are on a sphere.
+    #[must_use]
+    pub(crate) fn sphere_reading(&self, station: usize) -> Option<f64> {
+        let own = self.observations.iter().filter(|it| it.station == station);
+        let mut readings =
+            own.map(|it| if it.from.is_some() { None } else { it.measurement.observe().range() });
+        let first = readings.next().flatten()?;
+        let mut others = readings.peekable();
+        (others.peek().is_some() && others.all(|it| it == Some(first))).then_some(first)
     }
 
     /// Name of a station in messages.

@@ -181,6 +181,10 @@ pub struct Simulation {
     pub gravity: Vector3<f64>,
 }
 
+/// What is said if no joint is between any instrument and any target.
+const SAME_LINKS: &str =
+    "found instruments and targets on the same links only, expected joints between them: name others";
+
 /// Name of the temperature in simulated sessions.
 const TEMPERATURE: &str = "temperature";
 /// Range of the temperature, °C.
@@ -347,8 +351,7 @@ impl Simulation {
         let configurations = Configurations::new(nominal);
         let pairs = pairs(actual);
         if pairs.is_empty() {
-            let message = "found instruments and targets on the same links only, expected joints between them: name others";
-            return Err(Error::new(ErrorKind::Problem, message));
+            return Err(Error::new(ErrorKind::Problem, SAME_LINKS));
         }
         let mut before = vec![0.0; data.reading_names().len()];
         for row in 0..self.count {
@@ -451,9 +454,13 @@ pub(crate) fn seen(
     (instrument, target): (Option<&Mount>, Option<&Mount>),
     readings: &[f64],
 ) -> Pose {
-    let values = robot.joint_values(readings);
-    let base_from = |mount: &Mount| robot.motion_of(mount.body, &values) * robot.base_from(mount);
+    let base_from = |mount: &Mount| base_from(robot, mount, readings);
     let base_from_target = target.map_or_else(|| robot.forward_kinematics(readings), base_from);
     let instrument_from_base = instrument.map_or(*device_from_base, |mount| base_from(mount).inverse());
     instrument_from_base * base_from_target
+}
+
+/// A target or an instrument of a robot in the base frame.
+fn base_from(robot: &Robot, mount: &Mount, readings: &[f64]) -> Pose {
+    robot.motion_of(mount.body, &robot.joint_values(readings)) * robot.base_from(mount)
 }

@@ -12,7 +12,7 @@ use crate::measurement::{
     Dataset, DirectionMeasurement, DistanceMeasurement, FlushMeasurement, HeightMeasurement, Measurement,
     NUMBERS, Observation, PoseMeasurement, SocketMeasurement,
 };
-use crate::robot::Robot;
+use crate::robot::{Body, Mount, Robot};
 
 /// Distance of the two sockets, metres.
 const SOCKETS_APART_M: f64 = 0.2;
@@ -30,11 +30,62 @@ const FULFILLED: f64 = 1e-13;
 const DIFFERENCE: f64 = 1e-6;
 
 /// A place from which a session measures.
+#[derive(Clone)]
 struct Place {
-    name: &'static str,
-    device_from_base: Pose,
+    name: String,
+    stands: Stands,
     /// Zero of an instrument's distances, metres.
     zero_m: f64,
+}
+
+/// On what a place stands.
+#[derive(Clone)]
+enum Stands {
+    /// Beside the robot: `device_from_base`.
+    Beside(Pose),
+    /// On one of its links.
+    On(Mount),
+    /// Where the target itself was in another configuration.
+    Before,
+}
+
+/// A place with a target of the robot that it sees; none is the tip.
+struct Sight {
+    place: Place,
+    target: Option<Mount>,
+}
+
+impl Sight {
+    /// The target in the base frame.
+    fn base_from_target(&self, robot: &Robot, readings: &[f64]) -> Pose {
+        self.target.as_ref().map_or_else(
+            || robot.forward_kinematics(readings),
+            |target| super::base_from(robot, target, readings),
+        )
+    }
+
+    /// The target as it is seen, if the place is that of one configuration.
+    fn seen(&self, robot: &Robot, readings: &[f64]) -> Pose {
+        let device_from_base = match &self.place.stands {
+            Stands::Beside(device_from_base) => *device_from_base,
+            Stands::On(mount) => super::base_from(robot, mount, readings).inverse(),
+            Stands::Before => Pose::identity(),
+        };
+        device_from_base * self.base_from_target(robot, readings)
+    }
+
+    /// The target as it is seen from where it was in an earlier configuration.
+    fn seen_from(&self, robot: &Robot, [before, readings]: [&[f64]; 2]) -> Pose {
+        self.base_from_target(robot, before).inverse() * self.base_from_target(robot, readings)
+    }
+
+    /// An observation by this place of its target, which says nothing yet.
+    fn observation(&self, data: &mut Dataset) -> Observation {
+        let target = data.target_index(self.target.as_ref().map(|it| it.name.as_str()));
+        let station = data.station_index(Some(&self.place.name));
+        let measurement = Measurement::Socket(SocketMeasurement::default());
+        Observation { station, ..Observation::new(target, measurement) }
+    }
 }
 
 impl Kind {
@@ -77,27 +128,30 @@ impl Kind {
         let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
         let mut generator = ChaCha8Rng::seed_from_u64(exact.seed);
         let mut data = Dataset::new(robot.reading_names());
-        let target = data.target_index(None);
-        let places = exact.places(robot, self);
+        let sights = exact.sights(robot, self)?;
         let is_paired = self.is_paired();
         let width = data.reading_names().len().max(1) * if is_paired { 2 } else { 1 };
         for (row, own) in readings.chunks_exact(width).enumerate() {
-            let place = &places[row % places.len()];
+            let sight = &sights[row % sights.len()];
             let (first, own) = own.split_at(if is_paired { width / 2 } else { 0 });
-            let tip = robot.forward_kinematics(own);
-            let mut observation = Observation::new(target, Measurement::Socket(SocketMeasurement::default()));
-            observation.station = data.station_index(Some(place.name));
-            let device_from_base = if is_paired {
+            let mut observation = sight.observation(&mut data);
+            let seen = if is_paired {
                 observation.from = Some(data.push_further(first)?);
-                robot.forward_kinematics(first).inverse()
+                sight.seen_from(robot, [first, own])
             } else {
-                place.device_from_base
+                sight.seen(robot, own)
             };
-            observation.measurement = exact.seen(self, place, &(device_from_base * tip), &mut generator);
+            observation.measurement = exact.seen(self, &sight.place, &seen, &mut generator);
             data.push_observation(own, observation)?;
         }
-        let devices =
-            if is_paired { Vec::new() } else { places.iter().map(|it| it.device_from_base).collect() };
+        let device = |name: &Option<String>| {
+            let own = sights.iter().find(|it| name.as_ref() == Some(&it.place.name))?;
+            match &own.place.stands {
+                Stands::Beside(device_from_base) => Some(*device_from_base),
+                Stands::On(_) | Stands::Before => None,
+            }
+        };
+        let devices = data.stations.iter().filter_map(device).collect();
         Ok((data, devices))
     }
 }
@@ -111,35 +165,67 @@ impl Simulation {
         kind: Kind,
         generator: &mut ChaCha8Rng,
     ) -> Result<Dataset> {
-        let places = self.places(actual, kind);
+        let sights = self.sights(actual, kind)?;
         let mut data = Dataset::new(nominal.reading_names());
         let configurations = Configurations::new(nominal);
-        let target = data.target_index(None);
         for row in 0..self.count {
-            let place = &places[row % places.len()];
-            let station = data.station_index(Some(place.name));
-            let mut observation = Observation::new(target, Measurement::Socket(SocketMeasurement::default()));
-            observation.station = station;
+            let sight = &sights[row % sights.len()];
+            let mut observation = sight.observation(&mut data);
             let readings = if kind.is_touched() {
-                let found = self.touching(actual, &configurations, kind, place, generator)?;
+                let found = self.touching(actual, &configurations, kind, sight, generator)?;
                 observation.measurement = found.1;
                 found.0
             } else {
                 let readings = configurations.random(generator);
-                let tip = actual.forward_kinematics(&readings);
-                let device_from_base = if kind.is_paired() {
+                let seen = if kind.is_paired() {
                     let other = configurations.random(generator);
                     observation.from = Some(data.push_further(&other)?);
-                    actual.forward_kinematics(&other).inverse()
+                    sight.seen_from(actual, [&other, &readings])
                 } else {
-                    place.device_from_base
+                    sight.seen(actual, &readings)
                 };
-                observation.measurement = self.seen(kind, place, &(device_from_base * tip), generator);
+                observation.measurement = self.seen(kind, &sight.place, &seen, generator);
                 readings
             };
             data.push_observation(&readings, observation)?;
         }
         Ok(data)
+    }
+
+    /// Which place sees which target: those of the kind, or the robot's own instruments, and each target with a body of its own, or the tip.
+    fn sights(&self, actual: &Robot, kind: Kind) -> Result<Vec<Sight>> {
+        let mut places = self.places(actual, kind);
+        if !actual.instruments.is_empty() && !kind.is_paired() {
+            let on = |mount: &Mount| Place {
+                name: mount.name.clone(),
+                stands: Stands::On(mount.clone()),
+                zero_m: places.first().map_or(0.0, |it| it.zero_m),
+            };
+            places = actual.instruments.iter().map(on).collect();
+        }
+        let targets: Vec<Option<Mount>> = match actual.mounted.as_slice() {
+            [] => vec![None],
+            mounted => mounted.iter().cloned().map(Some).collect(),
+        };
+        let body = |it: &Option<Mount>| it.as_ref().map_or_else(|| actual.tip_body(), |mount| mount.body);
+        let sight = |place: &Place, target: &Option<Mount>| {
+            let mut place = place.clone();
+            // As files name the pairs of a target.
+            if let (Stands::Before, Some(mount)) = (&place.stands, target) {
+                place.name = format!("{}/{}", place.name, mount.name);
+            }
+            Sight { place, target: target.clone() }
+        };
+        let all = targets.iter().flat_map(|target| places.iter().map(move |place| sight(place, target)));
+        let moves = |sight: &Sight| match &sight.place.stands {
+            Stands::On(mount) => mount.body != body(&sight.target),
+            Stands::Beside(_) | Stands::Before => body(&sight.target) != Body::Base,
+        };
+        let found: Vec<Sight> = all.filter(moves).collect();
+        if found.is_empty() {
+            return Err(Error::new(ErrorKind::Problem, super::SAME_LINKS));
+        }
+        Ok(found)
     }
 
     /// The places of a kind.
@@ -172,12 +258,16 @@ impl Simulation {
             };
             let is_counted = kind == Kind::Change;
             let zero_m = if is_counted { random::uniform(&mut generator) - 0.5 } else { 0.0 };
-            Place { name, device_from_base: Pose::new(turn, -(turn * point)), zero_m }
+            let stands = match kind.is_paired() {
+                true => Stands::Before,
+                false => Stands::Beside(Pose::new(turn, -(turn * point))),
+            };
+            Place { name: name.to_owned(), stands, zero_m }
         };
         names.iter().take(kind.places().max(1)).enumerate().map(place).collect()
     }
 
-    /// A point that the tip reaches well: the middle of its places.
+    /// A point that all targets reach well: the middle of their places.
     fn middle(
         &self,
         actual: &Robot,
@@ -185,8 +275,17 @@ impl Simulation {
         generator: &mut ChaCha8Rng,
     ) -> Vector3<f64> {
         const SOME: usize = 20;
-        let tips =
-            (0..SOME).map(|_| actual.forward_kinematics(&configurations.random(generator)).translation);
+        let place = |readings: &[f64]| {
+            let targets = actual.mounted.iter().filter(|it| it.body != Body::Base);
+            let places = targets.map(|it| super::base_from(actual, it, readings).translation);
+            let (count, sum) =
+                places.fold((0, Vector3::zeros()), |(count, sum), place| (count + 1, sum + place));
+            match count {
+                0 => actual.forward_kinematics(readings).translation,
+                count => sum / f64::from(count),
+            }
+        };
+        let tips = (0..SOME).map(|_| place(&configurations.random(generator)));
         let tips: Vec<Vector3<f64>> = tips.collect();
         let outward = tips
             .iter()
@@ -223,7 +322,7 @@ impl Simulation {
         actual: &Robot,
         configurations: &Configurations,
         kind: Kind,
-        place: &Place,
+        sight: &Sight,
         generator: &mut ChaCha8Rng,
     ) -> Result<(Vec<f64>, Measurement)> {
         let length = random::normal_vector(generator) * self.noise_position_m;
@@ -256,31 +355,26 @@ impl Simulation {
         };
         for _ in 0..ATTEMPTS {
             let start = configurations.random(generator);
-            if let Some(found) = fulfilling(actual, &start, &place.device_from_base, &exact)
+            if let Some(found) = fulfilling(actual, &start, sight, &exact)
                 && configurations.contain(&found)
             {
                 return Ok((found, said));
             }
         }
         let message = format!(
-            "found no configuration within the joints' limits in which the tip touches `{}`, expected a robot that reaches it",
-            place.name
+            "found no configuration within the joints' limits in which `{}` is touched, expected a robot that reaches it",
+            sight.place.name
         );
         Err(Error::new(ErrorKind::Problem, message))
     }
 }
 
 /// Readings near these with which a measurement fits exactly, by Newton's method with the least change of the joints.
-fn fulfilling(
-    robot: &Robot,
-    start: &[f64],
-    device_from_base: &Pose,
-    exact: &Measurement,
-) -> Option<Vec<f64>> {
+fn fulfilling(robot: &Robot, start: &[f64], sight: &Sight, exact: &Measurement) -> Option<Vec<f64>> {
     let numbers = exact.observe().dim();
     let residual = |readings: &[f64]| {
         let mut e = [0.0; NUMBERS];
-        exact.observe().residual(&(*device_from_base * robot.forward_kinematics(readings)), &mut e);
+        exact.observe().residual(&sight.seen(robot, readings), &mut e);
         DVector::from_column_slice(&e[..numbers])
     };
     let mut readings = start.to_vec();

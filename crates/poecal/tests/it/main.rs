@@ -48,6 +48,7 @@ mod quantities;
 mod reference;
 mod refit_promise;
 mod report_page;
+mod report_places;
 mod robust;
 mod shop;
 mod starts;
@@ -59,6 +60,7 @@ mod tree_models;
 #[allow(dead_code)]
 #[path = "../trials/mod.rs"]
 mod trials;
+mod two_arms;
 mod uncertainty;
 mod unnamed_targets;
 mod urdf_patch;

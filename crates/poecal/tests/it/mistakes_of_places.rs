@@ -109,10 +109,12 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
         DiagnosisKind::PlacesSwapped => renamed(&mut data, g),
         DiagnosisKind::LengthUnit => {
             let factor = [25.4, 1.0 / 25.4, 10.0, 0.1, 1e3, 1e-3][pick(g, 6)];
-            each(&mut data, |_, row| match &mut row.measurement {
-                Measurement::Distance(seen) => seen.distance *= factor,
-                Measurement::Height(seen) => seen.height *= factor,
-                other => panic!("{other:?} has no length"),
+            each(&mut data, |_, row| {
+                if let Measurement::Distance(seen) = &mut row.measurement {
+                    seen.distance *= factor;
+                } else if let Measurement::Height(seen) = &mut row.measurement {
+                    seen.height *= factor;
+                }
             });
             format!("lengths times {factor}")
         }
@@ -166,7 +168,18 @@ fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, Stri
             });
             format!("times {factor}")
         }
-        other => panic!("{other:?} is no mistake of these sessions"),
+        DiagnosisKind::JointUnit
+        | DiagnosisKind::JointSign
+        | DiagnosisKind::JointsSwapped
+        | DiagnosisKind::JointsCoupled
+        | DiagnosisKind::JointZero
+        | DiagnosisKind::QuaternionOrder
+        | DiagnosisKind::EulerConvention
+        | DiagnosisKind::LeftHanded
+        | DiagnosisKind::RowShift
+        | DiagnosisKind::TargetsSwapped
+        | DiagnosisKind::TargetsUnnamed
+        | DiagnosisKind::DuplicateRows => panic!("{kind:?} is no mistake of these sessions"),
     };
     (data, words)
 }

@@ -13,14 +13,14 @@ use poecal::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis
 use serde_json::Value;
 
 /// A calibration with its data, and its file as read back.
-struct Session {
+pub(crate) struct Session {
     data: Dataset,
     calibration: Calibration,
-    file: CalibrationFile,
+    pub(crate) file: CalibrationFile,
 }
 
 impl Session {
-    fn new(robot: &Robot, kind: Kind, count: usize) -> Self {
+    pub(crate) fn new(robot: &Robot, kind: Kind, count: usize) -> Self {
         let made = Simulation { count, ..Simulation::default() }.run(robot, kind).unwrap();
         Session::of(robot, made.data)
     }
@@ -37,7 +37,7 @@ impl Session {
         Residuals::of(&self.data, &self.calibration)
     }
 
-    fn page(&self) -> String {
+    pub(crate) fn page(&self) -> String {
         calibration_page(&self.file, &self.residuals()).unwrap().concat()
     }
 }
@@ -69,7 +69,7 @@ fn figures(page: &str) -> Vec<(String, f64, String)> {
 }
 
 /// What the page's script works on.
-fn data_of(page: &str) -> Value {
+pub(crate) fn data_of(page: &str) -> Value {
     let data = page.split_once("id=\"report-data\">").unwrap().1.split_once("</script>").unwrap().0;
     serde_json::from_str(data).unwrap()
 }
@@ -91,7 +91,7 @@ fn shows(text: &str, value: f64) -> bool {
     (shown - value).abs() <= 0.5001 * 10f64.powi(power - decimals as i32)
 }
 
-fn check_figures(name: &str, session: &Session) {
+pub(crate) fn check_figures(name: &str, session: &Session) {
     let file: Value = serde_json::from_str(&session.file.to_text().unwrap()).unwrap();
     let figures = figures(&session.page());
     for (key, factor, text) in &figures {

@@ -244,3 +244,37 @@ fn a_single_unnamed_socket_is_a_fixed_point() {
     let of = |data: &Dataset| data.observations.iter().all(|row| row.measurement.has(Quantity::Contact));
     assert!(of(&file.data));
 }
+
+/// Residuals of touches inside and outside a sphere of unknown radius have different signs, so that their mean is near zero: the zero of the
+/// sphere is fitted with them.
+#[test]
+fn residuals_of_a_sphere_have_their_sign() {
+    let simulation = Simulation { count: 150, ..Simulation::default() };
+    let made = simulation.run(&elbow(), Kind::Sphere).unwrap();
+    let options = CalibrationOptions { robust: Robust::Off, ..geometry() };
+    let found = calibrate(&made.nominal, &made.data, &options).unwrap();
+    let packed = Packed::of(&made.nominal, &made.data);
+    let session = Session::new(&made.nominal, &made.data, &packed, true);
+    let errors = session.errors(&found.fit_rows, &found.models.calibrated);
+    let all: Vec<f64> = errors.iter().flat_map(|it| it.numbers().map(|(_, e)| e)).collect();
+    let mean = all.iter().sum::<f64>() / all.len() as f64;
+    let rms = (all.iter().map(|e| e * e).sum::<f64>() / all.len() as f64).sqrt();
+    println!("mean {:.2e} mm, RMS {:.4} mm", 1e3 * mean, 1e3 * rms);
+    // The zero is an unknown, and so their mean vanishes but for the prior; of one sign it would be 0.8 of the RMS.
+    assert!(mean.abs() < 0.01 * rms, "{mean:e} m of {rms:e} m");
+}
+
+/// Rows that show an orientation without a position are neither poses nor points.
+#[test]
+fn flush_faces_and_directions_are_no_poses() {
+    let robot = poecal::simulate::scara();
+    for (header, row, quantity) in
+        [("plane,contact", "table,flush", "height"), ("direction,tilt_x,tilt_y", "gravity,0.1,0", "tilt")]
+    {
+        let text = format!("joint1,joint2,joint3,joint4,{header}\n0,0.1,0.1,0,{row}\n0.2,0.1,0.1,0,{row}\n");
+        let file = parse(&text, "a table", &robot, &ReadOptions::default()).unwrap();
+        let found = &file.understood[0];
+        println!("{header}: {} points, {} poses, {:?}", found.points, found.poses, found.others);
+        assert_eq!((found.points, found.poses, found.others.get(quantity)), (0, 0, Some(&2)));
+    }
+}

@@ -203,6 +203,7 @@ impl StationEntry {
             base_from_device: (&it.base_from_device).into(),
             sigma: (it.noise != noise).then(|| measured(errors, it.noise)),
             kind: (it.kind != "instrument").then(|| it.kind.to_owned()),
+            radius_mm: it.radius_m.map(|radius| 1e3 * radius),
             zero_mm: (it.range.zero_m != 0.0).then_some(1e3 * it.range.zero_m),
             scale: (it.range.scale != 0.0).then_some(it.range.scale),
         };

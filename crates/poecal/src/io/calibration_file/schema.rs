@@ -372,9 +372,12 @@ pub struct StationEntry {
     /// Standard deviation of each component of its measurements that state none, if it differs from that of the first instrument.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma: Option<Measured<f64>>,
-    /// What it is, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it).
+    /// What it is, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it), pair (of configurations: its pose means nothing).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<String>,
+    /// Radius of a sphere, with that of the probe, known or found, millimetres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius_mm: Option<f64>,
     /// Reading of its distances at its own place, millimetres, if it is not 0; of a sphere that is touched, minus its radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub zero_mm: Option<f64>,
@@ -392,6 +395,7 @@ impl StationEntry {
             base_from_device,
             sigma: None,
             kind: None,
+            radius_mm: None,
             zero_mm: None,
             scale: None,
         }

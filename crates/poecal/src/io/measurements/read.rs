@@ -179,6 +179,7 @@ impl<'a> Reader<'a> {
             match row.measurement.seen() {
                 Seen::Point(_) => points += 1,
                 Seen::Frame(_) => poses += 1,
+                // A flush face shows its orientation too, and is no pose.
                 Seen::Other(model) => {
                     let name = model.channels().first().map_or("", |channel| channel.quantity.name());
                     *others.entry(name).or_default() += 1;

@@ -55,7 +55,8 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
 }
 
 /// The columns of rows of other kinds, in the order of a file.
-const OTHER_COLUMNS: [&str; 19] = [
+const OTHER_COLUMNS: [&str; 20] = [
+    "target",
     "pair",
     "anchor",
     "socket",
@@ -89,8 +90,13 @@ fn other_text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Re
     let mut rows: Vec<(Vec<String>, BTreeMap<&str, String>)> = Vec::with_capacity(data.len());
     for (row, observation) in data.observations.iter().enumerate() {
         let mut cells = cells(data, observation, noise)?;
+        // A single target needs no name in its rows.
+        let target = data.targets.get(observation.target).and_then(Option::as_deref);
+        let target = target.filter(|_| data.targets.len() > 1);
+        cells.extend(target.map(|name| ("target", csv_text::cell(name).into_owned())));
         if let Some(from) = observation.from {
-            let pair = BTreeMap::from([("pair", (row + 1).to_string())]);
+            let mut pair = BTreeMap::from([("pair", (row + 1).to_string())]);
+            pair.extend(target.map(|name| ("target", csv_text::cell(name).into_owned())));
             let first = width * from as usize;
             rows.push((readings(&data.further_readings()[first..first + width]), pair.clone()));
             cells.extend(pair);

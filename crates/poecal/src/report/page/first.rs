@@ -2,6 +2,7 @@
 
 use maud::{Markup, Render, html};
 
+use super::devices::Device;
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, figure_or, list, path, plots, quoted};
 use super::lead::{kinds_words, sign, spaced};
@@ -180,7 +181,7 @@ fn the_facts(file: &CalibrationFile, residuals: &Residuals) -> Vec<(&'static str
         }
     };
     let rows = html! {
-        (kinds_words(residuals)) @if residuals.targets.len() > 1 { " of " (residuals.targets.len()) " targets" } ": "
+        (kinds_words(residuals)) @if Device::all(file) == [Device::Pair] { " between two configurations" } @if residuals.targets.len() > 1 { " of " (residuals.targets.len()) " targets" } ": "
         (count(file.accuracy.training.count, "accuracy.training.count")) " fitted, "
         @if let Some(set) = &file.accuracy.held_out { (count(set.count, "accuracy.held_out.count")) } @else { "none" }
         " held out"
@@ -215,7 +216,8 @@ fn noise(file: &CalibrationFile) -> Markup {
             @if k > 0 { ", " }
             (figure(sigma, format_args!("noise.{key}"))) (spaced(quantity.unit())) (further_words(quantity))
         }
-        " each component, " (source)
+        @if noise.sigma.iter().any(|(quantity, _)| quantity.components() > 1) { " each component" }
+        ", " (source)
     }
 }
 

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
+use super::devices::Device;
 use super::short;
 use crate::error::Result;
-use crate::io::calibration_file::{CalibrationFile, PoseEntry};
+use crate::io::calibration_file::{CalibrationFile, PoseEntry, StationEntry};
 use crate::io::residuals::Residuals;
 use crate::lie::Pose;
 use crate::robot::{Body, Mount, Robot};
@@ -23,6 +24,12 @@ pub(super) struct FrameData<'a> {
     pose: PoseEntry,
     /// The same in the nominal model; none of a target in the tip frame.
     nominal_pose: Option<PoseEntry>,
+    /// What an instrument is, if it has no frame of its own: anchor, socket, plane, sphere, direction, pair.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kind: Option<&'static str>,
+    /// Radius of a sphere, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    radius_m: Option<f64>,
 }
 
 impl<'a> FrameData<'a> {
@@ -32,6 +39,18 @@ impl<'a> FrameData<'a> {
             on: body.joint(),
             pose: pose.into(),
             nominal_pose: nominal.map(PoseEntry::from),
+            kind: None,
+            radius_m: None,
+        }
+    }
+
+    /// The same as what a station is.
+    fn of_station(self, station: Option<&StationEntry>) -> Self {
+        let place = station.map(Device::of).filter(|it| *it != Device::Instrument);
+        FrameData {
+            kind: place.map(Device::word),
+            radius_m: station.and_then(|it| it.radius_mm).map(|radius| 1e-3 * radius),
+            ..self
         }
     }
 }
@@ -65,15 +84,15 @@ impl<'a> Frames<'a> {
         let unused = file.instruments.keys().map(String::as_str).filter(|name| !seeing.contains(name));
         let instrument = |name: &'a str| {
             let shown = short(&residuals.files, name);
+            let own = |it: &&StationEntry| it.instrument.as_deref().unwrap_or_default() == name;
+            let station = file.stations.iter().find(own);
             if let Some((body, pose)) = mount(robot, &robot.instruments, name) {
                 let nominal = mount(&nominal, &nominal.instruments, name).map_or(pose, |it| it.1);
-                return Ok(FrameData::new(shown, body, &pose, Some(&nominal)));
+                return Ok(FrameData::new(shown, body, &pose, Some(&nominal)).of_station(station));
             }
-            let station =
-                file.stations.iter().find(|it| it.instrument.as_deref().unwrap_or_default() == name);
             let pose =
                 station.map_or(&file.measurement_frame.base_from_device, |it| &it.base_from_device).pose()?;
-            Ok(FrameData::new(shown, Body::Base, &pose, Some(&pose)))
+            Ok(FrameData::new(shown, Body::Base, &pose, Some(&pose)).of_station(station))
         };
         let instruments = seeing.iter().copied().chain(unused).map(instrument).collect::<Result<_>>()?;
         let tip = FrameData::new("tip", robot.tip_body(), &robot.home, Some(&nominal.home));
@@ -87,9 +106,12 @@ fn mount(robot: &Robot, mounts: &[Mount], name: &str) -> Option<(Body, Pose)> {
     Some((found.body, robot.base_from(found)))
 }
 
-/// Whether instruments are drawn: not a single one beside a robot without branches, whose place says little.
+/// Whether instruments are drawn: not a single one with a frame beside a robot without branches, whose place says little, and no pairs.
 pub(super) fn draws_instruments(file: &CalibrationFile) -> bool {
     let has_branches = file.joints.iter().any(|joint| joint.on.is_some()) || file.robot.tip_on.is_some();
     let has_mounts = !file.instruments.is_empty() || file.targets.values().any(|target| target.on.is_some());
-    has_branches || has_mounts || file.stations.len() > 1
+    let places = Device::all(file);
+    let has_places = places.iter().any(|it| ![Device::Instrument, Device::Pair].contains(it));
+    let drawn = file.stations.iter().filter(|it| Device::of(it) != Device::Pair).count();
+    has_branches || has_mounts || has_places || drawn > 1
 }

@@ -3,10 +3,11 @@
 use maud::{Markup, html};
 use nalgebra::Vector3;
 
+use super::devices::{Device, further, picture_words};
 use super::figures;
 use super::frames::draws_instruments;
 use super::html::{HtmlTable, decimal, figure, figure_or, folded, plots, quoted, section};
-use crate::io::calibration_file::{CalibrationFile, JointEntry, ScrewEntry};
+use crate::io::calibration_file::{CalibrationFile, JointEntry, ScrewEntry, StationEntry};
 use crate::robot::{Body, JointKind};
 
 pub(super) fn sections(file: &CalibrationFile) -> Markup {
@@ -26,12 +27,9 @@ fn view(file: &CalibrationFile) -> Markup {
     }
     let content = html! {
         p {
-            "The " (if draws_instruments(file) { "robot" } else { "arm" }) " as lines along its joints' axes: nominal in grey, calibrated in colour. Arrows go from the place \
-             of a target by the calibrated model to its measured place."
-            @if draws_instruments(file) {
-                " Instruments are drawn as their frames: x in red, y in green, z in blue. A dashed line goes from the instrument of the \
-                 chosen measurement to its target."
-            }
+            "The " (if draws_instruments(file) { "robot" } else { "arm" })
+            " as lines along its joints' axes: nominal in grey, calibrated in colour."
+            (picture_words(file, draws_instruments(file)))
         }
         div #arm.arm {}
         noscript { p.note { "The picture needs JavaScript. All figures are in the tables." } }
@@ -63,31 +61,46 @@ fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
     let mut table = HtmlTable::new(
         "What stands on which body, and where in the base frame with all joints at zero",
         3,
-        &["name", "kind", "stands on", "x, mm", "y, mm", "z, mm"],
+        &["name", "kind", "stands on", "x, mm", "y, mm", "z, mm", "and"],
     );
-    let mut row = |name: &str, kind: &str, body: Body, place: Vector3<f64>| {
+    // A direction has no place.
+    let mut row = |name: &str, kind: &str, body: Body, place: Option<Vector3<f64>>, further: &Markup| {
         let on = match body.joint().and_then(|joint| robot.joints.get(joint)) {
             Some(joint) => format!("link of {}", joint.name),
             None => "base".to_owned(),
         };
-        let [x, y, z] = <[f64; 3]>::from(place).map(|it| decimal(1e3 * it, 3));
-        table.row(&[&name, &kind, &on, &x, &y, &z]);
+        let [x, y, z] = match place {
+            Some(place) => <[f64; 3]>::from(place).map(|it| decimal(1e3 * it, 3)),
+            None => [(); 3].map(|()| "–".to_owned()),
+        };
+        table.row(&[&name, &kind, &on, &x, &y, &z, further]);
     };
     for (k, joint) in robot.joints.iter().enumerate().filter(|(_, joint)| joint.stands_on.is_some()) {
-        row(&joint.name, "joint", robot.body_before(k), joint.frame.translation);
+        row(&joint.name, "joint", robot.body_before(k), Some(joint.frame.translation), &Markup::default());
     }
-    for (mounts, kind) in [(&robot.instruments, "instrument"), (&robot.mounted, "target")] {
-        for mount in mounts {
-            row(&mount.name, kind, mount.body, robot.base_from(mount).translation);
-        }
+    for mount in &robot.instruments {
+        let own = |it: &StationEntry| it.instrument.as_deref() == Some(&mount.name);
+        let station = file.stations.iter().position(own);
+        let kind = station.and_then(|k| file.stations.get(k)).map_or(Device::Instrument, Device::of);
+        let pose = robot.base_from(mount);
+        let further = station.map(|k| further(file, k, &pose)).unwrap_or_default();
+        row(&mount.name, kind.word(), mount.body, Some(pose.translation), &further);
     }
-    let beside = file.stations.iter().map(|it| (it.instrument.as_deref(), &it.base_from_device));
-    let only = file.stations.is_empty().then_some((None, &file.measurement_frame.base_from_device));
-    for (name, pose) in beside.chain(only) {
-        let name = name.unwrap_or("instrument");
-        if !file.instruments.contains_key(name) {
-            row(name, "instrument", Body::Base, pose.position_m.into());
+    for mount in &robot.mounted {
+        row(&mount.name, "target", mount.body, Some(robot.base_from(mount).translation), &Markup::default());
+    }
+    for (k, station) in file.stations.iter().enumerate() {
+        let (name, kind) = (station.instrument.as_deref().unwrap_or("instrument"), Device::of(station));
+        if kind == Device::Pair || file.instruments.contains_key(name) {
+            continue;
         }
+        let further = station.base_from_device.pose().map(|pose| further(file, k, &pose));
+        let place = (kind != Device::Direction).then_some(station.base_from_device.position_m.into());
+        row(name, kind.word(), Body::Base, place, &further.unwrap_or_default());
+    }
+    if file.stations.is_empty() {
+        let place = file.measurement_frame.base_from_device.position_m.into();
+        row("instrument", "instrument", Body::Base, Some(place), &Markup::default());
     }
     Some(table)
 }

@@ -75,13 +75,14 @@ pub(super) fn spaced(unit: Unit) -> &'static str {
     }
 }
 
-/// A component as the page names it: `position x`, or the name of a quantity that is one number.
+/// A component as the page names it: `position x`, `contact x`, or the name of a quantity that is one number.
 pub(super) fn component_words(quantity: Quantity, component: usize) -> String {
     let own = quantity.component_names().get(component).copied().unwrap_or_default();
+    let own = own.rsplit('_').next().unwrap_or_default();
     if quantity.components() == 1 { quantity.name().to_owned() } else { format!("{} {own}", quantity.name()) }
 }
 
-/// How many rows measured what: poses, points, and others by the names of their quantities.
+/// How many rows measured what: poses, points, distances and so on.
 pub(super) fn kinds_words(residuals: &Residuals) -> String {
     let of = |(kind, count): &(Measured<()>, usize)| {
         (kind.iter().map(|(quantity, ())| quantity).collect(), *count)
@@ -92,6 +93,11 @@ pub(super) fn kinds_words(residuals: &Residuals) -> String {
     let words = kinds.iter().map(|(kind, count)| match **kind {
         [Quantity::Position, Quantity::Rotation] => format!("{count} poses"),
         [Quantity::Position] => format!("{count} points"),
+        [Quantity::Distance] => format!("{count} distances"),
+        [Quantity::Contact] => format!("{count} contacts"),
+        [Quantity::Height] => format!("{count} heights"),
+        [Quantity::Height, Quantity::Tilt] => format!("{count} flush faces"),
+        [Quantity::Tilt] => format!("{count} directions"),
         _ => {
             let names: Vec<String> = kind.iter().map(|quantity| quantity.name().to_owned()).collect();
             format!("{count} rows of {}", listed(&names))

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::devices::found_words;
 use super::figures;
 use super::html::{HtmlTable, count, facts, figure, folded, path, plots, quoted, section};
 use crate::calibration::DeviceFrameKnowledge;
@@ -34,18 +35,9 @@ fn solver(file: &CalibrationFile) -> Markup {
         Termination::IterationLimit => "did not converge: the limit of iterations was reached",
         Termination::NotFinite => "did not converge: residuals are not finite",
     };
-    let names = file.stations.iter().enumerate().filter_map(|(k, it)| Some((k, it.instrument.as_deref()?)));
     let device = match file.measurement_frame.known {
-        DeviceFrameKnowledge::Unknown => html! {
-            "fitted with the robot"
-            @if file.stations.len() > 1 {
-                ", one for each of the instruments "
-                @for (n, (k, name)) in names.enumerate() {
-                    @if n > 0 { ", " } (quoted(name, format_args!("stations.{k}.instrument")))
-                }
-            }
-        },
-        DeviceFrameKnowledge::Base => html! { "measured in the robot's base frame" },
+        DeviceFrameKnowledge::Unknown => found_words(file),
+        DeviceFrameKnowledge::Base => ("Device frame", html! { "measured in the robot's base frame" }),
     };
     let unknowns = html! {
         (quoted(&solver.formulation, "solver.formulation")) " formulation, "
@@ -72,7 +64,7 @@ fn solver(file: &CalibrationFile) -> Markup {
     let loss = html! { (file.robust.loss.map_or("least squares", |loss| loss.word())) };
     let all: Vec<_> = std::iter::once(("Unknowns", unknowns))
         .chain(own)
-        .chain([("Steps", steps), ("Loss", loss), ("Device frame", device), ("Version", version)])
+        .chain([("Steps", steps), ("Loss", loss), device, ("Version", version)])
         .collect();
     facts(&all)
 }

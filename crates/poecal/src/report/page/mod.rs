@@ -2,6 +2,7 @@
 
 mod corrected;
 mod data;
+mod devices;
 mod figures;
 mod first;
 mod frames;

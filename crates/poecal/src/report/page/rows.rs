@@ -3,6 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place};
+use super::devices::Device;
 use super::first::{capital, error_table, error_words};
 use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, plots, section};
 use super::lead::{Lead, component_words, sign, spaced};
@@ -28,7 +29,7 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let (shown, all) = (drawn(residuals).len(), residuals.rows().len());
     let lead = Lead::of(residuals).name();
     let content = html! {
-        p { "Residual of each measurement: measured minus predicted by the calibrated model, in the axes of the measuring device." }
+        p { "Residual of each measurement: measured minus predicted by the calibrated model" (axes_words(file, residuals)) "." }
         @if shown < all {
             p.note {
                 "Charts draw " (shown) " of " (all) " rows: the suspected ones, those of the largest errors, and others at equal distances, "
@@ -36,7 +37,7 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             }
         }
         (chart("rows", "By row", "A dot for each row in the order read. A drift or a step shows a change during the session: a tool knocked, a device moved."))
-        (chart("components", "By component", "Residuals of positions along the device's axes, of rotations about them. A mean away from zero in held-out rows shows a frame that moved."))
+        (chart("components", "By component", &component_note(residuals)))
         (folded("The components as numbers", &component_table(residuals)))
         (chart(
             "joints",
@@ -73,6 +74,35 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         @if let Some(table) = leverage_table(residuals) { (folded("The rows of largest leverage", &table)) }
     };
     section("errors", "Errors of the rows", &content)
+}
+
+/// In which axes residuals are, if they have any.
+fn axes_words(file: &CalibrationFile, residuals: &Residuals) -> &'static str {
+    let has_axes = residuals.measured().iter().any(|it| it.is_of_pose());
+    match (has_axes, Device::all(file) == [Device::Pair]) {
+        (false, _) => "",
+        (true, false) => ", in the axes of the measuring device",
+        (true, true) => ", in the axes of the target in the first of the two configurations",
+    }
+}
+
+/// What the components of each quantity are.
+fn component_note(residuals: &Residuals) -> String {
+    let words = |quantity: &Quantity| match quantity {
+        Quantity::Position => "of positions along these axes",
+        Quantity::Rotation => "of rotations about these axes",
+        Quantity::Distance => "of distances, above zero where more was measured",
+        Quantity::Contact => {
+            "of contacts along three axes square to each other, from the ball to the middle of its socket"
+        }
+        Quantity::Height => "of heights, above zero where more was measured than predicted",
+        Quantity::Tilt => "of tilts about the target's own x and y",
+    };
+    let all: Vec<&str> = residuals.measured().iter().map(words).collect();
+    format!(
+        "Residuals {}. A mean away from zero in held-out rows shows that something moved: the device, what it is fixed to, the tool.",
+        all.join("; ")
+    )
 }
 
 /// Errors of all sets, with and without suspected rows.
