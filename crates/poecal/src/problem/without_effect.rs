@@ -50,7 +50,8 @@ impl Layout {
             !self.parameters().any(of_it)
         };
         let sees_axes = |station: usize| data.device_freedom(station, rows) == Freedom::Frame;
-        let of_base = if is_held(0) && estimate.tree.shared(0).is_none() && sees_axes(0) {
+        let first = data.first_station(rows);
+        let of_base = if is_held(first) && estimate.tree.shared(first).is_none() && sees_axes(first) {
             // The first device frame holds the base.
             0
         } else {
