@@ -14,11 +14,12 @@ use poecal::calibration::{
 };
 use poecal::estimate::{Packed, Session};
 use poecal::forensics::{self, diagnose};
+use poecal::lie::Freedom;
 use poecal::measurement::{Measurement, Quantity};
-use poecal::parameters::{Parameter, TargetFrame, screw_axes};
+use poecal::parameters::{DeviceFrame, Parameter, TargetFrame, TargetPlace, screw_axes};
 use poecal::problem::{Problem, Refit};
 use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain};
-use poecal::solve::{Options, minimize};
+use poecal::solve::{LeastSquares, Options, minimize};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use trials::{NOISE, disturbed};
@@ -68,6 +69,31 @@ fn solve_poses(bencher: Bencher<'_, '_>, rows: usize) {
 #[divan::bench(args = ROWS)]
 fn solve_points(bencher: Bencher<'_, '_>, rows: usize) {
     solve(bencher, rows, Kind::Point);
+}
+
+/// Rows of a pass.
+const PASS: usize = 5_000;
+
+/// One pass over the rows: residuals, columns and their products, with axes, target and all device frames but the first unknown.
+#[divan::bench(args = [Kind::Pose, Kind::Point, Kind::Distance, Kind::Height, Kind::Plane, Kind::Socket])]
+fn pass(bencher: Bencher<'_, '_>, kind: Kind) {
+    let made = session(PASS, kind);
+    let (data, rows) = (&made.data, made.data.all_rows());
+    let packed = Packed::of(&made.nominal, data);
+    let session = Session::new(&made.nominal, data, &packed, true);
+    let session = session.with_length(made.nominal.reach_m() / 3.0);
+    let start = delivered(&made.nominal, data);
+    let mut free = screw_axes(start.kinds());
+    free.extend((1..data.station_count()).map(|station| {
+        Parameter::DeviceFrame(DeviceFrame::showing(station, data.device_freedom(station, &rows)))
+    }));
+    free.push(if kind == Kind::Pose {
+        Parameter::TargetFrame(TargetFrame { target: 0, freedom: Freedom::Frame })
+    } else {
+        Parameter::TargetPlace(TargetPlace { target: 0 })
+    });
+    let problem = Problem::new(session, rows, free, NOISE);
+    bencher.counter(divan::counter::ItemsCount::new(PASS)).bench_local(|| black_box(problem.normal(&start)));
 }
 
 /// The same for an arm of thirty joints, one in four of which slides.

@@ -60,6 +60,9 @@ fn effects(found: &CorrectedEntry) -> Markup {
             &figure(*effect_mm, format_args!("corrected.effects.{k}.effect_mm")),
         ]);
     }
+    if faint == found.effects.len() {
+        return html! { p { "None of the " (faint) " effects alone is more than chance and the prior make." } };
+    }
     html! {
         (table)
         @if faint > 0 { p { "Beside these " (faint) " effects that are no more than chance and the prior make." } }

@@ -139,7 +139,7 @@ pub(super) fn folded(summary: &str, table: &HtmlTable) -> Markup {
 
 /// Plots side by side, with a caption.
 pub(super) fn plots(plots: &[Markup], caption: impl Render) -> Markup {
-    html! { figure { div.plots { @for plot in plots { (plot) } } figcaption { (caption) } } }
+    html! { @if !plots.is_empty() { figure { div.plots { @for plot in plots { (plot) } } figcaption { (caption) } } } }
 }
 
 /// A place that the script fills with a chart.
