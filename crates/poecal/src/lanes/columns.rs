@@ -40,7 +40,8 @@ pub(super) fn whitened_columns<S: Simd>(
         }
         let (position, rotation) = column.split_at_mut(NUMBERS / 2);
         if index < plan.columns() {
-            add(position, &work.jacobian[index * stride], sign);
+            let numbers = if plan.along.is_some() { 1 } else { NUMBERS / 2 };
+            add(position, &work.jacobian[index * stride][..numbers], sign);
         }
         if let Some(turn) = index.checked_sub(plan.shifts) {
             let first = turn * turned_rows * stride;

@@ -6,7 +6,7 @@ use pulp::Simd;
 
 use super::frame::{Frame, moved, turned};
 use super::gram::{TILE, add_products};
-use super::plan::{Arm, FixedMotion, Plan};
+use super::plan::{Along, Arm, FixedMotion, Plan};
 use super::shape::ShapedRows;
 use super::totals::Totals;
 use super::turn::Turn;
@@ -78,7 +78,8 @@ fn sum<S: Simd, const FULL: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> To
 fn multiply<S: Simd>(simd: S, plan: &Plan, work: &mut Work, filled: usize) {
     let columns = plan.columns().next_multiple_of(TILE);
     let stride = 3 * work.waiting;
-    add_products(simd, work.jacobian.as_flattened(), stride, 3 * filled, columns, &mut work.products);
+    let used = if plan.along.is_some() { filled } else { 3 * filled };
+    add_products(simd, work.jacobian.as_flattened(), stride, used, columns, &mut work.products);
     let rows = work.turned_rows;
     if rows > 0 {
         let turns = plan.turns.len().next_multiple_of(TILE);
@@ -190,7 +191,22 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
     }
     let last = batch.chain(simd, steps, (joints.as_chunks::<2>().0, factors), weight, per_length);
     let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
-    let force = (Vectors::load(simd, position, part) - target.origin()).scale(weight);
+    let measured_place = Vectors::load(simd, position, part);
+    if let Some(along) = plan.along {
+        let (direction, error) = one_number(simd, along, measured_place, target.origin());
+        let residual = error * weight;
+        (residual * residual).add_to(square_sum, part);
+        let wrench = RowWrench { weight, per_length, force: direction.scale(residual), torque: none[1] };
+        batch.add_device::<S, FULL>(simd, &target, &wrench);
+        batch.add_axes::<S, FULL>(simd, &target, &wrench);
+        batch.add_place::<S, FULL>(&target, &wrench);
+        if FULL {
+            project(simd, jacobian, (plan.columns(), stride), filled, direction, part);
+        }
+        let zero = Lanes::splat(simd, 0.0);
+        return [Vectors([residual, zero, zero]), none[1]];
+    }
+    let force = (measured_place - target.origin()).scale(weight);
     let mut squares = force.dot(force);
     let mut residuals = [force, Vectors([Lanes::splat(simd, 0.0); 3])];
     let mut wrench = RowWrench { weight, per_length, force, torque: residuals[1] };
@@ -214,6 +230,47 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
         batch.add_turned(simd, &turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
     }
     residuals
+}
+
+/// The direction along which one number was measured, and the number less the predicted one.
+#[inline(always)]
+fn one_number<S: Simd>(
+    simd: S,
+    along: Along,
+    measured: Vectors<S>,
+    predicted: Vectors<S>,
+) -> (Vectors<S>, Lanes<S>) {
+    match along {
+        Along::Height => {
+            let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
+            (Vectors([zero, zero, one]), measured.0[2] - predicted.0[2])
+        }
+        Along::Distance => {
+            let distance = predicted.dot(predicted).sqrt();
+            let direction = Vectors(predicted.0.map(|part| part.over(distance, 0.0)));
+            (direction, measured.0[0] - distance)
+        }
+    }
+}
+
+/// Replaces the columns of a block by their parts along a direction, block after block in the order of memory: those of three blocks take
+/// the place of one block of positions.
+#[inline(always)]
+fn project<S: Simd>(
+    simd: S,
+    columns: &mut [[Wide; 3]],
+    (count, stride): (usize, usize),
+    filled: usize,
+    direction: Vectors<S>,
+    part: usize,
+) {
+    for column in columns.chunks_exact_mut(stride).take(count) {
+        let Some(whole) = column.get(filled) else { continue };
+        let moved = Vectors::load(simd, whole, part).dot(direction);
+        if let Some(number) = column.as_flattened_mut().get_mut(filled) {
+            moved.store(number, part);
+        }
+    }
 }
 
 impl Batch<'_> {

@@ -21,7 +21,7 @@ mod work;
 pub(crate) use dense::Factor;
 pub(crate) use errors::Frames;
 pub(crate) use influence::NUMBERS;
-pub(crate) use plan::{Arm, DevicePlan, FixedMotion, JointPlan, PackedRows, Plan, RowData, TermPlan};
+pub(crate) use plan::{Along, Arm, DevicePlan, FixedMotion, JointPlan, PackedRows, Plan, RowData, TermPlan};
 pub(crate) use poses::Exponential;
 pub(crate) use rows::{Shape, ShapedRow};
 pub use simd::{SimdLevel, simd_levels};

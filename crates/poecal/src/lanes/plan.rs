@@ -44,6 +44,15 @@ pub(crate) struct DevicePlan {
     pub(crate) turns: bool,
 }
 
+/// One number of a target's place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Along {
+    /// Its height, along the device's z.
+    Height,
+    /// Its distance from the device's origin.
+    Distance,
+}
+
 /// Columns of one group of rows: *shifts* are translation columns (a direction times the row's weight); *turns* are rotation columns
 /// about the direction of one of the shifts, `w = v / L`, of which the first `tilts` also translate.
 #[derive(Clone, Debug)]
@@ -71,6 +80,8 @@ pub(crate) struct Plan {
     pub(crate) given: usize,
     /// Numbers of each row, if they are another function of the target's pose than its position and orientation ([`Arm::shape`]); else 0.
     pub(crate) shaped: usize,
+    /// The direction along which a row measured one number, if it did not measure a position.
+    pub(crate) along: Option<Along>,
     /// Position over rotation noise in m/rad, if it is the same in all rows: rotation products then follow from those of the translation
     /// columns (theory.md §6 (28a)).
     pub(crate) ratio: Option<f64>,
@@ -126,7 +137,7 @@ pub(crate) struct PackedRows {
 pub(crate) struct RowData<'a> {
     /// `(cos θ, sin θ)` or `(θ, 0)` of each joint.
     pub(crate) joints: &'a [(f64, f64)],
-    pub(crate) position: &'a [f64; 3],
+    pub(crate) position: [f64; 3],
     /// Columns of the measured orientation, and position over rotation noise.
     pub(crate) orientation: Option<(&'a [[f64; 3]; 3], f64)>,
     /// `1/σ` of a position component, or zero.

@@ -3,7 +3,7 @@
 use super::row_group::Form;
 use super::{Layout, Problem};
 use crate::estimate::{Estimate, Passed, RangeTerm, Sight};
-use crate::lanes::{DevicePlan, JointPlan, Plan, TermPlan};
+use crate::lanes::{Along, DevicePlan, JointPlan, Plan, TermPlan};
 use crate::lie::Freedom;
 use crate::parameters::{OtherScrew, Parameter, Subject, ValueTerm};
 use crate::robot::{JointKind, Term};
@@ -46,6 +46,9 @@ impl Place {
 impl ColumnMap {
     /// Of rows of one sight and form. Of two parameters of one frame, axis or target the first counts.
     pub(super) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Self {
+        // An instrument's known zero is not in the kernels.
+        let is_plain = form != Form::Along(Along::Distance) || state.range(sight.station).is_plain();
+        let form = if is_plain { form } else { form.shaped() };
         let mut made = ColumnMap {
             sight,
             form,
@@ -259,9 +262,10 @@ fn plan_without_unknowns(problem: &Problem<'_>, state: &Estimate, sight: Sight, 
         given: 0,
         framed: form.sees_orientation(),
         shaped: match form {
-            Form::Point | Form::Pose => 0,
+            Form::Point | Form::Pose | Form::Along(_) => 0,
             Form::Shaped(numbers, _) => numbers,
         },
+        along: if let Form::Along(along) = form { Some(along) } else { None },
         ratio: None,
     }
 }

@@ -7,7 +7,7 @@ use super::scatter::GramScatter;
 use crate::estimate::{Chain, Estimate, Linkage, Sight};
 use crate::lanes::{self, Arm, FixedMotion, PackedRows, RowData, Shape, ShapedRow, SimdLevel, Totals, WIDTH};
 use crate::lie::Pose;
-use crate::measurement::{NUMBERS, Noise, Seen};
+use crate::measurement::{Measurement, NUMBERS, Noise, Quantity, Seen};
 use crate::parameters::Columns as _;
 use crate::solve::Normal;
 use crate::threads;
@@ -299,6 +299,13 @@ fn row_data<'a>(
     is_pose: bool,
 ) -> RowData<'a> {
     let observation = &problem.session.data.observations[row];
+    let joints = problem.session.packed.row(row);
+    if let Seen::Other(seen) = problem.measurement(row).seen() {
+        // What shaped rows measured comes with their shape.
+        let quantity = seen.channels().first().map_or(Quantity::Position, |channel| channel.quantity);
+        let weight = 1.0 / problem.noise(row)[quantity];
+        return RowData { joints, position: numbers_of(problem.measurement(row)), orientation: None, weight };
+    }
     let Whitening { weight, ratio } = usual.of(observation, noise);
     let weight = match problem.weights.and_then(|weights| weights.get(row)) {
         Some(own) => own.sqrt() * weight,
@@ -307,8 +314,19 @@ fn row_data<'a>(
     let (position, orientation) = match problem.measurement(row).seen() {
         Seen::Point(position) => (&position.data.0[0], None),
         Seen::Frame(pose) => (&pose.translation.data.0[0], is_pose.then_some((&pose.rotation.data.0, ratio))),
-        // What such rows measured comes with their shape.
         Seen::Other(_) => (&[0.0; 3], None),
     };
-    RowData { joints: problem.session.packed.row(row), position, orientation, weight }
+    RowData { joints, position: *position, orientation, weight }
+}
+
+/// What the kernels take for a position: a ball's place in its socket, a height along z, a distance first.
+fn numbers_of(measured: &Measurement) -> [f64; 3] {
+    match measured {
+        Measurement::Socket(seen) => seen.place.into(),
+        Measurement::Height(seen) => [0.0, 0.0, seen.height],
+        Measurement::Distance(seen) => [seen.distance, 0.0, 0.0],
+        Measurement::Point(_) | Measurement::Pose(_) | Measurement::Flush(_) | Measurement::Direction(_) => {
+            [0.0; 3]
+        }
+    }
 }

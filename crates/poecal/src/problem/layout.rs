@@ -85,6 +85,13 @@ impl Layout {
         self.parameters.iter().any(|parameter| matches!(parameter, Parameter::ValueTerm(_)))
     }
 
+    /// Whether zero or scale of an instrument's distances are unknown.
+    pub(crate) fn has_range(&self, station: usize) -> bool {
+        let is_of =
+            |parameter: &Parameter| matches!(parameter, Parameter::RangeUnknown(it) if it.station == station);
+        self.parameters.iter().any(is_of)
+    }
+
     /// Whether the screws are unknown in another parameterisation than the minimal basis.
     pub(crate) fn has_other_screws(&self) -> bool {
         self.parameters.iter().any(|parameter| matches!(parameter, Parameter::OtherScrew(_)))

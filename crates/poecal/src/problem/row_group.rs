@@ -2,6 +2,7 @@
 
 use super::Problem;
 use crate::estimate::Sight;
+use crate::lanes::Along;
 use crate::measurement::{Measurement, Noise, Observation, Quantity, Seen};
 use crate::threads;
 
@@ -52,7 +53,8 @@ impl RowGroup {
         let mut at = 0;
         for (position, &row) in (0..).zip(rows) {
             let observation = problem.session.observation(row);
-            let form = Form::of(own(row), !is_other, residual.is_none());
+            let is_plain = !problem.layout.has_range(observation.station);
+            let form = Form::of(own(row), !is_other, residual.is_none(), is_plain);
             let sight = Sight::from(observation);
             // Most rows are like the one before.
             if !groups.get(at).is_some_and(|group| group.holds(sight, form)) {
@@ -83,13 +85,28 @@ pub(super) enum Form {
     Point,
     /// A pose, by the residual of its type.
     Pose,
+    /// One number of a point's place.
+    Along(Along),
     /// Another function of a target's pose: so many numbers, and whether they depend on its orientation.
     Shaped(usize, bool),
 }
 
 impl Form {
-    /// Of a measurement; whether the kernels have the columns of all screws, and the residual of poses.
-    fn of(measured: &Measurement, have_screws: bool, have_residual: bool) -> Self {
+    /// Of a measurement; whether the kernels have the columns of all screws, the residual of poses, and the
+    /// readings of the instrument.
+    fn of(measured: &Measurement, have_screws: bool, have_residual: bool, is_plain: bool) -> Self {
+        if have_screws {
+            match measured {
+                Measurement::Socket(_) => return Form::Point,
+                Measurement::Height(_) => return Form::Along(Along::Height),
+                Measurement::Distance(_) if is_plain => return Form::Along(Along::Distance),
+                Measurement::Point(_)
+                | Measurement::Pose(_)
+                | Measurement::Distance(_)
+                | Measurement::Flush(_)
+                | Measurement::Direction(_) => {}
+            }
+        }
         match measured.seen() {
             Seen::Point(_) if have_screws => Form::Point,
             Seen::Frame(_) if have_screws && have_residual => Form::Pose,
@@ -107,7 +124,7 @@ impl Form {
     /// Whether the rows depend on the target's orientation.
     pub(super) fn sees_orientation(self) -> bool {
         match self {
-            Form::Point => false,
+            Form::Point | Form::Along(_) => false,
             Form::Pose => true,
             Form::Shaped(_, sees) => sees,
         }
@@ -118,6 +135,7 @@ impl Form {
         match self {
             Form::Point => 3,
             Form::Pose => 6,
+            Form::Along(_) => 1,
             Form::Shaped(numbers, _) => numbers,
         }
     }
