@@ -108,11 +108,11 @@ pub struct CorrectionEntry {
     pub sigma_tilt_deg: Option<f64>,
     /// Standard deviation of the axis' place at the joint, millimetres; null where it is not determined.
     pub sigma_shift_mm: Option<f64>,
-    /// The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Null without a tolerance.
-    #[serde(default)]
+    /// The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tilt_from_data: Option<f64>,
-    /// The same of the axis' place; null of a joint that slides.
-    #[serde(default)]
+    /// The same of the axis' place; absent of a joint that slides.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shift_from_data: Option<f64>,
     /// Root mean square position error with this screw alone nominal, millimetres.
     pub left_nominal_rms_mm: f64,
