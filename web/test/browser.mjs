@@ -5,7 +5,9 @@ import { chromium } from "playwright-core";
 
 const NAMES = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome", "/usr/bin/google-chrome-stable"];
 /** The browser's program; none if there is none. */
-export const CHROMIUM = process.env.CHROMIUM ?? NAMES.find((name) => existsSync(name));
+const CHROMIUM = process.env.CHROMIUM ?? NAMES.find((name) => existsSync(name));
+/** Why tests in a browser are left out; false where they are not. */
+export const skip = CHROMIUM ? false : "found no Chromium; install it (Debian: apt install chromium), or name it: CHROMIUM=/path";
 
 // WebGL by the processor, so that it is there on any machine, and canvases without it, which is faster then.
 const ARGUMENTS = [

@@ -4,6 +4,7 @@ import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "no
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { complete } from "../src/data.js";
 
 export const ROOT = fileURLToPath(new URL("../..", import.meta.url));
 const PROGRAM = process.env.POECAL_PROGRAM ?? join(ROOT, "target/release/poecal");
@@ -17,6 +18,12 @@ process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 /** Standard output of the program, which must end well. */
 export function poecal(...words) {
   return execFileSync(PROGRAM, words, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], cwd: ROOT });
+}
+
+/** What the script of a folder's report works on. */
+export function dataOf(out) {
+  const page = readFileSync(join(out, "report.html"), "utf8");
+  return complete(JSON.parse(page.split('id="report-data">')[1].split("</script>")[0]));
 }
 
 function calibrate(name, ...words) {

@@ -1,15 +1,12 @@
 // The picture of anchors, sockets, planes, spheres and directions: each is drawn as what it is, and residuals lie along it.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
-import { complete } from "../src/data.js";
 import { dot, rotate, subtract } from "../src/kinematics.js";
 import { patchOf } from "../src/places.js";
-import { CHROMIUM, launch, open } from "./browser.mjs";
-import { ofKind } from "./cases.mjs";
+import { launch, open, skip } from "./browser.mjs";
+import { dataOf, ofKind } from "./cases.mjs";
 
-const skip = CHROMIUM ? false : "found no Chromium; install it (Debian: apt install chromium), or name it: CHROMIUM=/path";
 /** The page has six digits of each reading: up to 0.0005° of each of six joints, at a metre or less. */
 const ROUNDED_M = 5e-5;
 
@@ -18,11 +15,6 @@ before(async () => {
   if (!skip) browser = await launch();
 });
 after(() => browser?.close());
-
-function dataOf(out) {
-  const page = readFileSync(join(out, "report.html"), "utf8");
-  return complete(JSON.parse(page.split('id="report-data">')[1].split("</script>")[0]));
-}
 
 const length = (v) => Math.hypot(...v);
 

@@ -5,11 +5,10 @@ import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
-import { CHROMIUM, launch, open } from "./browser.mjs";
+import { launch, open, skip } from "./browser.mjs";
 import { CASES, TREES, folder, long, predicted } from "./cases.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-const skip = CHROMIUM ? false : "found no Chromium; install it (Debian: apt install chromium), or name it: CHROMIUM=/path";
 /** Share of a canvas' pixels that must differ from its background: axes alone are less. */
 const DRAWN = 0.002;
 /** The browser and the program round differently. */

@@ -7,7 +7,7 @@ import { createRequire } from "node:module";
 import { extname, join, normalize, resolve } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { CHROMIUM, launch } from "./browser.mjs";
+import { launch, skip } from "./browser.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const TARGET = process.env.CARGO_TARGET_DIR ?? resolve(import.meta.dirname, "../../target");
@@ -16,7 +16,7 @@ const KINDS = { ".html": "text/html", ".css": "text/css", ".js": "text/javascrip
 const WIDTHS = [400, 1300];
 
 function skipped() {
-  if (!CHROMIUM) return "found no Chromium; install it (Debian: apt install chromium), or name it: CHROMIUM=/path";
+  if (skip) return skip;
   return existsSync(join(SITE, "index.html")) ? false : `found no site in ${SITE}; build it: scripts/build-docs`;
 }
 

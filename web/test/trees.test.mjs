@@ -3,12 +3,11 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
-import { complete, readingsOf } from "../src/data.js";
+import { readingsOf } from "../src/data.js";
 import { CALIBRATED, add, configure, rotate, scale, subtract } from "../src/kinematics.js";
-import { CHROMIUM, launch, open } from "./browser.mjs";
-import { CASES, TREES, folder, predicted } from "./cases.mjs";
+import { launch, open, skip } from "./browser.mjs";
+import { CASES, TREES, dataOf, folder, predicted } from "./cases.mjs";
 
-const skip = CHROMIUM ? false : "found no Chromium; install it (Debian: apt install chromium), or name it: CHROMIUM=/path";
 /** The browser and the program round differently. */
 const SAME_M = 1e-9;
 /** The page has six digits of each reading and residual. */
@@ -19,12 +18,6 @@ before(async () => {
   if (!skip) browser = await launch();
 });
 after(() => browser?.close());
-
-/** What the page's script works on. */
-function dataOf(out) {
-  const page = readFileSync(join(out, "report.html"), "utf8");
-  return complete(JSON.parse(page.split('id="report-data">')[1].split("</script>")[0]));
-}
 
 /** Positions as they were measured, millimetres, by line of the file. */
 function measured(path) {

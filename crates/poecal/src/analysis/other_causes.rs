@@ -1,11 +1,14 @@
 //! Directions without a plain cause: dependent motion of the joints, and the remaining directions as they are.
 
+use nalgebra::Vector3;
+
 use super::causes::{Degree, NOTABLE, Rules, join, joint_of};
 use super::direction::Cause;
 use super::excitation::target_name;
 use super::spectrum::{PLAUSIBLE, Spectrum, WEAK};
 use super::subspace;
 use crate::estimate::{Packed, RangeTerm, Session, sample_rows};
+use crate::lie::{Freedom, Pose};
 use crate::linalg;
 use crate::measurement::Dataset;
 use crate::parameters::{Parameter, TargetPlace};
@@ -46,29 +49,24 @@ impl Rules<'_> {
         let estimate = self.setup.estimate;
         let origin = |station: usize| estimate.device_at_zero(station).inverse().translation;
         let about = origin(self.setup.session.data.first_station(self.setup.rows));
+        let shown = |freedom: Freedom, moved: Vector3<f64>| -> Vec<f64> {
+            freedom.motions().iter().map(|&motion| moved.iter().nth(motion).copied().unwrap_or(0.0)).collect()
+        };
+        let local = |frame: &Pose| frame.rotation.tr_mul(&(frame.translation - about));
         let mut growth = vec![0.0; self.setup.layout.dim()];
         for (parameter, places) in self.setup.layout.parameters() {
             let moved: Vec<f64> = match parameter {
                 Parameter::ScrewAxis(axis) if axis.kind == JointKind::Revolute => {
-                    let frame = &estimate.base_from_axis[axis.joint];
-                    let local = frame.rotation.tr_mul(&(frame.translation - about));
-                    vec![local.x, local.y, 0.0, 0.0]
+                    let moved = local(&estimate.base_from_axis[axis.joint]);
+                    vec![moved.x, moved.y, 0.0, 0.0]
                 }
                 Parameter::TargetPlace(TargetPlace { target }) => {
-                    let frame = &estimate.base_from_target[*target];
-                    frame.rotation.tr_mul(&(frame.translation - about)).iter().copied().collect()
+                    shown(Freedom::Place, local(&estimate.base_from_target[*target]))
                 }
-                Parameter::TargetFrame(it) => {
-                    let frame = &estimate.base_from_target[it.target];
-                    let local = frame.rotation.tr_mul(&(frame.translation - about));
-                    let of = |&motion: &usize| if motion < 3 { local[motion] } else { 0.0 };
-                    it.freedom.motions().iter().map(of).collect()
-                }
+                Parameter::TargetFrame(it) => shown(it.freedom, local(&estimate.base_from_target[it.target])),
                 Parameter::DeviceFrame(it) => {
                     let device = estimate.device(it.station);
-                    let moved = -(device.rotation * (origin(it.station) - about));
-                    let of = |&motion: &usize| if motion < 3 { moved[motion] } else { 0.0 };
-                    it.freedom.motions().iter().map(of).collect()
+                    shown(it.freedom, -(device.rotation * (origin(it.station) - about)))
                 }
                 Parameter::RangeUnknown(it) if it.term == RangeTerm::Zero => {
                     vec![estimate.range(it.station).zero_m]

@@ -32,9 +32,8 @@ pub(super) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
     let targets = targets.filter(|(target, _)| unknowns.moves_target(*target));
     let targets: usize = targets.map(|(_, freedom)| freedom.count()).sum();
     // Beside free axes the first frame is no further unknown.
-    let is_fixed = !session.device_free || session.base_free();
-    let first = Some(data.first_station(fit_rows)).filter(|_| is_fixed);
-    let devices = (0..data.station_count()).filter(|&at| Some(at) != first && unknowns.moves_frame(at));
+    let held = session.held_station(fit_rows);
+    let devices = (0..data.station_count()).filter(|&at| Some(at) != held && unknowns.moves_frame(at));
     let devices: usize = devices.map(|at| of_device(data, at, fit_rows)).sum();
     let needed = screws + targets + devices;
     if needed == 0 {

@@ -46,9 +46,8 @@ pub(super) fn free_parameters(
     joints: Vec<Parameter>,
 ) -> Vec<Parameter> {
     let Session { data, unknowns, .. } = session;
-    let is_fixed = !session.device_free || session.base_free();
-    let first = Some(data.first_station(rows)).filter(|_| is_fixed);
-    let stations = (0..=estimate.further_devices.len()).filter(|&station| Some(station) != first);
+    let held = session.held_station(rows);
+    let stations = (0..=estimate.further_devices.len()).filter(|&station| Some(station) != held);
     let absent = stations_to_locate(data, rows);
     let is_free = |station: &usize| {
         unknowns.moves_frame(*station)

@@ -58,6 +58,11 @@ impl<'a> Session<'a> {
         self.device_free && self.unknowns.base_is_free()
     }
 
+    /// The station whose frame is no unknown: the first of the rows where the base frame is a choice, or the device's is known.
+    pub(crate) fn held_station(&self, rows: &[u32]) -> Option<usize> {
+        (!self.device_free || self.base_free()).then(|| self.data.first_station(rows))
+    }
+
     /// The same with another length that a radian counts, metres.
     #[must_use]
     pub fn with_length(self, length_m: f64) -> Self {

@@ -175,8 +175,10 @@ impl Lengths {
         match seen {
             Measurement::Point(_) | Measurement::Pose(_) => self == Lengths::Positions,
             Measurement::Distance(seen) => self == Lengths::Distances && seen.distance != 0.0,
-            Measurement::Height(seen) => self == Lengths::Heights && seen.height != 0.0,
-            Measurement::Flush(seen) => self == Lengths::Heights && seen.height != 0.0,
+            Measurement::Height(HeightMeasurement { height })
+            | Measurement::Flush(FlushMeasurement { height, .. }) => {
+                self == Lengths::Heights && *height != 0.0
+            }
             Measurement::Socket(_) | Measurement::Direction(_) => false,
         }
     }

@@ -26,13 +26,13 @@ const FIRSTS: usize = 4;
 /// Most rows in a statement.
 const NAMED: usize = 5;
 
-/// What is named.
+/// Two names that may be exchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Names {
-    /// What was seen.
-    Targets,
-    /// From where it was seen, or what it touched.
-    Stations,
+    /// Of what was seen.
+    Targets(usize, usize),
+    /// From where it was seen, or of what it touched.
+    Stations(usize, usize),
     /// The sides of planes: the names of heights are their signs.
     Sides,
 }
@@ -44,42 +44,29 @@ impl Names {
     }
 
     /// Whether an exchange changes a row: a touched plane has no side.
-    fn counts(self, row: &Observation, pair: (usize, usize)) -> bool {
+    fn counts(self, row: &Observation) -> bool {
         match self {
-            Names::Targets => [pair.0, pair.1].contains(&row.target),
-            Names::Stations => [pair.0, pair.1].contains(&row.station),
+            Names::Targets(a, b) => [a, b].contains(&row.target),
+            Names::Stations(a, b) => [a, b].contains(&row.station),
             Names::Sides => Lengths::Heights.is_of(&row.measurement),
         }
     }
 
-    /// Rows of which the exchange of all is as good as that of none.
-    fn groups(self, all: &Dataset, pair: (usize, usize)) -> Vec<Vec<usize>> {
-        let counts = |&row: &usize| self.counts(&all.observations[row], pair);
-        let rows: Vec<usize> = (0..all.len()).filter(counts).collect();
-        if self != Names::Sides {
-            return vec![rows];
-        }
-        let of_plane = |plane: usize| {
-            rows.iter().copied().filter(|&row| all.observations[row].station == plane).collect()
-        };
-        (0..all.station_count()).map(of_plane).collect()
+    /// Rows of which the exchange of all is as good as that of none: those of each plane, or all that count.
+    fn groups(self, all: &Dataset) -> Vec<Vec<usize>> {
+        let place = |row: &usize| if self == Names::Sides { all.observations[*row].station } else { 0 };
+        let mut groups = vec![Vec::new(); all.station_count()];
+        let rows = (0..all.len()).filter(|&row| self.counts(&all.observations[row]));
+        rows.for_each(|row| groups[place(&row)].push(row));
+        groups
     }
 
-    /// The two names of a row, or its plane twice.
-    fn pair(self, row: &Observation, pair: (usize, usize)) -> (usize, usize) {
-        if self == Names::Sides { (row.station, row.station) } else { pair }
-    }
-
-    /// Exchanges two in a row.
-    fn exchange_in(self, row: &mut Observation, pair: (usize, usize)) {
-        let other = |name: usize| match name {
-            name if name == pair.0 => pair.1,
-            name if name == pair.1 => pair.0,
-            name => name,
-        };
+    /// Exchanges the names in a row that counts.
+    fn exchange_in(self, row: &mut Observation) {
+        let other = |name: usize, [a, b]: [usize; 2]| if name == a { b } else { a };
         match self {
-            Names::Targets => row.target = other(row.target),
-            Names::Stations => row.station = other(row.station),
+            Names::Targets(a, b) => row.target = other(row.target, [a, b]),
+            Names::Stations(a, b) => row.station = other(row.station, [a, b]),
             Names::Sides => {
                 if let Measurement::Height(HeightMeasurement { height })
                 | Measurement::Flush(FlushMeasurement { height, .. }) = &mut row.measurement
@@ -90,20 +77,19 @@ impl Names {
         }
     }
 
-    /// Exchanges two in an estimate.
-    fn exchange(self, estimate: &mut Estimate, pair: (usize, usize)) {
+    /// Exchanges the names in an estimate; of sides, those of the plane of a row.
+    fn exchange(self, estimate: &mut Estimate, row: &Observation) {
         match self {
-            Names::Targets => estimate.base_from_target.swap(pair.0, pair.1),
-            Names::Stations => {
-                let (first, second) = (*estimate.device(pair.0), *estimate.device(pair.1));
-                (*estimate.device_mut(pair.0), *estimate.device_mut(pair.1)) = (second, first);
-                let (first, second) = (estimate.range(pair.0), estimate.range(pair.1));
-                *estimate.range_mut(pair.0) = second;
-                *estimate.range_mut(pair.1) = first;
+            Names::Targets(a, b) => estimate.base_from_target.swap(a, b),
+            Names::Stations(a, b) => {
+                let (first, second) = (*estimate.device(a), *estimate.device(b));
+                (*estimate.device_mut(a), *estimate.device_mut(b)) = (second, first);
+                let (first, second) = (estimate.range(a), estimate.range(b));
+                (*estimate.range_mut(a), *estimate.range_mut(b)) = (second, first);
             }
             Names::Sides => {
                 let turned = Pose::new(rotation::exp(&Vector3::new(PI, 0.0, 0.0)), Vector3::zeros());
-                let device = estimate.device_mut(pair.0);
+                let device = estimate.device_mut(row.station);
                 *device = turned * *device;
             }
         }
@@ -120,7 +106,7 @@ pub(super) fn starts(all: &Dataset) -> [Range<usize>; 3] {
 pub(super) struct Exchange {
     /// Error of all rows after the exchange, metres.
     pub(super) error_m: f64,
-    pub(super) pair: (usize, usize),
+    pub(super) names: Names,
     /// The rows, of those that were searched.
     pub(super) rows: Vec<usize>,
     /// Their errors before and after, metres.
@@ -130,29 +116,22 @@ pub(super) struct Exchange {
 
 impl Exchange {
     /// The diagnosis. `searched` are the rows that were searched.
-    pub(super) fn told(
-        self,
-        data: &Dataset,
-        searched: &[u32],
-        names: Names,
-        words: [String; 2],
-    ) -> Diagnosis {
+    pub(super) fn told(self, data: &Dataset, searched: &[u32], word: impl Fn(usize) -> String) -> Diagnosis {
         let rows: Vec<u32> = self.rows.into_iter().filter_map(|row| searched.get(row).copied()).collect();
-        let where_ = where_words(data, searched, names, self.pair, &rows);
-        let (kind, what) = match names {
-            Names::Targets => (DiagnosisKind::TargetsSwapped, "the targets' names"),
-            Names::Stations => (DiagnosisKind::PlacesSwapped, "which of them was meant"),
+        let where_ = where_words(data, searched, self.names, &rows);
+        let exchanging = |a, b| format!("exchanging the names of {} and {}", word(a), word(b));
+        let (kind, action, what) = match self.names {
+            Names::Targets(a, b) => (DiagnosisKind::TargetsSwapped, exchanging(a, b), "the targets' names"),
+            Names::Stations(a, b) => {
+                (DiagnosisKind::PlacesSwapped, exchanging(a, b), "which of them was meant")
+            }
             Names::Sides => (
                 DiagnosisKind::HeightSign,
+                "counting the heights the other way".to_owned(),
                 "on which side of the plane they are, and which way the gauge counts",
             ),
         };
-        let [first, second] = words;
         let (before_mm, after_mm) = (self.before_m * 1e3, self.after_m * 1e3);
-        let action = match names {
-            Names::Targets | Names::Stations => format!("exchanging the names of {first} and {second}"),
-            Names::Sides => "counting the heights the other way".to_owned(),
-        };
         let statement = format!(
             "{action} {where_} lowers the calibrated error of {} from {} to {} mm (RMS): \
              check {what} there",
@@ -165,7 +144,7 @@ impl Exchange {
 }
 
 /// First models: of all rows, and of either half; of sides, with those blocks of rows exchanged that fit best so.
-fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: Names, pair: (usize, usize)) -> Vec<Estimate> {
+fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: Names) -> Vec<Estimate> {
     if names != Names::Sides {
         let part = |range: Range<usize>| {
             let part = taken(all, &range.map(|row| row as u32).collect::<Vec<_>>());
@@ -179,7 +158,7 @@ fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: Names, pair: (usize, usize)
     let exchanged = |&(plane, a, b): &(Option<usize>, usize, usize)| {
         let rows = a * all.len() / BLOCKS..b * all.len() / BLOCKS;
         let is_of = |row: usize| plane.is_none_or(|plane| all.observations[row].station == plane);
-        with_exchanged(all, names, pair, |row| rows.contains(&row) && is_of(row))
+        with_exchanged(all, names, |row| rows.contains(&row) && is_of(row))
     };
     let strong = fitter.with_strong_prior();
     let rough = |block| {
@@ -198,16 +177,10 @@ fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: Names, pair: (usize, usize)
 }
 
 /// The rows of a pair that fit better exchanged, from several first models.
-pub(super) fn exchanged(
-    fitter: &Fitter<'_>,
-    all: &Dataset,
-    names: Names,
-    pair: (usize, usize),
-    base: &Score,
-) -> Option<Exchange> {
-    let best = firsts(fitter, all, names, pair)
+pub(super) fn exchanged(fitter: &Fitter<'_>, all: &Dataset, names: Names, base: &Score) -> Option<Exchange> {
+    let best = firsts(fitter, all, names)
         .into_iter()
-        .filter_map(|first| reassigned(fitter, all, first, names, pair, base.calibrated.total_m))
+        .filter_map(|first| reassigned(fitter, all, first, names, base.calibrated.total_m))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (error_m, rows, before_m, after_m, rest) = best;
     let plausible = !rows.is_empty()
@@ -215,7 +188,7 @@ pub(super) fn exchanged(
         && after_m < ROW_GAIN * rest
         && base.calibrated.total_m > GAIN * error_m
         && error_m < CALIBRATED_SHARE * fitter.reach_m();
-    plausible.then_some(Exchange { error_m, pair, rows, before_m, after_m })
+    plausible.then_some(Exchange { error_m, names, rows, before_m, after_m })
 }
 
 /// Error of all rows, exchanged rows, their error before and after, and the error of the others.
@@ -227,10 +200,9 @@ fn reassigned(
     all: &Dataset,
     mut estimate: Estimate,
     names: Names,
-    pair: (usize, usize),
     base_m: f64,
 ) -> Option<Reassigned> {
-    let exchanged = with_exchanged(all, names, pair, |_| true);
+    let exchanged = with_exchanged(all, names, |_| true);
     let mut swapped = vec![false; all.len()];
     let packed = fitter.packed(all);
     let errors = |data: &Dataset, estimate: &Estimate| -> Vec<f64> {
@@ -247,7 +219,7 @@ fn reassigned(
                 / all.len().max(1) as f64;
             let next: Vec<bool> =
                 kept.iter().zip(&other).map(|(kept, other)| other + margin < *kept).collect();
-            let data = sampled(&with_exchanged(all, names, pair, |row| next[row]));
+            let data = sampled(&with_exchanged(all, names, |row| next[row]));
             let registered = fitter.roughly_registered(&data).0;
             let (calibrated, misfit) = fitter.calibrated(&data, &registered, SHORT);
             estimate = calibrated;
@@ -260,14 +232,13 @@ fn reassigned(
         }
     }
     // The data do not show which of the two names is right: the smaller set of rows counts as exchanged.
-    for group in names.groups(all, pair) {
+    for group in names.groups(all) {
         let chosen = group.iter().filter(|&&row| swapped[row]).count();
-        if 2 * chosen > group.len() {
+        if let Some(&first) = group.first()
+            && 2 * chosen > group.len()
+        {
             group.iter().for_each(|&row| swapped[row] = !swapped[row]);
-            names.exchange(
-                &mut estimate,
-                group.first().map_or(pair, |&row| names.pair(&all.observations[row], pair)),
-            );
+            names.exchange(&mut estimate, &all.observations[first]);
         }
     }
     let (kept, other) = (errors(all, &estimate), errors(&exchanged, &estimate));
@@ -280,31 +251,20 @@ fn reassigned(
     error.is_finite().then_some((error, concerned, before, after, rest))
 }
 
-/// The data with a pair of names exchanged in some rows.
-fn with_exchanged(
-    all: &Dataset,
-    names: Names,
-    pair: (usize, usize),
-    which: impl Fn(usize) -> bool,
-) -> Dataset {
+/// The data with the names exchanged in those of some rows that count.
+fn with_exchanged(all: &Dataset, names: Names, which: impl Fn(usize) -> bool) -> Dataset {
     let mut data = all.clone();
     for (row, observation) in data.observations.iter_mut().enumerate() {
-        if which(row) {
-            names.exchange_in(observation, pair);
+        if which(row) && names.counts(observation) {
+            names.exchange_in(observation);
         }
     }
     data
 }
 
 /// Place of some of a pair's rows: from a row on, up to a row, or single rows.
-fn where_words(
-    data: &Dataset,
-    rows: &[u32],
-    names: Names,
-    pair: (usize, usize),
-    concerned: &[u32],
-) -> String {
-    let own = |row: &u32| names.counts(&data.observations[*row as usize], pair);
+fn where_words(data: &Dataset, rows: &[u32], names: Names, concerned: &[u32]) -> String {
+    let own = |row: &u32| names.counts(&data.observations[*row as usize]);
     let own: Vec<u32> = rows.iter().copied().filter(own).collect();
     match concerned {
         [first, .., _] if own.ends_with(concerned) => format!("from {} on", data.place(*first)),

@@ -175,7 +175,8 @@ impl<'a> Fitter<'a> {
         let kinds = registered.kinds().iter().enumerate();
         // The first device frame stays: beside the screws it is redundant.
         let screws = kinds.map(|(joint, &kind)| Parameter::ScrewAxis(ScrewAxis { joint, kind }));
-        let free = self.devices(data, 1).into_iter().chain(screws).collect();
+        let first = data.first_station(&data.all_rows());
+        let free = self.devices(data, Some(first)).into_iter().chain(screws).collect();
         self.fit(data, registered, free, iterations)
     }
 
@@ -198,16 +199,17 @@ impl<'a> Fitter<'a> {
                 .get(joint)
                 .map(|&kind| Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::Offset })),
         );
-        free.extend(self.devices(data, 0));
+        free.extend(self.devices(data, None));
         let (estimate, misfit) = self.fit(data, registered, free, 30);
         (estimate.coefficient(joint, Term::Offset), misfit)
     }
 
-    /// The unknown device frames from this one on.
-    fn devices(&self, data: &Dataset, first: usize) -> Vec<Parameter> {
+    /// The unknown device frames, but for one that stays.
+    fn devices(&self, data: &Dataset, held: Option<usize>) -> Vec<Parameter> {
         let rows = data.all_rows();
         let is_seen = |station: &usize| !data.seen_from(*station, &rows).is_empty();
-        let stations = (first..data.station_count()).filter(|station| self.device_free && is_seen(station));
+        let is_free = |station: &usize| self.device_free && Some(*station) != held && is_seen(station);
+        let stations = (0..data.station_count()).filter(is_free);
         stations.map(|station| device_parameter(data, station, &rows)).collect()
     }
 

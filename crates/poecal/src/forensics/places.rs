@@ -28,16 +28,12 @@ pub(super) fn names(
     if !fitter.is_constrained() {
         return None;
     }
-    let pairs = pairs(fitter, all, estimate).into_iter().map(|pair| (Names::Stations, pair));
     let has_heights = all.observations.iter().any(|row| Lengths::Heights.is_of(&row.measurement));
-    let sides = has_heights.then_some((Names::Sides, (0, 0)));
-    let found = pairs
-        .chain(sides)
-        .filter_map(|(names, pair)| Some((names, exchanged(fitter, all, names, pair, base)?)));
-    let (names, best) = found.min_by(|a, b| a.1.error_m.total_cmp(&b.1.error_m))?;
-    let (first, second) = best.pair;
-    let words = [data.station_words(first), data.station_words(second)];
-    Some(best.told(data, rows, names, words))
+    let pairs = pairs(fitter, all, estimate).into_iter().map(|(a, b)| Names::Stations(a, b));
+    let all_names = pairs.chain(has_heights.then_some(Names::Sides));
+    let found = all_names.filter_map(|names| exchanged(fitter, all, names, base));
+    let best = found.min_by(|a, b| a.error_m.total_cmp(&b.error_m))?;
+    Some(best.told(data, rows, |station| data.station_words(station)))
 }
 
 /// Pairs of places that may be exchanged: all pairs of a few of one kind, of many those with the most votes of single rows.

@@ -72,22 +72,21 @@ pub(super) fn rows(
 ) -> Option<Diagnosis> {
     let found = pairs(fitter, all).into_iter().filter_map(|pair| {
         if all.targets.len() <= TARGETS {
-            return exchanged(fitter, all, Names::Targets, pair, base);
+            return exchanged(fitter, all, Names::Targets(pair.0, pair.1), base);
         }
         let few = FewTargets::with(fitter, all, &[pair.0, pair.1]);
-        let numbers = (few.number(pair.0)?, few.number(pair.1)?);
+        let numbers = Names::Targets(few.number(pair.0)?, few.number(pair.1)?);
         let base = few.fitter.judged(&sampled(&few.data)).1;
-        let mut found = exchanged(&few.fitter, &few.data, Names::Targets, numbers, &base)?;
+        let mut found = exchanged(&few.fitter, &few.data, numbers, &base)?;
         let rows = few.rows(all);
         found.rows = found.rows.into_iter().filter_map(|row| rows.get(row).copied()).collect();
-        found.pair = pair;
+        found.names = Names::Targets(pair.0, pair.1);
         Some(found)
     });
     let best = found.min_by(|a, b| a.error_m.total_cmp(&b.error_m))?;
     let name =
         |target: usize| data.targets.get(target).cloned().flatten().unwrap_or_else(|| "the tip".to_owned());
-    let names = best.pair;
-    Some(best.told(data, rows, Names::Targets, [name(names.0), name(names.1)]))
+    Some(best.told(data, rows, name))
 }
 
 /// Pairs of targets that may be exchanged: all pairs of few targets, of many those with the most votes of single rows.

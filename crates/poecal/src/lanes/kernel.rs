@@ -191,25 +191,21 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
     }
     let last = batch.chain(simd, steps, (joints.as_chunks::<2>().0, factors), weight, per_length);
     let target = if plan.joints.is_empty() { Frame::fixed(simd, end) } else { last.then(simd, end) };
-    let measured_place = Vectors::load(simd, position, part);
-    if let Some(along) = plan.along {
-        let (direction, error) = one_number(simd, along, measured_place, target.origin());
-        let residual = error * weight;
-        (residual * residual).add_to(square_sum, part);
-        let wrench = RowWrench { weight, per_length, force: direction.scale(residual), torque: none[1] };
-        batch.add_device::<S, FULL>(simd, &target, &wrench);
-        batch.add_axes::<S, FULL>(simd, &target, &wrench);
-        batch.add_place::<S, FULL>(&target, &wrench);
-        if FULL {
-            project(simd, jacobian, (plan.columns(), stride), filled, direction, part);
+    let place = Vectors::load(simd, position, part);
+    let (direction, force, residual) = match plan.along {
+        Some(along) => {
+            let (direction, error) = one_number(simd, along, place, target.origin());
+            let (number, zero) = (error * weight, Lanes::splat(simd, 0.0));
+            (Some(direction), direction.scale(number), Vectors([number, zero, zero]))
         }
-        let zero = Lanes::splat(simd, 0.0);
-        return [Vectors([residual, zero, zero]), none[1]];
-    }
-    let force = (measured_place - target.origin()).scale(weight);
-    let mut squares = force.dot(force);
-    let mut residuals = [force, Vectors([Lanes::splat(simd, 0.0); 3])];
-    let mut wrench = RowWrench { weight, per_length, force, torque: residuals[1] };
+        None => {
+            let force = (place - target.origin()).scale(weight);
+            (None, force, force)
+        }
+    };
+    let mut squares = residual.dot(residual);
+    let mut residuals = [residual, none[1]];
+    let mut wrench = RowWrench { weight, per_length, force, torque: none[1] };
     let mut turn = None;
     if let [x, y, z] = measured.as_chunks::<3>().0 {
         let measured =
@@ -228,6 +224,9 @@ pub(super) fn add_rows<S: Simd, const FULL: bool>(
     batch.add_place::<S, FULL>(&target, &wrench);
     if let (true, true, Some((turn, ratio))) = (FULL, rows > 0, turn) {
         batch.add_turned(simd, &turn, ratio, turned.get_mut(filled * rows..).unwrap_or_default(), rows);
+    }
+    if let (true, Some(direction)) = (FULL, direction) {
+        project(simd, jacobian, (plan.columns(), stride), filled, direction, part);
     }
     residuals
 }

@@ -300,26 +300,27 @@ fn row_data<'a>(
 ) -> RowData<'a> {
     let observation = &problem.session.data.observations[row];
     let joints = problem.session.packed.row(row);
-    if let Seen::Other(seen) = problem.measurement(row).seen() {
-        // What shaped rows measured comes with their shape.
-        let quantity = seen.channels().first().map_or(Quantity::Position, |channel| channel.quantity);
-        let weight = 1.0 / problem.noise(row)[quantity];
-        return RowData { joints, position: numbers_of(problem.measurement(row)), orientation: None, weight };
-    }
+    let measured = problem.measurement(row);
+    let (position, orientation) = match measured.seen() {
+        Seen::Point(position) => (position, None),
+        Seen::Frame(pose) => (&pose.translation, is_pose.then_some(&pose.rotation.data.0)),
+        Seen::Other(seen) => {
+            let quantity = seen.channels().first().map_or(Quantity::Position, |channel| channel.quantity);
+            let weight = 1.0 / problem.noise(row)[quantity];
+            return RowData { joints, position: numbers_of(measured), orientation: None, weight };
+        }
+    };
     let Whitening { weight, ratio } = usual.of(observation, noise);
     let weight = match problem.weights.and_then(|weights| weights.get(row)) {
         Some(own) => own.sqrt() * weight,
         None => weight,
     };
-    let (position, orientation) = match problem.measurement(row).seen() {
-        Seen::Point(position) => (&position.data.0[0], None),
-        Seen::Frame(pose) => (&pose.translation.data.0[0], is_pose.then_some((&pose.rotation.data.0, ratio))),
-        Seen::Other(_) => (&[0.0; 3], None),
-    };
-    RowData { joints, position: *position, orientation, weight }
+    let orientation = orientation.map(|columns| (columns, ratio));
+    RowData { joints, position: (*position).into(), orientation, weight }
 }
 
-/// What the kernels take for a position: a ball's place in its socket, a height along z, a distance first.
+/// What the kernels take for a position: a ball's place in its socket, a height along z, a distance first. What other rows measured comes
+/// with their shape.
 fn numbers_of(measured: &Measurement) -> [f64; 3] {
     match measured {
         Measurement::Socket(seen) => seen.place.into(),

@@ -53,7 +53,7 @@ impl RowGroup {
         let mut at = 0;
         for (position, &row) in (0..).zip(rows) {
             let observation = problem.session.observation(row);
-            let is_plain = !problem.layout.has_range(observation.station);
+            let is_plain = || !problem.layout.has_range(observation.station);
             let form = Form::of(own(row), !is_other, residual.is_none(), is_plain);
             let sight = Sight::from(observation);
             // Most rows are like the one before.
@@ -93,13 +93,18 @@ pub(super) enum Form {
 
 impl Form {
     /// Of a measurement; whether the kernels have the columns of all screws, the residual of poses, and the
-    /// readings of the instrument.
-    fn of(measured: &Measurement, have_screws: bool, have_residual: bool, is_plain: bool) -> Self {
+    /// readings of its instrument, whose zero and scale are then no unknowns.
+    fn of(
+        measured: &Measurement,
+        have_screws: bool,
+        have_residual: bool,
+        is_plain: impl Fn() -> bool,
+    ) -> Self {
         if have_screws {
             match measured {
                 Measurement::Socket(_) => return Form::Point,
                 Measurement::Height(_) => return Form::Along(Along::Height),
-                Measurement::Distance(_) if is_plain => return Form::Along(Along::Distance),
+                Measurement::Distance(_) if is_plain() => return Form::Along(Along::Distance),
                 Measurement::Point(_)
                 | Measurement::Pose(_)
                 | Measurement::Distance(_)

@@ -119,9 +119,7 @@ impl Kind {
             | Kind::Relative => false,
         }
     }
-}
 
-impl Kind {
     /// What a robot would measure in some configurations, by a kind that is neither of a device with a frame nor touches anything: rows, and the
     /// frames of the instruments, which are somewhere around it.
     pub(crate) fn plan(self, robot: &Robot, readings: &[f64]) -> Result<(Dataset, Vec<Pose>)> {

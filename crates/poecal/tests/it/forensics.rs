@@ -1,9 +1,9 @@
 //! Mistakes put into simulated sessions are named, and clean sessions are left in peace.
 
 use crate::common::geometry;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::mistakes::Session;
+use crate::mistakes::{Looked, Session, assert_mistakes_are_named, assert_no_alarms};
 use crate::trials::{some, trials};
 use nalgebra::Vector3;
 use poecal::calibration::{CalibrationOptions, DeviceFrameKnowledge, calibrate, delivered};
@@ -12,7 +12,6 @@ use poecal::forensics::{Diagnosis, DiagnosisKind, DiagnosisOptions, diagnose};
 use poecal::measurement::{Dataset, Measurement, Noise, PointMeasurement};
 use poecal::simulate::{Kind, Simulation, elbow};
 use poecal::start::{Registration, register};
-use rayon::prelude::*;
 
 const KINDS: [DiagnosisKind; 12] = [
     DiagnosisKind::JointUnit,
@@ -74,33 +73,13 @@ fn mistaken(index: u64) -> (Session, DiagnosisKind, Dataset, String) {
 
 #[test]
 fn mistakes_are_named() {
-    let sessions = trials(60);
-    let count = sessions.count;
-    let results: Vec<(DiagnosisKind, bool)> = (sessions.seeds())
-        .into_par_iter()
-        .map(|index| {
-            let (session, kind, data, words) = mistaken(index);
-            let found = found(&session, &data);
-            let right = !found.is_empty() && found.iter().all(|one| one.kind == kind);
-            if !right {
-                println!("MISSED {index} {kind:?} ({words}); {}", session.words);
-                found.iter().for_each(|one| println!("    found {:?}: {}", one.kind, one.statement));
-            }
-            (kind, right)
-        })
-        .collect();
-    let mut by_kind: BTreeMap<DiagnosisKind, (usize, usize)> = BTreeMap::new();
-    for (kind, right) in &results {
-        let entry = by_kind.entry(*kind).or_default();
-        entry.0 += usize::from(*right);
-        entry.1 += 1;
-    }
-    for (kind, (right, all)) in &by_kind {
-        println!("{kind:?}: {right} of {all}");
-    }
-    let right = results.iter().filter(|(_, right)| *right).count();
-    println!("named correctly: {right} of {count}");
-    assert!(right as f64 >= (0.95 - sessions.more_of_a_share(0.95)) * count as f64, "{right} of {count}");
+    assert_mistakes_are_named(trials(60), |index| {
+        let (session, kind, data, words) = mistaken(index);
+        let found = found(&session, &data);
+        let is_right = !found.is_empty() && found.iter().all(|one| one.kind == kind);
+        let words = format!("({words}); {}", session.words);
+        Looked { label: format!("{kind:?}"), words, is_right, found }
+    });
 }
 
 /// An elbow of which each reading of a joint is that of the data plus so many times that of the joint before.
@@ -238,17 +217,9 @@ fn a_clean_calibration_has_no_mistake() {
 
 #[test]
 fn clean_sessions_raise_no_alarm() {
-    let sessions = trials(200);
-    let count = sessions.count;
-    let alarms: Vec<String> = (sessions.seeds())
-        .into_par_iter()
-        .flat_map_iter(|index| {
-            let session = Session::drawn(index + 5_000_000);
-            let found = found(&session, &session.data);
-            found.into_iter().map(move |one| format!("{}: {:?}: {}", session.words, one.kind, one.statement))
-        })
-        .collect();
-    alarms.iter().for_each(|alarm| println!("ALARM {alarm}"));
-    println!("alarms: {} of {count}", alarms.len());
-    assert!(alarms.len() as f64 <= (0.01 + sessions.more_of_a_share(0.01)) * count as f64);
+    assert_no_alarms(trials(200), |index| {
+        let session = Session::drawn(index + 5_000_000);
+        let found = found(&session, &session.data);
+        (session.words, found)
+    });
 }

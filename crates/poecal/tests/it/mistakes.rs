@@ -1,7 +1,10 @@
 //! Simulated sessions of many robots, and mistakes put into them.
 
+use std::collections::BTreeMap;
+
+use crate::trials::Trials;
 use nalgebra::{Matrix3, Vector3, Vector4};
-use poecal::forensics::DiagnosisKind;
+use poecal::forensics::{Diagnosis, DiagnosisKind};
 use poecal::lie::{Pose, rotation};
 use poecal::measurement::{Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement};
 use poecal::robot::{JointKind, Robot};
@@ -11,6 +14,7 @@ use poecal::simulate::{
 };
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
+use rayon::prelude::*;
 
 /// A session of a robot that is not quite as its model says.
 pub(crate) struct Session {
@@ -356,4 +360,50 @@ fn from_angles(convention: usize, [a, b, c]: [f64; 3]) -> Matrix3<f64> {
         2 => rotation::about(2, a) * rotation::about(1, b) * rotation::about(2, c),
         _ => rotation::exp(&Vector3::new(a, b, c)),
     }
+}
+
+/// One session that was looked at: what it is, whether what was found is right, and that.
+pub(crate) struct Looked {
+    /// What is counted together.
+    pub(crate) label: String,
+    pub(crate) words: String,
+    pub(crate) is_right: bool,
+    pub(crate) found: Vec<Diagnosis>,
+}
+
+/// Looks at sessions with a mistake in each: 95 % must be right.
+pub(crate) fn assert_mistakes_are_named(sessions: Trials, look: impl Fn(u64) -> Looked + Sync) {
+    let count = sessions.count;
+    let looked: Vec<Looked> = sessions.seeds().into_par_iter().map(&look).collect();
+    let mut by_label: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    for (index, Looked { label, words, is_right, found }) in looked.iter().enumerate() {
+        if !is_right {
+            println!("MISSED {index} {label} {words}");
+            found.iter().for_each(|one| println!("    found {:?}: {}", one.kind, one.statement));
+        }
+        let entry = by_label.entry(label).or_default();
+        entry.0 += usize::from(*is_right);
+        entry.1 += 1;
+    }
+    for (label, (right, all)) in &by_label {
+        println!("{label}: {right} of {all}");
+    }
+    let right = looked.iter().filter(|one| one.is_right).count();
+    println!("named correctly: {right} of {count}");
+    assert!(right as f64 >= (0.95 - sessions.more_of_a_share(0.95)) * count as f64, "{right} of {count}");
+}
+
+/// Looks at sessions without a mistake, by their words and what is found: 1 % may raise an alarm.
+pub(crate) fn assert_no_alarms(sessions: Trials, look: impl Fn(u64) -> (String, Vec<Diagnosis>) + Sync) {
+    let count = sessions.count;
+    let alarms: Vec<String> = (sessions.seeds())
+        .into_par_iter()
+        .flat_map_iter(|index| {
+            let (words, found) = look(index);
+            found.into_iter().map(move |one| format!("{words}: {:?}: {}", one.kind, one.statement))
+        })
+        .collect();
+    alarms.iter().for_each(|alarm| println!("ALARM {alarm}"));
+    println!("alarms: {} of {count}", alarms.len());
+    assert!(alarms.len() as f64 <= (0.01 + sessions.more_of_a_share(0.01)) * count as f64);
 }
