@@ -52,10 +52,15 @@ export function complete(data) {
   return data;
 }
 
-/** The residual of a quantity in a row, by component; none if the row did not measure it. */
-function residualOf({ residuals }, row, quantity) {
-  const found = residuals.find(({ name }) => name === quantity)?.components.map(({ values }) => values[row]);
-  return found?.includes(null) ? undefined : found;
+/** The residual of a quantity in a row, by component, null where one was not measured. */
+function componentsOf({ residuals }, row, quantity) {
+  return residuals.find(({ name }) => name === quantity)?.components.map(({ values }) => values[row]) ?? [];
+}
+
+/** The same with zero where a component was not measured; none if the row did not measure the quantity. */
+function residualOf(rows, row, quantity) {
+  const found = componentsOf(rows, row, quantity);
+  return found.some((value) => value !== null) ? found.map((value) => value ?? 0) : undefined;
 }
 
 /**
@@ -73,7 +78,8 @@ function shiftOf(rows, row, seen) {
 }
 
 function isVector(rows, row) {
-  return Boolean(residualOf(rows, row, "position") ?? residualOf(rows, row, "contact"));
+  const isWhole = (quantity) => componentsOf(rows, row, quantity).filter((value) => value !== null).length === 3;
+  return isWhole("position") || isWhole("contact");
 }
 
 /** By how much each quantity of a row is off, in words. */

@@ -7,7 +7,7 @@ use poecal::Error;
 use poecal::io::measurements::{Dimension, LARGEST_NUMBER, Unit};
 use poecal::lie::Pose;
 use poecal::measurement::{
-    ByQuantity, Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Set, Source,
+    ByQuantity, Dataset, Measurement, Observation, PointMeasurement, PoseMeasurement, Quantity, Set,
 };
 use poecal::robot::{JointKind, Robot};
 use pyo3::prelude::*;
@@ -70,17 +70,15 @@ pub(crate) fn dataset(robot: &Robot, columns: &ArrayColumns<'_, '_>) -> PyResult
         let mut stated = ByQuantity::default();
         stated[Quantity::Position] = at(&sigma_position_m, row);
         stated[Quantity::Rotation] = at(&sigma_rotation_rad, row);
+        let target = *known.entry(target).or_insert_with(|| data.target_index(target));
         let observation = Observation {
-            target: *known.entry(target).or_insert_with(|| data.target_index(target)),
             station: match columns.instruments.as_ref().and_then(|names| names.get(row)) {
                 Some(name) => *places.entry(name).or_insert_with(|| data.station_index(Some(name))),
                 None => 0,
             },
-            measurement,
-            from: None,
             stated: stated.into(),
             set: sets.get(row).copied().flatten(),
-            source: Source::default(),
+            ..Observation::new(target, measurement)
         };
         data.push_observation(readings, observation).map_err(|error| raise_at_row(error, Some(row)))?;
     }

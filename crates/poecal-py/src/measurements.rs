@@ -37,6 +37,7 @@ fn options(
     strict: bool,
     frames: Frames,
     (socket_distance, contact): (Option<&str>, PlaneContact),
+    instrument_noise: Option<&[String]>,
 ) -> poecal::Result<ReadOptions> {
     Ok(ReadOptions {
         frames,
@@ -46,6 +47,11 @@ fn options(
         strict,
         socket_distances: socket_distance.map(str::parse).transpose()?,
         contact,
+        instrument_noise: instrument_noise
+            .into_iter()
+            .flatten()
+            .map(|it| it.parse())
+            .collect::<Result<_, _>>()?,
     })
 }
 
@@ -74,6 +80,9 @@ impl Measurements {
     ///     Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
     /// contact
     ///     What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
+    /// instrument_noise
+    ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
+    ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
     ///
     /// Returns
     /// -------
@@ -87,7 +96,7 @@ impl Measurements {
     /// MeasurementError
     ///     It holds no measurements of this robot; the error tells the line and the column.
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", socket_distance=None, contact="point"))]
+    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", socket_distance=None, contact="point", instrument_noise=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
@@ -100,6 +109,7 @@ impl Measurements {
         #[pyo3(from_py_with = arg::frames)] frames: &str,
         #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
         #[pyo3(from_py_with = arg::contact)] contact: &str,
+        #[pyo3(from_py_with = arg::instrument_noise)] instrument_noise: Option<Vec<String>>,
     ) -> PyResult<Self> {
         let contact = chosen("contact", contact, &CONTACTS)?;
         let words = [("common", Frames::Common), ("per-file", Frames::PerFile)];
@@ -114,6 +124,7 @@ impl Measurements {
                 strict,
                 frames,
                 (socket_distance, contact),
+                instrument_noise.as_deref(),
             )?;
             let file = measurements::read(&paths, &robot.model.robot, &options)?;
             let mut sha256 = Inputs::checksums(columns.iter().map(PathBuf::as_path))?;
@@ -219,6 +230,9 @@ impl Measurements {
     ///     Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
     /// contact
     ///     What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
+    /// instrument_noise
+    ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
+    ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
     ///
     /// Returns
     /// -------
@@ -230,7 +244,7 @@ impl Measurements {
     /// MeasurementError
     ///     The table holds no measurements of this robot; the error tells the row.
     #[staticmethod]
-    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, socket_distance=None, contact="point"))]
+    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, socket_distance=None, contact="point", instrument_noise=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_dataframe(
         py: Python<'_>,
@@ -242,13 +256,20 @@ impl Measurements {
         #[pyo3(from_py_with = arg::strict)] strict: bool,
         #[pyo3(from_py_with = arg::socket_distance)] socket_distance: Option<&str>,
         #[pyo3(from_py_with = arg::contact)] contact: &str,
+        #[pyo3(from_py_with = arg::instrument_noise)] instrument_noise: Option<Vec<String>>,
     ) -> PyResult<Self> {
         let contact = chosen("contact", contact, &CONTACTS)?;
         let text = from_dataframe::text(frame)?;
         let read = || {
-            let touching = (socket_distance, contact);
-            let options =
-                options(columns.as_ref(), fit_where, ignore_sets, strict, Frames::Common, touching)?;
+            let options = options(
+                columns.as_ref(),
+                fit_where,
+                ignore_sets,
+                strict,
+                Frames::Common,
+                (socket_distance, contact),
+                instrument_noise.as_deref(),
+            )?;
             measurements::parse(&text, from_dataframe::NAME, &robot.model.robot, &options)
         };
         let mut file = py.detach(read).map_err(from_dataframe::raise)?;

@@ -69,6 +69,7 @@ pub(crate) fn init(
         ("directions", Kind::Direction),
         ("ball-bars", Kind::BallBar),
         ("relative", Kind::Relative),
+        ("components", Kind::Component),
     ];
     let kind = chosen("measure", measure, &words)?;
     if !(1..=MOST).contains(&count) {

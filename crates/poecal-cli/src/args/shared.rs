@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal::io::measurements::{ColumnMap, Frames, PlaneContact, ReadOptions, SocketDistances};
+use poecal::io::measurements::{
+    ColumnMap, Frames, InstrumentNoise, PlaneContact, ReadOptions, SocketDistances,
+};
 use poecal::io::output::{Existing, FilePlace};
 use poecal::io::urdf::{ChainSelection, named_link};
 
@@ -92,13 +94,25 @@ pub(crate) struct Meaning {
     /// What rows with a plane are that do not say it in the column contact: touched by a point, or by a face that lies flush
     #[arg(long, value_parser = one_of(CONTACT), default_value = "point")]
     pub(crate) contact: PlaneContact,
+    /// Noise of an instrument that grows with the distance, like tracker:10um+5um/m: a standard deviation in all directions, and one across the
+    /// line of sight for each metre; of all instruments without a name. For rows that state none; may be given again
+    #[arg(long, value_name = "[NAME:]LENGTH+LENGTH/m")]
+    pub(crate) instrument_noise: Vec<InstrumentNoise>,
 }
 
 impl Meaning {
     pub(crate) fn options(&self) -> poecal::Result<ReadOptions> {
         let (strict, frames, contact) = (self.strict, self.frames, self.contact);
         let socket_distances = self.socket_distance.clone();
-        Ok(ReadOptions { strict, frames, contact, socket_distances, ..self.columns.options()? })
+        let instrument_noise = self.instrument_noise.clone();
+        Ok(ReadOptions {
+            strict,
+            frames,
+            contact,
+            socket_distances,
+            instrument_noise,
+            ..self.columns.options()?
+        })
     }
 }
 

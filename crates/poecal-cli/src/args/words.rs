@@ -105,6 +105,7 @@ pub(super) const SIMULATED_KIND: Words<Kind> = &[
     ("direction", "The direction of gravity, as of an inclinometer", Kind::Direction),
     ("ball-bar", "Distances between two configurations", Kind::BallBar),
     ("relative", "Poses from one configuration in another", Kind::Relative),
+    ("component", "Two components of positions, as of a camera that looks along the third", Kind::Component),
 ];
 
 /// What will be measured.
@@ -121,6 +122,7 @@ pub(super) const MEASURED: Words<Kind> = &[
     ("directions", "The direction of gravity, as of an inclinometer", Kind::Direction),
     ("ball-bars", "Distances between two configurations", Kind::BallBar),
     ("relative", "Poses from one configuration in another", Kind::Relative),
+    ("components", "Some of x, y and z, as of a camera or a gauge on a rail", Kind::Component),
 ];
 
 /// Whether a frame is the same in both models.

@@ -385,6 +385,7 @@ class Measurements:
         frames: Literal["common", "per-file"] = "common",
         socket_distance: str | None = None,
         contact: Literal["point", "flush"] = "point",
+        instrument_noise: Sequence[str] | None = None,
     ) -> Measurements:
         """Reads measurement files, joined in their order.
 
@@ -409,6 +410,9 @@ class Measurements:
             Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
         contact
             What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
+        instrument_noise
+            Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
+            across the line of sight for each metre; of all instruments without a name. For rows that state none.
 
         Returns
         -------
@@ -485,6 +489,7 @@ class Measurements:
         strict: bool = False,
         socket_distance: str | None = None,
         contact: Literal["point", "flush"] = "point",
+        instrument_noise: Sequence[str] | None = None,
     ) -> Measurements:
         """Measurements of a table in memory: a data frame of pandas or polars, a dict of columns, or a structured array of NumPy.
 
@@ -509,6 +514,9 @@ class Measurements:
             Known distance between the two sockets of each place, "50mm", or of pairs by name, "A-B=50mm,B-C=70mm+-0.02mm".
         contact
             What rows with a plane are that do not say it in the column `contact`: "point" or "flush".
+        instrument_noise
+            Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
+            across the line of sight for each metre; of all instruments without a name. For rows that state none.
 
         Returns
         -------

@@ -11,9 +11,7 @@ use super::spectrum::PLAUSIBLE;
 use crate::error::{Error, ErrorKind, Result};
 use crate::estimate::{Chain, Estimate, Linkage, Packed, Session, delivered};
 use crate::lie::Pose;
-use crate::measurement::{
-    Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement, Source, Stated,
-};
+use crate::measurement::{Dataset, Measurement, Noise, Observation, PointMeasurement, PoseMeasurement};
 use crate::parameters::{Parameter, screw_axes};
 use crate::problem::{MOST_UNKNOWNS, Problem};
 use crate::robot::Robot;
@@ -237,15 +235,7 @@ fn predicted_data(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> 
         };
         let station = instrument.map_or(0, |mount| data.station_index(Some(&mount.name)));
         let target = data.target_index(target.map(|mount| mount.name.as_str()));
-        let observation = Observation {
-            target,
-            station,
-            from: None,
-            measurement,
-            stated: Stated::default(),
-            set: None,
-            source: Source::default(),
-        };
+        let observation = Observation { station, ..Observation::new(target, measurement) };
         data.push_observation(readings, observation)?;
     }
     Ok((data, Vec::new()))

@@ -20,7 +20,7 @@ impl Session<'_> {
     }
 
     /// Maps each row by `each`, from its observation and, of each quantity, the sum of squares (m², rad²) and the count of its residual's
-    /// numbers. Residuals are those of theory.md §4 (15), (16), or of the data set's own formulation (16a).
+    /// numbers, as if the noise of positions were the same in all directions. Residuals are those of theory.md §4 (15), (16), or of the data set's own formulation (16a).
     pub(crate) fn map_squares<T: Send>(
         &self,
         rows: &[u32],
@@ -31,6 +31,10 @@ impl Session<'_> {
             let error = match Written::new(&observation.measurement, self.data.pose_residual) {
                 Written::Usual(_) => error,
                 Written::Other(pose) => RowError::new(&pose, &predicted()),
+            };
+            let error = match self.data.noise_shape(observation) {
+                Some(shape) => error.whitened(shape),
+                None => error,
             };
             each(observation, error.squares())
         })

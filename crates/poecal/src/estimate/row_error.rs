@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::Pose;
 use crate::measurement::{
-    ByQuantity, Channel, Channels, Measurement, NUMBERS, Observe, PointMeasurement, Quantity,
+    ByQuantity, Channel, Channels, Measurement, NUMBERS, NoiseShape, Observe, PointMeasurement, Quantity,
 };
 use crate::unit::Unit;
 
@@ -83,12 +83,26 @@ impl RowError {
         })
     }
 
-    /// The first three numbers of a quantity as a vector, zero beyond them.
+    /// The components of a quantity as a vector, zero where one was not measured and beyond those that it has.
     #[must_use]
     pub fn vector(&self, quantity: Quantity) -> Vector3<f64> {
+        let part = self.part(quantity);
         let mut vector = Vector3::zeros();
-        vector.iter_mut().zip(self.part(quantity)).for_each(|(to, from)| *to = *from);
+        if part.len() == quantity.components() {
+            vector.iter_mut().zip(part).for_each(|(to, from)| *to = *from);
+        } else {
+            let own = self.numbers().filter(|(channel, _)| channel.quantity == quantity);
+            own.for_each(|(channel, value)| vector[channel.component()] = value);
+        }
         vector
+    }
+
+    /// Which components of a quantity were measured.
+    pub(crate) fn measured(&self, quantity: Quantity) -> [bool; Quantity::MOST_COMPONENTS] {
+        let mut found = [false; Quantity::MOST_COMPONENTS];
+        let own = self.channels.iter().filter(|channel| channel.quantity == quantity);
+        own.for_each(|channel| found[channel.component()] = true);
+        found
     }
 
     /// The error of a measured position, metres; zero if none was measured.
@@ -142,6 +156,12 @@ impl RowError {
         let is_own = |quantity: &Quantity| quantity.unit() == Unit::Metre && !quantity.is_of_pose();
         let own = Quantity::ALL.into_iter().filter(is_own).filter(|quantity| self.channels.has(*quantity));
         own.map(|quantity| self.square(quantity)).reduce(|a, b| a + b).map(f64::sqrt)
+    }
+
+    /// The same error with noise of its position that is the same in all directions.
+    pub(crate) fn whitened(mut self, shape: &NoiseShape) -> Self {
+        shape.whiten(self.channels, self.values.as_chunks_mut::<1>().0);
+        self
     }
 
     fn square_of(&self, unit: Unit) -> f64 {

@@ -92,6 +92,11 @@ impl Change {
                     *position = mirror * *position;
                 }
             }
+            Measurement::Components(seen) => {
+                if let Change::Resize(factor, Lengths::Positions, _) = self {
+                    seen.position *= *factor;
+                }
+            }
             Measurement::Pose(PoseMeasurement { pose }) => *pose = self.pose(row, pose),
             Measurement::Distance(seen) => {
                 if let Change::Resize(factor, Lengths::Distances, _) = self {
@@ -173,7 +178,9 @@ impl Lengths {
     /// Whether a measurement has one, other than zero.
     pub(super) fn is_of(self, seen: &Measurement) -> bool {
         match seen {
-            Measurement::Point(_) | Measurement::Pose(_) => self == Lengths::Positions,
+            Measurement::Point(_) | Measurement::Components(_) | Measurement::Pose(_) => {
+                self == Lengths::Positions
+            }
             Measurement::Distance(seen) => self == Lengths::Distances && seen.distance != 0.0,
             Measurement::Height(HeightMeasurement { height })
             | Measurement::Flush(FlushMeasurement { height, .. }) => {

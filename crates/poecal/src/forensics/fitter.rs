@@ -307,7 +307,7 @@ pub(super) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
     let mut taken = like(data);
     for &row in rows {
         let observation = data.observations[row as usize];
-        let plain = Observation { stated: Stated::default(), ..observation };
+        let plain = Observation { stated: Stated::default(), noise_shape: None, ..observation };
         push(&mut taken, data.readings(row as usize), plain);
     }
     taken

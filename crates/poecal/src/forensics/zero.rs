@@ -6,7 +6,8 @@ use super::DiagnosisKind;
 use super::change::Change;
 use super::fitter::Fitter;
 use super::hypotheses::{Hypothesis, ReadingColumns};
-use crate::measurement::Dataset;
+use crate::estimate::Sight;
+use crate::measurement::{Dataset, Observation};
 use crate::robot::ReadingKind;
 
 /// Smallest gross offset: radians, and share of the reach for prismatic joints. A calibration corrects smaller ones.
@@ -22,8 +23,19 @@ pub(super) fn joint_zeros(fitter: &Fitter<'_>, columns: &ReadingColumns, data: &
         let name = &columns.names[*column];
         robot.joints.iter().filter(|joint| joint.reading.name == *name).count() == 1
     };
+    // An unknown device frame takes in the zero of a joint that is before all others.
+    let is_taken_in = |column: &usize| {
+        let before_all = |row: &Observation| {
+            let first = fitter.start.tree.route(Sight::from(row)).first();
+            row.from.is_none()
+                && first.is_some_and(|it| {
+                    !it.backward && robot.joints[it.joint].reading.name == columns.names[*column]
+                })
+        };
+        fitter.device_free && data.observations.iter().all(before_all)
+    };
     (0..columns.names.len())
-        .filter(own)
+        .filter(|column| own(column) && !is_taken_in(column))
         .filter_map(|column| joint_zero(fitter, columns, data, column))
         .collect()
 }

@@ -20,6 +20,12 @@ pub enum Freedom {
     PlaneY,
     /// A plane across z.
     PlaneZ,
+    /// All but its place along x.
+    AcrossX,
+    /// All but its place along y.
+    AcrossY,
+    /// All but its place along z.
+    AcrossZ,
     /// How it is turned.
     Turn,
     /// The direction of x: the tilts of a face across x.
@@ -32,7 +38,7 @@ pub enum Freedom {
 
 impl Freedom {
     /// All of them, the one of fewest motions first.
-    pub const ALL: [Freedom; 9] = [
+    pub const ALL: [Freedom; 12] = [
         Freedom::Direction,
         Freedom::TiltX,
         Freedom::TiltY,
@@ -41,6 +47,9 @@ impl Freedom {
         Freedom::PlaneY,
         Freedom::PlaneZ,
         Freedom::Turn,
+        Freedom::AcrossX,
+        Freedom::AcrossY,
+        Freedom::AcrossZ,
         Freedom::Frame,
     ];
 
@@ -53,6 +62,9 @@ impl Freedom {
             Freedom::PlaneX => &[0, 4, 5],
             Freedom::PlaneY => &[1, 3, 5],
             Freedom::PlaneZ => &[2, 3, 4],
+            Freedom::AcrossX => &[1, 2, 3, 4, 5],
+            Freedom::AcrossY => &[0, 2, 3, 4, 5],
+            Freedom::AcrossZ => &[0, 1, 3, 4, 5],
             Freedom::Turn => &[3, 4, 5],
             Freedom::TiltX => &[4, 5],
             Freedom::TiltY => &[3, 5],
@@ -87,6 +99,9 @@ impl Freedom {
             Freedom::PlaneZ => Freedom::Direction,
             Freedom::Frame
             | Freedom::Place
+            | Freedom::AcrossX
+            | Freedom::AcrossY
+            | Freedom::AcrossZ
             | Freedom::Turn
             | Freedom::TiltX
             | Freedom::TiltY

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::{ByQuantity, KnownLength, Measurement, Noise, PoseResidual, Quantity, Stated};
+use super::{ByQuantity, KnownLength, Measurement, Noise, NoiseShape, PoseResidual, Quantity, Stated};
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::Freedom;
 
@@ -61,6 +61,9 @@ pub struct Observation {
     pub measurement: Measurement,
     /// Standard deviations of each component, metres or radians, where the row states them.
     pub stated: Stated,
+    /// Shape of the noise of its position, if it is not the same in all directions: index into [`Dataset::noise_shapes`].
+    #[serde(default)]
+    pub noise_shape: Option<u32>,
     /// Set of the row, if it states it.
     pub set: Option<Set>,
     /// File and line.
@@ -77,6 +80,7 @@ impl Observation {
             from: None,
             measurement,
             stated: Stated::default(),
+            noise_shape: None,
             set: None,
             source: Source::default(),
         }
@@ -117,6 +121,9 @@ pub struct Dataset {
     /// Known distances between stations.
     #[serde(default)]
     pub lengths: Vec<KnownLength>,
+    /// Shapes of the noise of positions.
+    #[serde(default)]
+    pub noise_shapes: Vec<NoiseShape>,
     /// The rows.
     pub observations: Vec<Observation>,
     /// The rows' `id`, empty if there is no such column.
@@ -205,6 +212,11 @@ impl Dataset {
             && self.observations.iter().all(|row| row.station < self.station_count())
             && self.lengths.iter().all(|it| it.stations.iter().all(|&at| at < self.station_count()))
             && self.observations.iter().filter_map(|row| row.from).all(|from| from < further)
+            && self
+                .observations
+                .iter()
+                .filter_map(|row| row.noise_shape)
+                .all(|at| (at as usize) < self.noise_shapes.len())
             && self.observations.iter().all(|row| (row.source.file as usize) < files);
         if fits {
             return Ok(());
@@ -212,6 +224,20 @@ impl Dataset {
         let message = "found readings, rows and targets of a data set that do not fit together, expected a reading of each joint and a \
                        target in every row";
         Err(Error::new(ErrorKind::Measurement, message))
+    }
+
+    /// States the noise of a row's position by its standard deviation σ, metres, and its shape.
+    pub fn state_noise(&mut self, row: usize, (sigma_m, shape): (f64, NoiseShape)) {
+        let Some(observation) = self.observations.get_mut(row) else { return };
+        observation.stated.set(Quantity::Position, Some(sigma_m));
+        observation.noise_shape = u32::try_from(self.noise_shapes.len()).ok();
+        self.noise_shapes.push(shape);
+    }
+
+    /// Shape of the noise of a row's position, if it is not the same in all directions.
+    #[must_use]
+    pub fn noise_shape(&self, observation: &Observation) -> Option<&NoiseShape> {
+        self.noise_shapes.get(observation.noise_shape? as usize)
     }
 
     /// Index of a target, added if it is new.
@@ -422,25 +448,35 @@ impl Dataset {
         self.target_freedoms(rows).into_iter().map(turns).sum()
     }
 
-    /// Mean of the positions that some rows measured, metres, device frame.
+    /// Mean of the positions that some rows measured, metres, device frame; of each component over the rows that have it.
     #[must_use]
     pub fn mean_position(&self, rows: &[u32]) -> Vector3<f64> {
-        let (sum, count) =
-            self.positions(rows).fold((Vector3::zeros(), 0), |(sum, count), it| (sum + it, count + 1));
-        sum / f64::from(count.max(1))
+        let (mut sum, mut count) = (Vector3::zeros(), [0u32; 3]);
+        for components in self.positions(rows) {
+            for (k, value) in components.into_iter().enumerate() {
+                sum[k] += value.unwrap_or_default();
+                count[k] += u32::from(value.is_some());
+            }
+        }
+        sum.component_div(&Vector3::from(count.map(|count| f64::from(count.max(1)))))
     }
 
     /// Root mean square distance of the positions that some rows measured from their mean, metres.
     #[must_use]
     pub fn spread_m(&self, rows: &[u32]) -> f64 {
         let mean = self.mean_position(rows);
-        let squares = self.positions(rows).map(|position| (position - mean).norm_squared());
-        let (sum, count) = squares.fold((0.0, 0), |(sum, count), it| (sum + it, count + 1));
+        let square = |components: [Option<f64>; 3]| -> f64 {
+            let parts = components.iter().zip(mean.iter());
+            parts.filter_map(|(value, mean)| Some(((*value)? - mean).powi(2))).sum()
+        };
+        let (sum, count) =
+            self.positions(rows).map(square).fold((0.0, 0), |(sum, count), it| (sum + it, count + 1));
         (sum / f64::from(count.max(1))).sqrt()
     }
 
-    fn positions(&self, rows: &[u32]) -> impl Iterator<Item = Vector3<f64>> {
-        rows.iter().filter_map(|&row| self.observations[row as usize].measurement.observe().position())
+    fn positions(&self, rows: &[u32]) -> impl Iterator<Item = [Option<f64>; 3]> {
+        let of = |row: u32| self.observations[row as usize].measurement.observe().position_components();
+        rows.iter().map(move |&row| of(row)).filter(|components| components.iter().any(Option::is_some))
     }
 
     /// Whether some row measured a quantity.
@@ -481,6 +517,7 @@ impl Dataset {
             ids: Vec::new(),
             reading_names: self.reading_names.clone(),
             further_readings: self.further_readings.clone(),
+            noise_shapes: self.noise_shapes.clone(),
             factors: self.factors,
             targets: self.targets.clone(),
             stations: self.stations.clone(),
@@ -532,6 +569,8 @@ impl Dataset {
         for readings in other.further_readings.chunks_exact(other.reading_names.len().max(1)) {
             self.further_readings.extend(order.iter().map(|&index| readings[index]));
         }
+        let first_shape = u32::try_from(self.noise_shapes.len()).unwrap_or(u32::MAX);
+        self.noise_shapes.extend_from_slice(&other.noise_shapes);
         self.files.extend(other.files.iter().cloned());
         let mut readings = Vec::with_capacity(order.len());
         // Looked up once for each target: there may be very many rows.
@@ -554,6 +593,7 @@ impl Dataset {
             readings.extend(order.iter().map(|&index| other.readings(row)[index]));
             let mut observation = other.observations[row];
             observation.from = observation.from.map(|from| from + first_further);
+            observation.noise_shape = observation.noise_shape.map(|shape| shape + first_shape);
             let target = observation.target;
             let known = targets[target];
             observation.target = known.unwrap_or_else(|| self.target_index(other.targets[target].as_deref()));

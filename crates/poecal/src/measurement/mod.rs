@@ -1,6 +1,7 @@
 //! Measurements by an external device. The residual of a measurement depends on the predicted pose of its target alone, not on joints or
 //! parameters.
 
+mod components;
 mod configurations;
 mod dataset;
 mod direction;
@@ -8,6 +9,7 @@ mod distance;
 mod flush;
 mod height;
 mod known_length;
+mod noise_shape;
 mod observe;
 mod other_pose;
 mod point;
@@ -15,6 +17,7 @@ mod pose;
 mod quantity;
 mod socket;
 
+pub use components::ComponentsMeasurement;
 pub(crate) use configurations::MANY as MANY_ROWS;
 pub use dataset::{Dataset, Observation, Set, Source};
 pub use direction::DirectionMeasurement;
@@ -22,6 +25,7 @@ pub use distance::DistanceMeasurement;
 pub use flush::FlushMeasurement;
 pub use height::HeightMeasurement;
 pub use known_length::KnownLength;
+pub use noise_shape::NoiseShape;
 pub use observe::{Channel, Channels, NUMBERS, Observe, Sensitivity};
 pub use other_pose::PoseResidual;
 pub(crate) use other_pose::Written;
@@ -48,6 +52,8 @@ use crate::lie::{Freedom, Pose, rotation};
 pub enum Measurement {
     /// Position of a point.
     Point(PointMeasurement),
+    /// Some components of the position of a point.
+    Components(ComponentsMeasurement),
     /// Position and orientation of a frame.
     Pose(PoseMeasurement),
     /// Distance of a point from the instrument.
@@ -87,6 +93,7 @@ impl Measurement {
     pub fn observe(&self) -> &dyn Observe {
         match self {
             Measurement::Point(point) => point,
+            Measurement::Components(components) => components,
             Measurement::Pose(pose) => pose,
             Measurement::Distance(distance) => distance,
             Measurement::Socket(socket) => socket,
@@ -103,7 +110,8 @@ impl Measurement {
         match self {
             Measurement::Point(PointMeasurement { position }) => Seen::Point(position),
             Measurement::Pose(PoseMeasurement { pose }) => Seen::Frame(pose),
-            other @ (Measurement::Distance(_)
+            other @ (Measurement::Components(_)
+            | Measurement::Distance(_)
             | Measurement::Socket(_)
             | Measurement::Height(_)
             | Measurement::Flush(_)
@@ -118,6 +126,9 @@ impl Measurement {
         match (self, other) {
             (Measurement::Distance(a), Measurement::Distance(b)) => {
                 Some(((a.distance - b.distance).abs(), 0.0))
+            }
+            (Measurement::Components(a), Measurement::Components(b)) if a.measured == b.measured => {
+                Some(((a.position - b.position).norm(), 0.0))
             }
             (Measurement::Socket(a), Measurement::Socket(b)) => Some(((a.place - b.place).norm(), 0.0)),
             (Measurement::Height(a), Measurement::Height(b)) => Some(((a.height - b.height).abs(), 0.0)),
@@ -136,6 +147,7 @@ impl Measurement {
             }
             (
                 Measurement::Point(_)
+                | Measurement::Components(_)
                 | Measurement::Pose(_)
                 | Measurement::Distance(_)
                 | Measurement::Socket(_)

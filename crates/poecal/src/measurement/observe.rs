@@ -25,6 +25,14 @@ pub struct Channel {
     pub quantity: Quantity,
 }
 
+impl Channel {
+    /// Its place among the components of its quantity.
+    #[must_use]
+    pub fn component(&self) -> usize {
+        self.quantity.component_names().iter().position(|name| *name == self.name).unwrap_or_default()
+    }
+}
+
 /// The numbers of a measurement type, and where those of each quantity are.
 ///
 /// ```
@@ -119,6 +127,11 @@ pub trait Observe {
     /// Measured position, metres, device frame, if the measurement tells it.
     fn position(&self) -> Option<Vector3<f64>> {
         None
+    }
+
+    /// Measured components of the position, metres, device frame, none of those that the measurement does not tell.
+    fn position_components(&self) -> [Option<f64>; 3] {
+        self.position().map_or([None; 3], |place| [Some(place.x), Some(place.y), Some(place.z)])
     }
 
     /// Measured `device_from_target` rotation, if the measurement tells it.

@@ -326,8 +326,10 @@ fn numbers_of(measured: &Measurement) -> [f64; 3] {
         Measurement::Socket(seen) => seen.place.into(),
         Measurement::Height(seen) => [0.0, 0.0, seen.height],
         Measurement::Distance(seen) => [seen.distance, 0.0, 0.0],
-        Measurement::Point(_) | Measurement::Pose(_) | Measurement::Flush(_) | Measurement::Direction(_) => {
-            [0.0; 3]
-        }
+        Measurement::Point(_)
+        | Measurement::Components(_)
+        | Measurement::Pose(_)
+        | Measurement::Flush(_)
+        | Measurement::Direction(_) => [0.0; 3],
     }
 }

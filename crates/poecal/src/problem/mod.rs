@@ -21,7 +21,7 @@ pub(crate) use row_block::RowBlock;
 use crate::estimate::{Estimate, Range, RangeTerm, Session};
 use crate::lanes::ShapedRow;
 use crate::lie::Pose;
-use crate::measurement::{Measurement, NUMBERS, Noise, Seen, Written};
+use crate::measurement::{Measurement, NUMBERS, Noise, NoiseShape, Seen, Written};
 use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
 use fast::{Accumulate, Fast};
@@ -169,6 +169,11 @@ impl<'a> Problem<'a> {
         noise.map(|sigma| sigma / root)
     }
 
+    /// Shape of the noise of a row's position.
+    fn noise_shape(&self, row: usize) -> Option<&NoiseShape> {
+        self.session.data.noise_shape(&self.session.data.observations[row])
+    }
+
     /// Measurement of a row.
     fn measurement(&self, row: usize) -> &Measurement {
         let instead = self.measured.as_ref().and_then(|measured| measured.get(row));
@@ -211,6 +216,10 @@ impl Problem<'_> {
             range.pull_back(predicted, &mut shaped.sensitivity);
         }
         let ShapedRow { residual, sensitivity } = &mut shaped;
+        if let Some(shape) = self.noise_shape(row) {
+            shape.whiten(seen.channels(), residual.as_chunks_mut::<1>().0);
+            shape.whiten(seen.channels(), sensitivity);
+        }
         for ((e, numbers), channel) in residual.iter_mut().zip(sensitivity).zip(seen.channels()) {
             let sigma = noise[channel.quantity];
             *e /= sigma;

@@ -54,7 +54,11 @@ impl RowGroup {
         for (position, &row) in (0..).zip(rows) {
             let observation = problem.session.observation(row);
             let is_plain = || !problem.layout.has_range(observation.station);
-            let form = Form::of(own(row), !is_other, residual.is_none(), is_plain);
+            // The kernels have noise that is the same in all directions.
+            let form = match observation.noise_shape {
+                Some(_) => Form::shaped_of(own(row)),
+                None => Form::of(own(row), !is_other, residual.is_none(), is_plain),
+            };
             let sight = Sight::from(observation);
             // Most rows are like the one before.
             if !groups.get(at).is_some_and(|group| group.holds(sight, form)) {
@@ -106,6 +110,7 @@ impl Form {
                 Measurement::Height(_) => return Form::Along(Along::Height),
                 Measurement::Distance(_) if is_plain() => return Form::Along(Along::Distance),
                 Measurement::Point(_)
+                | Measurement::Components(_)
                 | Measurement::Pose(_)
                 | Measurement::Distance(_)
                 | Measurement::Flush(_)
@@ -115,10 +120,13 @@ impl Form {
         match measured.seen() {
             Seen::Point(_) if have_screws => Form::Point,
             Seen::Frame(_) if have_screws && have_residual => Form::Pose,
-            Seen::Point(_) | Seen::Frame(_) | Seen::Other(_) => {
-                Form::Shaped(measured.observe().dim(), measured.sees_orientation())
-            }
+            Seen::Point(_) | Seen::Frame(_) | Seen::Other(_) => Form::shaped_of(measured),
         }
+    }
+
+    /// Of any function of a target's pose.
+    fn shaped_of(measured: &Measurement) -> Self {
+        Form::Shaped(measured.observe().dim(), measured.sees_orientation())
     }
 
     /// The same rows, as any function of the target's pose.

@@ -56,11 +56,13 @@ pub enum Kind {
     BallBar,
     /// Poses of the tip from one configuration in another.
     Relative,
+    /// Two components of the tip's position, as a camera sees them.
+    Component,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 13] = [
+    pub const ALL: [Kind; 14] = [
         Kind::Pose,
         Kind::Point,
         Kind::Mixed,
@@ -74,6 +76,7 @@ impl Kind {
         Kind::Direction,
         Kind::BallBar,
         Kind::Relative,
+        Kind::Component,
     ];
 
     /// Whether a device with a frame of its own measures.
@@ -90,7 +93,8 @@ impl Kind {
             | Kind::Flush
             | Kind::Direction
             | Kind::BallBar
-            | Kind::Relative => false,
+            | Kind::Relative
+            | Kind::Component => false,
         }
     }
 
@@ -111,6 +115,7 @@ impl Kind {
             Kind::Direction => "direction",
             Kind::BallBar => "ball-bar",
             Kind::Relative => "relative",
+            Kind::Component => "component",
         }
     }
 
@@ -125,7 +130,7 @@ impl Kind {
     pub fn quantities(self) -> &'static [Quantity] {
         match self {
             Kind::Pose | Kind::Mixed | Kind::Relative => &[Quantity::Position, Quantity::Rotation],
-            Kind::Point => &[Quantity::Position],
+            Kind::Point | Kind::Component => &[Quantity::Position],
             Kind::Distance | Kind::Change | Kind::Sphere | Kind::BallBar => &[Quantity::Distance],
             Kind::Socket => &[Quantity::Contact],
             Kind::Plane | Kind::Height => &[Quantity::Height],
@@ -140,6 +145,7 @@ impl Kind {
         match self {
             Kind::Pose | Kind::Mixed | Kind::Flush | Kind::Direction | Kind::Relative => true,
             Kind::Point
+            | Kind::Component
             | Kind::Distance
             | Kind::Change
             | Kind::Sphere
@@ -387,6 +393,7 @@ impl Simulation {
                 from: None,
                 measurement,
                 stated: Stated::default(),
+                noise_shape: None,
                 set: None,
                 source: Source::default(),
             };

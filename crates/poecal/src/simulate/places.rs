@@ -9,8 +9,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, rotation};
 use crate::linalg;
 use crate::measurement::{
-    Dataset, DirectionMeasurement, DistanceMeasurement, FlushMeasurement, HeightMeasurement, Measurement,
-    NUMBERS, Observation, PoseMeasurement, SocketMeasurement,
+    ComponentsMeasurement, Dataset, DirectionMeasurement, DistanceMeasurement, FlushMeasurement,
+    HeightMeasurement, Measurement, NUMBERS, Observation, PoseMeasurement, SocketMeasurement,
 };
 use crate::robot::{Body, Mount, Robot};
 
@@ -95,7 +95,7 @@ impl Kind {
             Kind::Pose | Kind::Point | Kind::Mixed => 0,
             Kind::Distance | Kind::Change | Kind::Plane | Kind::Height | Kind::Flush => 3,
             Kind::Socket => 2,
-            Kind::Sphere | Kind::Direction | Kind::BallBar | Kind::Relative => 1,
+            Kind::Sphere | Kind::Direction | Kind::BallBar | Kind::Relative | Kind::Component => 1,
         }
     }
 
@@ -116,7 +116,8 @@ impl Kind {
             | Kind::Change
             | Kind::Direction
             | Kind::BallBar
-            | Kind::Relative => false,
+            | Kind::Relative
+            | Kind::Component => false,
         }
     }
 
@@ -238,6 +239,7 @@ impl Simulation {
             Kind::Sphere => &["ball"],
             Kind::Direction => &["gravity"],
             Kind::BallBar | Kind::Relative => &["pair"],
+            Kind::Component => &["camera"],
         };
         let configurations = Configurations::new(actual);
         let middle = self.middle(actual, &configurations, &mut generator);
@@ -305,6 +307,10 @@ impl Simulation {
         if kind == Kind::Direction {
             let up = (rotation::exp(&turn) * target.rotation).row(2).transpose();
             return Measurement::Direction(DirectionMeasurement::along(&up));
+        }
+        if kind == Kind::Component {
+            let seen = target.translation + random::normal_vector(generator) * self.noise_position_m;
+            return Measurement::Components(ComponentsMeasurement::new([Some(seen.x), Some(seen.y), None]));
         }
         if kind == Kind::Relative {
             let shift = random::normal_vector(generator) * self.noise_position_m;

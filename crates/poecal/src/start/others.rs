@@ -38,7 +38,7 @@ pub(super) fn starts(rows: &[Other], start: &Estimate, targets_free: bool) -> Ve
         }
         estimate
     });
-    let devices = [seen.by_sockets(), seen.by_heights()];
+    let devices = [seen.by_sockets(), seen.by_heights(), seen.by_components()];
     let mut found: Vec<Estimate> = ranged.into_iter().chain(devices.into_iter().flatten().map(at)).collect();
     if found.is_empty() {
         found.extend(seen.by_directions(targets_free));
@@ -128,6 +128,7 @@ impl Seen<'_> {
                     Measurement::Height(it) => it.height,
                     Measurement::Flush(it) => it.height,
                     Measurement::Point(_)
+                    | Measurement::Components(_)
                     | Measurement::Pose(_)
                     | Measurement::Distance(_)
                     | Measurement::Socket(_)
@@ -148,6 +149,34 @@ impl Seen<'_> {
         Some(Pose::new(turn, Vector3::z() * mean - turn * middle))
     }
 
+    /// The frame in which the points have the measured components: each along a direction of its own, as heights along a normal; then the
+    /// nearest right-handed axes.
+    fn by_components(&self) -> Option<Pose> {
+        let mut axes = Matrix3::zeros();
+        let mut middles = [None; 3];
+        for (k, found) in middles.iter_mut().enumerate() {
+            let of = |row: &Other| row.measurement.observe().position_components()[k];
+            let seen: Vec<(Vector3<f64>, f64)> =
+                self.rows.iter().filter_map(|row| Some((self.place(row), of(row)?))).collect();
+            if seen.is_empty() {
+                continue;
+            }
+            let count = seen.len() as f64;
+            let middle = seen.iter().map(|(place, _)| place).sum::<Vector3<f64>>() / count;
+            let mean = seen.iter().map(|(_, value)| value).sum::<f64>() / count;
+            let arms = seen.iter().map(|(place, value)| (place - middle, value - mean));
+            axes.set_row(k, &normal_of(arms, &self.start.device_from_base).transpose());
+            *found = Some((middle, mean));
+        }
+        middles.iter().any(Option::is_some).then(|| {
+            // An axis that is not seen is zero, for which the nearest rotation has the cross product of the others.
+            let turn = rotation_maximising(&axes.transpose());
+            let along =
+                [0, 1, 2].map(|k| middles[k].map_or(0.0, |(middle, mean)| mean - (turn.row(k) * middle).x));
+            Pose::new(turn, along.into())
+        })
+    }
+
     /// Mean of a plane's normals by faces that lay on it.
     fn flush_normal(&self) -> Option<Vector3<f64>> {
         let normals = self.rows.iter().filter_map(|row| {
@@ -166,6 +195,7 @@ impl Seen<'_> {
             .filter_map(|row| match row.measurement {
                 Measurement::Direction(it) => Some((row, it.direction)),
                 Measurement::Point(_)
+                | Measurement::Components(_)
                 | Measurement::Pose(_)
                 | Measurement::Distance(_)
                 | Measurement::Socket(_)

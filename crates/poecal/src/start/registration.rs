@@ -21,6 +21,8 @@ const FINALISTS: usize = 4;
 const ROUNDS: usize = 4;
 /// Root mean square distance, as a share of the data's own spread, above which the closed forms are not trusted alone.
 const GOOD_MISFIT: f64 = 0.05;
+/// Fewest measured places that determine a frame alone.
+const FEWEST_PLACES: usize = 3;
 
 /// A registration problem: rows, noise and unknowns.
 #[derive(Clone, Copy, Debug)]
@@ -189,12 +191,17 @@ impl SampledRows {
             others: Vec::new(),
             spread_m: problem.session.data.spread_m(sample),
         };
+        let of = |row: &u32| problem.session.observation(*row);
+        // Too few places are components among others.
+        let places = sample.iter().filter(|row| of(row).measurement.observe().position().is_some()).count();
+        let is_component = |row: &u32| matches!(of(row).measurement, Measurement::Components(_));
+        let has_places = places >= FEWEST_PLACES || !sample.iter().any(is_component);
         for &row in sample {
-            let observation = problem.session.observation(row);
+            let observation = of(&row);
             let model = observation.measurement.observe();
             chain.evaluate(&linkage, problem.session.packed, row as usize, observation);
             let motion = chain.target * start.base_from_target[observation.target].inverse();
-            let Some(position) = model.position() else {
+            let Some(position) = model.position().filter(|_| has_places) else {
                 seen.others.push(Other {
                     motion,
                     measurement: observation.measurement,

@@ -34,8 +34,10 @@ pub(super) fn alike(view: &View<'_>) -> ByQuantity<bool> {
         let Some(b) = nearest else { continue };
         for (quantity, sums) in sums.values_mut() {
             let measured = |row: usize| errors[row].length(quantity).map(|_| errors[row].vector(quantity));
+            let count = |row: usize| errors[row].part(quantity).len();
+            let components = count(a).min(count(b));
             if let Some((a, b)) = measured(a).zip(measured(b)) {
-                sums.add(&a, &b, quantity.components());
+                sums.add(&a, &b, components);
             }
         }
     }

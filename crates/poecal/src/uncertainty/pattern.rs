@@ -75,8 +75,11 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
             };
             // What the first quantity shows of it.
             let mut motion = Vector3::zeros();
-            for (shown, [a, b, c, p, q, r]) in motion.iter_mut().zip(&sensitivity[..quantity.components()]) {
-                *shown = Vector3::new(*a, *b, *c).dot(&moved) + Vector3::new(*p, *q, *r).dot(&turned);
+            let channels = observation.measurement.observe().channels();
+            let own = sensitivity.iter().zip(channels).filter(|(_, channel)| channel.quantity == quantity);
+            for ([a, b, c, p, q, r], channel) in own {
+                motion[channel.component()] =
+                    Vector3::new(*a, *b, *c).dot(&moved) + Vector3::new(*p, *q, *r).dot(&turned);
             }
             let shapes = shapes(joint.kind, sign * joint.value, ranges[joint.joint]);
             sums[joint.joint].add(&shapes, &(motion * sign / sigma), &error);

@@ -154,10 +154,18 @@ struct ResidualSums {
 impl ResidualSums {
     /// Adds the rows of one target in one configuration: errors with their standard deviations.
     fn add(&mut self, quantity: Quantity, rows: &[(&RowError, Noise)]) {
-        let rows = rows.iter().filter(|(error, _)| !error.part(quantity).is_empty());
-        let rows: Vec<(Vector3<f64>, f64)> =
-            rows.map(|(error, noise)| (error.vector(quantity), noise[quantity])).collect();
-        self.add_vectors(&rows, quantity.components());
+        let seen = |(error, _): &&(&RowError, Noise)| !error.part(quantity).is_empty();
+        let mut rows: Vec<&(&RowError, Noise)> = rows.iter().filter(seen).collect();
+        // Rows repeat each other where they have the same components.
+        while let Some((first, _)) = rows.first() {
+            let kind = first.measured(quantity);
+            let (own, rest) = rows.into_iter().partition(|(error, _)| error.measured(quantity) == kind);
+            let own: Vec<&(&RowError, Noise)> = own;
+            let vectors: Vec<(Vector3<f64>, f64)> =
+                own.iter().map(|(error, noise)| (error.vector(quantity), noise[quantity])).collect();
+            self.add_vectors(&vectors, kind.into_iter().filter(|it| *it).count());
+            rows = rest;
+        }
     }
 
     fn add_vectors(&mut self, rows: &[(Vector3<f64>, f64)], components: usize) {

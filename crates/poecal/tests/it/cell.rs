@@ -8,8 +8,9 @@ use poecal::analysis::{Setup, identifiability};
 use poecal::estimate::{Chain, Estimate, Linkage, Packed, Range, RangeTerm, Session, delivered};
 use poecal::lie::{Freedom, Pose, Screw, rotation};
 use poecal::measurement::{
-    Dataset, DirectionMeasurement, DistanceMeasurement, FlushMeasurement, HeightMeasurement, Measurement,
-    NUMBERS, Noise, Observation, PointMeasurement, PoseMeasurement, SocketMeasurement,
+    ComponentsMeasurement, Dataset, DirectionMeasurement, DistanceMeasurement, FlushMeasurement,
+    HeightMeasurement, Measurement, NUMBERS, Noise, Observation, PointMeasurement, PoseMeasurement,
+    SocketMeasurement,
 };
 use poecal::parameters::{
     DeviceFrame, Parameter, RangeUnknown, TargetFrame, TargetPlace, ValueTerm, screw_axes,
@@ -33,12 +34,19 @@ const POINT: Function = |pose| Measurement::Point(PointMeasurement { position: p
 const POSE: Function = |pose| Measurement::Pose(PoseMeasurement { pose: *pose });
 
 /// What can be measured, with the number of unknowns that one target and its first instrument add to those of the axes.
-const FUNCTIONS: [(&str, Function, usize); 4] = [
+const FUNCTIONS: [(&str, Function, usize); 6] = [
     ("poses", POSE, 6),
     ("points", POINT, 3),
     ("distances", |pose| Measurement::Distance(DistanceMeasurement::new(pose.translation.norm())), 0),
     ("heights", |pose| Measurement::Height(HeightMeasurement { height: pose.translation.z }), 0),
+    ("two components", |pose| components(pose, [true, true, false]), 2),
+    ("one component", |pose| components(pose, [false, true, false]), 0),
 ];
+
+fn components(pose: &Pose, measured: [bool; 3]) -> Measurement {
+    let of = |k: usize| measured[k].then_some(pose.translation[k]);
+    Measurement::Components(ComponentsMeasurement::new([of(0), of(1), of(2)]))
+}
 
 /// What else can be measured, at numbers that no constraint would allow.
 const OTHERS: [(&str, Function); 4] = [

@@ -8,6 +8,7 @@ mod basin;
 mod blocks;
 mod cell;
 mod common;
+mod components;
 mod corrections;
 mod determinism;
 mod documented_files;

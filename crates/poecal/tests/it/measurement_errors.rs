@@ -148,7 +148,7 @@ const FILES: &[(&[u8], &str)] = &[
         "points.csv:2:1: found an empty cell in column `a`, expected a joint reading: add it, or leave out the row",
     ),
     (
-        b"a,lift,b,x,y,z\n0,0,0,1,,3\n",
+        b"a,lift,b,x,y,z,rx,ry,rz\n0,0,0,1,,3,0,0,1\n",
         "points.csv:2:9: found an empty cell in column `y`, expected a position: where none was measured, leave all of its cells empty",
     ),
     (

@@ -13,7 +13,7 @@ use poecal::simulate::{Kind, Simulated, Simulation, elbow, random_chain, seven_a
 
 /// Kinds without a device frame, with the rank that they add to 4 of each joint that turns and 2 of each that slides, and what it lacks of the
 /// unknowns: the size of the robot where nothing has a length.
-const KINDS: [(Kind, i32, usize); 9] = [
+const KINDS: [(Kind, i32, usize); 10] = [
     (Kind::Distance, 6, 0),
     (Kind::Change, 9, 0),
     (Kind::Sphere, 0, 1),
@@ -23,6 +23,7 @@ const KINDS: [(Kind, i32, usize); 9] = [
     (Kind::Flush, 4, 1),
     (Kind::BallBar, -3, 0),
     (Kind::Relative, 0, 0),
+    (Kind::Component, 2, 0),
 ];
 
 fn g(robot: &Robot) -> usize {

@@ -374,12 +374,8 @@ impl Geometry<'_> {
 fn numbers(task: &Task<'_>) -> ByQuantity<f64> {
     let mut counts: ByQuantity<f64> = ByQuantity::default();
     for &row in task.rows {
-        let measurement = &task.session.observation(row).measurement;
-        for (quantity, count) in counts.values_mut() {
-            if measurement.has(quantity) {
-                *count += quantity.components() as f64;
-            }
-        }
+        let channels = task.session.observation(row).measurement.observe().channels();
+        channels.iter().for_each(|channel| counts[channel.quantity] += 1.0);
     }
     counts
 }

@@ -132,8 +132,11 @@ impl RobustFit {
         };
         let bound = Bounds::new(task.rows.len(), 1.0);
         leave_clusters_out(&view, &weights, |row, error| {
-            let squares = ByQuantity::from_fn(|quantity| error.square(quantity));
-            let whitened = task.session.whitened(task.session.observation(row), squares, noise);
+            let observation = task.session.observation(row);
+            let shape = task.session.data.noise_shape(observation);
+            let own = shape.map_or(*error, |shape| error.whitened(shape));
+            let squares = ByQuantity::from_fn(|quantity| own.square(quantity));
+            let whitened = task.session.whitened(observation, squares, noise);
             let square: f64 = whitened.iter().map(|(_, square)| square).sum();
             let ratio = square / bound.of(error.dim()).powi(2);
             1.0 - (1.0 - ratio.min(1.0)).powi(3)

@@ -16,7 +16,7 @@ const DEFAULT_FORMS: [OrientationForm; 3] =
     [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
 
 /// Names with a meaning in every file, beside those of joints.
-const OUR_NAMES: [&str; 20] = [
+const OUR_NAMES: [&str; 23] = [
     "x",
     "y",
     "z",
@@ -34,10 +34,17 @@ const OUR_NAMES: [&str; 20] = [
     "instrument",
     "pair",
     "sigma_position",
+    "sigma_x",
+    "sigma_y",
+    "sigma_z",
     "sigma_rotation",
     "id",
     "set",
 ];
+
+/// Beginning of columns of expanded uncertainties (95 %), in place of `sigma_`, and their coverage factor.
+const EXPANDED: &str = "U95_";
+const COVERAGE_FACTOR: f64 = 2.0;
 
 /// Names of columns that number joints from base to tip.
 const NUMBERED: [&str; 5] = ["q", "joint", "j", "a", "joint_"];
@@ -79,6 +86,8 @@ pub(super) struct TargetLayout {
     pub(super) position: Option<[usize; 3]>,
     pub(super) orientation: Option<(OrientationForm, Vec<usize>)>,
     pub(super) sigma_position: Option<usize>,
+    /// Of each component.
+    pub(super) sigma_components: [Option<usize>; 3],
     pub(super) sigma_rotation: Option<usize>,
     /// Other kinds of measurements.
     pub(super) kinds: Vec<KindColumns>,
@@ -325,8 +334,20 @@ impl<'a> Builder<'a> {
         };
         let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Dimension::Length)?;
         let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Dimension::Angle)?;
+        let mut sigma_components = [None; 3];
+        for (name, of) in ["sigma_x", "sigma_y", "sigma_z"].into_iter().zip(&mut sigma_components) {
+            *of = sigma(name, None, Dimension::Length)?;
+        }
         let name = Some(target.name.clone());
-        Ok(TargetLayout { name, position, orientation, sigma_position, sigma_rotation, kinds })
+        Ok(TargetLayout {
+            name,
+            position,
+            orientation,
+            sigma_position,
+            sigma_components,
+            sigma_rotation,
+            kinds,
+        })
     }
 
     /// Whether the header has a column of this name that is not used otherwise.
@@ -450,12 +471,39 @@ impl<'a> Builder<'a> {
         by_our_name: bool,
     ) -> Result<Option<usize>> {
         let default = ColumnSpec::default();
+        let purpose = format!("for `{name}`");
+        let expanded = name.replacen("sigma_", EXPANDED, 1);
+        let has_expanded = by_our_name && spec.is_none() && self.header.find(&expanded)?.is_some();
         let spec = match spec {
             Some(spec) => spec,
             None if by_our_name && self.header.find(name)?.is_some() => &default,
+            None if has_expanded => {
+                return self.expanded_input(name, &expanded, quantity, &purpose).map(Some);
+            }
             None => return Ok(None),
         };
-        self.spec_input(name, spec, quantity, &format!("for `{name}`")).map(Some)
+        if let Some(second) = self.header.find(&expanded)?.filter(|_| has_expanded) {
+            let message = format!("found `{expanded}` beside `{name}`, expected one of the two");
+            return Err(self.header.error(ErrorKind::Measurement, second, message));
+        }
+        self.spec_input(name, spec, quantity, &purpose).map(Some)
+    }
+
+    /// A standard deviation from a column of expanded uncertainties.
+    fn expanded_input(
+        &mut self,
+        name: &str,
+        column: &str,
+        quantity: Dimension,
+        purpose: &str,
+    ) -> Result<usize> {
+        let index = self.column_input(name, column, quantity, None, purpose)?;
+        if let Some(input) = self.inputs.get_mut(index)
+            && let InputSource::Column(column) = input.source
+        {
+            input.sum = vec![Term { column, unit: input.unit, factor: 1.0 / COVERAGE_FACTOR }];
+        }
+        Ok(index)
     }
 
     /// Refuses a column with two meanings. (One sigma may serve several targets, and one column several sums.)

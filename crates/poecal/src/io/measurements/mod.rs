@@ -9,6 +9,7 @@ mod cells;
 mod fit_where;
 mod header;
 mod inputs;
+mod instrument_noise;
 mod joints;
 mod kinds;
 mod layout;
@@ -34,6 +35,7 @@ pub use super::numbers::LARGEST_NUMBER;
 pub use cells::Separator;
 pub(in crate::io) use cells::{Cell, split};
 pub use fit_where::FitWhere;
+pub use instrument_noise::InstrumentNoise;
 pub use joints::{JointsTable, parse_joints, read_joints};
 pub use lost::LostBeams;
 pub use mapping::ColumnMap;
@@ -74,6 +76,8 @@ pub struct ReadOptions {
     pub socket_distances: Option<SocketDistances>,
     /// What rows with a `plane` are that do not say it in `contact`.
     pub contact: PlaneContact,
+    /// Noise of instruments that depends on the distance, for rows that state none.
+    pub instrument_noise: Vec<InstrumentNoise>,
 }
 
 /// How a target touches a plane.

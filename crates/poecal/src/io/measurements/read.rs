@@ -12,7 +12,7 @@ use super::lost::{self, LostBeams};
 use super::mapping::ColumnMap;
 use super::naming::Names;
 use super::number::Numbers;
-use super::row::measurement;
+use super::row::{component_noise, measurement};
 use super::scale::{self, JointWatch};
 use super::socket_distance::Sockets;
 use super::spread;
@@ -22,7 +22,9 @@ use super::turns::{self, TurnWatch};
 use super::understanding::{self, FileUnderstanding};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::error::{Error, ErrorKind, Result, shown};
-use crate::measurement::{Dataset, Measurement, Observation, Quantity, Seen, Set, Source, Stated};
+use crate::measurement::{
+    Dataset, Measurement, NoiseShape, Observation, Quantity, Seen, Set, Source, Stated,
+};
 use crate::robot::{Robot, check_name};
 use crate::start::settle_faces;
 use crate::text::visible;
@@ -69,6 +71,29 @@ pub fn parse(
     let mut reader = Reader::new(robot, options, &no_map);
     reader.file(path.as_ref(), Blocks::new(path.as_ref(), text.as_bytes()))?;
     reader.finish()
+}
+
+/// What rows are of that have some components of a position.
+const COMPONENTS: &str = "single components";
+
+/// The warning of rows that have some components of a position beside rows that have all.
+fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
+    let is_part = |row: &&Observation| matches!(row.measurement, Measurement::Components(_));
+    let lines: Vec<usize> = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();
+    let has_whole = rows.iter().any(|row| matches!(row.measurement, Measurement::Point(_)));
+    let first = lines.get(..lines.len().min(lost::NAMED_LINES))?;
+    (has_whole && !lines.is_empty()).then(|| {
+        format!(
+            "{}: took {} ({}) as positions of which only some components were measured; --strict refuses empty cells",
+            path.display(),
+            counted(lines.len()),
+            lost::named_lines(lines.len(), first)
+        )
+    })
+}
+
+fn counted(rows: usize) -> String {
+    if rows == 1 { "one row".to_owned() } else { format!("{rows} rows") }
 }
 
 /// Most ignored columns in a warning.
@@ -167,6 +192,9 @@ impl<'a> Reader<'a> {
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
         }
         self.found.warnings.extend(lost.warning(path));
+        self.found
+            .warnings
+            .extend(incomplete(path, self.found.data.observations.get(first..).unwrap_or_default()));
         self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
         turns.finish(path)?;
         let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
@@ -181,7 +209,9 @@ impl<'a> Reader<'a> {
                 Seen::Frame(_) => poses += 1,
                 // A flush face shows its orientation too, and is no pose.
                 Seen::Other(model) => {
-                    let name = model.channels().first().map_or("", |channel| channel.quantity.name());
+                    let is_part = matches!(row.measurement, Measurement::Components(_));
+                    let quantity = || model.channels().first().map_or("", |channel| channel.quantity.name());
+                    let name = if is_part { COMPONENTS } else { quantity() };
                     *others.entry(name).or_default() += 1;
                 }
             }
@@ -235,11 +265,21 @@ impl<'a> Reader<'a> {
         let set = self.set(row, layout)?;
         for target in &layout.targets {
             let may_be_missing = layout.targets.len() > 1;
-            if let Some(measurement) = measurement(row, target, layout.pose, inputs, may_be_missing)? {
+            let how = (may_be_missing, self.options.strict);
+            if let Some(measurement) = measurement(row, target, layout.pose, inputs, how)? {
                 let mut stated = Stated::default();
                 stated.set(Quantity::Position, inputs.sigma(row, target.sigma_position)?);
                 stated.set(Quantity::Rotation, inputs.sigma(row, target.sigma_rotation)?);
+                let shape =
+                    component_noise(row, target, inputs, &measurement)?.and_then(NoiseShape::by_component);
+                if let (Some(_), Some(input)) = (&shape, target.sigma_position) {
+                    let message = "found `sigma_position` beside standard deviations of the components, expected one of the two";
+                    return Err(row.error(inputs.column(input), message));
+                }
                 self.observation(row, layout, (target, set, None), (measurement, stated), inputs)?;
+                if let Some(shape) = shape {
+                    self.found.data.state_noise(self.found.data.len() - 1, shape);
+                }
             }
             let has_position = lost::has_position(target, inputs);
             for kind in &target.kinds {
@@ -290,16 +330,15 @@ impl<'a> Reader<'a> {
         let pair = layout.pair.and_then(|at| row.cells.get(at)).map(|cell| cell.text());
         let from = pair.and_then(|pair| self.begun.get_mut(pair.as_ref())?.0.take());
         let observation = Observation {
-            target,
             station: self.station(row, layout, kind, from.map(|_| target))?,
             from,
-            measurement,
             stated,
             set,
             source: Source {
                 file: u32::try_from(self.found.understood.len()).unwrap_or(u32::MAX),
                 line: u32::try_from(row.line).unwrap_or(u32::MAX),
             },
+            ..Observation::new(target, measurement)
         };
         self.found
             .data
@@ -449,6 +488,9 @@ impl<'a> Reader<'a> {
         let mut found = self.found;
         if let Some(distances) = &self.options.socket_distances {
             found.data.lengths = distances.lengths(&self.sockets)?;
+        }
+        for noise in &self.options.instrument_noise {
+            noise.state(&mut found.data)?;
         }
         settle_faces(&mut found.data, self.robot);
         found.warnings.iter_mut().for_each(|warning| *warning = visible(warning).into_owned());

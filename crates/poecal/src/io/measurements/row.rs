@@ -8,9 +8,9 @@ use super::mapping::PoseDirection;
 use super::table::Row;
 use crate::error::Result;
 use crate::lie::Pose;
-use crate::measurement::{Measurement, PointMeasurement, PoseMeasurement};
+use crate::measurement::{ComponentsMeasurement, Measurement, PointMeasurement, PoseMeasurement};
 
-/// Expected cells of an incomplete position.
+/// Expected cells of an incomplete position that is one of a pose, or of a row with nothing else.
 const EMPTY: &str = "a position: where none was measured, leave all of its cells empty";
 
 /// Measurement of a target in the current row; `None` if an optional one is missing.
@@ -19,7 +19,7 @@ pub(super) fn measurement(
     target: &TargetLayout,
     direction: PoseDirection,
     inputs: &InputReader<'_>,
-    may_be_missing: bool,
+    (may_be_missing, strict): (bool, bool),
 ) -> Result<Option<Measurement>> {
     let Some(columns) = target.position else { return Ok(None) };
     let may_be_missing =
@@ -28,6 +28,11 @@ pub(super) fn measurement(
         [Some(x), Some(y), Some(z)] => Vector3::new(x, y, z),
         [None, None, None] if may_be_missing => return Ok(None),
         parts => {
+            let is_pose = orientation(row, target, inputs)?.is_some();
+            let is_plain = !is_pose && direction == PoseDirection::DeviceFromTarget;
+            if parts.iter().any(Option::is_some) && is_plain && !strict {
+                return Ok(Some(Measurement::Components(ComponentsMeasurement::new(parts))));
+            }
             let empty = parts.iter().position(Option::is_none).unwrap_or(0);
             let input = columns.get(empty).copied().unwrap_or(0);
             return Err(inputs.error(row, input, "found an empty cell", EMPTY));
@@ -79,4 +84,28 @@ fn orientation(
             form.rotation(values).map(Some).map_err(|message| row.error(first, message))
         }
     }
+}
+
+/// Standard deviations of the components of a measured position, if the row states them, metres.
+pub(super) fn component_noise(
+    row: &Row<'_>,
+    target: &TargetLayout,
+    inputs: &InputReader<'_>,
+    seen: &Measurement,
+) -> Result<Option<[Option<f64>; 3]>> {
+    let measured = seen.observe().position_components().map(|value| value.is_some());
+    let mut found = [None; 3];
+    for ((found, input), _) in
+        found.iter_mut().zip(target.sigma_components).zip(measured).filter(|(_, is)| *is)
+    {
+        *found = inputs.sigma(row, input)?;
+    }
+    let is_whole = found.iter().zip(measured).all(|(sigma, is)| sigma.is_some() == is);
+    if found == [None; 3] || is_whole {
+        return Ok(Some(found).filter(|_| found != [None; 3]));
+    }
+    let column = target.sigma_components.iter().flatten().map(|&input| inputs.column(input)).next();
+    let message =
+        "found a standard deviation of some components, expected one of each that was measured, or of none";
+    Err(row.error(column.unwrap_or(0), message))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::str::FromStr;
 
-use super::units::{Dimension, Unit};
+use super::units::positive_length_m;
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::measurement::KnownLength;
 
@@ -46,12 +46,7 @@ impl FromStr for SocketDistances {
 
 /// A length above 0, with its unit.
 fn metres(text: &str, whole: &str) -> Result<f64> {
-    let text = text.trim();
-    let at = text.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).unwrap_or(text.len());
-    let (number, symbol) = text.split_at(at);
-    let value = number.trim().parse::<f64>().ok().filter(|value| value.is_finite() && *value > 0.0);
-    let (Some(value), false) = (value, symbol.is_empty()) else { return Err(bad(whole)) };
-    Ok(Unit::parse(symbol.trim(), Dimension::Length)?.to_si(value))
+    positive_length_m(text)?.ok_or_else(|| bad(whole))
 }
 
 fn bad(text: &str) -> Error {

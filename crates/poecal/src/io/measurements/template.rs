@@ -157,6 +157,11 @@ impl Kind {
                 "# pair        two rows with the same name are one measurement, of two configurations; the second has the number.\n\
                  # distance    of the target between the two.\n",
             ),
+            Kind::Component => (
+                &["instrument", "x[mm]", "y[mm]", "z[mm]"],
+                "# instrument  what measured; each has axes of its own, which are found.\n\
+                 # x, y, z     position of the target; leave a cell empty where that component was not measured.\n",
+            ),
             Kind::Relative => (
                 &["pair", "x[mm]", "y[mm]", "z[mm]", "qx", "qy", "qz", "qw"],
                 "# pair        two rows with the same name are one measurement, of two configurations; the second has the numbers.\n\

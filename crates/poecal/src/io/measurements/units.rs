@@ -181,6 +181,16 @@ fn plain(name: &str) -> &str {
     }
 }
 
+/// A length above 0 as it is typed with its unit, metres; `None` of another number, or without a unit.
+pub(super) fn positive_length_m(text: &str) -> Result<Option<f64>> {
+    let text = text.trim();
+    let at = text.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).unwrap_or(text.len());
+    let (number, symbol) = text.split_at(at);
+    let value = number.trim().parse::<f64>().ok().filter(|value| value.is_finite() && *value > 0.0);
+    let (Some(value), false) = (value, symbol.is_empty()) else { return Ok(None) };
+    Ok(Some(Unit::parse(symbol.trim(), Dimension::Length)?.to_si(value)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

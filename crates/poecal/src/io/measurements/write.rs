@@ -55,9 +55,10 @@ pub(in crate::io) fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment:
 }
 
 /// The columns of rows of other kinds, in the order of a file.
-const OTHER_COLUMNS: [&str; 20] = [
+const OTHER_COLUMNS: [&str; 21] = [
     "target",
     "pair",
+    "instrument",
     "anchor",
     "socket",
     "plane",
@@ -128,6 +129,9 @@ fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTr
     let is_pair = observation.from.is_some();
     match &observation.measurement {
         Measurement::Point(_) | Measurement::Pose(_) => {
+            if !is_pair && !station.is_empty() {
+                cells.insert("instrument", name);
+            }
             let pose = observation.measurement.pose();
             for (column, value) in ["x[mm]", "y[mm]", "z[mm]"].into_iter().zip(pose.translation.iter()) {
                 cells.insert(column, length(*value, Quantity::Position));
@@ -137,6 +141,17 @@ fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTr
                 for (column, part) in ["qx", "qy", "qz", "qw"].into_iter().zip(pose.quaternion_xyzw()) {
                     cells.insert(column, decimal(part, number, turn));
                 }
+            }
+        }
+        Measurement::Components(it) => {
+            if !is_pair && !station.is_empty() {
+                cells.insert("instrument", name);
+            }
+            for (column, value) in ["x[mm]", "y[mm]", "z[mm]"].into_iter().zip(it.components()) {
+                cells.insert(
+                    column,
+                    value.map_or_else(String::new, |value| length(value, Quantity::Position)),
+                );
             }
         }
         Measurement::Distance(it) if it.zero_is_unknown && it.distance == 0.0 => {

@@ -96,7 +96,8 @@ impl Project<'_> {
             | Kind::Sphere
             | Kind::Direction
             | Kind::BallBar
-            | Kind::Relative => "",
+            | Kind::Relative
+            | Kind::Component => "",
         };
         let name = visible(&self.model.robot.name).into_owned();
         let replaced = [

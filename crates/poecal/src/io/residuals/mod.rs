@@ -39,7 +39,7 @@ pub struct ModelErrors {
     pub models: [f64; MODELS],
     /// Of the corrected model, if there is one.
     pub corrected: Option<f64>,
-    /// By component, 0 beyond them.
+    /// By component, NaN where one was not measured, 0 beyond them.
     residual: [f64; Quantity::MOST_COMPONENTS],
     components: usize,
 }
@@ -65,7 +65,7 @@ impl ModelErrors {
         self.models[2]
     }
 
-    /// The calibrated model's residual by component.
+    /// The calibrated model's residual by component, NaN of a component that was not measured.
     #[must_use]
     pub fn residual(&self) -> &[f64] {
         self.residual.get(..self.components).unwrap_or_default()

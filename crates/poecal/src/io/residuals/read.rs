@@ -236,7 +236,7 @@ impl<'a> Cells<'a> {
         let corrected = if has_corrected { Some(self.number()?) } else { None };
         let mut residual = [0.0; Quantity::MOST_COMPONENTS];
         for value in residual.iter_mut().take(components) {
-            *value = self.number()?;
+            *value = if self.are_empty(1) { f64::NAN } else { self.number()? };
         }
         let found = ModelErrors::new(models, residual.get(..components).unwrap_or_default());
         Ok(Some(found.with_corrected(corrected)))

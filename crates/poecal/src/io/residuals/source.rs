@@ -90,7 +90,8 @@ fn errors_of(errors: [&RowError; 3], quantity: Quantity) -> Option<ModelErrors> 
     let shown = |value: f64| quantity.unit().shown(value);
     errors[2].length(quantity)?;
     let length = |error: &RowError| error.length(quantity).map_or(f64::NAN, shown);
-    let residual = errors[2].vector(quantity).map(shown);
+    let (measured, mut residual) = (errors[2].measured(quantity), errors[2].vector(quantity).map(shown));
+    residual.iter_mut().zip(measured).filter(|(_, is)| !is).for_each(|(value, _)| *value = f64::NAN);
     let components = residual.as_slice().get(..quantity.components()).unwrap_or_default();
     Some(ModelErrors::new(errors.map(length), components))
 }

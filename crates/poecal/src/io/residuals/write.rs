@@ -152,8 +152,13 @@ fn push_errors(
     let cells = MODELS + usize::from(has_corrected) + quantity.components();
     let mut empty = cells;
     if let Some(errors) = errors.get(quantity) {
-        for value in errors.numbers().take(cells) {
-            push_cell(out, value);
+        let models = errors.models.len() + usize::from(has_corrected);
+        for (at, value) in errors.numbers().take(cells).enumerate() {
+            if at >= models && value.is_nan() {
+                out.push(',');
+            } else {
+                push_cell(out, value);
+            }
             empty -= 1;
         }
     }

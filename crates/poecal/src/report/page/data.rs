@@ -240,7 +240,7 @@ impl ResidualData {
         let errors = row.errors.get(self.quantity);
         for (k, component) in self.components.iter_mut().enumerate() {
             let value = errors.as_ref().and_then(|errors| errors.residual().get(k)).copied();
-            component.values.push(value.map(rounded));
+            component.values.push(value.filter(|value| !value.is_nan()).map(rounded));
         }
     }
 }

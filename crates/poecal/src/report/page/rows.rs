@@ -141,7 +141,9 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
     let rows = threads::map_parts_of(residuals.rows().len(), 2 * components.len(), |index| {
         let (quantity, component) = *components.get(index / 2)?;
         let (set, held_out) = [("fitted", false), ("held out", true)][index % 2];
-        let of = |row: &ResidualRow| row.errors.get(quantity)?.residual().get(component).copied();
+        let of = |row: &ResidualRow| {
+            row.errors.get(quantity)?.residual().get(component).copied().filter(|it| !it.is_nan())
+        };
         let name = format!("{}, {}", component_words(quantity, component), sign(quantity.unit()));
         let values: Vec<f64> =
             residuals.rows().iter().filter(|row| row.held_out == held_out).filter_map(of).collect();
