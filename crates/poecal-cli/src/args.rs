@@ -18,7 +18,7 @@ pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
-pub(crate) use words::PredictedModel;
+pub(crate) use words::{ExportForm, PredictedModel};
 
 use std::path::PathBuf;
 
@@ -29,7 +29,7 @@ use poecal::io::predictions::PredictionFrame;
 
 use crate::quantity::threads;
 use shared::{ChainArgs, ColumnArgs, Meaning, OutFile, Reading};
-use words::{FORM, FRAME, PREDICT_IN, PREDICTED_MODEL, REQUIRED_LEVEL, one_of};
+use words::{EXPORT_FORMAT, FORM, FRAME, PREDICT_IN, PREDICTED_MODEL, REQUIRED_LEVEL, one_of};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
@@ -70,6 +70,10 @@ pub(crate) enum Command {
     Check(Check),
     /// Write a model in another form
     Convert(Convert),
+    /// Write a calibrated robot in the form of a controller, a driver or a simulator
+    Export(Export),
+    /// Write calibrated numbers into a URDF
+    Apply(Apply),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
     /// Repeat the experiment of a paper and check its claims, or show the effect of gross errors
@@ -168,6 +172,45 @@ pub(crate) struct Check {
     /// Print JSON instead of text
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Arguments of `poecal export`.
+#[derive(Args, Debug)]
+pub(crate) struct Export {
+    /// The calibration (calibration.json), or another model
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) chain: TreeArgs,
+    /// The form
+    #[arg(long, value_parser = one_of(EXPORT_FORMAT))]
+    pub(crate) format: ExportForm,
+    /// Which model of the calibration: geometry alone, or the corrected one, whose terms of the joints go to a file beside, FILE.joints.json
+    #[arg(long = "model", value_parser = one_of(PREDICTED_MODEL), default_value = "calibrated")]
+    pub(crate) of: PredictedModel,
+    /// The URDF into which the numbers are written [default: the one that was calibrated]; for --format urdf
+    #[arg(long, value_name = "ROBOT.urdf")]
+    pub(crate) onto: Option<PathBuf>,
+    /// The controller's checksum, which the driver compares, like calib_12788084448423163542; for --format ur
+    #[arg(long)]
+    pub(crate) hash: Option<String>,
+    /// The calibration of motors whose offsets are corrected; for --format lerobot
+    #[arg(long, value_name = "FILE")]
+    pub(crate) motors: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) place: OutFile,
+}
+
+/// Arguments of `poecal apply`.
+#[derive(Args, Debug)]
+pub(crate) struct Apply {
+    /// The calibration (calibration.json)
+    pub(crate) calibration: PathBuf,
+    /// The URDF: the one that was calibrated, or one with the same kinematics
+    pub(crate) urdf: PathBuf,
+    #[command(flatten)]
+    pub(crate) chain: TreeArgs,
+    #[command(flatten)]
+    pub(crate) place: OutFile,
 }
 
 /// Arguments of `poecal convert`.

@@ -230,10 +230,9 @@ fn inputs(robot: &Robot, measurements: &Measurements, validate: Option<&Measurem
     let mut sha256 = (*robot.sha256).clone();
     sources().for_each(|source| sha256.extend(source.sha256.clone()));
     Inputs {
-        model: robot.model.path.display().to_string(),
         measurements: sources().flat_map(|source| source.names.clone()).collect(),
         sha256,
-        command: None,
+        ..Inputs::of_model(&robot.model)
     }
 }
 

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use numpy::PyArray2;
 use poecal::io::calibration_file::CalibrationFile;
+use poecal::io::export::{ExportFormat, ExportOptions, export};
 use poecal::io::model::{Model, ModelSource};
 use poecal::io::output::{self, Contents, Existing, Results};
 use poecal::io::predictions::{PredictionFrame, predicted};
@@ -78,7 +79,9 @@ impl Calibration {
         let residuals = residuals.or_else(|| beside.is_file().then_some(beside));
         let residuals = residuals.map(Rows::read).transpose().map_err(raise)?;
         let summary = report::summary(&file, report::Detail::Short);
-        let nominal = Robot::new(Model { robot: nominal, source: ModelSource::Toml, path });
+        let urdf = file.original_urdf(&path).map_err(raise)?;
+        let source = urdf.map_or(ModelSource::Toml, |document| ModelSource::Urdf(Box::new(document)));
+        let nominal = Robot::new(Model { robot: nominal, source, path });
         Ok(Calibration::written(nominal, robot, file, residuals, summary))
     }
 
@@ -277,6 +280,60 @@ impl Calibration {
         let written = written.map_err(raise)?;
         crate::warn(py, &written.notes)?;
         Ok(written.files)
+    }
+
+    /// The calibrated robot in the form of a controller, a driver or a simulator, read back and compared on 1,000 configurations.
+    ///
+    /// Parameters
+    /// ----------
+    /// format
+    ///     "urdf" (the one that was calibrated, with other numbers), "toml", "poe", "dh", "mdh", "hayati", "origins", "ur", "xarm", "franka",
+    ///     "pal", "lerobot", "mjcf", "sdf", "usd", "csv" or "offsets".
+    /// model
+    ///     "calibrated", geometry alone, or "corrected", whose terms of the joints a form of geometry leaves out, with a warning.
+    /// hash
+    ///     The controller's checksum, for "ur".
+    /// motors
+    ///     The text of the calibration of motors that LeRobot has, for "lerobot".
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text. What the form cannot say is a warning.
+    ///
+    /// Raises
+    /// ------
+    /// ExportError
+    ///     The form cannot hold this robot.
+    #[pyo3(signature = (format, *, model="calibrated", hash=None, motors=None))]
+    fn export(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = arg::format)] format: &str,
+        #[pyo3(from_py_with = arg::model)] model: &str,
+        #[pyo3(from_py_with = arg::hash)] hash: Option<String>,
+        #[pyo3(from_py_with = arg::motors)] motors: Option<String>,
+    ) -> PyResult<String> {
+        let words = ExportFormat::ALL.map(|format| (format.word(), format));
+        let format = chosen("format", format, &words)?;
+        let robot = match chosen("model", model, &[("calibrated", false), ("corrected", true)])? {
+            true => self.corrected()?.unwrap_or(self.calibrated()?),
+            false => self.calibrated()?,
+        };
+        let options = ExportOptions { hash, motors };
+        let exported = py.detach(|| export(&robot.model, format, &options)).map_err(raise)?;
+        crate::warn(py, &exported.notes)?;
+        Ok(exported.text)
+    }
+
+    /// The URDF that was calibrated, with the calibrated numbers; a new one if the model was no URDF.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     The text.
+    fn to_urdf(&self, py: Python<'_>) -> PyResult<String> {
+        self.export(py, ExportFormat::Urdf.word(), "calibrated", None, None)
     }
 
     /// Writes the report, one HTML file.

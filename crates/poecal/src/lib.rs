@@ -74,6 +74,8 @@ pub mod estimate;
 #[cfg_attr(doc, doc(hidden))]
 pub mod forensics;
 #[cfg_attr(doc, doc(hidden))]
+pub mod forms;
+#[cfg_attr(doc, doc(hidden))]
 pub mod gauge;
 #[cfg_attr(doc, doc(hidden))]
 pub mod io;

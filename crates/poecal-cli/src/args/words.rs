@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use poecal::calibration::{DeviceFrameKnowledge, Level, Loss, Robust};
+use poecal::io::export::ExportFormat;
 use poecal::io::measurements::{Frames, PlaneContact};
 use poecal::io::model::ModelFormat;
 use poecal::io::predictions::PredictionFrame;
@@ -84,9 +85,57 @@ pub(super) const PREDICTED_MODEL: Words<PredictedModel> = &[
     ("calibrated", "Geometry alone, as a URDF holds it", PredictedModel::Calibrated),
 ];
 
+/// A form, or one that cannot be written, with the reason.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ExportForm {
+    Open(ExportFormat),
+    Closed(&'static str),
+}
+
+/// Why no file of a maker can be written.
+const CLOSED: &str = "not public";
+
+/// The forms of exports.
+pub(super) const EXPORT_FORMAT: Words<ExportForm> = &[
+    ("urdf", "The URDF that was calibrated, with other numbers", ExportForm::Open(ExportFormat::Urdf)),
+    ("toml", "A table of screws, which poecal reads", ExportForm::Open(ExportFormat::Toml)),
+    ("poe", "Screws of a product of exponentials, JSON", ExportForm::Open(ExportFormat::Poe)),
+    ("dh", "Denavit and Hartenberg's table, JSON", ExportForm::Open(ExportFormat::Dh)),
+    ("mdh", "Craig's table, JSON", ExportForm::Open(ExportFormat::Mdh)),
+    (
+        "hayati",
+        "Denavit and Hartenberg's, with Hayati's rows where axes are nearly parallel, JSON",
+        ExportForm::Open(ExportFormat::Hayati),
+    ),
+    ("origins", "Origins of the joints by name, YAML for xacro", ExportForm::Open(ExportFormat::Origins)),
+    ("ur", "Universal Robots' driver, YAML", ExportForm::Open(ExportFormat::Ur)),
+    ("xarm", "uFactory's description, YAML", ExportForm::Open(ExportFormat::Xarm)),
+    ("franka", "Franka's description, YAML", ExportForm::Open(ExportFormat::Franka)),
+    ("pal", "PAL Robotics' master calibration, YAML", ExportForm::Open(ExportFormat::Pal)),
+    ("lerobot", "LeRobot's calibration of motors, JSON", ExportForm::Open(ExportFormat::Lerobot)),
+    ("mjcf", "MuJoCo's model", ExportForm::Open(ExportFormat::Mjcf)),
+    ("sdf", "Gazebo's model", ExportForm::Open(ExportFormat::Sdf)),
+    ("usd", "USD physics, as Isaac Sim reads it", ExportForm::Open(ExportFormat::Usd)),
+    ("csv", "Origins of the joints, a row each", ExportForm::Open(ExportFormat::Csv)),
+    (
+        "offsets",
+        "The joint offsets, base and tool that come nearest, JSON",
+        ExportForm::Open(ExportFormat::Offsets),
+    ),
+    ("kuka", CLOSED, ExportForm::Closed("KUKA's absolute accuracy is a file on the robot's own memory")),
+    (
+        "fanuc",
+        CLOSED,
+        ExportForm::Closed("FANUC's geometry is closed, and mastering takes counts of encoders"),
+    ),
+    ("staubli", CLOSED, ExportForm::Closed("Staeubli's arm.cfx takes the maker's numbers only")),
+    ("yaskawa", CLOSED, ExportForm::Closed("Yaskawa shows neither geometry nor its corrections")),
+    ("abb", CLOSED, ExportForm::Closed("the frames and signs of ABB's MOC.cfg are not published")),
+];
+
 /// The forms that a model can be written in.
 pub(super) const FORM: Words<ModelFormat> = &[
-    ("urdf", "A new URDF of links, joints and a tip", ModelFormat::Urdf),
+    ("urdf", "The URDF that was read or calibrated, with other numbers; else a new one", ModelFormat::Urdf),
     ("toml", "A table of screws", ModelFormat::Toml),
 ];
 

@@ -128,9 +128,8 @@ fn read_measurements(
     let options = ReadOptions { ignore_sets, ..reading? };
     let mapping = arguments.reading.meaning.columns.columns.iter();
     let mut inputs = Inputs {
-        model: model.path.display().to_string(),
         sha256: Inputs::checksums(std::iter::once(&model.path).chain(mapping).map(PathBuf::as_path))?,
-        ..Inputs::default()
+        ..Inputs::of_model(model)
     };
     let mut read = |paths: &[PathBuf]| -> Result<Dataset> {
         let file = measurements::read(paths, &model.robot, &options)?;

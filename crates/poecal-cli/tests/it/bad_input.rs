@@ -131,7 +131,7 @@ fn bad_cells_get_one_sentence_each() {
              "bad.csv:3:17: found `1e999` in column `y`, expected a finite number"),
         case(CALIBRATE, table("0.1,0.2,,0.7,0.1,0.5"),
              "bad.csv:3:9: found an empty cell in column `b`, expected a joint reading: add it, or leave out the row"),
-        case(CALIBRATE, table("0.1,0.2,0.3,0.7,,0.5"),
+        case("calibrate robot.urdf bad.csv --strict --out out", table("0.1,0.2,0.3,0.7,,0.5"),
              "bad.csv:3:17: found an empty cell in column `y`, expected…"),
         case(CALIBRATE, table("0.1,0.2,0.3,0.7,0.1"),
              "bad.csv:3:20: found 5 cells, expected…"),

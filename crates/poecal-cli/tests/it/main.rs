@@ -17,6 +17,7 @@ mod identify;
 mod init;
 mod lost_beams;
 mod offsets;
+mod original_urdf;
 #[cfg(unix)]
 mod places;
 mod project;

@@ -1019,6 +1019,48 @@ class Calibration:
         ExportError
             Written files did not reproduce what was fitted.
         """
+    def export(
+        self,
+        format: Literal[
+            "urdf", "toml", "poe", "dh", "mdh", "hayati", "origins", "ur", "xarm", "franka", "pal", "lerobot", "mjcf", "sdf", "usd", "csv", "offsets"
+        ],
+        *,
+        model: Literal["calibrated", "corrected"] = "calibrated",
+        hash: str | None = None,
+        motors: str | None = None,
+    ) -> str:
+        """The calibrated robot in the form of a controller, a driver or a simulator, read back and compared on 1,000 configurations.
+
+        Parameters
+        ----------
+        format
+            "urdf" (the one that was calibrated, with other numbers), "toml", "poe", "dh", "mdh", "hayati", "origins", "ur", "xarm", "franka",
+            "pal", "lerobot", "mjcf", "sdf", "usd", "csv" or "offsets".
+        model
+            "calibrated", geometry alone, or "corrected", whose terms of the joints a form of geometry leaves out, with a warning.
+        hash
+            The controller's checksum, for "ur".
+        motors
+            The text of the calibration of motors that LeRobot has, for "lerobot".
+
+        Returns
+        -------
+        str
+            The text. What the form cannot say is a warning.
+
+        Raises
+        ------
+        ExportError
+            The form cannot hold this robot.
+        """
+    def to_urdf(self) -> str:
+        """The URDF that was calibrated, with the calibrated numbers; a new one if the model was no URDF.
+
+        Returns
+        -------
+        str
+            The text.
+        """
     def report(self, path: _Path, *, force: bool = False) -> None:
         """Writes the report, one HTML file.
 

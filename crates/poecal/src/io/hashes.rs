@@ -31,6 +31,13 @@ pub(super) fn sha256(path: &Path) -> Result<Option<String>> {
     })
 }
 
+/// SHA-256 of a text, as hexadecimal digits.
+pub(super) fn sha256_of(text: &str) -> String {
+    let mut hashing = Hashing::new(io::empty());
+    hashing.hasher.update(text.as_bytes());
+    hashing.sha256()
+}
+
 /// A reader that computes the checksum of what it has read.
 pub(super) struct Hashing<R> {
     source: R,

@@ -3,6 +3,7 @@
 pub mod calibration_file;
 mod csv_text;
 pub mod disk;
+pub mod export;
 mod hashes;
 mod looks_like;
 pub mod measurements;
@@ -25,6 +26,14 @@ pub use proof::Difference;
 use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result};
+
+/// The text of a file that is no model and no table; `what` it is, messages say.
+///
+/// # Errors
+/// [`ErrorKind::File`] if it cannot be read, or is no text.
+pub fn text_of(path: &std::path::Path, what: &str) -> Result<String> {
+    source_text::read(path, what)
+}
 
 /// A value as the text of a JSON file; `what` it is, messages say.
 pub(crate) fn json_text(value: &impl Serialize, what: &str) -> Result<String> {

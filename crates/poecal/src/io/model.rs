@@ -138,6 +138,32 @@ impl Model {
 }
 
 impl Model {
+    /// The text of a URDF with a robot that differs from the model's in numbers only, and the selection that reads the robot from it: the text
+    /// that was read or calibrated, or else a new one.
+    pub(super) fn urdf_of(&self, robot: &Robot, notes: &mut Vec<String>) -> Result<(String, ChainSelection)> {
+        let kept;
+        let document = match &self.source {
+            ModelSource::Urdf(document) => Some(document.as_ref()),
+            ModelSource::Calibration(file) => {
+                kept = file.original_urdf(&self.path)?;
+                kept.as_ref()
+            }
+            ModelSource::Toml => None,
+        };
+        match document {
+            Some(document) => {
+                let patched = document.patched(robot)?;
+                notes.extend(patched.notes);
+                Ok((patched.text, patched.selection))
+            }
+            None => {
+                let (new, selection) = urdf::written_new(robot)?;
+                notes.extend(new.notes);
+                Ok((new.text, selection))
+            }
+        }
+    }
+
     /// The corrected model of a calibration, if it has one; otherwise the same.
     ///
     /// # Errors
@@ -225,10 +251,9 @@ pub fn convert(model: &Model, to: ModelFormat) -> Result<Converted> {
         ModelFormat::Urdf => {
             let mut notes = Vec::new();
             plain = urdf::holdable(robot, &mut notes);
-            let (mut urdf, selection) = urdf::written_new(&plain)?;
-            urdf.notes.splice(0..0, notes);
-            let again = UrdfDocument::parse(&urdf.text, &model.path, &selection);
-            (urdf, again.map(|document| document.robot().clone()))
+            let (text, selection) = model.urdf_of(&plain, &mut notes)?;
+            let again = UrdfDocument::parse(&text, &model.path, &selection);
+            (Converted { text, notes }, again.map(|document| document.robot().clone()))
         }
         ModelFormat::Toml => {
             let text = robot_toml::write(robot);
@@ -257,7 +282,7 @@ fn export(model: &Model, message: String) -> Error {
 }
 
 /// Compares the forward kinematics of a model and of its text read back.
-fn verify(model: &Model, robot: &Robot, again: &Robot) -> Result<()> {
+pub(super) fn verify(model: &Model, robot: &Robot, again: &Robot) -> Result<()> {
     let names = |robot: &Robot| robot.joint_reading_names().into_iter().collect::<BTreeSet<_>>();
     let is_same = if model.robot.is_serial() {
         again.joint_reading_names() == model.robot.joint_reading_names()

@@ -26,6 +26,10 @@ impl TermModel for Coupling {
         format!("coupled{}", self.joint + 1).into()
     }
 
+    fn formula(&self) -> Cow<'static, str> {
+        format!("the value of joint {}, counted from the base", self.joint + 1).into()
+    }
+
     fn unit(&self, _: JointKind) -> Unit {
         Unit::One
     }

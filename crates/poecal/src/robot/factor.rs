@@ -81,6 +81,10 @@ impl TermModel for Factor {
         format!("factor{}", self.index + 1).into()
     }
 
+    fn formula(&self) -> Cow<'static, str> {
+        format!("factor {} from its reference", self.index + 1).into()
+    }
+
     fn unit(&self, kind: JointKind) -> Unit {
         unit_of_value(kind)
     }

@@ -28,6 +28,10 @@ impl TermModel for Harmonic {
         format!("{}{}", if self.cosine { "cos" } else { "sin" }, self.order).into()
     }
 
+    fn formula(&self) -> Cow<'static, str> {
+        format!("{}({} q)", if self.cosine { "cos" } else { "sin" }, self.order).into()
+    }
+
     fn unit(&self, kind: JointKind) -> Unit {
         unit_of_value(kind)
     }

@@ -14,6 +14,10 @@ impl TermModel for Offset {
         "offset".into()
     }
 
+    fn formula(&self) -> Cow<'static, str> {
+        "1".into()
+    }
+
     fn unit(&self, kind: JointKind) -> Unit {
         unit_of_value(kind)
     }

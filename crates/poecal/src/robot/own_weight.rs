@@ -21,6 +21,10 @@ impl TermModel for OwnWeight {
         "masses".into()
     }
 
+    fn formula(&self) -> Cow<'static, str> {
+        "the moment about the joint of the links' masses, over the largest".into()
+    }
+
     fn unit(&self, kind: JointKind) -> Unit {
         unit_of_value(kind)
     }

@@ -26,6 +26,14 @@ impl TermModel for Payload {
         format!("payload{}", self.index + 1).into()
     }
 
+    fn formula(&self) -> Cow<'static, str> {
+        format!(
+            "factor {} * the moment about the joint of a unit weight at the last link, over the largest",
+            self.index + 1
+        )
+        .into()
+    }
+
     fn unit(&self, kind: JointKind) -> Unit {
         unit_of_value(kind)
     }

@@ -14,6 +14,10 @@ impl TermModel for Ratio {
         "ratio".into()
     }
 
+    fn formula(&self) -> Cow<'static, str> {
+        "q".into()
+    }
+
     fn unit(&self, _: JointKind) -> Unit {
         Unit::One
     }

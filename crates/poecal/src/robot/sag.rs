@@ -25,6 +25,10 @@ impl TermModel for Sag {
         format!("sag{}", self.weight + 1).into()
     }
 
+    fn formula(&self) -> Cow<'static, str> {
+        format!("the moment about the joint of weight {}, over the largest", self.weight + 1).into()
+    }
+
     fn unit(&self, kind: JointKind) -> Unit {
         unit_of_value(kind)
     }

@@ -36,6 +36,9 @@ pub trait TermModel {
     /// Its name.
     fn name(&self) -> Cow<'static, str>;
 
+    /// The function b in words and signs, with q for the joint's value.
+    fn formula(&self) -> Cow<'static, str>;
+
     /// Unit of the coefficient for a joint of this kind.
     fn unit(&self, kind: JointKind) -> Unit;
 

@@ -13,6 +13,7 @@ mod corrections;
 mod determinism;
 mod documented_files;
 mod drawing;
+mod export;
 mod facade;
 mod fast_path;
 // Each crate uses what it needs of it.

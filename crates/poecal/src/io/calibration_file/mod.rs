@@ -4,6 +4,7 @@ mod bodies;
 mod corrected;
 mod judging;
 mod keyed;
+mod original;
 mod outliers;
 mod refusal;
 mod repeatability;
@@ -16,6 +17,7 @@ pub use corrected::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
 };
 pub use keyed::*;
+pub use original::OriginalUrdf;
 pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
 pub use repeatability::{RepeatabilityEntry, RepeatedPoseEntry};
 pub use schema::*;

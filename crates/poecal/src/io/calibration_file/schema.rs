@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 use super::corrected::{CorrectedEntry, GravityEntry};
 use super::keyed::{Keyed, SigmaKeys};
+use super::original::OriginalUrdf;
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
 use super::{OutlierEntry, RepeatabilityEntry, RobustEntry};
 use crate::analysis::{Direction, Identifiability, JointCoverage, Observability};
@@ -117,6 +118,9 @@ pub struct Inputs {
     /// The command that reproduces the calibration; null if it was not made by the program.
     #[serde(default)]
     pub command: Option<String>,
+    /// The URDF that was calibrated; absent if the model was none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub urdf: Option<OriginalUrdf>,
 }
 
 impl Inputs {

@@ -51,8 +51,10 @@ pub fn write(
 ) -> Result<Written> {
     let mut notes = Vec::new();
     let json = results.file.to_text()?;
+    // As the file has it: every later way from it to a URDF gives the same text.
+    let as_written = results.file.robot()?;
     let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, robot)];
-    files.extend(robot_files("calibrated", model, robot, &mut notes)?);
+    files.extend(robot_files("calibrated", model, &as_written, &mut notes)?);
     files.push(NewFile::of_rows("residuals.csv", results.residuals));
     let mut report = results.report;
     let elsewhere = elsewhere.and_then(|file| report.take().map(|page| (file, page)));

@@ -153,19 +153,14 @@ fn robot_files<'a>(
 ) -> Result<Vec<NewFile<'a>>> {
     let urdf = format!("{stem}.urdf");
     let plain = urdf::holdable(robot, notes);
-    match &model.source {
-        ModelSource::Urdf(document) => {
-            let patched = document.patched(&plain)?;
-            notes.extend(patched.notes);
-            Ok(vec![NewFile::of_urdf(urdf, patched.text, plain, patched.selection)])
-        }
+    let (text, selection) = model.urdf_of(&plain, notes)?;
+    let new = NewFile::of_urdf(urdf, text, plain, selection);
+    Ok(match &model.source {
+        ModelSource::Urdf(_) => vec![new],
         ModelSource::Toml | ModelSource::Calibration(_) => {
-            let toml = NewFile::of_robot(format!("{stem}.toml"), robot_toml::write(robot), robot);
-            let (new, selection) = urdf::written_new(&plain)?;
-            notes.extend(new.notes);
-            Ok(vec![toml, NewFile::of_urdf(urdf, new.text, plain, selection)])
+            vec![NewFile::of_robot(format!("{stem}.toml"), robot_toml::write(robot), robot), new]
         }
-    }
+    })
 }
 
 /// Writes the files to their staging folder, verifies the models, and puts all in place, also `elsewhere`. Other files of an earlier run

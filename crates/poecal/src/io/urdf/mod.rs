@@ -5,6 +5,7 @@
 
 mod chain;
 mod ends;
+mod origins;
 mod parts;
 mod patch;
 mod selection;
@@ -18,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 use roxmltree::Document;
 
+pub(super) use origins::Origin;
 pub use patch::PatchedUrdf;
 pub use selection::{ChainSelection, named_link};
 pub(super) use terms::holdable;

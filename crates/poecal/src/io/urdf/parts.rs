@@ -17,6 +17,8 @@ use crate::robot::{Body, Joint, JointKind, Limits, Mass, Reading, Robot, check_n
 /// A fixed or moving joint, with the places for writing it back.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
+    /// Name of the joint.
+    pub(super) name: String,
     /// The joint above its parent link; none for the base.
     pub(super) parent: Option<usize>,
     /// `<origin>`: pose of the joint's frame in its parent link.
@@ -185,6 +187,7 @@ fn read_part<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Part> 
     let unit_axis = if joint.kind.moves() { Some(read_axis(source, joint, axis)?) } else { None };
     let attribute = |node: Option<Node>, name| node.and_then(|node| value_range(node, name));
     Ok(Part {
+        name: joint.name.to_owned(),
         parent: None,
         parent_from_joint: Pose::from_xyz_rpy(xyz, rpy),
         axis: unit_axis,

@@ -1,0 +1,93 @@
+//! `poecal export` and `poecal apply`: a calibrated robot in the forms that others read.
+
+use std::path::{Path, PathBuf};
+
+use poecal::io::export::{self, ExportFormat, ExportOptions};
+use poecal::io::model::Model;
+use poecal::io::output::{Existing, FilePlace};
+use poecal::io::text_of;
+use poecal::io::urdf::ChainSelection;
+use poecal::{Error, ErrorKind, Result};
+
+use crate::DONE;
+use crate::args::{Apply, Export, ExportForm, PredictedModel};
+use crate::console::Console;
+
+pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
+    let format = match arguments.format {
+        ExportForm::Open(format) => format,
+        ExportForm::Closed(why) => {
+            let message = format!(
+                "--format: found the form of a controller that nobody outside can write ({why}), expected another: take `offsets`, and enter them \
+                 by mastering, and correct programs for what remains"
+            );
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+    };
+    for (name, is_there, of) in [
+        ("--onto", arguments.onto.is_some(), ExportFormat::Urdf),
+        ("--hash", arguments.hash.is_some(), ExportFormat::Ur),
+        ("--motors", arguments.motors.is_some(), ExportFormat::Lerobot),
+    ] {
+        if is_there && format != of {
+            let message =
+                format!("found {name} beside another form, expected it with --format {} alone", of.word());
+            return Err(Error::new(ErrorKind::Option, message));
+        }
+    }
+    let further = arguments.onto.iter().chain(&arguments.motors);
+    let inputs: Vec<&Path> = std::iter::once(&arguments.model).chain(further).map(PathBuf::as_path).collect();
+    let place = arguments.place.reserve(&inputs, console)?;
+    let selection = arguments.chain.selection(None)?;
+    let is_calibration = arguments.model.extension().is_some_and(|it| it.eq_ignore_ascii_case("json"));
+    let of_model = if is_calibration && arguments.onto.is_some() {
+        ChainSelection::default()
+    } else {
+        selection.clone()
+    };
+    let model = Model::read(&arguments.model, &of_model)?;
+    let model = match arguments.of {
+        PredictedModel::Corrected => model.corrected()?,
+        PredictedModel::Calibrated => model,
+    };
+    if let Some(urdf) = &arguments.onto {
+        let converted = export::onto(&model, urdf, &selection)?;
+        console.warnings(&converted.notes);
+        console.deliver(converted.text, place)?;
+        return Ok(DONE);
+    }
+    let motors =
+        arguments.motors.as_ref().map(|path| text_of(path, "a calibration of motors (JSON)")).transpose()?;
+    let options = ExportOptions { hash: arguments.hash.clone(), motors };
+    let exported = export::export(&model, format, &options)?;
+    let beside = match (&exported.beside, &arguments.place.out) {
+        (Some(text), Some(out)) if out != Path::new("-") => {
+            let mut name = out.clone().into_os_string();
+            name.push(".joints.json");
+            let existing = Existing::forced(arguments.place.force);
+            let place = FilePlace::reserve(Path::new(&name), existing, &inputs, &mut console.warner())?;
+            Some((text.clone(), place, PathBuf::from(name)))
+        }
+        _ => None,
+    };
+    console.warnings(&exported.notes);
+    if exported.beside.is_some() && beside.is_none() {
+        console
+            .warning("what the joints do beyond geometry is in a file beside --out FILE, FILE.joints.json");
+    }
+    console.deliver(exported.text, place)?;
+    if let Some((text, place, name)) = beside {
+        console.deliver(text, Some(place))?;
+        console.remark(format!("{} has what the joints do beyond geometry, with formulas", name.display()));
+    }
+    Ok(DONE)
+}
+
+pub(crate) fn apply(arguments: &Apply, console: &Console) -> Result<u8> {
+    let place = arguments.place.reserve(&[&arguments.calibration, &arguments.urdf], console)?;
+    let calibration = Model::read(&arguments.calibration, &ChainSelection::default())?;
+    let converted = export::onto(&calibration, &arguments.urdf, &arguments.chain.selection(None)?)?;
+    console.warnings(&converted.notes);
+    console.deliver(converted.text, place)?;
+    Ok(DONE)
+}

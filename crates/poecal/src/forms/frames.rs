@@ -1,0 +1,127 @@
+//! Frames with z along each joint's axis.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::lie::{Pose, Screw, rotation};
+use crate::robot::{Joint, JointKind, Robot};
+
+/// A frame's z nearer than this to its axis needs no turn.
+const ALONG: f64 = 1e-13;
+
+/// A serial robot by frames with z along each axis: the joint turns about it, or slides along it. The way from the base to the tip is
+/// `T = A₁ Z(q₁) A₂ Z(q₂) … Aₙ Z(qₙ) E`, with `Z(q) = Rz(q)` or `Tz(q)`.
+///
+/// ```
+/// use poecal::forms::AxisFrames;
+/// let robot = poecal::simulate::elbow();
+/// let frames = AxisFrames::of(&robot)?;
+/// let readings = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6];
+/// let place = |it: &poecal::Robot| it.forward_kinematics(&readings).translation;
+/// assert!((place(&frames.robot(&robot)?) - place(&robot)).norm() < 1e-14);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisFrames {
+    /// The frame of each joint in that of the joint before, of the first in the base, at zero.
+    pub joints: Vec<Pose>,
+    /// The tip in the frame of the last joint.
+    pub last_from_tip: Pose,
+}
+
+impl AxisFrames {
+    /// Of a robot: its own joint frames, shifted onto their axes, and turned least where z is not along the axis. Offsets of readings are taken
+    /// in.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Export`] if the robot is no chain of joints, each with a reading of its own.
+    pub fn of(robot: &Robot) -> Result<Self> {
+        refuse_coupled(robot)?;
+        let mut before = Pose::identity();
+        let mut joints = Vec::with_capacity(robot.joints.len());
+        let reach_m = robot.reach_m();
+        for joint in &robot.joints {
+            let mut frame = along_axis(joint);
+            let nearest = joint.screw.nearest_point(&before.translation);
+            // A table of nearly parallel axes has frames far away.
+            if joint.kind == JointKind::Revolute && (frame.translation - nearest).norm() > reach_m {
+                frame.translation = nearest;
+            }
+            // At a reading of zero the joint is at the offset.
+            joints.push(before.inverse() * frame * motion(joint.kind, joint.reading.offset));
+            before = frame;
+        }
+        Ok(AxisFrames { joints, last_from_tip: before.inverse() * robot.home })
+    }
+
+    /// Names, kinds and limits of a robot with these frames.
+    ///
+    /// # Errors
+    /// As [`Robot::new`].
+    pub fn robot(&self, of: &Robot) -> Result<Robot> {
+        let mut base_from = Pose::identity();
+        let mut joints = Vec::with_capacity(self.joints.len());
+        for (joint, frame) in of.joints.iter().zip(&self.joints) {
+            base_from = base_from * *frame;
+            let z = base_from.rotation.column(2).into_owned();
+            let screw = match joint.kind {
+                JointKind::Revolute => Screw::revolute(&z, &base_from.translation),
+                JointKind::Prismatic => Screw::prismatic(&z),
+            };
+            let mut own = match joint.kind {
+                JointKind::Revolute => Joint::revolute(&joint.name, screw),
+                JointKind::Prismatic => Joint::prismatic(&joint.name, screw),
+            };
+            own.frame = base_from;
+            own.limits = joint.limits;
+            own.reading.name.clone_from(&joint.reading.name);
+            joints.push(own);
+        }
+        let mut robot = Robot::new(&of.name, joints, base_from * self.last_from_tip)?;
+        (robot.base_name, robot.tip_name) = (of.base_name.clone(), of.tip_name.clone());
+        Ok(robot)
+    }
+}
+
+/// `Rz(q)` or `Tz(q)`.
+fn motion(kind: JointKind, value: f64) -> Pose {
+    match kind {
+        JointKind::Revolute => Pose::new(rotation::about(2, value), Vector3::zeros()),
+        JointKind::Prismatic => Pose::from_translation(Vector3::z() * value),
+    }
+}
+
+/// The joint's frame with its origin on the axis and z along it.
+pub(super) fn along_axis(joint: &Joint) -> Pose {
+    let Pose { rotation: turn, translation } = joint.frame;
+    let origin = match joint.kind {
+        JointKind::Revolute => joint.screw.nearest_point(&translation),
+        JointKind::Prismatic => translation,
+    };
+    let (z, direction) = (turn.column(2).into_owned(), joint.screw.direction());
+    let least =
+        if (z - direction).norm() > ALONG { rotation::shortest_arc(&z, &direction) * turn } else { turn };
+    Pose::new(least, origin)
+}
+
+/// Refuses what frames alone cannot say.
+fn refuse_coupled(robot: &Robot) -> Result<()> {
+    let refuse = |found: String| {
+        let message = format!(
+            "{found}, expected a chain of joints, each with a reading of its own: URDF, TOML and calibration.json hold others"
+        );
+        Err(Error::new(ErrorKind::Export, message))
+    };
+    if !robot.is_serial() {
+        return refuse("found a robot with branches".to_owned());
+    }
+    if let Some(joint) = robot.joints.iter().find(|it| it.reading.multiplier != 1.0) {
+        return refuse(format!("found joint `{}`, which moves by a multiple of its reading", joint.name));
+    }
+    let mut names: Vec<&str> = robot.joints.iter().map(|it| it.reading.name.as_str()).collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => refuse(format!("found two joints that are read by `{}`", pair[0])),
+        None => Ok(()),
+    }
+}

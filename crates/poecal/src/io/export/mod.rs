@@ -1,0 +1,237 @@
+//! Exports: a calibrated robot in the forms of controllers, drivers, simulators and other tools, each read back and compared.
+
+mod mjcf;
+mod offsets;
+mod onto;
+mod origins;
+mod pal;
+mod screws;
+mod sdf;
+mod tables;
+mod usd;
+
+use std::borrow::Cow;
+
+pub use onto::onto;
+
+use super::model::{Converted, Model, ModelFormat, convert};
+use super::proof::Difference;
+use super::urdf::holdable;
+use crate::error::{Error, ErrorKind, Result};
+use crate::forms::DhConvention;
+use crate::robot::Robot;
+use origins::Flavour;
+
+/// A form.
+///
+/// ```
+/// use poecal::io::export::ExportFormat;
+/// assert_eq!(ExportFormat::ALL.len(), 17);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExportFormat {
+    /// URDF: the text that was calibrated, or a new one.
+    Urdf,
+    /// A TOML model of poecal, of screws.
+    Toml,
+    /// Screws of a product of exponentials, JSON.
+    Poe,
+    /// Denavit and Hartenberg's table, JSON.
+    Dh,
+    /// Craig's table, JSON.
+    Mdh,
+    /// Denavit and Hartenberg's table with Hayati's rows, JSON.
+    Hayati,
+    /// Origins of a URDF's joints by their names, YAML: for xacro's `load_yaml`.
+    Origins,
+    /// The kinematics file of Universal Robots' driver, YAML.
+    Ur,
+    /// The kinematics file of uFactory's description, YAML.
+    Xarm,
+    /// The kinematics file of Franka's description, YAML.
+    Franka,
+    /// PAL Robotics' master calibration, YAML: differences of the origins of a URDF.
+    Pal,
+    /// LeRobot's calibration of motors, JSON: joint offsets in ticks.
+    Lerobot,
+    /// MuJoCo's model, XML.
+    Mjcf,
+    /// Gazebo's model, XML.
+    Sdf,
+    /// USD physics, text.
+    Usd,
+    /// Origins, a row for each joint.
+    Csv,
+    /// The joint offsets, base and tool that come nearest, JSON.
+    Offsets,
+}
+
+impl ExportFormat {
+    /// All of them.
+    pub const ALL: [ExportFormat; 17] = [
+        ExportFormat::Urdf,
+        ExportFormat::Toml,
+        ExportFormat::Poe,
+        ExportFormat::Dh,
+        ExportFormat::Mdh,
+        ExportFormat::Hayati,
+        ExportFormat::Origins,
+        ExportFormat::Ur,
+        ExportFormat::Xarm,
+        ExportFormat::Franka,
+        ExportFormat::Pal,
+        ExportFormat::Lerobot,
+        ExportFormat::Mjcf,
+        ExportFormat::Sdf,
+        ExportFormat::Usd,
+        ExportFormat::Csv,
+        ExportFormat::Offsets,
+    ];
+
+    /// Its word, as the program and the package name it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            ExportFormat::Urdf => "urdf",
+            ExportFormat::Toml => "toml",
+            ExportFormat::Poe => "poe",
+            ExportFormat::Dh => "dh",
+            ExportFormat::Mdh => "mdh",
+            ExportFormat::Hayati => "hayati",
+            ExportFormat::Origins => "origins",
+            ExportFormat::Ur => "ur",
+            ExportFormat::Xarm => "xarm",
+            ExportFormat::Franka => "franka",
+            ExportFormat::Pal => "pal",
+            ExportFormat::Lerobot => "lerobot",
+            ExportFormat::Mjcf => "mjcf",
+            ExportFormat::Sdf => "sdf",
+            ExportFormat::Usd => "usd",
+            ExportFormat::Csv => "csv",
+            ExportFormat::Offsets => "offsets",
+        }
+    }
+}
+
+/// What some forms need beside the robot.
+///
+/// ```
+/// assert!(poecal::io::export::ExportOptions::default().hash.is_none());
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct ExportOptions {
+    /// The controller's checksum, which Universal Robots' driver compares.
+    pub hash: Option<String>,
+    /// The calibration of motors that LeRobot has, whose offsets are corrected.
+    pub motors: Option<String>,
+}
+
+/// A robot in a form.
+///
+/// ```
+/// use poecal::{Model, ModelSource, simulate::elbow};
+/// use poecal::io::export::{ExportFormat, ExportOptions, export};
+/// let model = Model { robot: elbow(), source: ModelSource::Toml, path: "elbow.toml".into() };
+/// let exported = export(&model, ExportFormat::Mjcf, &ExportOptions::default())?;
+/// assert!(exported.text.starts_with("<mujoco") && exported.remains.position_m < 1e-12);
+/// # Ok::<(), poecal::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exported {
+    /// The whole text.
+    pub text: String,
+    /// What the form loses, and what was added, a sentence each.
+    pub notes: Vec<String>,
+    /// Largest difference of the tip on 1,000 configurations, of the text read back from the robot without terms of its joints.
+    pub remains: Difference,
+    /// What the form cannot say of the joints, as a text of its own: terms of their values, with formulas; none if there are none.
+    pub beside: Option<String>,
+}
+
+/// Configurations of the comparison.
+const CONFIGURATIONS: usize = 1000;
+/// Largest difference (metres for a robot of a metre, radians) of a form that can carry the geometry.
+const SAME: f64 = 1e-9;
+
+/// A text, and the robot that is read from it; what its form cannot say is in notes.
+struct Written {
+    text: String,
+    notes: Vec<String>,
+    again: Robot,
+    /// Whether the form carries any geometry.
+    is_whole: bool,
+}
+
+/// Writes a robot in a form, reads it back and compares the tip on 1,000 configurations.
+///
+/// # Errors
+/// [`ErrorKind::Export`] if the form cannot hold the robot, or the text read back differs by more than 1e-9 m (of a robot of a metre) or rad
+/// though the form can carry it.
+pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> Result<Exported> {
+    let mut notes = Vec::new();
+    let plain: Cow<'_, Robot> = match model.robot.terms.is_empty() {
+        true => Cow::Borrowed(&model.robot),
+        false => holdable(&model.robot, &mut notes),
+    };
+    let robot = plain.as_ref();
+    let written = match format {
+        ExportFormat::Urdf => return converted(model, ModelFormat::Urdf),
+        ExportFormat::Toml => return converted(model, ModelFormat::Toml),
+        ExportFormat::Poe => screws::write(robot),
+        ExportFormat::Dh => tables::write(robot, DhConvention::Standard),
+        ExportFormat::Mdh => tables::write(robot, DhConvention::Modified),
+        ExportFormat::Hayati => tables::write(robot, DhConvention::Hayati),
+        ExportFormat::Origins => origins::write(robot, &Flavour::Names),
+        ExportFormat::Ur => origins::write(robot, &Flavour::Ur(options.hash.as_deref())),
+        ExportFormat::Xarm => origins::write(robot, &Flavour::Xarm),
+        ExportFormat::Franka => origins::write(robot, &Flavour::Franka),
+        ExportFormat::Csv => origins::write_csv(robot),
+        ExportFormat::Pal => pal::write(model, robot),
+        ExportFormat::Lerobot => offsets::write_ticks(model, robot, options.motors.as_deref()),
+        ExportFormat::Offsets => offsets::write(model, robot),
+        ExportFormat::Mjcf => mjcf::write(robot),
+        ExportFormat::Sdf => sdf::write(robot),
+        ExportFormat::Usd => usd::write(robot),
+    }
+    .map_err(|error| error.in_file(&model.path))?;
+    let remains = Difference::of(robot, &written.again, CONFIGURATIONS);
+    if written.is_whole && !remains.is_within(SAME * robot.reach_m().max(1.0), SAME) {
+        let message = format!(
+            "the text read back differs by {:.1e} m and {:.1e} rad, expected at most {SAME:e}: nothing was written",
+            remains.position_m, remains.rotation_rad
+        );
+        return Err(export_error(message).in_file(&model.path));
+    }
+    notes.extend(written.notes);
+    notes.extend(left_out(robot));
+    Ok(Exported { text: written.text, notes, remains, beside: screws::beside(model)? })
+}
+
+/// A model's own forms.
+fn converted(model: &Model, to: ModelFormat) -> Result<Exported> {
+    let Converted { text, notes } = convert(model, to)?;
+    let beside = if to == ModelFormat::Urdf { screws::beside(model)? } else { None };
+    // `convert` has compared them.
+    Ok(Exported { text, notes, remains: Difference { position_m: 0.0, rotation_rad: 0.0 }, beside })
+}
+
+/// A note on targets that the form does not name.
+fn left_out(robot: &Robot) -> Option<String> {
+    let names: Vec<&str> = robot.targets.iter().map(|(name, _)| name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the targets {} are not in this form; calibration.json has them in the tip's frame",
+            names.join(", ")
+        )
+    })
+}
+
+/// An error of a form that cannot hold a robot.
+fn export_error(message: String) -> Error {
+    Error::new(ErrorKind::Export, message)
+}
+
+/// An error of a text that was just written and cannot be read.
+fn unread(what: &str) -> Error {
+    export_error(format!("the text that was written has {what}: nothing was written"))
+}

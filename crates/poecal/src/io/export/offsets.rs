@@ -1,0 +1,180 @@
+//! The joint offsets that come nearest: for controllers that take nothing else.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Written, export_error};
+use crate::error::{Error, ErrorKind, Result};
+use crate::io::calibration_file::PoseEntry;
+use crate::io::json_text;
+use crate::io::model::{Model, ModelSource};
+use crate::lie::Pose;
+use crate::offsets::{End, Explanation, OffsetOptions, explain, into_screws};
+use crate::robot::{Joint, JointKind, Robot};
+
+/// Ticks of a turn of LeRobot's motors.
+const TICKS: f64 = 4096.0;
+
+#[derive(Serialize)]
+struct File<'a> {
+    form: &'static str,
+    formula: &'static str,
+    robot: &'a str,
+    joints: Vec<JointOffset>,
+    base_motion: PoseEntry,
+    tool_motion: PoseEntry,
+    without_offsets: Left,
+    remains: Left,
+}
+
+#[derive(Serialize)]
+struct JointOffset {
+    joint: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    offset_deg: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    offset_mm: Option<f64>,
+    determined: bool,
+}
+
+/// Errors of the tip.
+#[derive(Serialize)]
+struct Left {
+    rms_mm: f64,
+    max_mm: f64,
+    rms_deg: f64,
+    max_deg: f64,
+}
+
+/// Offsets with the best base and tool.
+fn explained(model: &Model, robot: &Robot) -> Result<(Robot, Explanation)> {
+    let ModelSource::Calibration(file) = &model.source else {
+        return Err(export_error(
+            "found a model, expected the calibration.json of a robot that had other numbers before"
+                .to_owned(),
+        ));
+    };
+    let nominal = file.nominal_robot()?;
+    let options = OffsetOptions { base: End::Free, tip: End::Free, ..OffsetOptions::default() };
+    let found = explain(&nominal, robot, &options)?;
+    Ok((nominal, found))
+}
+
+/// The nominal robot with offsets, another base and another tool.
+fn moved(nominal: &Robot, offsets: &[f64], base: &Pose, tool: &Pose) -> Result<Robot> {
+    let mut robot = into_screws(&nominal.without_offsets(), offsets)?;
+    for joint in &mut robot.joints {
+        joint.screw = joint.screw.transformed(base);
+        joint.frame = *base * joint.frame;
+    }
+    robot.home = *base * robot.home * *tool;
+    Ok(robot)
+}
+
+pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
+    let (nominal, found) = explained(model, robot)?;
+    let joints = robot.joints.iter().zip(&found.offsets).enumerate();
+    let left = |error: &crate::offsets::TipError| Left {
+        rms_mm: error.rms_m * 1e3,
+        max_mm: error.max_m * 1e3,
+        rms_deg: error.rms_rad.to_degrees(),
+        max_deg: error.max_rad.to_degrees(),
+    };
+    let joint = |(at, (joint, &offset)): (usize, (&Joint, &f64))| JointOffset {
+        joint: joint.name.clone(),
+        offset_deg: (joint.kind == JointKind::Revolute).then(|| offset.to_degrees()),
+        offset_mm: (joint.kind == JointKind::Prismatic).then_some(offset * 1e3),
+        determined: !found.undetermined.contains(&at),
+    };
+    let file = File {
+        form: "offsets",
+        formula: "value of a joint = its reading + offset; T(q) = base_motion * T_nominal(q + offsets) * tool_motion, nearly: remains",
+        robot: &robot.name,
+        joints: joints.map(joint).collect(),
+        base_motion: (&found.base_motion).into(),
+        tool_motion: (&found.tip_motion).into(),
+        without_offsets: left(&found.without_offsets),
+        remains: left(&found.with_offsets),
+    };
+    let text = json_text(&file, "offsets")?;
+    let again = moved(&nominal, &found.offsets, &found.base_motion, &found.tip_motion)?;
+    let notes = vec![remaining(&found)];
+    Ok(Written { text, notes, again, is_whole: false })
+}
+
+fn remaining(found: &Explanation) -> String {
+    format!(
+        "offsets, base and tool are all that this form says: the tip is off by {:.4} mm (RMS), up to {:.4} mm and {:.5} deg; without offsets by \
+         {:.4} mm (RMS)",
+        found.with_offsets.rms_m * 1e3,
+        found.with_offsets.max_m * 1e3,
+        found.with_offsets.max_rad.to_degrees(),
+        found.without_offsets.rms_m * 1e3
+    )
+}
+
+/// A motor of LeRobot's calibration.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Motor {
+    id: u32,
+    drive_mode: u8,
+    homing_offset: i64,
+    range_min: i64,
+    range_max: i64,
+}
+
+/// Offsets in ticks of the motors, `position = ticks - homing_offset`, counted the other way with a `drive_mode` of 1.
+pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) -> Result<Written> {
+    let (nominal, found) = explained(model, robot)?;
+    if let Some(joint) = robot.joints.iter().find(|it| it.kind == JointKind::Prismatic) {
+        return Err(export_error(format!(
+            "found joint `{}`, which slides, expected joints that motors turn",
+            joint.name
+        )));
+    }
+    let mut file: BTreeMap<String, Motor> = match motors {
+        Some(text) => serde_json::from_str(text).map_err(|error| {
+            let message = format!(
+                "found {error} in the calibration of motors, expected LeRobot's JSON with id, drive_mode, homing_offset, range_min, range_max of \
+                 each joint"
+            );
+            Error::new(ErrorKind::Option, message)
+        })?,
+        None => {
+            let motor = |id: u32| Motor { id, drive_mode: 0, homing_offset: 0, range_min: 0, range_max: 4095 };
+            let joints = robot.joints.iter().map(|joint| joint.name.clone());
+            joints.zip((1..).map(motor)).collect()
+        }
+    };
+    let mut rounded = Vec::with_capacity(found.offsets.len());
+    for (joint, offset) in robot.joints.iter().zip(&found.offsets) {
+        let Some(motor) = file.get_mut(&joint.name) else {
+            let known: Vec<&str> = file.keys().map(String::as_str).collect();
+            let message = format!(
+                "found no motor `{}` in the calibration of motors, expected one of each joint, and found {}",
+                joint.name,
+                known.join(", ")
+            );
+            return Err(Error::new(ErrorKind::Option, message));
+        };
+        let sign = if motor.drive_mode == 0 { 1.0 } else { -1.0 };
+        let ticks = (offset * TICKS / TAU).round();
+        motor.homing_offset -= (sign * ticks) as i64;
+        rounded.push(ticks * TAU / TICKS);
+    }
+    let again = moved(&nominal, &rounded, &found.base_motion, &found.tip_motion)?;
+    let mut notes = vec![
+        remaining(&found),
+        format!(
+            "offsets are rounded to ticks of {:.3} deg; base and tool are not in this form",
+            360.0 / TICKS
+        ),
+    ];
+    if motors.is_none() {
+        notes.push("the file begins with homing offsets of zero and the whole range: name the arm's own with --motors FILE".to_owned());
+    }
+    Ok(Written { text: json_text(&file, "calibration of motors")?, notes, again, is_whole: false })
+}

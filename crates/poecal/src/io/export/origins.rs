@@ -1,0 +1,241 @@
+//! Origins of joints with their axes along z, as URDF has them: YAML for the descriptions of several makers, and CSV.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::screws::position_rpy;
+use super::{Written, export_error, unread};
+use crate::error::Result;
+use crate::forms::AxisFrames;
+use crate::io::csv_text;
+use crate::io::numbers::{shortest, tidy};
+use crate::lie::{Pose, rotation};
+use crate::robot::{JointKind, Robot};
+
+/// Numbers of an origin: `R = Rz(yaw) Ry(pitch) Rx(roll)`.
+const NUMBERS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
+/// Links of Universal Robots' arms, by the joint that moves each.
+const UR_LINKS: [&str; 6] = ["shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"];
+/// Smaller parts of a tool (metres, radians) are rounding.
+const NO_TOOL: f64 = 1e-12;
+
+/// Whose file it is.
+pub(super) enum Flavour<'a> {
+    /// Joints by their own names.
+    Names,
+    /// Universal Robots' driver, with the controller's checksum.
+    Ur(Option<&'a str>),
+    /// uFactory.
+    Xarm,
+    /// Franka: the flange is an eighth joint.
+    Franka,
+}
+
+impl Flavour<'_> {
+    fn keys(&self, robot: &Robot) -> Result<Vec<String>> {
+        let count = robot.joints.len();
+        let numbered = |count: usize| (1..=count).map(|k| format!("joint{k}")).collect();
+        let expected = |wanted: usize, of: &str| {
+            let message = format!("found {count} joints, expected the {wanted} of {of}");
+            if count == wanted { Ok(()) } else { Err(export_error(message)) }
+        };
+        if let Some(joint) = robot.joints.iter().find(|it| it.kind != JointKind::Revolute)
+            && !matches!(self, Flavour::Names)
+        {
+            return Err(export_error(format!(
+                "found joint `{}`, which slides, expected joints that turn",
+                joint.name
+            )));
+        }
+        match self {
+            Flavour::Names => Ok(robot.joints.iter().map(|it| it.name.clone()).collect()),
+            Flavour::Ur(_) => {
+                expected(UR_LINKS.len(), "an arm of Universal Robots")?;
+                Ok(UR_LINKS.map(str::to_owned).to_vec())
+            }
+            Flavour::Xarm => Ok(numbered(count)),
+            Flavour::Franka => {
+                expected(7, "an arm of Franka")?;
+                Ok(numbered(count))
+            }
+        }
+    }
+}
+
+pub(super) fn write(robot: &Robot, flavour: &Flavour<'_>) -> Result<Written> {
+    let frames = AxisFrames::of(robot)?;
+    let keys = flavour.keys(robot)?;
+    let mut text = format!(
+        "# Origins of the joints of {}, calibrated: metres and radians, R = Rz(yaw) Ry(pitch) Rx(roll) as in URDF; each joint turns about z.\n",
+        plain_name(robot)
+    );
+    let mut notes = Vec::new();
+    let is_franka = matches!(flavour, Flavour::Franka);
+    let indent = match flavour {
+        Flavour::Franka => "",
+        Flavour::Names | Flavour::Ur(_) | Flavour::Xarm => {
+            text.push_str(if matches!(flavour, Flavour::Names) { "origins:\n" } else { "kinematics:\n" });
+            "  "
+        }
+    };
+    for (key, frame) in keys.iter().zip(&frames.joints) {
+        push_origin(&mut text, indent, &quoted(key), frame, is_franka);
+    }
+    let tool = if is_franka {
+        push_origin(&mut text, indent, "joint8", &frames.last_from_tip, true);
+        None
+    } else {
+        Some(&frames.last_from_tip).filter(|tool| !is_none(tool))
+    };
+    if let Flavour::Ur(hash) = flavour {
+        match hash {
+            Some(hash) => {
+                let _ = writeln!(text, "  hash: {}", quoted(hash));
+            }
+            None => notes.push(
+                "the file has no `hash`, which the driver compares with the controller's checksum and complains of if it is another: state it \
+                 with --hash calib_…, as the driver's own extraction prints it"
+                    .to_owned(),
+            ),
+        }
+    }
+    if let Some(tool) = tool {
+        let (xyz, rpy) = position_rpy(tool);
+        let [x, y, z] = tidy(xyz).map(shortest);
+        let [roll, pitch, yaw] = tidy(rpy).map(shortest);
+        let turn = rotation::log(&tool.rotation);
+        let _ = writeln!(
+            text,
+            "# The tip `{}` in the frame of the last joint, which this file has no place for: x: {x}, y: {y}, z: {z}, roll: {roll}, pitch: {pitch}, yaw: {yaw}",
+            robot.tip_name.replace(['\n', '\r'], " ")
+        );
+        notes.push(format!(
+            "the file has no place for the tip in the last joint's frame, which is a comment in it: enter it as the tool, {:.3}, {:.3}, {:.3} mm, \
+             rotation vector {:.5}, {:.5}, {:.5} rad",
+            tool.translation.x * 1e3,
+            tool.translation.y * 1e3,
+            tool.translation.z * 1e3,
+            turn.x,
+            turn.y,
+            turn.z
+        ));
+    }
+    let again = read(&text, &keys, is_franka, &frames.last_from_tip)?.robot(robot)?;
+    Ok(Written { text, notes, again, is_whole: true })
+}
+
+fn push_origin(text: &mut String, indent: &str, key: &str, frame: &Pose, is_franka: bool) {
+    let (xyz, rpy) = position_rpy(frame);
+    let _ = writeln!(text, "{indent}{key}:");
+    if is_franka {
+        let _ = writeln!(text, "{indent}  kinematic:");
+    }
+    let deeper = if is_franka { "  " } else { "" };
+    for (name, number) in NUMBERS.iter().zip(tidy(xyz).into_iter().chain(tidy(rpy))) {
+        let _ = writeln!(text, "{indent}{deeper}  {name}: {}", yaml_number(number));
+    }
+}
+
+/// A number that YAML takes for one with decimals.
+fn yaml_number(number: f64) -> String {
+    let text = format!("{number:?}");
+    // YAML 1.1 wants a point before an exponent.
+    match text.split_once('e') {
+        Some((digits, power)) if !digits.contains('.') => format!("{digits}.0e{power}"),
+        _ => text,
+    }
+}
+
+fn is_none(tool: &Pose) -> bool {
+    tool.translation.norm() < NO_TOOL && rotation::log(&tool.rotation).norm() < NO_TOOL
+}
+
+fn plain_name(robot: &Robot) -> String {
+    robot.name.replace(['\n', '\r'], " ")
+}
+
+/// A key or text of YAML, in quotes unless it is plain.
+pub(super) fn quoted(text: &str) -> String {
+    let is_plain = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        && text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && !["y", "n", "yes", "no", "on", "off", "true", "false", "null"]
+            .contains(&text.to_ascii_lowercase().as_str());
+    if is_plain { text.to_owned() } else { serde_json::Value::from(text).to_string() }
+}
+
+/// Numbers by their keys, of a text as it is written here: keys by indentation.
+pub(super) fn numbers_by_path(text: &str) -> Result<BTreeMap<String, f64>> {
+    let mut path: Vec<(usize, String)> = Vec::new();
+    let mut found = BTreeMap::new();
+    for line in text.lines().filter(|line| !line.trim_start().starts_with('#') && !line.trim().is_empty()) {
+        let indent = line.len() - line.trim_start().len();
+        path.retain(|(at, _)| *at < indent);
+        let (key, value) = match line.trim().rsplit_once(": ") {
+            Some((key, value)) => (key, Some(value)),
+            None => (line.trim().trim_end_matches(':'), None),
+        };
+        let key = serde_json::from_str(key).unwrap_or_else(|_| key.to_owned());
+        path.push((indent, key));
+        let Some(value) = value else { continue };
+        let joined: Vec<&str> = path.iter().map(|(_, key)| key.as_str()).collect();
+        if let Ok(number) = value.parse() {
+            found.insert(joined.join("/"), number);
+        }
+    }
+    Ok(found)
+}
+
+fn read(text: &str, keys: &[String], is_franka: bool, tool: &Pose) -> Result<AxisFrames> {
+    let numbers = numbers_by_path(text)?;
+    let origin = |key: &str| -> Result<Pose> {
+        let of = |name: &str| {
+            let of_key = |(path, number): (&String, &f64)| {
+                let is_own = if is_franka {
+                    *path == format!("{key}/kinematic/{name}")
+                } else {
+                    path.split_once('/').is_some_and(|(_, rest)| rest == format!("{key}/{name}"))
+                };
+                is_own.then_some(*number)
+            };
+            numbers.iter().find_map(of_key).ok_or_else(|| unread(&format!("no number `{name}` of `{key}`")))
+        };
+        let mut values = [0.0; 6];
+        for (value, name) in values.iter_mut().zip(NUMBERS) {
+            *value = of(name)?;
+        }
+        let [x, y, z, roll, pitch, yaw] = values;
+        Ok(Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]))
+    };
+    let joints = keys.iter().map(|key| origin(key)).collect::<Result<_>>()?;
+    let last_from_tip = if is_franka { origin("joint8")? } else { *tool };
+    Ok(AxisFrames { joints, last_from_tip })
+}
+
+/// Origins as a table.
+pub(super) fn write_csv(robot: &Robot) -> Result<Written> {
+    let frames = AxisFrames::of(robot)?;
+    let mut text = "joint,kind,x[m],y[m],z[m],roll[rad],pitch[rad],yaw[rad]\n".to_owned();
+    let names = robot.joints.iter().map(|it| (it.name.as_str(), it.kind.word()));
+    let rows = names.chain([(robot.tip_name.as_str(), "tip")]);
+    for ((name, kind), frame) in rows.zip(frames.joints.iter().chain([&frames.last_from_tip])) {
+        let (xyz, rpy) = position_rpy(frame);
+        let numbers: Vec<String> = tidy(xyz).into_iter().chain(tidy(rpy)).map(shortest).collect();
+        let _ = writeln!(text, "{},{kind},{}", csv_text::cell(name), numbers.join(","));
+    }
+    let mut poses = Vec::new();
+    for line in text.lines().skip(1) {
+        let mut cells = line.rsplitn(7, ',');
+        let mut values = [0.0; 6];
+        for value in values.iter_mut().rev() {
+            *value = cells
+                .next()
+                .and_then(|cell| cell.parse().ok())
+                .ok_or_else(|| unread("a cell that is no number"))?;
+        }
+        let [x, y, z, roll, pitch, yaw] = values;
+        poses.push(Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]));
+    }
+    let last_from_tip = poses.pop().ok_or_else(|| unread("no row"))?;
+    let again = AxisFrames { joints: poses, last_from_tip }.robot(robot)?;
+    Ok(Written { text, notes: Vec::new(), again, is_whole: true })
+}

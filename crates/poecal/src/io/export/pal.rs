@@ -1,0 +1,88 @@
+//! PAL Robotics' master calibration: differences of the origins of a URDF, which its state publisher adds.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write as _;
+
+use super::origins::{numbers_by_path, quoted};
+use super::{Written, export_error};
+use crate::error::Result;
+use crate::io::model::{Model, ModelSource};
+use crate::io::proof::Difference;
+use crate::io::urdf::{Origin, UrdfDocument};
+use crate::robot::Robot;
+
+/// Ends of the keys of a joint.
+const PARTS: [&str; 6] = ["_dx", "_dy", "_dz", "_droll", "_dpitch", "_dyaw"];
+/// Smaller differences (metres, radians) are rounding.
+const NONE: f64 = 1e-15;
+/// Configurations of the comparison that the file states.
+const CONFIGURATIONS: usize = 1000;
+/// Differences (metres, radians) that are none.
+const SAME: f64 = 1e-9;
+
+pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
+    let kept = match &model.source {
+        ModelSource::Calibration(file) => file.original_urdf(&model.path)?,
+        ModelSource::Urdf(_) | ModelSource::Toml => None,
+    };
+    let Some(document) = kept.filter(|_| robot.is_serial()) else {
+        let message = "found no URDF in the calibration whose origins could be corrected, expected the calibration of a chain of one";
+        return Err(export_error(message.to_owned()));
+    };
+    let patched = document.patched(robot)?;
+    let again = UrdfDocument::parse(&patched.text, &model.path, &patched.selection)?;
+    let (before, after) = (document.origins(), again.origins());
+    let mut text = String::new();
+    for origin in &before {
+        let Some(after) = after.iter().find(|it| it.joint == origin.joint) else { continue };
+        for (end, difference) in PARTS.iter().zip(differences(origin, after)) {
+            if difference.abs() > NONE {
+                let _ = writeln!(text, "    {}: {difference:?}", quoted(&format!("{}{end}", origin.joint)));
+            }
+        }
+    }
+    let numbers = numbers_by_path(&text)?;
+    let again = document.with_origins(&corrected(&before, &numbers));
+    let mut notes = Vec::new();
+    let remains = Difference::of(robot, &again, CONFIGURATIONS);
+    let mut head =
+        "# Differences of the origins of the joints: metres, and radians of roll, pitch, yaw.\n".to_owned();
+    if !remains.is_within(SAME * robot.reach_m().max(1.0), SAME) {
+        let lost = format!(
+            "origins alone cannot say all of it (an axis was turned, or the tip has no fixed joint): the tip is off by up to {:.4} mm and {:.5} deg",
+            remains.position_m * 1e3,
+            remains.rotation_rad.to_degrees()
+        );
+        let _ = writeln!(head, "# {lost}");
+        notes.push(lost);
+    }
+    head.push_str("robot_state_publisher:\n  geometric_calibration:\n");
+    Ok(Written { text: head + &text, notes, again, is_whole: false })
+}
+
+/// What is to be added to an origin; of the two forms of the same turn, by the smaller one.
+fn differences(before: &Origin, after: &Origin) -> [f64; 6] {
+    let turn = |angle: f64| angle - TAU * (angle / TAU).round();
+    let by = |rpy: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| turn(rpy[k] - before.rpy[k])) };
+    let [roll, pitch, yaw] = after.rpy;
+    let (one, other) = (by([roll, pitch, yaw]), by([roll + PI, PI - pitch, yaw + PI]));
+    let size = |rpy: &[f64; 3]| rpy.iter().map(|it| it * it).sum::<f64>();
+    let [a, b, c] = if size(&other) < size(&one) { other } else { one };
+    let [x, y, z] = std::array::from_fn(|k| after.xyz[k] - before.xyz[k]);
+    [x, y, z, a, b, c]
+}
+
+/// Origins with what the file adds.
+fn corrected(origins: &[Origin], numbers: &BTreeMap<String, f64>) -> Vec<Origin> {
+    let of = |origin: &Origin| {
+        let added: [f64; 6] =
+            PARTS.map(|end| numbers.get(&format!("{}{end}", origin.joint)).copied().unwrap_or(0.0));
+        Origin {
+            joint: origin.joint.clone(),
+            xyz: std::array::from_fn(|k| origin.xyz[k] + added[k]),
+            rpy: std::array::from_fn(|k| origin.rpy[k] + added[k + 3]),
+        }
+    };
+    origins.iter().map(of).collect()
+}

@@ -1,0 +1,125 @@
+//! Screws of a product of exponentials, and what no other form says of joints.
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Written, unread};
+use crate::error::Result;
+use crate::forms::AxisFrames;
+use crate::io::calibration_file::PoseEntry;
+use crate::io::json_text;
+use crate::io::model::Model;
+use crate::lie::{Pose, Screw};
+use crate::robot::{Joint, JointKind, Robot};
+use nalgebra::Vector3;
+
+#[derive(Serialize, Deserialize)]
+struct File {
+    form: String,
+    formula: String,
+    units: String,
+    robot: String,
+    base: String,
+    tip: String,
+    joints: Vec<JointScrew>,
+    home: PoseEntry,
+}
+
+#[derive(Serialize, Deserialize)]
+struct JointScrew {
+    name: String,
+    kind: JointKind,
+    v: [f64; 3],
+    w: [f64; 3],
+    limits: Option<[f64; 2]>,
+}
+
+pub(super) fn write(robot: &Robot) -> Result<Written> {
+    // With offsets of readings taken in.
+    let plain = AxisFrames::of(robot)?.robot(robot)?;
+    let joint = |joint: &Joint| JointScrew {
+        name: joint.name.clone(),
+        kind: joint.kind,
+        v: joint.screw.v().into(),
+        w: joint.screw.w().into(),
+        limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
+    };
+    let file = File {
+        form: "poe".to_owned(),
+        formula: "T(q) = exp([S1] q1) ... exp([Sn] qn) home, with S = (v, w) in the base at zero and v = p x w of an axis through p"
+            .to_owned(),
+        units: "m, rad".to_owned(),
+        robot: robot.name.clone(),
+        base: robot.base_name.clone(),
+        tip: robot.tip_name.clone(),
+        joints: plain.joints.iter().map(joint).collect(),
+        home: (&plain.home).into(),
+    };
+    let text = json_text(&file, "product of exponentials")?;
+    let again = read(&text, &plain)?;
+    Ok(Written { text, notes: Vec::new(), again, is_whole: true })
+}
+
+fn read(text: &str, of: &Robot) -> Result<Robot> {
+    let file: File = serde_json::from_str(text).map_err(|error| unread(&format!("an error ({error})")))?;
+    let mut robot = of.clone();
+    for (joint, entry) in robot.joints.iter_mut().zip(&file.joints) {
+        let (v, w) = (Vector3::from(entry.v), Vector3::from(entry.w));
+        joint.screw = match entry.kind {
+            JointKind::Revolute => Screw::revolute(&w, &w.cross(&v)),
+            JointKind::Prismatic => Screw::prismatic(&v),
+        };
+    }
+    robot.home = file.home.pose()?;
+    Ok(robot)
+}
+
+/// Terms of joints beside a form that has geometry alone.
+#[derive(Serialize)]
+struct Beside<'a> {
+    robot: &'a str,
+    formula: &'static str,
+    units: &'static str,
+    terms: Vec<BesideTerm<'a>>,
+}
+
+#[derive(Serialize)]
+struct BesideTerm<'a> {
+    joint: &'a str,
+    term: Cow<'static, str>,
+    formula: Cow<'static, str>,
+    coefficient: f64,
+}
+
+/// What a form of geometry alone cannot say of the joints of a model.
+pub(super) fn beside(model: &Model) -> Result<Option<String>> {
+    let robot = &model.robot;
+    let plain = robot.without_offsets();
+    if plain.terms.is_empty() {
+        return Ok(None);
+    }
+    let terms = plain.terms.iter().filter_map(|it| {
+        let joint = plain.joints.get(it.joint)?;
+        let known = it.term.model();
+        Some(BesideTerm {
+            joint: &joint.name,
+            term: known.name(),
+            formula: known.formula(),
+            coefficient: it.coefficient,
+        })
+    });
+    let file = Beside {
+        robot: &robot.name,
+        formula: "value of a joint = its reading + sum of coefficient * f(values of the joints), each f as stated",
+        units: "m, rad",
+        terms: terms.collect(),
+    };
+    json_text(&file, "corrections of joints").map(Some)
+}
+
+/// A pose as numbers.
+pub(super) fn position_rpy(pose: &Pose) -> ([f64; 3], [f64; 3]) {
+    let [roll, pitch, yaw] = crate::lie::rotation::to_rpy(&pose.rotation);
+    (pose.translation.into(), [roll, pitch, yaw])
+}

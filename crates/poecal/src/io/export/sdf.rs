@@ -1,0 +1,100 @@
+//! Gazebo's model: links placed in the links before, joints about the z of their links.
+
+use std::f64::consts::FRAC_PI_2;
+use std::fmt::Write as _;
+
+use roxmltree::{Document, Node};
+
+use super::mjcf::{escaped, numbers};
+use super::screws::position_rpy;
+use super::{Written, export_error, unread};
+use crate::error::Result;
+use crate::forms::AxisFrames;
+use crate::io::numbers::{shortest, tidy};
+use crate::lie::Pose;
+use crate::robot::{JointKind, Limits, Robot};
+
+/// Limit of a joint that has none: SDF's own.
+const UNLIMITED: f64 = 1e16;
+
+pub(super) fn write(robot: &Robot) -> Result<Written> {
+    let frames = AxisFrames::of(robot)?;
+    let mut text = format!(
+        "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model name=\"{}\">\n",
+        escaped(&robot.name)
+    );
+    let _ = writeln!(text, "    <link name=\"{}\"/>", escaped(&robot.base_name));
+    let mut before = robot.base_name.clone();
+    for (joint, frame) in robot.joints.iter().zip(&frames.joints) {
+        let link = format!("{}_link", joint.name);
+        push_link(&mut text, &link, &before, frame);
+        let kind = match joint.kind {
+            JointKind::Revolute => "revolute",
+            JointKind::Prismatic => "prismatic",
+        };
+        let Limits { lower, upper } = joint.limits.unwrap_or(Limits { lower: -UNLIMITED, upper: UNLIMITED });
+        let _ = writeln!(
+            text,
+            "    <joint name=\"{}\" type=\"{kind}\">\n      <parent>{}</parent>\n      <child>{}</child>\n      <axis>\n        <xyz>0 0 1</xyz>\n        \
+             <limit>\n          <lower>{}</lower>\n          <upper>{}</upper>\n        </limit>\n      </axis>\n    </joint>",
+            escaped(&joint.name),
+            escaped(&before),
+            escaped(&link),
+            shortest(lower),
+            shortest(upper)
+        );
+        before = link;
+    }
+    push_link(&mut text, &robot.tip_name, &before, &frames.last_from_tip);
+    let _ = writeln!(
+        text,
+        "    <joint name=\"{0}_fixed\" type=\"fixed\">\n      <parent>{1}</parent>\n      <child>{0}</child>\n    </joint>\n  </model>\n</sdf>",
+        escaped(&robot.tip_name),
+        escaped(&before)
+    );
+    let again = read(&text)?.robot(robot)?;
+    let notes = vec![
+        "the file has no masses and meshes, since a calibration has none: Gazebo takes 1 kg a link"
+            .to_owned(),
+    ];
+    Ok(Written { text, notes, again, is_whole: true })
+}
+
+fn push_link(text: &mut String, name: &str, before: &str, pose: &Pose) {
+    let (xyz, rpy) = position_rpy(pose);
+    let [x, y, z] = tidy(xyz).map(shortest);
+    // Angles near 90° about y would lose half their digits.
+    let (format, turn) = if (rpy[1].abs() - FRAC_PI_2).abs() < 1e-3 {
+        let [qx, qy, qz, qw] = pose.quaternion_xyzw().map(shortest);
+        (" rotation_format=\"quat_xyzw\"", format!("{qx} {qy} {qz} {qw}"))
+    } else {
+        ("", tidy(rpy).map(shortest).join(" "))
+    };
+    let _ = writeln!(
+        text,
+        "    <link name=\"{}\">\n      <pose relative_to=\"{}\"{format}>{x} {y} {z} {turn}</pose>\n    </link>",
+        escaped(name),
+        escaped(before)
+    );
+}
+
+fn read(text: &str) -> Result<AxisFrames> {
+    let document = Document::parse(text).map_err(|error| export_error(error.to_string()))?;
+    let pose = |node: Node<'_, '_>| -> Result<Pose> {
+        let text = node.text().unwrap_or_default();
+        match node.attribute("rotation_format") {
+            Some(_) => {
+                let [x, y, z, qx, qy, qz, qw] = numbers::<7>(text)?;
+                Ok(Pose::from_position_quaternion([x, y, z], [qx, qy, qz, qw]))
+            }
+            None => {
+                let [x, y, z, roll, pitch, yaw] = numbers::<6>(text)?;
+                Ok(Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]))
+            }
+        }
+    };
+    let poses = document.descendants().filter(|node| node.has_tag_name("pose")).map(pose);
+    let mut joints: Vec<Pose> = poses.collect::<Result<_>>()?;
+    let last_from_tip = joints.pop().ok_or_else(|| unread("no pose"))?;
+    Ok(AxisFrames { joints, last_from_tip })
+}

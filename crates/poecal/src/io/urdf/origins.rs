@@ -1,0 +1,56 @@
+//! Origins of the joints of a URDF, by their names.
+
+use super::UrdfDocument;
+use crate::lie::{Pose, Screw, rotation};
+use crate::robot::{JointKind, Robot};
+
+/// The `<origin>` of a joint as its text has it, metres and radians.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::io) struct Origin {
+    /// Name of the joint.
+    pub(in crate::io) joint: String,
+    pub(in crate::io) xyz: [f64; 3],
+    pub(in crate::io) rpy: [f64; 3],
+}
+
+impl UrdfDocument {
+    /// Origins of the joints of the chain or tree, from base to tips.
+    pub(in crate::io) fn origins(&self) -> Vec<Origin> {
+        let stated = |range: &Option<std::ops::Range<usize>>| -> Option<[f64; 3]> {
+            let text = self.text.get(range.clone()?)?;
+            let numbers: Vec<f64> = text.split_whitespace().filter_map(|it| it.parse().ok()).collect();
+            numbers.try_into().ok()
+        };
+        let of = |part: &super::parts::Part| Origin {
+            joint: part.name.clone(),
+            xyz: stated(&part.place.xyz).unwrap_or_else(|| part.parent_from_joint.translation.into()),
+            rpy: stated(&part.place.rpy)
+                .unwrap_or_else(|| rotation::to_rpy(&part.parent_from_joint.rotation)),
+        };
+        self.parts.iter().map(of).collect()
+    }
+
+    /// The serial robot with other origins, and the axes of this text.
+    pub(in crate::io) fn with_origins(&self, origins: &[Origin]) -> Robot {
+        let mut robot = self.robot.clone();
+        let mut links: Vec<Pose> = Vec::with_capacity(self.parts.len());
+        let at = |links: &[Pose], part: Option<usize>| {
+            part.and_then(|part| links.get(part)).copied().unwrap_or_else(Pose::identity)
+        };
+        let mut joints = robot.joints.iter_mut();
+        for (part, origin) in self.parts.iter().zip(origins) {
+            let frame = at(&links, part.parent) * Pose::from_xyz_rpy(origin.xyz, origin.rpy);
+            if let Some((axis, joint)) = part.axis.and_then(|axis| Some((axis, joints.next()?))) {
+                let direction = frame.rotation * axis;
+                joint.frame = frame;
+                joint.screw = match joint.kind {
+                    JointKind::Revolute => Screw::revolute(&direction, &frame.translation),
+                    JointKind::Prismatic => Screw::prismatic(&direction),
+                };
+            }
+            links.push(frame);
+        }
+        robot.home = at(&links, self.ends.first().and_then(|tip| tip.part));
+        robot
+    }
+}
