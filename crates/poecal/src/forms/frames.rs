@@ -8,6 +8,8 @@ use crate::robot::{Joint, JointKind, Robot};
 
 /// A frame's z nearer than this to its axis needs no turn.
 const ALONG: f64 = 1e-13;
+/// Share of the reach beyond which a frame is far along its axis from the frame before.
+const FAR: f64 = 0.5;
 
 /// A serial robot by frames with z along each axis: the joint turns about it, or slides along it. The way from the base to the tip is
 /// `T = A₁ Z(q₁) A₂ Z(q₂) … Aₙ Z(qₙ) E`, with `Z(q) = Rz(q)` or `Tz(q)`.
@@ -44,7 +46,8 @@ impl AxisFrames {
             let mut frame = along_axis(joint);
             let nearest = joint.screw.nearest_point(&before.translation);
             // A table of nearly parallel axes has frames far away.
-            if joint.kind == JointKind::Revolute && (frame.translation - nearest).norm() > reach_m {
+            let apart_m = (frame.translation - nearest).norm();
+            if joint.kind == JointKind::Revolute && apart_m > FAR * reach_m {
                 frame.translation = nearest;
             }
             // At a reading of zero the joint is at the offset.

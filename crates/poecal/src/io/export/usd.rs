@@ -85,7 +85,7 @@ fn push_joint(text: &mut String, (schema, name): (&str, &str), (before, link): (
 fn read(text: &str, count: usize) -> Result<AxisFrames> {
     let numbers = |line: &str| -> Vec<f64> {
         let inside = line.split_once('(').map_or("", |(_, rest)| rest.trim_end_matches(')'));
-        inside.split(',').filter_map(|it| it.trim().parse().ok()).collect()
+        inside.split(',').filter_map(|it| it.trim().parse::<f32>().ok()).map(f64::from).collect()
     };
     let of = |what: &str| -> Vec<Vec<f64>> {
         text.lines().filter(|line| line.trim_start().starts_with(what)).map(numbers).collect()
