@@ -27,7 +27,7 @@ const MOST: usize = 100_000;
 ///     The folder; files in it are never overwritten.
 /// measure
 ///     "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "heights", "flush", "directions",
-///     "ball-bars" or "relative".
+///     "ball-bars", "relative" or "components".
 /// count
 ///     Number of configurations to suggest, from 1 to 100,000.
 /// seed

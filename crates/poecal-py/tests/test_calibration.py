@@ -5,11 +5,14 @@ import json
 import pickle
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import poecal
 import pytest
 from robots import configurations, elbow, session
+
+EXAMPLE = Path(__file__).resolve().parents[3] / "examples/elbow/robot.urdf"
 
 
 @pytest.fixture(scope="module")
@@ -217,3 +220,23 @@ def test_threads_calibrate_at_once(made):
     [thread.start() for thread in threads]
     [thread.join() for thread in threads]
     assert set(found) == {expected.to_json()}
+
+
+def test_every_way_back_keeps_the_urdf(tmp_path):
+    """The text that was calibrated, with other numbers, from any folder."""
+    urdf = tmp_path / "robot.urdf"
+    urdf.write_text(EXAMPLE.read_text().replace('<link name="base_link"/>', '<link name="base_link"/> <!-- mesh.stl -->'))
+    robot = poecal.Robot.read(urdf)
+    made = poecal.simulate(robot, kind="pose", count=40)
+    fitted = poecal.calibrate(robot, made.measurements)
+    fitted.write(tmp_path / "out")
+    first = (tmp_path / "out/calibrated.urdf").read_text()
+    urdf.unlink()
+    assert "<!-- mesh.stl -->" in first
+    again = poecal.Calibration.read(tmp_path / "out/calibration.json")
+    again.write(tmp_path / "back")
+    assert (tmp_path / "back/calibrated.urdf").read_text() == first
+    for calibration in [fitted, again, pickle.loads(pickle.dumps(again))]:
+        assert calibration.to_urdf() == calibration.export("urdf") == calibration.robot.to_text("urdf") == first
+    with pytest.raises(ValueError, match="format: found `kuka`"):
+        again.export("kuka")

@@ -58,6 +58,7 @@ _Kind: TypeAlias = Literal[
     "direction",
     "ball-bar",
     "relative",
+    "component",
 ]
 _Frame: TypeAlias = Literal["unknown", "base"]
 _End: TypeAlias = Literal["free", "kept"]
@@ -1381,6 +1382,7 @@ def init(
         "directions",
         "ball-bars",
         "relative",
+        "components",
     ] = "points",
     count: int = 60,
     seed: int = 1,
@@ -1401,7 +1403,7 @@ def init(
         The folder; files in it are never overwritten.
     measure
         "points", "poses", "distances", "distance-changes", "spheres", "sockets", "planes", "heights", "flush", "directions",
-        "ball-bars" or "relative".
+        "ball-bars", "relative" or "components".
     count
         Number of configurations to suggest, from 1 to 100,000.
     seed
