@@ -61,7 +61,8 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
     let options = ExportOptions { hash: arguments.hash.clone(), motors };
     let exported = export::export(&model, format, &options)?;
     let beside = match (&exported.beside, &arguments.place.out) {
-        (Some(text), Some(out)) if out != Path::new("-") => {
+        // Beside a device there is no file.
+        (Some(text), Some(out)) if out != Path::new("-") && !out.starts_with("/dev") => {
             let mut name = out.clone().into_os_string();
             name.push(".joints.json");
             let existing = Existing::forced(arguments.place.force);

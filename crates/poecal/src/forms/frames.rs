@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::lie::{Pose, Screw, rotation};
-use crate::robot::{Joint, JointKind, Robot};
+use crate::robot::{Joint, JointKind, Limits, Robot};
 
 /// A frame's z nearer than this to its axis needs no turn.
 const ALONG: f64 = 1e-13;
@@ -76,7 +76,9 @@ impl AxisFrames {
                 JointKind::Prismatic => Joint::prismatic(&joint.name, screw),
             };
             own.frame = base_from;
-            own.limits = joint.limits;
+            // The new zero is the old reading's.
+            let by = joint.reading.offset;
+            own.limits = joint.limits.map(|it| Limits { lower: it.lower - by, upper: it.upper - by });
             own.reading.name.clone_from(&joint.reading.name);
             joints.push(own);
         }

@@ -143,7 +143,8 @@ impl Seen<'_> {
         let (middle, mean) = (place / count.max(1.0), height / count.max(1.0));
         let normal = self.flush_normal().or_else(|| {
             let arms = heights.iter().map(|(place, height)| (place - middle, height - mean));
-            (!heights.is_empty()).then(|| normal_of(arms, &self.start.device_from_base))
+            let up = self.start.device_from_base.rotation.row(2).transpose();
+            (!heights.is_empty()).then(|| normal_of(arms, &up))
         })?;
         let turn = rotation::shortest_arc(&normal, &Vector3::z());
         Some(Pose::new(turn, Vector3::z() * mean - turn * middle))
@@ -165,7 +166,8 @@ impl Seen<'_> {
             let middle = seen.iter().map(|(place, _)| place).sum::<Vector3<f64>>() / count;
             let mean = seen.iter().map(|(_, value)| value).sum::<f64>() / count;
             let arms = seen.iter().map(|(place, value)| (place - middle, value - mean));
-            axes.set_row(k, &normal_of(arms, &self.start.device_from_base).transpose());
+            let own = self.start.device_from_base.rotation.row(k).transpose();
+            axes.set_row(k, &normal_of(arms, &own).transpose());
             *found = Some((middle, mean));
         }
         middles.iter().any(Option::is_some).then(|| {
@@ -239,8 +241,8 @@ impl Seen<'_> {
 }
 
 /// The unit vector n that minimises `Σ (n·a - h)²` over arms a and heights h: `(A + λ 1) n = b` for the λ that makes its length one, found by
-/// halving. Without heights it is the direction of least spread, along the z that is given.
-fn normal_of(arms: impl Iterator<Item = (Vector3<f64>, f64)>, device: &Pose) -> Vector3<f64> {
+/// halving. Without heights it is the direction of least spread, on the side of the direction that is given.
+fn normal_of(arms: impl Iterator<Item = (Vector3<f64>, f64)>, up: &Vector3<f64>) -> Vector3<f64> {
     let (mut gram, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (arm, height) in arms {
         gram += arm * arm.transpose();
@@ -249,8 +251,7 @@ fn normal_of(arms: impl Iterator<Item = (Vector3<f64>, f64)>, device: &Pose) -> 
     let (values, vectors) = linalg::symmetric_eigen(gram.as_slice(), 3);
     let axes = [0, 1, 2].map(|k| Vector3::new(vectors[(0, k)], vectors[(1, k)], vectors[(2, k)]));
     let least = values.first().copied().unwrap_or(0.0);
-    let up = device.rotation.row(2).transpose();
-    let sign = if axes[0].dot(&up) < 0.0 { -1.0 } else { 1.0 };
+    let sign = if axes[0].dot(up) < 0.0 { -1.0 } else { 1.0 };
     let at = |above: f64| -> Vector3<f64> {
         let along = axes.iter().zip(&values).skip(1);
         let others: Vector3<f64> = along

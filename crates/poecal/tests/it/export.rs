@@ -276,18 +276,90 @@ fn offsets_state_what_remains() {
     let ticks = motors["joint2"]["homing_offset"].as_i64().unwrap() as f64;
     let degrees = text["joints"][1]["offset_deg"].as_f64().unwrap();
     assert!((ticks + degrees / 360.0 * 4096.0).abs() <= 0.5, "{ticks} {degrees}");
-    // A turned motor counts the other way, and begins where it was.
-    let own = r#"{"id": 2, "drive_mode": 1, "homing_offset": 100, "range_min": 0, "range_max": 4095}"#;
-    let all = (1..=6).map(|k| format!("\"joint{k}\": {own}")).collect::<Vec<_>>().join(",");
-    let options = ExportOptions { motors: Some(format!("{{{all}}}")), ..ExportOptions::default() };
-    let turned: Value =
-        serde_json::from_str(&export(&model, ExportFormat::Lerobot, &options).unwrap().text).unwrap();
-    assert_eq!(turned["joint2"]["homing_offset"].as_i64().unwrap(), 100 - ticks as i64);
+    // From the arm's own.
+    let with = |homing: i64, mode: i64| {
+        let motor = format!(
+            r#"{{"id": 2, "drive_mode": {mode}, "homing_offset": {homing}, "range_min": 0, "range_max": 4095}}"#
+        );
+        let all = (1..=6).map(|k| format!("\"joint{k}\": {motor}")).collect::<Vec<_>>().join(",");
+        let options = ExportOptions { motors: Some(format!("{{{all}}}")), ..ExportOptions::default() };
+        export(&model, ExportFormat::Lerobot, &options)
+    };
+    let own: Value = serde_json::from_str(&with(100, 0).unwrap().text).unwrap();
+    assert_eq!(own["joint2"]["homing_offset"].as_i64().unwrap(), 100 + ticks as i64);
+    let refused = |found: poecal::Result<poecal::io::export::Exported>| found.unwrap_err().to_string();
+    assert!(refused(with(0, 1)).contains("found drive_mode 1 of motor `joint1`, expected 0"));
+    for homing in [2048, i64::MIN, i64::MAX] {
+        assert!(refused(with(homing, 0)).contains("expected at most 2047"));
+    }
     let bad = ExportOptions { motors: Some("{\"joint1\": 3}".to_owned()), ..ExportOptions::default() };
-    assert!(
-        export(&model, ExportFormat::Lerobot, &bad)
-            .unwrap_err()
-            .to_string()
-            .contains("expected LeRobot's JSON")
-    );
+    assert!(refused(export(&model, ExportFormat::Lerobot, &bad)).contains("expected LeRobot's JSON"));
+}
+
+/// Names that a form reserves or would have twice are others there, and odd names are read back.
+#[test]
+fn names_of_all_kinds() {
+    let mut robot = off(&elbow(), 5);
+    (robot.base_name, robot.tip_name) = ("world".to_owned(), "joint6_link".to_owned());
+    for (joint, name) in
+        robot.joints.iter_mut().zip(["base", "a: b", "it's \"x\"", "gelenk\u{e4}", "yes", "joint6"])
+    {
+        (joint.name, joint.reading.name) = (name.to_owned(), name.to_owned());
+    }
+    let of = |format| export(&model(&robot), format, &ExportOptions::default()).unwrap();
+    for format in [ExportFormat::Mjcf, ExportFormat::Sdf] {
+        let found = of(format);
+        assert!(
+            !found.text.contains("name=\"world\"") && found.text.contains("name=\"world_\""),
+            "{}",
+            found.text
+        );
+        assert!(found.notes[0].contains("`world` is `world_` there"), "{}", found.notes[0]);
+    }
+    let twice = of(ExportFormat::Sdf).text.matches("name=\"joint6_link\"").count();
+    assert_eq!(twice, 1);
+    for format in
+        [ExportFormat::Origins, ExportFormat::Csv, ExportFormat::Poe, ExportFormat::Hayati, ExportFormat::Usd]
+    {
+        of(format);
+    }
+    // A line separator would end a comment of YAML.
+    robot.tip_name = "t\u{2028}ip: x".to_owned();
+    robot.name = "el\u{85}bow".to_owned();
+    let text = export(&model(&robot), ExportFormat::Xarm, &ExportOptions::default()).unwrap().text;
+    assert!(!text.contains(['\u{2028}', '\u{85}']));
+}
+
+/// A robot with gives and terms has its geometry in every form, a word on what is lost, and a file beside.
+#[test]
+fn corrected_robots_are_geometry_and_a_file_beside() {
+    let (mut robot, _) = elbow().giving(&[1, 2], poecal::robot::Gives::All);
+    robot.terms.push(poecal::robot::JointTerm {
+        joint: 0,
+        term: poecal::robot::Term::Ratio,
+        coefficient: 1e-3,
+    });
+    for format in ExportFormat::ALL {
+        let needs_calibration =
+            [ExportFormat::Pal, ExportFormat::Lerobot, ExportFormat::Offsets].contains(&format);
+        if needs_calibration || format == ExportFormat::Franka {
+            continue;
+        }
+        let found = export(&model(&robot), format, &ExportOptions::default()).unwrap();
+        assert!(found.notes[0].contains("geometry alone: without"), "{format:?} {:?}", found.notes);
+        let beside: Value = serde_json::from_str(&found.beside.unwrap()).unwrap();
+        let terms = beside["terms"].as_array().unwrap();
+        assert!(terms.iter().any(|it| it["term"] == "ratio" && it["formula"] == "q"), "{beside}");
+        assert!(!beside["gives"].as_array().unwrap().is_empty());
+    }
+}
+
+/// Limits are of the coordinate that a form has: its zero is that of the reading.
+#[test]
+fn limits_go_with_the_zero() {
+    let mut robot = elbow();
+    robot.joints[1].reading.offset = 0.5;
+    robot.joints[1].limits = Some(poecal::robot::Limits { lower: -1.0, upper: 1.0 });
+    let text = export(&model(&robot), ExportFormat::Mjcf, &ExportOptions::default()).unwrap().text;
+    assert!(text.contains("range=\"-1.5 0.5\""), "{text}");
 }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use roxmltree::{Document, Node};
 
+use super::names::Names;
 use super::{Written, export_error, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
@@ -13,13 +14,14 @@ use crate::robot::{JointKind, Limits, Robot};
 
 pub(super) fn write(robot: &Robot) -> Result<Written> {
     let frames = AxisFrames::of(robot)?;
+    let (names, plain) = (Names::of(robot), frames.robot(robot)?);
     let mut text = format!("<mujoco model=\"{}\">\n", escaped(&robot.name));
     text.push_str("  <compiler angle=\"radian\" autolimits=\"true\"/>\n  <worldbody>\n");
-    let _ = writeln!(text, "    <body name=\"{}\">", escaped(&robot.base_name));
+    let _ = writeln!(text, "    <body name=\"{}\">", escaped(&names.base));
     let mut indent = 6;
-    for (joint, frame) in robot.joints.iter().zip(&frames.joints) {
+    for (at, (joint, frame)) in plain.joints.iter().zip(&frames.joints).enumerate() {
         let space = " ".repeat(indent);
-        let _ = writeln!(text, "{space}<body name=\"{}_link\" {}>", escaped(&joint.name), placed(frame));
+        let _ = writeln!(text, "{space}<body name=\"{}\" {}>", escaped(&names.links[at]), placed(frame));
         let _ =
             writeln!(text, "{space}  <inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"0.01 0.01 0.01\"/>");
         let kind = match joint.kind {
@@ -33,7 +35,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
         let _ = writeln!(
             text,
             "{space}  <joint name=\"{}\" type=\"{kind}\" axis=\"0 0 1\"{range}/>",
-            escaped(&joint.name)
+            escaped(&names.joints[at])
         );
         indent += 2;
     }
@@ -41,7 +43,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
         text,
         "{}<site name=\"{}\" {}/>",
         " ".repeat(indent),
-        escaped(&robot.tip_name),
+        escaped(&names.tip),
         placed(&frames.last_from_tip)
     );
     for _ in &robot.joints {
@@ -50,9 +52,8 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
     }
     text.push_str("    </body>\n  </worldbody>\n</mujoco>\n");
     let again = read(&text)?.robot(robot)?;
-    let notes = vec![
-        "the masses in the file are placeholders (1 kg a link), since a calibration has none; meshes are those of another file".to_owned(),
-    ];
+    let masses = "the masses in the file are placeholders (1 kg a link), since a calibration has none; meshes are those of another file";
+    let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
     Ok(Written { text, notes, again, is_whole: true })
 }
 

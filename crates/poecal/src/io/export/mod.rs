@@ -1,6 +1,7 @@
 //! Exports: a calibrated robot in the forms of controllers, drivers, simulators and other tools, each read back and compared.
 
 mod mjcf;
+mod names;
 mod offsets;
 mod onto;
 mod origins;
@@ -16,7 +17,6 @@ pub use onto::onto;
 
 use super::model::{Converted, Model, ModelFormat, convert};
 use super::proof::Difference;
-use super::urdf::holdable;
 use crate::error::{Error, ErrorKind, Result};
 use crate::forms::DhConvention;
 use crate::robot::Robot;
@@ -169,22 +169,19 @@ struct Written {
 /// though the form can carry it.
 pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> Result<Exported> {
     let mut notes = Vec::new();
-    let plain: Cow<'_, Robot> = match model.robot.terms.is_empty() {
-        true => Cow::Borrowed(&model.robot),
-        false => holdable(&model.robot, &mut notes),
-    };
+    let plain = geometry(&model.robot, format, &mut notes);
     let robot = plain.as_ref();
     let written = match format {
-        ExportFormat::Urdf => return converted(model, ModelFormat::Urdf),
-        ExportFormat::Toml => return converted(model, ModelFormat::Toml),
+        ExportFormat::Urdf => return converted(model, robot, ModelFormat::Urdf, notes),
+        ExportFormat::Toml => return converted(model, robot, ModelFormat::Toml, notes),
         ExportFormat::Poe => screws::write(robot),
         ExportFormat::Dh => tables::write(robot, DhConvention::Standard),
         ExportFormat::Mdh => tables::write(robot, DhConvention::Modified),
         ExportFormat::Hayati => tables::write(robot, DhConvention::Hayati),
-        ExportFormat::Origins => origins::write(robot, &Flavour::Names),
-        ExportFormat::Ur => origins::write(robot, &Flavour::Ur(options.hash.as_deref())),
-        ExportFormat::Xarm => origins::write(robot, &Flavour::Xarm),
-        ExportFormat::Franka => origins::write(robot, &Flavour::Franka),
+        ExportFormat::Origins => origins::write(model, robot, &Flavour::Names),
+        ExportFormat::Ur => origins::write(model, robot, &Flavour::Ur(options.hash.as_deref())),
+        ExportFormat::Xarm => origins::write(model, robot, &Flavour::Xarm),
+        ExportFormat::Franka => origins::write(model, robot, &Flavour::Franka),
         ExportFormat::Csv => origins::write_csv(robot),
         ExportFormat::Pal => pal::write(model, robot),
         ExportFormat::Lerobot => offsets::write_ticks(model, robot, options.motors.as_deref()),
@@ -207,10 +204,32 @@ pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> R
     Ok(Exported { text: written.text, notes, remains, beside: screws::beside(model)? })
 }
 
+/// The robot that a form of geometry can hold: without gives and terms of joint values, with offsets in the screws. A note says what that
+/// loses. TOML has places for terms that need no weights.
+fn geometry<'a>(robot: &'a Robot, format: ExportFormat, notes: &mut Vec<String>) -> Cow<'a, Robot> {
+    let gives = robot.joints.iter().any(|joint| joint.give_of.is_some());
+    let is_held = format == ExportFormat::Toml && robot.terms.iter().all(|it| !it.term.needs_gravity());
+    if !gives && (robot.terms.is_empty() || is_held) {
+        return Cow::Borrowed(robot);
+    }
+    let mut plain = robot.without_offsets().rigid();
+    plain.terms.clear();
+    let lost = Difference::of(robot, &plain, CONFIGURATIONS).position_m * 1e3;
+    if gives || !robot.without_offsets().terms.is_empty() {
+        notes.push(format!(
+            "this form has geometry alone: without what the joints do beyond it, the tip is off by up to {lost:.3} mm"
+        ));
+    }
+    Cow::Owned(plain)
+}
+
 /// A model's own forms.
-fn converted(model: &Model, to: ModelFormat) -> Result<Exported> {
-    let Converted { text, notes } = convert(model, to)?;
-    let beside = if to == ModelFormat::Urdf { screws::beside(model)? } else { None };
+fn converted(model: &Model, robot: &Robot, to: ModelFormat, mut said: Vec<String>) -> Result<Exported> {
+    let plain = Model { robot: robot.clone(), ..model.clone() };
+    let Converted { text, notes } = convert(&plain, to)?;
+    said.extend(notes);
+    let notes = said;
+    let beside = if robot == &model.robot { None } else { screws::beside(model)? };
     // `convert` has compared them.
     Ok(Exported { text, notes, remains: Difference { position_m: 0.0, rotation_rad: 0.0 }, beside })
 }

@@ -10,11 +10,12 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::PoseEntry;
 use crate::io::json_text;
 use crate::io::model::{Model, ModelSource};
+use crate::io::proof::Difference;
 use crate::lie::Pose;
 use crate::offsets::{End, Explanation, OffsetOptions, explain, into_screws};
 use crate::robot::{Joint, JointKind, Robot};
 
-/// Ticks of a turn of LeRobot's motors.
+/// Ticks of a turn of Feetech's motors.
 const TICKS: f64 = 4096.0;
 
 #[derive(Serialize)]
@@ -126,7 +127,10 @@ struct Motor {
     range_max: i64,
 }
 
-/// Offsets in ticks of the motors, `position = ticks - homing_offset`, counted the other way with a `drive_mode` of 1.
+/// Largest homing offset that the motors store.
+const MOST_TICKS: i64 = 2047;
+
+/// Offsets in ticks of Feetech's motors, `position = ticks - homing_offset`.
 pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) -> Result<Written> {
     let (nominal, found) = explained(model, robot)?;
     if let Some(joint) = robot.joints.iter().find(|it| it.kind == JointKind::Prismatic) {
@@ -137,11 +141,10 @@ pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) ->
     }
     let mut file: BTreeMap<String, Motor> = match motors {
         Some(text) => serde_json::from_str(text).map_err(|error| {
-            let message = format!(
+            option(format!(
                 "found {error} in the calibration of motors, expected LeRobot's JSON with id, drive_mode, homing_offset, range_min, range_max of \
                  each joint"
-            );
-            Error::new(ErrorKind::Option, message)
+            ))
         })?,
         None => {
             let motor = |id: u32| Motor { id, drive_mode: 0, homing_offset: 0, range_min: 0, range_max: 4095 };
@@ -151,30 +154,47 @@ pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) ->
     };
     let mut rounded = Vec::with_capacity(found.offsets.len());
     for (joint, offset) in robot.joints.iter().zip(&found.offsets) {
+        let known = file.keys().cloned().collect::<Vec<_>>().join(", ");
         let Some(motor) = file.get_mut(&joint.name) else {
-            let known: Vec<&str> = file.keys().map(String::as_str).collect();
-            let message = format!(
-                "found no motor `{}` in the calibration of motors, expected one of each joint, and found {}",
-                joint.name,
-                known.join(", ")
-            );
-            return Err(Error::new(ErrorKind::Option, message));
+            return Err(option(format!(
+                "found no motor `{}` in the calibration of motors, expected one of each joint, and found {known}",
+                joint.name
+            )));
         };
-        let sign = if motor.drive_mode == 0 { 1.0 } else { -1.0 };
+        if motor.drive_mode != 0 {
+            return Err(option(format!(
+                "found drive_mode {} of motor `{}`, expected 0: what turns a motor round depends on the unit in which LeRobot reads it",
+                motor.drive_mode, joint.name
+            )));
+        }
         let ticks = (offset * TICKS / TAU).round();
-        motor.homing_offset -= (sign * ticks) as i64;
+        let corrected = motor.homing_offset.saturating_sub(ticks as i64);
+        if ![motor.homing_offset, corrected].iter().all(|it| (-MOST_TICKS..=MOST_TICKS).contains(it)) {
+            return Err(option(format!(
+                "found a homing offset of {} for motor `{}`, which would become {corrected}, expected at most {MOST_TICKS}, as the motors store it: \
+                 take the horn off and put it back nearer to the middle",
+                motor.homing_offset, joint.name
+            )));
+        }
+        motor.homing_offset = corrected;
         rounded.push(ticks * TAU / TICKS);
     }
     let again = moved(&nominal, &rounded, &found.base_motion, &found.tip_motion)?;
-    let mut notes = vec![
-        remaining(&found),
-        format!(
-            "offsets are rounded to ticks of {:.3} deg; base and tool are not in this form",
-            360.0 / TICKS
-        ),
-    ];
+    let left = |other: &Robot| Difference::of(robot, other, found.options.configurations).position_m * 1e3;
+    let alone = moved(&nominal, &rounded, &Pose::identity(), &Pose::identity())?;
+    let mut notes = vec![format!(
+        "offsets alone, rounded to ticks of {:.3} deg: the tip is off by up to {:.3} mm, and by up to {:.3} mm where base and tool are entered \
+         elsewhere",
+        360.0 / TICKS,
+        left(&alone),
+        left(&again)
+    )];
     if motors.is_none() {
         notes.push("the file begins with homing offsets of zero and the whole range: name the arm's own with --motors FILE".to_owned());
     }
     Ok(Written { text: json_text(&file, "calibration of motors")?, notes, again, is_whole: false })
+}
+
+fn option(message: String) -> Error {
+    Error::new(ErrorKind::Option, message)
 }

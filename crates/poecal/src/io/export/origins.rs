@@ -8,9 +8,11 @@ use super::{Written, export_error, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::csv_text;
+use crate::io::model::{Model, ModelSource};
 use crate::io::numbers::{shortest, tidy};
 use crate::lie::{Pose, rotation};
 use crate::robot::{JointKind, Robot};
+use crate::text::visible;
 
 /// Numbers of an origin: `R = Rz(yaw) Ry(pitch) Rx(roll)`.
 const NUMBERS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
@@ -53,6 +55,9 @@ impl Flavour<'_> {
                 expected(UR_LINKS.len(), "an arm of Universal Robots")?;
                 Ok(UR_LINKS.map(str::to_owned).to_vec())
             }
+            Flavour::Xarm if !(5..=7).contains(&count) => Err(export_error(format!(
+                "found {count} joints, expected the 5, 6 or 7 of an arm of uFactory"
+            ))),
             Flavour::Xarm => Ok(numbered(count)),
             Flavour::Franka => {
                 expected(7, "an arm of Franka")?;
@@ -62,8 +67,12 @@ impl Flavour<'_> {
     }
 }
 
-pub(super) fn write(robot: &Robot, flavour: &Flavour<'_>) -> Result<Written> {
-    let frames = AxisFrames::of(robot)?;
+pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Result<Written> {
+    let mut frames = AxisFrames::of(robot)?;
+    let before = before_first_joint(model)?;
+    if let Some(first) = frames.joints.first_mut() {
+        *first = before.inverse() * *first;
+    }
     let keys = flavour.keys(robot)?;
     let mut text = format!(
         "# Origins of the joints of {}, calibrated: metres and radians, R = Rz(yaw) Ry(pitch) Rx(roll) as in URDF; each joint turns about z.\n",
@@ -107,7 +116,7 @@ pub(super) fn write(robot: &Robot, flavour: &Flavour<'_>) -> Result<Written> {
         let _ = writeln!(
             text,
             "# The tip `{}` in the frame of the last joint, which this file has no place for: x: {x}, y: {y}, z: {z}, roll: {roll}, pitch: {pitch}, yaw: {yaw}",
-            robot.tip_name.replace(['\n', '\r'], " ")
+            visible(&robot.tip_name)
         );
         notes.push(format!(
             "the file has no place for the tip in the last joint's frame, which is a comment in it: enter it as the tool, {:.3}, {:.3}, {:.3} mm, \
@@ -120,8 +129,35 @@ pub(super) fn write(robot: &Robot, flavour: &Flavour<'_>) -> Result<Written> {
             turn.z
         ));
     }
-    let again = read(&text, &keys, is_franka, &frames.last_from_tip)?.robot(robot)?;
-    Ok(Written { text, notes, again, is_whole: true })
+    if !is_none(&before) {
+        let (xyz, rpy) = position_rpy(&before);
+        let [x, y, z] = tidy(xyz).map(shortest);
+        let [roll, pitch, yaw] = tidy(rpy).map(shortest);
+        let stands = format!(
+            "the first origin counts from the link on which the first joint stands, which is at x: {x}, y: {y}, z: {z}, roll: {roll}, pitch: {pitch}, \
+             yaw: {yaw} in `{}` by fixed joints of the URDF",
+            robot.base_name
+        );
+        let _ = writeln!(text, "# {}", visible(&stands));
+        notes.push(stands);
+    }
+    let mut again = read(&text, &keys, is_franka, &frames.last_from_tip)?;
+    if let Some(first) = again.joints.first_mut() {
+        *first = before * *first;
+    }
+    Ok(Written { text, notes, again: again.robot(robot)?, is_whole: true })
+}
+
+/// Where the first moving joint stands in the base, by the URDF that was calibrated.
+fn before_first_joint(model: &Model) -> Result<Pose> {
+    Ok(match &model.source {
+        ModelSource::Urdf(document) => document.base_from_first_parent(),
+        ModelSource::Calibration(file) => {
+            let document = file.original_urdf(&model.path)?;
+            document.map_or_else(Pose::identity, |document| document.base_from_first_parent())
+        }
+        ModelSource::Toml => Pose::identity(),
+    })
 }
 
 fn push_origin(text: &mut String, indent: &str, key: &str, frame: &Pose, is_franka: bool) {
@@ -151,7 +187,7 @@ fn is_none(tool: &Pose) -> bool {
 }
 
 fn plain_name(robot: &Robot) -> String {
-    robot.name.replace(['\n', '\r'], " ")
+    visible(&robot.name).into_owned()
 }
 
 /// A key or text of YAML, in quotes unless it is plain.
@@ -160,7 +196,21 @@ pub(super) fn quoted(text: &str) -> String {
         && text.starts_with(|c: char| c.is_ascii_alphabetic())
         && !["y", "n", "yes", "no", "on", "off", "true", "false", "null"]
             .contains(&text.to_ascii_lowercase().as_str());
-    if is_plain { text.to_owned() } else { serde_json::Value::from(text).to_string() }
+    if is_plain {
+        return text.to_owned();
+    }
+    // YAML breaks lines at more characters than JSON escapes.
+    let mut found = String::new();
+    for c in serde_json::Value::from(text).to_string().chars() {
+        match c {
+            ' '..='~' => found.push(c),
+            c if u32::from(c) <= 0xffff && (c.is_control() || c.is_whitespace()) => {
+                let _ = write!(found, "\\u{:04x}", u32::from(c));
+            }
+            c => found.push(c),
+        }
+    }
+    found
 }
 
 /// Numbers by their keys, of a text as it is written here: keys by indentation.
@@ -170,11 +220,7 @@ pub(super) fn numbers_by_path(text: &str) -> Result<BTreeMap<String, f64>> {
     for line in text.lines().filter(|line| !line.trim_start().starts_with('#') && !line.trim().is_empty()) {
         let indent = line.len() - line.trim_start().len();
         path.retain(|(at, _)| *at < indent);
-        let (key, value) = match line.trim().rsplit_once(": ") {
-            Some((key, value)) => (key, Some(value)),
-            None => (line.trim().trim_end_matches(':'), None),
-        };
-        let key = serde_json::from_str(key).unwrap_or_else(|_| key.to_owned());
+        let (key, value) = key_and_rest(line.trim());
         path.push((indent, key));
         let Some(value) = value else { continue };
         let joined: Vec<&str> = path.iter().map(|(_, key)| key.as_str()).collect();
@@ -183,6 +229,20 @@ pub(super) fn numbers_by_path(text: &str) -> Result<BTreeMap<String, f64>> {
         }
     }
     Ok(found)
+}
+
+/// The key of a line, and what follows its colon.
+fn key_and_rest(line: &str) -> (String, Option<&str>) {
+    let mut quoted = serde_json::Deserializer::from_str(line).into_iter::<String>();
+    let (key, rest) = match quoted.next() {
+        Some(Ok(key)) => (key, line.get(quoted.byte_offset()..).unwrap_or_default()),
+        _ => {
+            let (key, _) = line.split_once(':').unwrap_or((line, ""));
+            (key.to_owned(), line.get(key.len()..).unwrap_or_default())
+        }
+    };
+    let rest = rest.strip_prefix(':').unwrap_or(rest).trim();
+    (key, Some(rest).filter(|rest| !rest.is_empty()))
 }
 
 fn read(text: &str, keys: &[String], is_franka: bool, tool: &Pose) -> Result<AxisFrames> {

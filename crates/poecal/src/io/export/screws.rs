@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use super::{Written, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
-use crate::io::calibration_file::PoseEntry;
+use crate::io::calibration_file::{GravityEntry, PoseEntry};
 use crate::io::json_text;
-use crate::io::model::Model;
+use crate::io::model::{Model, ModelSource};
 use crate::lie::{Pose, Screw};
-use crate::robot::{Joint, JointKind, Robot};
+use crate::robot::{FactorReading, Joint, JointKind, Robot};
 use nalgebra::Vector3;
 
 #[derive(Serialize, Deserialize)]
@@ -38,13 +38,6 @@ struct JointScrew {
 pub(super) fn write(robot: &Robot) -> Result<Written> {
     // With offsets of readings taken in.
     let plain = AxisFrames::of(robot)?.robot(robot)?;
-    let joint = |joint: &Joint| JointScrew {
-        name: joint.name.clone(),
-        kind: joint.kind,
-        v: joint.screw.v().into(),
-        w: joint.screw.w().into(),
-        limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
-    };
     let file = File {
         form: "poe".to_owned(),
         formula: "T(q) = exp([S1] q1) ... exp([Sn] qn) home, with S = (v, w) in the base at zero and v = p x w of an axis through p"
@@ -53,12 +46,22 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
         robot: robot.name.clone(),
         base: robot.base_name.clone(),
         tip: robot.tip_name.clone(),
-        joints: plain.joints.iter().map(joint).collect(),
+        joints: plain.joints.iter().map(of_joint).collect(),
         home: (&plain.home).into(),
     };
     let text = json_text(&file, "product of exponentials")?;
     let again = read(&text, &plain)?;
     Ok(Written { text, notes: Vec::new(), again, is_whole: true })
+}
+
+fn of_joint(joint: &Joint) -> JointScrew {
+    JointScrew {
+        name: joint.name.clone(),
+        kind: joint.kind,
+        v: joint.screw.v().into(),
+        w: joint.screw.w().into(),
+        limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
+    }
 }
 
 fn read(text: &str, of: &Robot) -> Result<Robot> {
@@ -81,7 +84,13 @@ struct Beside<'a> {
     robot: &'a str,
     formula: &'static str,
     units: &'static str,
+    /// Joints that turn by terms alone, with their axes.
+    gives: Vec<JointScrew>,
     terms: Vec<BesideTerm<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gravity: Option<&'a GravityEntry>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    factors: &'a [FactorReading],
 }
 
 #[derive(Serialize)]
@@ -94,8 +103,7 @@ struct BesideTerm<'a> {
 
 /// What a form of geometry alone cannot say of the joints of a model.
 pub(super) fn beside(model: &Model) -> Result<Option<String>> {
-    let robot = &model.robot;
-    let plain = robot.without_offsets();
+    let plain = model.robot.without_offsets();
     if plain.terms.is_empty() {
         return Ok(None);
     }
@@ -109,11 +117,19 @@ pub(super) fn beside(model: &Model) -> Result<Option<String>> {
             coefficient: it.coefficient,
         })
     });
+    let gravity = match &model.source {
+        ModelSource::Calibration(file) => file.robot.gravity.as_ref(),
+        ModelSource::Urdf(_) | ModelSource::Toml => None,
+    };
     let file = Beside {
-        robot: &robot.name,
-        formula: "value of a joint = its reading + sum of coefficient * f(values of the joints), each f as stated",
+        robot: &plain.name,
+        formula: "value of a joint = its reading + sum of coefficient * f, each f as stated, of the values of all joints without terms; a give \
+                  stands on the link of the joint before it in this list of axes",
         units: "m, rad",
+        gives: plain.joints.iter().filter(|joint| joint.give_of.is_some()).map(of_joint).collect(),
         terms: terms.collect(),
+        gravity,
+        factors: &plain.factors,
     };
     json_text(&file, "corrections of joints").map(Some)
 }

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use roxmltree::{Document, Node};
 
 use super::mjcf::{escaped, numbers};
+use super::names::Names;
 use super::screws::position_rpy;
 use super::{Written, export_error, unread};
 use crate::error::Result;
@@ -19,14 +20,15 @@ const UNLIMITED: f64 = 1e16;
 
 pub(super) fn write(robot: &Robot) -> Result<Written> {
     let frames = AxisFrames::of(robot)?;
+    let (names, plain) = (Names::of(robot), frames.robot(robot)?);
     let mut text = format!(
         "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model name=\"{}\">\n",
         escaped(&robot.name)
     );
-    let _ = writeln!(text, "    <link name=\"{}\"/>", escaped(&robot.base_name));
-    let mut before = robot.base_name.clone();
-    for (joint, frame) in robot.joints.iter().zip(&frames.joints) {
-        let link = format!("{}_link", joint.name);
+    let _ = writeln!(text, "    <link name=\"{}\"/>", escaped(&names.base));
+    let mut before = names.base.clone();
+    for (at, (joint, frame)) in plain.joints.iter().zip(&frames.joints).enumerate() {
+        let link = names.links[at].clone();
         push_link(&mut text, &link, &before, frame);
         let kind = match joint.kind {
             JointKind::Revolute => "revolute",
@@ -37,7 +39,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
             text,
             "    <joint name=\"{}\" type=\"{kind}\">\n      <parent>{}</parent>\n      <child>{}</child>\n      <axis>\n        <xyz>0 0 1</xyz>\n        \
              <limit>\n          <lower>{}</lower>\n          <upper>{}</upper>\n        </limit>\n      </axis>\n    </joint>",
-            escaped(&joint.name),
+            escaped(&names.joints[at]),
             escaped(&before),
             escaped(&link),
             shortest(lower),
@@ -45,18 +47,17 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
         );
         before = link;
     }
-    push_link(&mut text, &robot.tip_name, &before, &frames.last_from_tip);
+    push_link(&mut text, &names.tip, &before, &frames.last_from_tip);
     let _ = writeln!(
         text,
-        "    <joint name=\"{0}_fixed\" type=\"fixed\">\n      <parent>{1}</parent>\n      <child>{0}</child>\n    </joint>\n  </model>\n</sdf>",
-        escaped(&robot.tip_name),
-        escaped(&before)
+        "    <joint name=\"{2}\" type=\"fixed\">\n      <parent>{1}</parent>\n      <child>{0}</child>\n    </joint>\n  </model>\n</sdf>",
+        escaped(&names.tip),
+        escaped(&before),
+        escaped(&names.mount)
     );
     let again = read(&text)?.robot(robot)?;
-    let notes = vec![
-        "the file has no masses and meshes, since a calibration has none: Gazebo takes 1 kg a link"
-            .to_owned(),
-    ];
+    let masses = "the file has no masses and meshes, since a calibration has none: Gazebo takes 1 kg a link";
+    let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
     Ok(Written { text, notes, again, is_whole: true })
 }
 
@@ -78,6 +79,11 @@ fn push_link(text: &mut String, name: &str, before: &str, pose: &Pose) {
     );
 }
 
+/// Where a link is placed.
+fn placed<'a, 'input>(link: &Node<'a, 'input>) -> Option<Node<'a, 'input>> {
+    link.children().find(|child| child.has_tag_name("pose"))
+}
+
 fn read(text: &str) -> Result<AxisFrames> {
     let document = Document::parse(text).map_err(|error| export_error(error.to_string()))?;
     let pose = |node: Node<'_, '_>| -> Result<Pose> {
@@ -93,8 +99,23 @@ fn read(text: &str) -> Result<AxisFrames> {
             }
         }
     };
-    let poses = document.descendants().filter(|node| node.has_tag_name("pose")).map(pose);
-    let mut joints: Vec<Pose> = poses.collect::<Result<_>>()?;
+    // By name: from each link to the one that is placed in it.
+    let links: Vec<Node<'_, '_>> = document.descendants().filter(|node| node.has_tag_name("link")).collect();
+    let mut at = links.iter().find(|link| placed(link).is_none()).and_then(|link| link.attribute("name"));
+    let mut joints: Vec<Pose> = Vec::new();
+    while let Some(before) = at {
+        let is_next =
+            |link: &&Node<'_, '_>| placed(link).is_some_and(|it| it.attribute("relative_to") == Some(before));
+        let mut next = links.iter().filter(is_next);
+        let (link, other) = (next.next(), next.next());
+        if other.is_some() || joints.len() > links.len() {
+            return Err(unread("two links of one name"));
+        }
+        at = link.and_then(|link| link.attribute("name"));
+        if let Some(place) = link.and_then(placed) {
+            joints.push(pose(place)?);
+        }
+    }
     let last_from_tip = joints.pop().ok_or_else(|| unread("no pose"))?;
     Ok(AxisFrames { joints, last_from_tip })
 }

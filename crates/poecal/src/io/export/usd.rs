@@ -15,6 +15,7 @@ const CONFIGURATIONS: usize = 1000;
 
 pub(super) fn write(robot: &Robot) -> Result<Written> {
     let frames = AxisFrames::of(robot)?;
+    let plain = frames.robot(robot)?;
     let mut text = String::new();
     text.push_str("def Xform \"robot\" (\n    prepend apiSchemas = [\"PhysicsArticulationRootAPI\"]\n)\n{\n");
     push_body(&mut text, "base", &Pose::identity());
@@ -25,7 +26,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
     }
     push_body(&mut text, "tip", &(base_from * frames.last_from_tip));
     let mut before = "base".to_owned();
-    for (at, (joint, frame)) in robot.joints.iter().zip(&frames.joints).enumerate() {
+    for (at, (joint, frame)) in plain.joints.iter().zip(&frames.joints).enumerate() {
         let link = format!("link{}", at + 1);
         let (schema, scale) = match joint.kind {
             JointKind::Revolute => ("PhysicsRevoluteJoint", 180.0 / std::f64::consts::PI),

@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use nalgebra::Vector3;
+
 use super::units::positive_length_m;
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::measurement::{ComponentsMeasurement, Dataset, Measurement, NoiseShape, Quantity, Seen};
@@ -68,7 +70,8 @@ impl InstrumentNoise {
         for row in 0..data.len() {
             let observation = &data.observations[row];
             let is_own = station.is_none_or(|station| station == observation.station);
-            if !is_own || observation.stated.get(Quantity::Position).is_some() {
+            // A pair shows a step between two configurations, which has no line of sight.
+            if !is_own || observation.from.is_some() || observation.stated.get(Quantity::Position).is_some() {
                 continue;
             }
             let place = match observation.measurement.seen() {
@@ -83,9 +86,8 @@ impl InstrumentNoise {
             };
             let distance = place.norm();
             let across = self.everywhere_m.hypot(self.per_metre * distance);
-            if distance > 0.0 {
-                data.state_noise(row, NoiseShape::across(&(place / distance), self.everywhere_m, across));
-            }
+            let sight = place.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector3::z);
+            data.state_noise(row, NoiseShape::across(&sight, self.everywhere_m, across));
         }
         Ok(())
     }

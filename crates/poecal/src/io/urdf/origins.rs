@@ -30,6 +30,19 @@ impl UrdfDocument {
         self.parts.iter().map(of).collect()
     }
 
+    /// Pose in the base of the link on which the first moving joint stands, by the fixed joints before it.
+    pub(in crate::io) fn base_from_first_parent(&self) -> Pose {
+        let mut links: Vec<Pose> = Vec::new();
+        for part in &self.parts {
+            let parent = part.parent.and_then(|at| links.get(at)).copied().unwrap_or_else(Pose::identity);
+            if part.axis.is_some() {
+                return parent;
+            }
+            links.push(parent * part.parent_from_joint);
+        }
+        Pose::identity()
+    }
+
     /// The serial robot with other origins, and the axes of this text.
     pub(in crate::io) fn with_origins(&self, origins: &[Origin]) -> Robot {
         let mut robot = self.robot.clone();
