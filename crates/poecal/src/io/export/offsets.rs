@@ -57,7 +57,8 @@ fn explained(model: &Model, robot: &Robot) -> Result<(Robot, Explanation)> {
                 .to_owned(),
         ));
     };
-    let nominal = file.nominal_robot()?;
+    let mut nominal = file.nominal_robot()?.without_offsets().rigid();
+    nominal.terms.clear();
     let options = OffsetOptions { base: End::Free, tip: End::Free, ..OffsetOptions::default() };
     let found = explain(&nominal, robot, &options)?;
     Ok((nominal, found))

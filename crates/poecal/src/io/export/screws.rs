@@ -124,7 +124,7 @@ pub(super) fn beside(model: &Model) -> Result<Option<String>> {
     let file = Beside {
         robot: &plain.name,
         formula: "value of a joint = its reading + sum of coefficient * f, each f as stated, of the values of all joints without terms; a give \
-                  stands on the link of the joint before it in this list of axes",
+                  named JOINT~x or JOINT~y turns the link of JOINT about the axis (v, w) in the base at zero",
         units: "m, rad",
         gives: plain.joints.iter().filter(|joint| joint.give_of.is_some()).map(of_joint).collect(),
         terms: terms.collect(),
