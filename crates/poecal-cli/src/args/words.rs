@@ -95,33 +95,33 @@ pub(crate) enum ExportForm {
 /// Why no file of a maker can be written.
 const CLOSED: &str = "not public";
 
+/// A form, by its word.
+const fn open(format: ExportFormat, help: &'static str) -> (&'static str, &'static str, ExportForm) {
+    (format.word(), help, ExportForm::Open(format))
+}
+
 /// The forms of exports.
 pub(super) const EXPORT_FORMAT: Words<ExportForm> = &[
-    ("urdf", "The URDF that was calibrated, with other numbers", ExportForm::Open(ExportFormat::Urdf)),
-    ("toml", "A table of screws, which poecal reads", ExportForm::Open(ExportFormat::Toml)),
-    ("poe", "Screws of a product of exponentials, JSON", ExportForm::Open(ExportFormat::Poe)),
-    ("dh", "Denavit and Hartenberg's table, JSON", ExportForm::Open(ExportFormat::Dh)),
-    ("mdh", "Craig's table, JSON", ExportForm::Open(ExportFormat::Mdh)),
-    (
-        "hayati",
+    open(ExportFormat::Urdf, "The URDF that was calibrated, with other numbers"),
+    open(ExportFormat::Toml, "A table of screws, which poecal reads"),
+    open(ExportFormat::Poe, "Screws of a product of exponentials, JSON"),
+    open(ExportFormat::Dh, "Denavit and Hartenberg's table, JSON"),
+    open(ExportFormat::Mdh, "Craig's table, JSON"),
+    open(
+        ExportFormat::Hayati,
         "Denavit and Hartenberg's, with Hayati's rows where axes are nearly parallel, JSON",
-        ExportForm::Open(ExportFormat::Hayati),
     ),
-    ("origins", "Origins of the joints by name, YAML for xacro", ExportForm::Open(ExportFormat::Origins)),
-    ("ur", "Universal Robots' driver, YAML", ExportForm::Open(ExportFormat::Ur)),
-    ("xarm", "uFactory's description, YAML", ExportForm::Open(ExportFormat::Xarm)),
-    ("franka", "Franka's description, YAML", ExportForm::Open(ExportFormat::Franka)),
-    ("pal", "PAL Robotics' master calibration, YAML", ExportForm::Open(ExportFormat::Pal)),
-    ("lerobot", "LeRobot's calibration of motors, JSON", ExportForm::Open(ExportFormat::Lerobot)),
-    ("mjcf", "MuJoCo's model", ExportForm::Open(ExportFormat::Mjcf)),
-    ("sdf", "Gazebo's model", ExportForm::Open(ExportFormat::Sdf)),
-    ("usd", "USD physics, as Isaac Sim reads it", ExportForm::Open(ExportFormat::Usd)),
-    ("csv", "Origins of the joints, a row each", ExportForm::Open(ExportFormat::Csv)),
-    (
-        "offsets",
-        "The joint offsets, base and tool that come nearest, JSON",
-        ExportForm::Open(ExportFormat::Offsets),
-    ),
+    open(ExportFormat::Origins, "Origins of the joints by name, YAML for xacro"),
+    open(ExportFormat::Ur, "Universal Robots' driver, YAML"),
+    open(ExportFormat::Xarm, "uFactory's description, YAML"),
+    open(ExportFormat::Franka, "Franka's description, YAML"),
+    open(ExportFormat::Pal, "PAL Robotics' master calibration, YAML"),
+    open(ExportFormat::Lerobot, "LeRobot's calibration of motors, JSON"),
+    open(ExportFormat::Mjcf, "MuJoCo's model"),
+    open(ExportFormat::Sdf, "Gazebo's model"),
+    open(ExportFormat::Usd, "USD physics, as Isaac Sim reads it"),
+    open(ExportFormat::Csv, "Origins of the joints, a row each"),
+    open(ExportFormat::Offsets, "The joint offsets, base and tool that come nearest, JSON"),
     ("kuka", CLOSED, ExportForm::Closed("KUKA's absolute accuracy is a file on the robot's own memory")),
     (
         "fanuc",

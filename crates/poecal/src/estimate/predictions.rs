@@ -20,7 +20,8 @@ impl Session<'_> {
     }
 
     /// Maps each row by `each`, from its observation and, of each quantity, the sum of squares (m², rad²) and the count of its residual's
-    /// numbers, as if the noise of positions were the same in all directions. Residuals are those of theory.md §4 (15), (16), or of the data set's own formulation (16a).
+    /// numbers, as if the noise of positions were the same in all directions. Residuals are those of theory.md §4 (15), (16), or of the data
+    /// set's own formulation (16a).
     pub(crate) fn map_squares<T: Send>(
         &self,
         rows: &[u32],
@@ -32,12 +33,13 @@ impl Session<'_> {
                 Written::Usual(_) => error,
                 Written::Other(pose) => RowError::new(&pose, &predicted()),
             };
-            let error = match self.data.noise_shape(observation) {
-                Some(shape) => error.whitened(shape),
-                None => error,
-            };
-            each(observation, error.squares())
+            each(observation, self.alike(observation, error).squares())
         })
+    }
+
+    /// An error of a row with noise of its position that is the same in all directions.
+    pub(crate) fn alike(&self, observation: &Observation, error: RowError) -> RowError {
+        self.data.noise_shape(observation).map_or(error, |shape| error.whitened(shape))
     }
 
     /// Maps each row by `each`, from its observation, its error in the device's axes (theory.md §4 (16), not whitened) and, on demand, the

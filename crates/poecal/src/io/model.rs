@@ -138,19 +138,19 @@ impl Model {
 }
 
 impl Model {
+    /// The URDF that was read, or calibrated; none of other models.
+    pub(super) fn document(&self) -> Result<Option<Cow<'_, UrdfDocument>>> {
+        match &self.source {
+            ModelSource::Urdf(document) => Ok(Some(Cow::Borrowed(document))),
+            ModelSource::Calibration(file) => Ok(file.original_urdf(&self.path)?.map(Cow::Owned)),
+            ModelSource::Toml => Ok(None),
+        }
+    }
+
     /// The text of a URDF with a robot that differs from the model's in numbers only, and the selection that reads the robot from it: the text
     /// that was read or calibrated, or else a new one.
     pub(super) fn urdf_of(&self, robot: &Robot, notes: &mut Vec<String>) -> Result<(String, ChainSelection)> {
-        let kept;
-        let document = match &self.source {
-            ModelSource::Urdf(document) => Some(document.as_ref()),
-            ModelSource::Calibration(file) => {
-                kept = file.original_urdf(&self.path)?;
-                kept.as_ref()
-            }
-            ModelSource::Toml => None,
-        };
-        match document {
+        match self.document()? {
             Some(document) => {
                 let patched = document.patched(robot)?;
                 notes.extend(patched.notes);

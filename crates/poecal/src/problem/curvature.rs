@@ -76,10 +76,7 @@ impl Problem<'_> {
         let (mut e, mut sensitivity) = ([0.0; NUMBERS], [[0.0; 6]; NUMBERS]);
         seen.residual(predicted, &mut e);
         seen.sensitivity(predicted, &mut sensitivity);
-        if let Some(shape) = self.noise_shape(row) {
-            shape.whiten(seen.channels(), e.as_chunks_mut::<1>().0);
-            shape.whiten(seen.channels(), &mut sensitivity);
-        }
+        self.make_alike(row, seen.channels(), &mut e, &mut sensitivity);
         let mut wrench = Wrench { force: Vector3::zeros(), torque: Vector3::zeros() };
         for ((e, [a, b, c, p, q, r]), channel) in e.into_iter().zip(sensitivity).zip(seen.channels()) {
             let pull = e / (noise[channel.quantity] * noise[channel.quantity]);

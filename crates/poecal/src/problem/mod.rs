@@ -21,7 +21,7 @@ pub(crate) use row_block::RowBlock;
 use crate::estimate::{Estimate, Range, RangeTerm, Session};
 use crate::lanes::ShapedRow;
 use crate::lie::Pose;
-use crate::measurement::{Measurement, NUMBERS, Noise, NoiseShape, Seen, Written};
+use crate::measurement::{Channels, Measurement, NUMBERS, Noise, Seen, Sensitivity, Written};
 use crate::parameters::Parameter;
 use crate::solve::{LeastSquares, Normal};
 use fast::{Accumulate, Fast};
@@ -169,9 +169,17 @@ impl<'a> Problem<'a> {
         noise.map(|sigma| sigma / root)
     }
 
-    /// Shape of the noise of a row's position.
-    fn noise_shape(&self, row: usize) -> Option<&NoiseShape> {
-        self.session.data.noise_shape(&self.session.data.observations[row])
+    /// Makes the noise of a row's position the same in all directions (theory.md §4 (17a)).
+    fn make_alike(
+        &self,
+        row: usize,
+        channels: &Channels,
+        residual: &mut [f64; NUMBERS],
+        sensitivity: &mut [Sensitivity; NUMBERS],
+    ) {
+        let Some(shape) = self.session.data.noise_shape(&self.session.data.observations[row]) else { return };
+        shape.whiten(channels, residual.as_chunks_mut::<1>().0);
+        shape.whiten(channels, sensitivity);
     }
 
     /// Measurement of a row.
@@ -216,10 +224,7 @@ impl Problem<'_> {
             range.pull_back(predicted, &mut shaped.sensitivity);
         }
         let ShapedRow { residual, sensitivity } = &mut shaped;
-        if let Some(shape) = self.noise_shape(row) {
-            shape.whiten(seen.channels(), residual.as_chunks_mut::<1>().0);
-            shape.whiten(seen.channels(), sensitivity);
-        }
+        self.make_alike(row, seen.channels(), residual, sensitivity);
         for ((e, numbers), channel) in residual.iter_mut().zip(sensitivity).zip(seen.channels()) {
             let sigma = noise[channel.quantity];
             *e /= sigma;

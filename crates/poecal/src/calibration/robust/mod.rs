@@ -133,8 +133,7 @@ impl RobustFit {
         let bound = Bounds::new(task.rows.len(), 1.0);
         leave_clusters_out(&view, &weights, |row, error| {
             let observation = task.session.observation(row);
-            let shape = task.session.data.noise_shape(observation);
-            let own = shape.map_or(*error, |shape| error.whitened(shape));
+            let own = task.session.alike(observation, *error);
             let squares = ByQuantity::from_fn(|quantity| own.square(quantity));
             let whitened = task.session.whitened(observation, squares, noise);
             let square: f64 = whitened.iter().map(|(_, square)| square).sum();

@@ -9,6 +9,7 @@ use super::{Written, export_error, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::numbers::{shortest, tidy};
+use crate::io::urdf::escaped;
 use crate::lie::Pose;
 use crate::robot::{JointKind, Limits, Robot};
 
@@ -54,7 +55,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
     let again = read(&text)?.robot(robot)?;
     let masses = "the masses in the file are placeholders (1 kg a link), since a calibration has none; meshes are those of another file";
     let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
-    Ok(Written { text, notes, again, is_whole: true })
+    Ok(Written { text, notes, again, remains: None })
 }
 
 /// Attributes of a pose.
@@ -62,20 +63,6 @@ fn placed(pose: &Pose) -> String {
     let [x, y, z, w] = pose.quaternion_xyzw();
     let numbers = |numbers: &[f64]| numbers.iter().map(|&it| shortest(it)).collect::<Vec<_>>().join(" ");
     format!("pos=\"{}\" quat=\"{}\"", numbers(&tidy(pose.translation.into())), numbers(&[w, x, y, z]))
-}
-
-/// A name as an attribute.
-pub(super) fn escaped(name: &str) -> String {
-    let marks = [
-        ("&", "&amp;"),
-        ("<", "&lt;"),
-        (">", "&gt;"),
-        ("\"", "&quot;"),
-        ("\n", "&#10;"),
-        ("\r", "&#13;"),
-        ("\t", "&#9;"),
-    ];
-    marks.into_iter().fold(name.to_owned(), |text, (mark, with)| text.replace(mark, with))
 }
 
 /// Numbers of an attribute.

@@ -90,7 +90,7 @@ impl ExportFormat {
 
     /// Its word, as the program and the package name it.
     #[must_use]
-    pub fn word(self) -> &'static str {
+    pub const fn word(self) -> &'static str {
         match self {
             ExportFormat::Urdf => "urdf",
             ExportFormat::Toml => "toml",
@@ -158,8 +158,8 @@ struct Written {
     text: String,
     notes: Vec<String>,
     again: Robot,
-    /// Whether the form carries any geometry.
-    is_whole: bool,
+    /// What remains, where the form cannot carry every geometry and the text states it.
+    remains: Option<Difference>,
 }
 
 /// Writes a robot in a form, reads it back and compares the tip on 1,000 configurations.
@@ -191,8 +191,8 @@ pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> R
         ExportFormat::Usd => usd::write(robot),
     }
     .map_err(|error| error.in_file(&model.path))?;
-    let remains = Difference::of(robot, &written.again, CONFIGURATIONS);
-    if written.is_whole && !remains.is_within(SAME * robot.reach_m().max(1.0), SAME) {
+    let remains = written.remains.unwrap_or_else(|| remaining(robot, &written.again));
+    if written.remains.is_none() && !is_same(robot, &remains) {
         let message = format!(
             "the text read back differs by {:.1e} m and {:.1e} rad, expected at most {SAME:e}: nothing was written",
             remains.position_m, remains.rotation_rad
@@ -214,13 +214,23 @@ fn geometry<'a>(robot: &'a Robot, format: ExportFormat, notes: &mut Vec<String>)
     }
     let mut plain = robot.without_offsets().rigid();
     plain.terms.clear();
-    let lost = Difference::of(robot, &plain, CONFIGURATIONS).position_m * 1e3;
+    let lost = remaining(robot, &plain).position_m * 1e3;
     if gives || !robot.without_offsets().terms.is_empty() {
         notes.push(format!(
             "this form has geometry alone: without what the joints do beyond it, the tip is off by up to {lost:.3} mm"
         ));
     }
     Cow::Owned(plain)
+}
+
+/// How far a robot that was read back is off.
+fn remaining(robot: &Robot, again: &Robot) -> Difference {
+    Difference::of(robot, again, CONFIGURATIONS)
+}
+
+/// Whether a difference from a robot is rounding.
+fn is_same(robot: &Robot, remains: &Difference) -> bool {
+    remains.is_within(SAME * robot.reach_m().max(1.0), SAME)
 }
 
 /// A model's own forms.

@@ -5,12 +5,11 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Written, export_error};
+use super::{Written, export_error, remaining};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::PoseEntry;
 use crate::io::json_text;
 use crate::io::model::{Model, ModelSource};
-use crate::io::proof::Difference;
 use crate::lie::Pose;
 use crate::offsets::{End, Explanation, OffsetOptions, explain, into_screws};
 use crate::robot::{Joint, JointKind, Robot};
@@ -102,11 +101,12 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
     };
     let text = json_text(&file, "offsets")?;
     let again = moved(&nominal, &found.offsets, &found.base_motion, &found.tip_motion)?;
-    let notes = vec![remaining(&found)];
-    Ok(Written { text, notes, again, is_whole: false })
+    let notes = vec![words(&found)];
+    let remains = Some(remaining(robot, &again));
+    Ok(Written { text, notes, again, remains })
 }
 
-fn remaining(found: &Explanation) -> String {
+fn words(found: &Explanation) -> String {
     format!(
         "offsets, base and tool are all that this form says: the tip is off by {:.4} mm (RMS), up to {:.4} mm and {:.5} deg; without offsets by \
          {:.4} mm (RMS)",
@@ -181,19 +181,19 @@ pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) ->
         rounded.push(ticks * TAU / TICKS);
     }
     let again = moved(&nominal, &rounded, &found.base_motion, &found.tip_motion)?;
-    let left = |other: &Robot| Difference::of(robot, other, found.options.configurations).position_m * 1e3;
+    let remains = remaining(robot, &again);
     let alone = moved(&nominal, &rounded, &Pose::identity(), &Pose::identity())?;
     let mut notes = vec![format!(
         "offsets alone, rounded to ticks of {:.3} deg: the tip is off by up to {:.3} mm, and by up to {:.3} mm where base and tool are entered \
          elsewhere",
         360.0 / TICKS,
-        left(&alone),
-        left(&again)
+        remaining(robot, &alone).position_m * 1e3,
+        remains.position_m * 1e3
     )];
     if motors.is_none() {
         notes.push("the file begins with homing offsets of zero and the whole range: name the arm's own with --motors FILE".to_owned());
     }
-    Ok(Written { text: json_text(&file, "calibration of motors")?, notes, again, is_whole: false })
+    Ok(Written { text: json_text(&file, "calibration of motors")?, notes, again, remains: Some(remains) })
 }
 
 fn option(message: String) -> Error {

@@ -2,20 +2,14 @@
 
 use std::path::Path;
 
-use super::export_error;
+use super::{SAME, export_error, is_same, remaining};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::hashes::sha256_of;
 use crate::io::model::{Converted, Model, ModelSource, verify};
-use crate::io::proof::Difference;
 use crate::io::source_text;
 use crate::io::urdf::{ChainSelection, UrdfDocument, holdable};
 use crate::lie::rotation;
 use crate::robot::Robot;
-
-/// Largest difference of a URDF from the nominal robot (metres, radians): rounding of its numbers.
-const SAME: f64 = 1e-9;
-/// Configurations of comparisons.
-const CONFIGURATIONS: usize = 1000;
 
 /// Writes the calibrated numbers of a calibration into the text of a URDF; all other bytes stay. `selection` says what of it was calibrated,
 /// where the calibration does not.
@@ -80,9 +74,9 @@ fn refuse_other(nominal: &Robot, found: &Robot, urdf: &Path, has_frames: bool) -
     if expected != own {
         return refuse(format!("found the joints {}, expected {}", own.join(", "), expected.join(", ")));
     }
-    let off = Difference::of(nominal, found, CONFIGURATIONS);
+    let off = remaining(nominal, found);
     let bound_m = SAME * nominal.reach_m().max(1.0);
-    if off.is_within(bound_m, SAME) {
+    if is_same(nominal, &off) {
         return Ok(());
     }
     // The first joint whose frame on its link is another one.

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::screws::position_rpy;
 use super::{Written, export_error, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::csv_text;
-use crate::io::model::{Model, ModelSource};
-use crate::io::numbers::{shortest, tidy};
+use crate::io::model::Model;
+use crate::io::numbers::shortest;
+use crate::io::urdf::origin_values;
 use crate::lie::{Pose, rotation};
 use crate::robot::{JointKind, Robot};
 use crate::text::visible;
@@ -69,7 +69,7 @@ impl Flavour<'_> {
 
 pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Result<Written> {
     let mut frames = AxisFrames::of(robot)?;
-    let before = before_first_joint(model)?;
+    let before = model.document()?.map_or_else(Pose::identity, |document| document.base_from_first_parent());
     if let Some(first) = frames.joints.first_mut() {
         *first = before.inverse() * *first;
     }
@@ -109,14 +109,12 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
         }
     }
     if let Some(tool) = tool {
-        let (xyz, rpy) = position_rpy(tool);
-        let [x, y, z] = tidy(xyz).map(shortest);
-        let [roll, pitch, yaw] = tidy(rpy).map(shortest);
         let turn = rotation::log(&tool.rotation);
         let _ = writeln!(
             text,
-            "# The tip `{}` in the frame of the last joint, which this file has no place for: x: {x}, y: {y}, z: {z}, roll: {roll}, pitch: {pitch}, yaw: {yaw}",
-            visible(&robot.tip_name)
+            "# The tip `{}` in the frame of the last joint, which this file has no place for: {}",
+            visible(&robot.tip_name),
+            stated(tool)
         );
         notes.push(format!(
             "the file has no place for the tip in the last joint's frame, which is a comment in it: enter it as the tool, {:.3}, {:.3}, {:.3} mm, \
@@ -130,12 +128,9 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
         ));
     }
     if !is_none(&before) {
-        let (xyz, rpy) = position_rpy(&before);
-        let [x, y, z] = tidy(xyz).map(shortest);
-        let [roll, pitch, yaw] = tidy(rpy).map(shortest);
         let stands = format!(
-            "the first origin counts from the link on which the first joint stands, which is at x: {x}, y: {y}, z: {z}, roll: {roll}, pitch: {pitch}, \
-             yaw: {yaw} in `{}` by fixed joints of the URDF",
+            "the first origin counts from the link on which the first joint stands, which is at {} in `{}` by fixed joints of the URDF",
+            stated(&before),
             robot.base_name
         );
         let _ = writeln!(text, "# {}", visible(&stands));
@@ -145,29 +140,29 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     if let Some(first) = again.joints.first_mut() {
         *first = before * *first;
     }
-    Ok(Written { text, notes, again: again.robot(robot)?, is_whole: true })
+    Ok(Written { text, notes, again: again.robot(robot)?, remains: None })
 }
 
-/// Where the first moving joint stands in the base, by the URDF that was calibrated.
-fn before_first_joint(model: &Model) -> Result<Pose> {
-    Ok(match &model.source {
-        ModelSource::Urdf(document) => document.base_from_first_parent(),
-        ModelSource::Calibration(file) => {
-            let document = file.original_urdf(&model.path)?;
-            document.map_or_else(Pose::identity, |document| document.base_from_first_parent())
-        }
-        ModelSource::Toml => Pose::identity(),
-    })
+/// The numbers of an origin with their names.
+fn named_numbers(pose: &Pose) -> impl Iterator<Item = (&'static str, f64)> {
+    let (xyz, rpy) = origin_values(pose);
+    NUMBERS.into_iter().zip(xyz.into_iter().chain(rpy))
+}
+
+/// The same on one line.
+fn stated(pose: &Pose) -> String {
+    let parts: Vec<String> =
+        named_numbers(pose).map(|(name, number)| format!("{name}: {}", shortest(number))).collect();
+    parts.join(", ")
 }
 
 fn push_origin(text: &mut String, indent: &str, key: &str, frame: &Pose, is_franka: bool) {
-    let (xyz, rpy) = position_rpy(frame);
     let _ = writeln!(text, "{indent}{key}:");
     if is_franka {
         let _ = writeln!(text, "{indent}  kinematic:");
     }
     let deeper = if is_franka { "  " } else { "" };
-    for (name, number) in NUMBERS.iter().zip(tidy(xyz).into_iter().chain(tidy(rpy))) {
+    for (name, number) in named_numbers(frame) {
         let _ = writeln!(text, "{indent}{deeper}  {name}: {}", yaml_number(number));
     }
 }
@@ -278,8 +273,7 @@ pub(super) fn write_csv(robot: &Robot) -> Result<Written> {
     let names = robot.joints.iter().map(|it| (it.name.as_str(), it.kind.word()));
     let rows = names.chain([(robot.tip_name.as_str(), "tip")]);
     for ((name, kind), frame) in rows.zip(frames.joints.iter().chain([&frames.last_from_tip])) {
-        let (xyz, rpy) = position_rpy(frame);
-        let numbers: Vec<String> = tidy(xyz).into_iter().chain(tidy(rpy)).map(shortest).collect();
+        let numbers: Vec<String> = named_numbers(frame).map(|(_, number)| shortest(number)).collect();
         let _ = writeln!(text, "{},{kind},{}", csv_text::cell(name), numbers.join(","));
     }
     let mut poses = Vec::new();
@@ -297,5 +291,5 @@ pub(super) fn write_csv(robot: &Robot) -> Result<Written> {
     }
     let last_from_tip = poses.pop().ok_or_else(|| unread("no row"))?;
     let again = AxisFrames { joints: poses, last_from_tip }.robot(robot)?;
-    Ok(Written { text, notes: Vec::new(), again, is_whole: true })
+    Ok(Written { text, notes: Vec::new(), again, remains: None })
 }

@@ -5,10 +5,9 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 
 use super::origins::{numbers_by_path, quoted};
-use super::{Written, export_error};
+use super::{Written, export_error, is_same, remaining};
 use crate::error::Result;
 use crate::io::model::{Model, ModelSource};
-use crate::io::proof::Difference;
 use crate::io::urdf::{Origin, UrdfDocument};
 use crate::robot::Robot;
 
@@ -16,10 +15,6 @@ use crate::robot::Robot;
 const PARTS: [&str; 6] = ["_dx", "_dy", "_dz", "_droll", "_dpitch", "_dyaw"];
 /// Smaller differences (metres, radians) are rounding.
 const NONE: f64 = 1e-15;
-/// Configurations of the comparison that the file states.
-const CONFIGURATIONS: usize = 1000;
-/// Differences (metres, radians) that are none.
-const SAME: f64 = 1e-9;
 
 pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
     let kept = match &model.source {
@@ -45,10 +40,10 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
     let numbers = numbers_by_path(&text)?;
     let again = document.with_origins(&corrected(&before, &numbers));
     let mut notes = Vec::new();
-    let remains = Difference::of(robot, &again, CONFIGURATIONS);
+    let remains = remaining(robot, &again);
     let mut head =
         "# Differences of the origins of the joints: metres, and radians of roll, pitch, yaw.\n".to_owned();
-    if !remains.is_within(SAME * robot.reach_m().max(1.0), SAME) {
+    if !is_same(robot, &remains) {
         let lost = format!(
             "origins alone cannot say all of it (an axis was turned, or the tip has no fixed joint): the tip is off by up to {:.4} mm and {:.5} deg",
             remains.position_m * 1e3,
@@ -58,7 +53,7 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
         notes.push(lost);
     }
     head.push_str("robot_state_publisher:\n  geometric_calibration:\n");
-    Ok(Written { text: head + &text, notes, again, is_whole: false })
+    Ok(Written { text: head + &text, notes, again, remains: Some(remains) })
 }
 
 /// What is to be added to an origin; of the two forms of the same turn, by the smaller one.

@@ -10,7 +10,7 @@ use crate::forms::AxisFrames;
 use crate::io::calibration_file::{GravityEntry, PoseEntry};
 use crate::io::json_text;
 use crate::io::model::{Model, ModelSource};
-use crate::lie::{Pose, Screw};
+use crate::lie::Screw;
 use crate::robot::{FactorReading, Joint, JointKind, Robot};
 use nalgebra::Vector3;
 
@@ -51,7 +51,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
     };
     let text = json_text(&file, "product of exponentials")?;
     let again = read(&text, &plain)?;
-    Ok(Written { text, notes: Vec::new(), again, is_whole: true })
+    Ok(Written { text, notes: Vec::new(), again, remains: None })
 }
 
 fn of_joint(joint: &Joint) -> JointScrew {
@@ -132,10 +132,4 @@ pub(super) fn beside(model: &Model) -> Result<Option<String>> {
         factors: &plain.factors,
     };
     json_text(&file, "corrections of joints").map(Some)
-}
-
-/// A pose as numbers.
-pub(super) fn position_rpy(pose: &Pose) -> ([f64; 3], [f64; 3]) {
-    let [roll, pitch, yaw] = crate::lie::rotation::to_rpy(&pose.rotation);
-    (pose.translation.into(), [roll, pitch, yaw])
 }

@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 
 use roxmltree::{Document, Node};
 
-use super::mjcf::{escaped, numbers};
+use super::mjcf::numbers;
 use super::names::Names;
-use super::screws::position_rpy;
 use super::{Written, export_error, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
-use crate::io::numbers::{shortest, tidy};
+use crate::io::numbers::shortest;
+use crate::io::urdf::{escaped, origin_values};
 use crate::lie::Pose;
 use crate::robot::{JointKind, Limits, Robot};
 
@@ -58,18 +58,18 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
     let again = read(&text)?.robot(robot)?;
     let masses = "the file has no masses and meshes, since a calibration has none: Gazebo takes 1 kg a link";
     let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
-    Ok(Written { text, notes, again, is_whole: true })
+    Ok(Written { text, notes, again, remains: None })
 }
 
 fn push_link(text: &mut String, name: &str, before: &str, pose: &Pose) {
-    let (xyz, rpy) = position_rpy(pose);
-    let [x, y, z] = tidy(xyz).map(shortest);
+    let (xyz, rpy) = origin_values(pose);
+    let [x, y, z] = xyz.map(shortest);
     // Angles near 90° about y would lose half their digits.
     let (format, turn) = if (rpy[1].abs() - FRAC_PI_2).abs() < 1e-3 {
         let [qx, qy, qz, qw] = pose.quaternion_xyzw().map(shortest);
         (" rotation_format=\"quat_xyzw\"", format!("{qx} {qy} {qz} {qw}"))
     } else {
-        ("", tidy(rpy).map(shortest).join(" "))
+        ("", rpy.map(shortest).join(" "))
     };
     let _ = writeln!(
         text,

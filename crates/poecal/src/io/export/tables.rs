@@ -48,5 +48,5 @@ pub(super) fn write(robot: &Robot, convention: DhConvention) -> Result<Written> 
         rows: again.rows,
         last_from_tip: again.last_from_tip.pose()?,
     };
-    Ok(Written { text, notes: Vec::new(), again: again.frames().robot(robot)?, is_whole: true })
+    Ok(Written { text, notes: Vec::new(), again: again.frames().robot(robot)?, remains: None })
 }

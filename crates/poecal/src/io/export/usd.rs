@@ -2,16 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::{Written, unread};
+use super::{Written, remaining, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::numbers::shortest;
-use crate::io::proof::Difference;
 use crate::lie::Pose;
 use crate::robot::{JointKind, Robot};
-
-/// Configurations of the comparison that the file states.
-const CONFIGURATIONS: usize = 1000;
 
 pub(super) fn write(robot: &Robot) -> Result<Written> {
     let frames = AxisFrames::of(robot)?;
@@ -49,15 +45,16 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
     push_joint(&mut text, ("PhysicsFixedJoint", "tool"), (&before, "tip"), &frames.last_from_tip);
     text.push_str("    }\n}\n");
     let again = read(&text, frames.joints.len())?.robot(robot)?;
-    let Difference { position_m, rotation_rad } = Difference::of(robot, &again, CONFIGURATIONS);
-    let remains = format!(
-        "frames of joints are of single precision in USD: the tip is off by up to {position_m:.1e} m and {rotation_rad:.1e} rad"
+    let remains = remaining(robot, &again);
+    let words = format!(
+        "frames of joints are of single precision in USD: the tip is off by up to {:.1e} m and {:.1e} rad",
+        remains.position_m, remains.rotation_rad
     );
     let head = format!(
         "#usda 1.0\n(\n    defaultPrim = \"robot\"\n    doc = {}\n    kilogramsPerUnit = 1\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\n",
-        serde_json::Value::from(format!("Joints of a calibrated robot; {remains}."))
+        serde_json::Value::from(format!("Joints of a calibrated robot; {words}."))
     );
-    Ok(Written { text: head + &text, notes: vec![remains], again, is_whole: false })
+    Ok(Written { text: head + &text, notes: vec![words], again, remains: Some(remains) })
 }
 
 fn push_body(text: &mut String, name: &str, pose: &Pose) {

@@ -21,7 +21,9 @@ use roxmltree::Document;
 
 pub(super) use origins::Origin;
 pub use patch::PatchedUrdf;
+pub(super) use patch::origin_values;
 pub use selection::{ChainSelection, named_link};
+pub(super) use splice::escaped;
 pub(super) use terms::holdable;
 pub use write::write_new;
 pub(super) use write::written_new;

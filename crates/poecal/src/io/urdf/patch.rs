@@ -256,7 +256,7 @@ fn write_origin(splice: &mut Splice, part: &Part, base_from_link: Pose, target: 
 }
 
 /// `xyz` and `rpy` of an origin.
-pub(super) fn origin_values(pose: &Pose) -> ([f64; 3], [f64; 3]) {
+pub(in crate::io) fn origin_values(pose: &Pose) -> ([f64; 3], [f64; 3]) {
     (tidy(pose.translation.into()), tidy(rotation::to_rpy(&pose.rotation)))
 }
 

@@ -102,7 +102,7 @@ pub(super) fn triple(numbers: [f64; 3]) -> String {
 }
 
 /// A name as an attribute value.
-pub(super) fn escaped(name: &str) -> String {
+pub(in crate::io) fn escaped(name: &str) -> String {
     let mut text = String::with_capacity(name.len());
     for character in name.chars() {
         match character {
