@@ -20,6 +20,7 @@ pub mod settings;
 mod source;
 mod source_text;
 pub mod urdf;
+mod xml;
 
 pub use proof::Difference;
 

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::tree::Tree;
-use super::xml::XmlSource;
 use super::{ChainSelection, ends};
 use crate::error::{Error, ErrorKind, Result, nearest_or_all};
+use crate::io::xml::XmlSource;
 
 /// Links and joints of the robot, as indices into the tree. Each joint comes after that on whose link it stands: those from base to tip
 /// first.

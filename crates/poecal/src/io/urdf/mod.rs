@@ -13,11 +13,8 @@ mod splice;
 mod terms;
 mod tree;
 mod write;
-mod xml;
 
 use std::path::{Path, PathBuf};
-
-use roxmltree::Document;
 
 pub(super) use origins::Origin;
 pub use patch::PatchedUrdf;
@@ -28,12 +25,12 @@ pub(super) use terms::holdable;
 pub use write::write_new;
 pub(super) use write::written_new;
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::io::source_text;
+use crate::io::xml::{XACRO, XmlSource, parsed};
 use crate::robot::Robot;
 use parts::{End, Part};
 use tree::Tree;
-use xml::{XmlSource, crowded_element};
 
 /// A URDF text with its serial chain, or its tree of the joints that move named links.
 ///
@@ -81,12 +78,7 @@ impl UrdfDocument {
     /// or missing, or a joint of it is invalid.
     pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
-        if let Some(offset) = crowded_element(text) {
-            let message =
-                "found an element with more than 1000 attributes, expected a URDF robot description";
-            return Err(Error::new(ErrorKind::Syntax, message).at_offset(path, text, offset));
-        }
-        let document = Document::parse(text).map_err(|error| xml_error(&error, path))?;
+        let document = parsed(text, path, EXPECTED)?;
         let source = XmlSource { document: &document, path };
         let robot_element = document.root_element();
         if robot_element.tag_name().name() != "robot" {
@@ -122,26 +114,7 @@ impl UrdfDocument {
     }
 }
 
-/// The parser's message as one sentence with its place.
-fn xml_error(error: &roxmltree::Error, path: &Path) -> Error {
-    let place = error.pos();
-    let (line, column) = (place.row as usize, place.col as usize);
-    let message = if let roxmltree::Error::UnknownNamespace(prefix, _) = error
-        && prefix == "xacro"
-    {
-        XACRO.to_owned()
-    } else if let roxmltree::Error::DtdDetected = error {
-        "found a document type definition, expected a URDF robot description without one".to_owned()
-    } else {
-        let complaint = error.to_string().replace(&format!(" at {place}"), "");
-        format!("found broken XML ({complaint}), expected a URDF robot description")
-    };
-    Error::new(ErrorKind::Syntax, message).at(path, line, column)
-}
-
-const XACRO: &str =
-    "found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`";
-
+const EXPECTED: &str = "a URDF robot description";
 /// An expanded file may still declare the prefix, but has no elements of it.
 fn refuse_xacro(source: &XmlSource) -> Result<()> {
     let is_xacro =

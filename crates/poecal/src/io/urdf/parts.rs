@@ -8,9 +8,9 @@ use roxmltree::Node;
 
 use super::chain::UrdfChain;
 use super::tree::{JointType, Tree, TreeJoint};
-use super::xml::{XmlSource, value_range};
 use crate::error::{Result, nearest_or_all};
 use crate::io::mimic;
+use crate::io::xml::{XmlSource, value_range};
 use crate::lie::Pose;
 use crate::robot::{Body, Joint, JointKind, Limits, Mass, Reading, Robot, check_name};
 

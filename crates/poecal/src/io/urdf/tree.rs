@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use roxmltree::Node;
 
-use super::xml::XmlSource;
 use crate::error::{Result, nearest_or_all};
+use crate::io::xml::XmlSource;
 
 /// The types of joints in URDF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

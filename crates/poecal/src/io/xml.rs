@@ -1,4 +1,4 @@
-//! Attributes of an XML element, with errors that know their line and column.
+//! XML texts and the attributes of their elements, with errors that know their line and column.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -14,7 +14,7 @@ use crate::io::source_text::position;
 const MOST_ATTRIBUTES: usize = 1000;
 
 /// Byte offset of the first element with more attributes, if there is one.
-pub(super) fn crowded_element(text: &str) -> Option<usize> {
+fn crowded_element(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
     // Start of the element, number of closed values, and quote of the current value.
     let (mut element, mut values, mut quote) = (None, 0, None);
@@ -35,6 +35,36 @@ pub(super) fn crowded_element(text: &str) -> Option<usize> {
     }
     None
 }
+
+/// An XML text, parsed; `expected` describes it in messages.
+pub(super) fn parsed<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Document<'a>> {
+    if let Some(offset) = crowded_element(text) {
+        let message = format!("found an element with more than 1000 attributes, expected {expected}");
+        return Err(Error::new(ErrorKind::Syntax, message).at_offset(path, text, offset));
+    }
+    Document::parse(text).map_err(|error| broken(&error, path, expected))
+}
+
+/// The parser's message as one sentence with its place.
+fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
+    let place = error.pos();
+    let (line, column) = (place.row as usize, place.col as usize);
+    let message = if let roxmltree::Error::UnknownNamespace(prefix, _) = error
+        && prefix == "xacro"
+    {
+        XACRO.to_owned()
+    } else if let roxmltree::Error::DtdDetected = error {
+        format!("found a document type definition, expected {expected} without one")
+    } else {
+        let complaint = error.to_string().replace(&format!(" at {place}"), "");
+        format!("found broken XML ({complaint}), expected {expected}")
+    };
+    Error::new(ErrorKind::Syntax, message).at(path, line, column)
+}
+
+/// What a text with elements of xacro is.
+pub(super) const XACRO: &str =
+    "found a xacro element, expected plain URDF: expand the file first with `xacro robot.xacro > robot.urdf`";
 
 /// A parsed XML text and the name of its file.
 #[derive(Clone, Copy)]
