@@ -1,5 +1,6 @@
 //! Numbers with a unit on the command line: `0.05mm`, `0.01deg`.
 
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use poecal::io::measurements::{Dimension, Unit};
@@ -87,12 +88,14 @@ impl FromStr for LengthAndAngle {
     }
 }
 
-/// Tolerance of the prior, `none`, or `auto`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Tolerance of the prior, `none`, `auto`, or the file that tells its sizes.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum BelievedTolerance {
     None,
     Auto,
     Given(Tolerance),
+    /// A maker's calibration.
+    Of(PathBuf),
 }
 
 impl FromStr for BelievedTolerance {
@@ -102,6 +105,9 @@ impl FromStr for BelievedTolerance {
         match text {
             "none" => return Ok(BelievedTolerance::None),
             "auto" => return Ok(BelievedTolerance::Auto),
+            file if file.to_ascii_lowercase().ends_with(".cfg") => {
+                return Ok(BelievedTolerance::Of(file.into()));
+            }
             _ => {}
         }
         let LengthAndAngle { length_m, angle_rad, .. } = text.parse()?;
@@ -109,7 +115,7 @@ impl FromStr for BelievedTolerance {
             return Ok(BelievedTolerance::Given(Tolerance { angle_rad, length_m }));
         }
         let message = format!(
-            "found `{text}`, expected an angle and a length above 0, like 0.5deg,5mm, or none, or auto"
+            "found `{text}`, expected an angle and a length above 0, like 0.5deg,5mm, or none, or auto, or MOC.cfg of a controller of ABB"
         );
         Err(Error::new(ErrorKind::Option, message))
     }

@@ -38,6 +38,18 @@ const MIMIC: &str = r#"<?xml version="1.0"?>
 </robot>
 "#;
 
+const MJCF: &str = include_str!("../../../tests/python/models/arm.xml");
+const SDF: &str = include_str!("../../../tests/python/models/arm.sdf");
+const CONF: &str = "[DH]
+a = [0, -0.6127, -0.57155, 0, 0, 0]
+d = [0.1807, 0, 0, 0.17415, 0.11985, 0.11655]
+alpha = [1.5707963, 0, 0, 1.5707963, -1.5707963, 0] # rad
+[mounting]
+delta_theta = [1e-4, -0.1, 0.67, -0.57, 1e-4, 1e-5]
+delta_d = [5e-4, 11.2, -92.5, 81.3, 1e-4, 1e-4]
+calibration_status = 2
+";
+
 fn main() {
     let put = |target: &str, name: &str, text: &str| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds").join(target);
@@ -50,6 +62,13 @@ fn main() {
     for (name, text) in [("elbow", URDF), ("slide", xml[0]), ("mimic", MIMIC)] {
         put("urdf", name, text);
     }
+    let driver = |at: f64| format!("{{x: 0.1, y: {at}, z: 0, roll: 0.1, pitch: 0, yaw: 0}}");
+    let links = ["shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"];
+    let origins: Vec<String> = links.iter().map(|link| format!("  {link}: {}", driver(0.2))).collect();
+    put("foreign", "mjcf", MJCF);
+    put("foreign", "sdf", SDF);
+    put("foreign", "yaml", &format!("kinematics:\n{}\n  hash: calib_1\n", origins.join("\n")));
+    put("foreign", "conf", CONF);
     put("robot_toml", "elbow", TOML);
     put("robot_toml", "gantry", &robot_toml::write(&gantry()));
     models.iter().enumerate().for_each(|(index, text)| put("robot_toml", &format!("form{index}"), text));

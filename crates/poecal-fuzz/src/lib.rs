@@ -30,7 +30,7 @@ pub const BETWEEN: &str = "=====";
 ///
 /// ```
 /// let names: Vec<&str> = poecal_fuzz::TARGETS.iter().map(|target| target.name).collect();
-/// assert!(names.contains(&"urdf") && names.len() == 10);
+/// assert!(names.contains(&"urdf") && names.len() == 11);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
@@ -43,9 +43,10 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 10] = [
+pub const TARGETS: [Target; 11] = [
     Target { name: "urdf", run: targets::urdf, trials: 1500 },
     Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
+    Target { name: "foreign", run: targets::foreign, trials: 3000 },
     Target { name: "measurements", run: targets::measurements, trials: 6000 },
     Target { name: "mapping", run: targets::mapping, trials: 10000 },
     Target { name: "joints", run: targets::joints, trials: 10000 },

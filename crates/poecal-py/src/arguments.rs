@@ -168,19 +168,21 @@ impl<'a, 'py> Argument<'a, 'py> for [f64; 3] {
     }
 }
 
-/// Tolerance of the prior: none, chosen by cross-validation, or degrees and millimetres.
-#[derive(Clone, Copy, PartialEq)]
+/// Tolerance of the prior: none, chosen by cross-validation, degrees and millimetres, or a maker's file.
+#[derive(Clone, PartialEq)]
 pub(crate) enum Believed {
     None,
     Auto,
     Given((f64, f64)),
+    Of(PathBuf),
 }
 
 impl<'a, 'py> Argument<'a, 'py> for Believed {
     fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         match value.cast::<PyString>().ok().map(|text| text.to_string_lossy().into_owned()) {
             Some(text) if text == "auto" => Ok(Believed::Auto),
-            Some(_) => Err(unexpected(name, value, "two numbers, \"auto\", or None")),
+            Some(text) if text.to_ascii_lowercase().ends_with(".cfg") => Ok(Believed::Of(text.into())),
+            Some(_) => Err(unexpected(name, value, "two numbers, \"auto\", the path of a MOC.cfg, or None")),
             None if value.is_none() => Ok(Believed::None),
             None => <(f64, f64)>::of(value, name).map(Believed::Given),
         }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use poecal::calibration::{
     BlockChoice, CalibrationOptions, Corrections, Stage, calibrate_with_progress, settle_sets,
 };
+use poecal::io::abb::AbbCalibration;
 use poecal::io::calibration_file::Inputs;
 use poecal::io::named_files::refuse_fitted;
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
@@ -36,7 +37,8 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     Standard deviation of each measured component, default estimated from the data.
 /// tolerance_deg_mm
 ///     Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
-///     decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation.
+///     decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation. The
+///     path of a MOC.cfg of a controller of ABB stands for what the maker found.
 /// corrections
 ///     What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
 ///     "off" fits none; or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of
@@ -121,8 +123,12 @@ pub(crate) fn calibrate(
         sigma: ByQuantity::default()
             .with(Quantity::Position, sigma_position_m.transpose()?)
             .with(Quantity::Rotation, sigma_rotation_rad.transpose()?),
-        tolerance: match tolerance_deg_mm {
-            Believed::Given(given) => Some(tolerance(given)?),
+        tolerance: match &tolerance_deg_mm {
+            Believed::Given(given) => Some(tolerance(*given)?),
+            Believed::Of(path) => {
+                let found = AbbCalibration::read(path).and_then(|found| found.tolerance(path));
+                Some(found.map_err(raise)?)
+            }
             Believed::None => None,
             Believed::Auto => usual.tolerance,
         },

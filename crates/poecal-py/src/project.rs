@@ -22,7 +22,7 @@ const MOST: usize = 100_000;
 /// Parameters
 /// ----------
 /// model
-///     Path of a URDF, TOML model or calibration.json.
+///     Path of a robot model of any form.
 /// out
 ///     The folder; files in it are never overwritten.
 /// measure

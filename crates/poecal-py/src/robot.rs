@@ -29,7 +29,7 @@ const TEXT: &str = "text";
 
 #[pymethods]
 impl Robot {
-    /// Reads a robot model of any form: URDF, TOML or calibration.json, of which it is the calibrated robot.
+    /// Reads a robot model of any form: URDF, MJCF, SDF, TOML, a driver's YAML, a controller's conf, or calibration.json, of which it is the calibrated robot.
     ///
     /// Parameters
     /// ----------
@@ -120,7 +120,7 @@ impl Robot {
     /// Parameters
     /// ----------
     /// text
-    ///     Text of a URDF, TOML model or calibration.json.
+    ///     Text of a URDF, MJCF, SDF, TOML model or calibration.json.
     /// base_link, tip_link
     ///     The chain of a URDF that has several.
     /// instruments, targets

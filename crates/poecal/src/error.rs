@@ -116,6 +116,14 @@ impl Error {
         self
     }
 
+    /// The same error, if it has a place, without a line.
+    pub(crate) fn without_line(mut self) -> Self {
+        if let Some(place) = &mut self.0.place {
+            (place.line, place.column) = (None, None);
+        }
+        self
+    }
+
     /// The same error, if it has a place, at the same line and column of another file.
     pub(crate) fn with_path(mut self, path: &Path) -> Self {
         if let Some(place) = &mut self.0.place {

@@ -32,7 +32,7 @@
 //!
 //! | to | there is |
 //! |---|---|
-//! | describe a robot | [`Robot`], [`Joint`], [`JointKind`], [`Limits`], [`Reading`], [`Tolerance`]; [`Model`] and [`ChainSelection`] read it from URDF, TOML or a calibration |
+//! | describe a robot | [`Robot`], [`Joint`], [`JointKind`], [`Limits`], [`Reading`], [`Tolerance`]; [`Model`] and [`ChainSelection`] read it from URDF, MJCF, SDF, TOML, makers' files or a calibration |
 //! | say what was measured | [`Dataset`], [`Observation`], [`Measurement`], [`PointMeasurement`], [`PoseMeasurement`], [`Noise`], [`Set`]; [`read_measurements`] with [`ReadOptions`] gives a [`MeasurementFile`] |
 //! | calibrate | [`calibrate`] with [`CalibrationOptions`] ([`DeviceFrameKnowledge`], [`Robust`], [`Loss`], [`Formulation`]) gives a [`Calibration`] with its [`CalibratedTarget`]s |
 //! | know how good it is | [`Accuracy`] ([`SetAccuracy`], [`ModelAccuracy`], [`Statistic`]), [`Verdict`], [`Trust`], [`Identifiability`] ([`Direction`]), [`Diagnosis`] of mistakes in the input |

@@ -16,7 +16,7 @@ use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
 /// Arguments of `poecal calibrate`.
 #[derive(Args, Debug)]
 pub(crate) struct Calibrate {
-    /// Robot model: URDF, TOML or calibration.json [default: from the settings]
+    /// Robot model: URDF, MJCF, SDF, TOML or calibration.json [default: from the settings]
     pub(crate) model: Option<PathBuf>,
     /// Measurement files (CSV), joined [default: from the settings]
     pub(crate) measurements: Vec<PathBuf>,
@@ -37,8 +37,9 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, allow_hyphen_values = true)]
     pub(crate) sigma_rotation: Option<f64>,
     /// Prior: deviation of each axis from nominal, as standard deviations, or none. It decides where the measurements determine
-    /// nothing. auto takes the best of 0.2deg,2mm, 0.5deg,5mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own
-    #[arg(long, value_name = "ANGLE,LENGTH|none|auto", default_value = "0.5deg,5mm")]
+    /// nothing. auto takes the best of 0.2deg,2mm, 0.5deg,5mm and 3deg,10mm by cross-validation. A joint of a TOML model may state its own.
+    /// MOC.cfg of a controller of ABB with Absolute Accuracy tells what the maker found
+    #[arg(long, value_name = "ANGLE,LENGTH|none|auto|MOC.cfg", default_value = "0.5deg,5mm")]
     pub(crate) tolerance: BelievedTolerance,
     /// What joints do beyond geometry: auto fits the terms that predict rows best which were not fitted, all looks
     /// among more of them; groups of terms with their sizes

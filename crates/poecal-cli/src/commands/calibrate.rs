@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use poecal::calibration::{
     BlockChoice, Calibration, CalibrationOptions, Level, Stage, calibrate_with_progress, settle_sets,
 };
+use poecal::io::abb::AbbCalibration;
 use poecal::io::calibration_file::{CalibrationFile, Inputs};
 use poecal::io::measurements::{self, ReadOptions};
 use poecal::io::model::Model;
@@ -14,6 +15,7 @@ use poecal::io::output::{self, Contents, FilePlace, FolderPlace, Results};
 use poecal::io::residuals::{ResidualRows, Residuals};
 use poecal::measurement::{ByQuantity, Dataset, Quantity};
 use poecal::report::Detail;
+use poecal::robot::Tolerance;
 use poecal::{Error, ErrorKind, Result, report};
 use poecal_lou2009::{Residual, formulated};
 
@@ -34,7 +36,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     model.robot = model.robot.with_factors(&arguments.factors)?;
     let (data, inputs) = read_measurements(arguments, &model, reading, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
-    let options = options(arguments);
+    let options = options(arguments, console)?;
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
     if arguments.residual != Residual::default() && !poses {
         console.warning(format!(
@@ -155,17 +157,18 @@ fn read_measurements(
     Ok((data, inputs))
 }
 
-fn options(arguments: &Calibrate) -> CalibrationOptions {
+fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOptions> {
     let usual = CalibrationOptions::default();
     let method = arguments.method.unwrap_or(arguments.formulation.usual_method());
-    CalibrationOptions {
+    Ok(CalibrationOptions {
         frame: arguments.frame,
         blocks: BlockChoice { free: arguments.free.clone(), fix: arguments.fix.clone() },
         sigma: ByQuantity::default()
             .with(Quantity::Position, arguments.sigma_position)
             .with(Quantity::Rotation, arguments.sigma_rotation),
-        tolerance: match arguments.tolerance {
-            BelievedTolerance::Given(tolerance) => Some(tolerance),
+        tolerance: match &arguments.tolerance {
+            BelievedTolerance::Given(tolerance) => Some(*tolerance),
+            BelievedTolerance::Of(path) => Some(makers_tolerance(path, console)?),
             BelievedTolerance::None => None,
             BelievedTolerance::Auto => usual.tolerance,
         },
@@ -178,7 +181,27 @@ fn options(arguments: &Calibrate) -> CalibrationOptions {
         robust: arguments.robust,
         formulation: formulated(arguments.formulation, arguments.residual, method),
         ..usual
-    }
+    })
+}
+
+/// The tolerance by a maker's calibration of the arm.
+fn makers_tolerance(path: &Path, console: &Console) -> Result<Tolerance> {
+    let found = AbbCalibration::read(path)?;
+    let tolerance = found.tolerance(path)?;
+    let count: usize = found.arms.iter().map(|arm| arm.lengths_m.len() + arm.angles_rad.len()).sum();
+    let gives = match found.joints.as_slice() {
+        [] => String::new(),
+        joints => {
+            let names: Vec<&str> = joints.iter().map(|(name, _)| name.as_str()).collect();
+            format!("; it also found that {} give, which --corrections sag fits", names.join(", "))
+        }
+    };
+    console.note(format!(
+        "tolerance {:.4} deg, {:.4} mm: the root mean squares of the {count} errors of axes that the maker found{gives}",
+        tolerance.angle_rad.to_degrees(),
+        tolerance.length_m * 1e3
+    ));
+    Ok(tolerance)
 }
 
 /// Places of the results.

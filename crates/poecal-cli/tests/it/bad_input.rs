@@ -188,7 +188,7 @@ fn bad_models_get_one_sentence_each() {
         case("calibrate missing.urdf good.csv", "",
              "missing.urdf: found no such file, expected…"),
         case("calibrate results good.csv", "",
-             "results: found a directory, expected a robot model (URDF, TOML or calibration.json)"),
+             "results: found a directory, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json)"),
         case("predict bad.json joints.csv", "{\"schema\": \"poecal-calibration-1\",\n",
              "bad.json:2:1: found broken JSON (EOF while parsing a value), expected a calibration as written by `poecal calibrate`: name a calibration.json"),
         case("predict bad.json joints.csv", "{\"schema\": \"poecal-calibration-9\"}",

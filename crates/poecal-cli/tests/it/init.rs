@@ -163,7 +163,7 @@ fn a_project_overwrites_nothing() {
         ),
         (
             "init nobody.urdf",
-            "error: nobody.urdf: found no such file, expected a robot model (URDF, TOML or calibration.json): check the path\n",
+            "error: nobody.urdf: found no such file, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json): check the path\n",
         ),
     ];
     for (command, sentence) in refusals {

@@ -120,7 +120,7 @@ fn mistakes_get_a_sentence() {
         ),
         (
             "offsets column.toml missing.toml",
-            "missing.toml: found no such file, expected a robot model (URDF, TOML or calibration.json): check the path",
+            "missing.toml: found no such file, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json): check the path",
         ),
         (
             "convert column.toml --to urdf --offset trun=1deg",

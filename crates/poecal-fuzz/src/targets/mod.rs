@@ -10,7 +10,7 @@ mod tables;
 
 pub use calibration::{calibration, report};
 pub use mapping::mapping;
-pub use models::{robot_toml, urdf};
+pub use models::{foreign, robot_toml, urdf};
 pub use pipeline::pipeline;
 pub use residuals::residuals;
 pub use settings::settings;

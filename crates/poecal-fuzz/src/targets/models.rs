@@ -1,4 +1,4 @@
-//! Robot models: URDF and TOML.
+//! Robot models: URDF, TOML, and forms of simulators and makers.
 
 use poecal::ErrorKind;
 use poecal::io::model::{Model, ModelFormat, ModelSource, convert};
@@ -28,6 +28,29 @@ pub fn urdf(data: &[u8]) -> bool {
     patched(&document, &moved(robot));
     let source = ModelSource::Urdf(Box::new(document.clone()));
     converted(&Model { robot: robot.clone(), source, path: PATH.into() });
+    true
+}
+
+/// A model in a form of a simulator or maker, and the URDF that says the same.
+pub fn foreign(data: &[u8]) -> bool {
+    let Some(text) = text(data) else { return false };
+    let form = if text.trim_start().starts_with('<') {
+        "xml"
+    } else if text.contains("kinemat") {
+        "yaml"
+    } else {
+        "conf"
+    };
+    let path = format!("{PATH}.{form}");
+    let read = Model::parse(&text, &path, &ChainSelection::default());
+    let Some(model) = understood(read, &text) else { return false };
+    let ModelSource::Urdf(document) = &model.source else { return true };
+    let again = UrdfDocument::parse(document.text(), PATH, &ChainSelection::default());
+    assert_eq!(certain(again, document.text()).robot(), document.robot());
+    if size_m(document.robot()) <= VAST_M {
+        patched(document, document.robot());
+        converted(&model);
+    }
     true
 }
 

@@ -89,7 +89,7 @@ class Robot:
         instruments: Mapping[str, str] | None = None,
         targets: Mapping[str, str] | None = None,
     ) -> Robot:
-        """Reads a robot model of any form: URDF, TOML or calibration.json, of which it is the calibrated robot.
+        """Reads a robot model of any form: URDF, MJCF, SDF, TOML, a driver's YAML, a controller's conf, or calibration.json, of which it is the calibrated robot.
 
         Parameters
         ----------
@@ -167,7 +167,7 @@ class Robot:
         Parameters
         ----------
         text
-            Text of a URDF, TOML model or calibration.json.
+            Text of a URDF, MJCF, SDF, TOML model or calibration.json.
         base_link, tip_link
             The chain of a URDF that has several.
         instruments, targets
@@ -1217,7 +1217,7 @@ def calibrate(
     frame: _Frame = "unknown",
     sigma_position_mm: float | None = None,
     sigma_rotation_deg: float | None = None,
-    tolerance_deg_mm: tuple[float, float] | Literal["auto"] | None = ...,
+    tolerance_deg_mm: tuple[float, float] | str | None = ...,
     corrections: str | Mapping[str, float] = "auto",
     harmonics: int = 2,
     gravity: Sequence[float] | Literal["find"] = ...,
@@ -1246,7 +1246,8 @@ def calibrate(
         Standard deviation of each measured component, default estimated from the data.
     tolerance_deg_mm
         Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
-        decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation.
+        decides where the measurements determine nothing. "auto" takes the best of (0.2, 2), (0.5, 5) and (3, 10) by cross-validation. The
+        path of a MOC.cfg of a controller of ABB stands for what the maker found.
     corrections
         What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
         "off" fits none; or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of
@@ -1398,7 +1399,7 @@ def init(
     Parameters
     ----------
     model
-        Path of a URDF, TOML model or calibration.json.
+        Path of a robot model of any form.
     out
         The folder; files in it are never overwritten.
     measure

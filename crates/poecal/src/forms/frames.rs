@@ -57,6 +57,18 @@ impl AxisFrames {
         Ok(AxisFrames { joints, last_from_tip: before.inverse() * robot.home })
     }
 
+    /// Moves the last joint's frame along its axis, and turns it about that, to where it is nearest to the tip's: drivers take it for the flange.
+    pub(crate) fn end_at_tip(&mut self) {
+        if let Some(last) = self.joints.last_mut() {
+            let tip = &self.last_from_tip;
+            let turn = (tip.rotation[(1, 0)] - tip.rotation[(0, 1)])
+                .atan2(tip.rotation[(0, 0)] + tip.rotation[(1, 1)]);
+            let along = Pose::new(rotation::about(2, turn), Vector3::new(0.0, 0.0, tip.translation.z));
+            *last = *last * along;
+            self.last_from_tip = along.inverse() * self.last_from_tip;
+        }
+    }
+
     /// Names, kinds and limits of a robot with these frames.
     ///
     /// # Errors

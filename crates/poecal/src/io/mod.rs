@@ -1,9 +1,11 @@
 //! Files: robot models, measurements, results. The only module that opens them; it computes nothing beyond units.
 
+pub mod abb;
 pub mod calibration_file;
 mod csv_text;
 pub mod disk;
 pub mod export;
+mod foreign;
 mod hashes;
 mod looks_like;
 pub mod measurements;
@@ -21,6 +23,7 @@ mod source;
 mod source_text;
 pub mod urdf;
 mod xml;
+mod yaml;
 
 pub use proof::Difference;
 

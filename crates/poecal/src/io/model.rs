@@ -5,11 +5,15 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::calibration_file::CalibrationFile;
+use super::foreign::Form;
 use super::proof::Difference;
 use super::urdf::{self, ChainSelection, UrdfDocument};
 use super::{looks_like, robot_toml, source_text};
 use crate::error::{Error, ErrorKind, Result, first_few};
 use crate::robot::Robot;
+
+/// What a model's file is.
+const MODEL: &str = "a robot model (URDF, MJCF, SDF, TOML or calibration.json)";
 
 /// Source of a model.
 ///
@@ -20,7 +24,8 @@ use crate::robot::Robot;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelSource {
-    /// A URDF text, into which other values can be written.
+    /// A URDF text, into which other values can be written; of a model of another form (MJCF, SDF, a driver's YAML, a controller's conf)
+    /// the URDF that says the same.
     Urdf(Box<UrdfDocument>),
     /// A TOML model.
     Toml,
@@ -89,11 +94,14 @@ impl Model {
     /// otherwise as the reader of its form.
     pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
-        Model::parse(
-            &source_text::read(path, "a robot model (URDF, TOML or calibration.json)")?,
-            path,
-            selection,
-        )
+        let text = source_text::read(path, MODEL)?;
+        let beside = Form::of(&text, path).and_then(|form| form.sibling(&text, path));
+        let Some(beside) = beside else { return Model::parse(&text, path, selection) };
+        let table = source_text::read(
+            &beside,
+            "the controller's nominal table, without which calibration.conf says differences alone",
+        )?;
+        Model::parse_beside(&text, path, Some((&table, &beside)), selection)
     }
 
     /// A robot model from its text; messages call it `path`, whose extension gives the form, as for a file.
@@ -109,7 +117,24 @@ impl Model {
     /// # Errors
     /// As [`Model::read`].
     pub fn parse(text: &str, path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
-        let path = path.as_ref();
+        Model::parse_beside(text, path.as_ref(), None, selection)
+    }
+
+    fn parse_beside(
+        text: &str,
+        path: &Path,
+        beside: Option<(&str, &Path)>,
+        selection: &ChainSelection,
+    ) -> Result<Self> {
+        if let Some(form) = Form::of(text, path) {
+            let document = form.read(text, path, beside, selection)?;
+            let robot = document.robot().clone();
+            return Ok(Model {
+                robot,
+                source: ModelSource::Urdf(Box::new(document)),
+                path: path.to_path_buf(),
+            });
+        }
         if looks_like_json(path, text) {
             refuse_chain(path, selection)?;
             let file = CalibrationFile::parse(text, path)?;

@@ -45,6 +45,25 @@ pub(super) fn parsed<'a>(text: &'a str, path: &Path, expected: &str) -> Result<D
     Document::parse(text).map_err(|error| broken(&error, path, expected))
 }
 
+/// The name of the first element of a text; `None` if it does not begin as XML.
+pub(super) fn root_name(text: &str) -> Option<&str> {
+    let mut rest = text.trim_start_matches('\u{feff}').trim_start();
+    loop {
+        let end = if rest.starts_with("<?") {
+            "?>"
+        } else if rest.starts_with("<!--") {
+            "-->"
+        } else if rest.starts_with("<!") {
+            ">"
+        } else {
+            break;
+        };
+        rest = rest.split_once(end)?.1.trim_start();
+    }
+    let name = rest.strip_prefix('<')?;
+    name.split(|c: char| c.is_whitespace() || c == '>' || c == '/').next()
+}
+
 /// The parser's message as one sentence with its place.
 fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
     let place = error.pos();

@@ -113,7 +113,7 @@ impl Check {
             model: ModelCheck {
                 path: model.path.display().to_string(),
                 form: match &model.source {
-                    ModelSource::Urdf(_) => "URDF",
+                    ModelSource::Urdf(document) => document.form(),
                     ModelSource::Toml => "TOML",
                     ModelSource::Calibration(_) => "calibration",
                 },

@@ -21,6 +21,7 @@ mod fast_path;
 #[path = "../files/mod.rs"]
 mod files;
 mod fk_reference;
+mod foreign_models;
 mod forensics;
 mod gauge;
 mod identifiability;

@@ -273,11 +273,11 @@ fn files_that_cannot_be_read_get_one_sentence_each() {
     write("one.toml", toml("a = 0", "convention = 'standard_dh'").as_bytes());
     #[rustfmt::skip]
     let cases = [
-        (".", ".: found a directory, expected a robot model (URDF, TOML or calibration.json)"),
-        ("none.urdf", "none.urdf: found no such file, expected a robot model (URDF, TOML or calibration.json): check the path"),
-        ("empty.urdf", "empty.urdf: the file is empty, expected a robot model (URDF, TOML or calibration.json)"),
+        (".", ".: found a directory, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json)"),
+        ("none.urdf", "none.urdf: found no such file, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json): check the path"),
+        ("empty.urdf", "empty.urdf: the file is empty, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json)"),
         ("latin1.urdf",
-         "latin1.urdf:2:6: found bytes that are not UTF-8, expected a robot model (URDF, TOML or calibration.json) as UTF-8 text"),
+         "latin1.urdf:2:6: found bytes that are not UTF-8, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json) as UTF-8 text"),
         ("dh.csv",
          "dh.csv:1: found a table of DH parameters (a, alpha, d, theta), expected a robot model: URDF, a calibration.json, or TOML that begins with poecal_robot = 1: write it with convention = \"standard_dh\" or \"modified_dh\" and an entry of `joint` for each row (docs/file-formats.md, TOML)"),
         ("points.csv",

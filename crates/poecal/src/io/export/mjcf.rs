@@ -2,10 +2,8 @@
 
 use std::fmt::Write as _;
 
-use roxmltree::{Document, Node};
-
 use super::names::Names;
-use super::{Written, export_error, unread};
+use super::{Written, read_back};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::numbers::{shortest, tidy};
@@ -52,7 +50,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
         let _ = writeln!(text, "{}</body>", " ".repeat(indent));
     }
     text.push_str("    </body>\n  </worldbody>\n</mujoco>\n");
-    let again = read(&text)?.robot(robot)?;
+    let again = read_back(&text, "robot.xml", Some((&names.base, &names.tip)))?;
     let masses = "the masses in the file are placeholders (1 kg a link), since a calibration has none; meshes are those of another file";
     let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
     Ok(Written { text, notes, again, remains: None })
@@ -63,24 +61,4 @@ fn placed(pose: &Pose) -> String {
     let [x, y, z, w] = pose.quaternion_xyzw();
     let numbers = |numbers: &[f64]| numbers.iter().map(|&it| shortest(it)).collect::<Vec<_>>().join(" ");
     format!("pos=\"{}\" quat=\"{}\"", numbers(&tidy(pose.translation.into())), numbers(&[w, x, y, z]))
-}
-
-/// Numbers of an attribute.
-pub(super) fn numbers<const N: usize>(text: &str) -> Result<[f64; N]> {
-    let found: Vec<f64> = text.split_whitespace().filter_map(|it| it.parse().ok()).collect();
-    found.try_into().map_err(|_| unread(&format!("the numbers `{text}`")))
-}
-
-fn read(text: &str) -> Result<AxisFrames> {
-    let document = Document::parse(text).map_err(|error| export_error(error.to_string()))?;
-    let pose = |node: &Node<'_, '_>| -> Result<Pose> {
-        let position = numbers::<3>(node.attribute("pos").unwrap_or_default())?;
-        let [w, x, y, z] = numbers::<4>(node.attribute("quat").unwrap_or_default())?;
-        Ok(Pose::from_position_quaternion(position, [x, y, z, w]))
-    };
-    let bodies = document.descendants().filter(|node| node.has_tag_name("body") && node.has_attribute("pos"));
-    let joints = bodies.map(|node| pose(&node)).collect::<Result<_>>()?;
-    let site =
-        document.descendants().find(|node| node.has_tag_name("site")).ok_or_else(|| unread("no site"))?;
-    Ok(AxisFrames { joints, last_from_tip: pose(&site)? })
 }

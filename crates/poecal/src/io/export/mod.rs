@@ -17,6 +17,7 @@ pub use onto::onto;
 
 use super::model::{Converted, Model, ModelFormat, convert};
 use super::proof::Difference;
+use super::urdf::ChainSelection;
 use crate::error::{Error, ErrorKind, Result};
 use crate::forms::DhConvention;
 use crate::robot::Robot;
@@ -226,6 +227,20 @@ fn geometry<'a>(robot: &'a Robot, format: ExportFormat, notes: &mut Vec<String>)
 /// How far a robot that was read back is off.
 fn remaining(robot: &Robot, again: &Robot) -> Difference {
     Difference::of(robot, again, CONFIGURATIONS)
+}
+
+/// The robot that the reader of models finds in a text, as a file of this name, between two links.
+fn read_back(text: &str, name: &str, ends: Option<(&str, &str)>) -> Result<Robot> {
+    let selection = match ends {
+        Some((base, tip)) => ChainSelection {
+            base_link: Some(base.to_owned()),
+            tip_link: Some(tip.to_owned()),
+            ..ChainSelection::default()
+        },
+        None => ChainSelection::default(),
+    };
+    let read = Model::parse(text, name, &selection);
+    read.map(|model| model.robot).map_err(|error| unread(&format!("a fault ({})", error.message())))
 }
 
 /// Whether a difference from a robot is rounding.

@@ -1,15 +1,16 @@
 //! Origins of joints with their axes along z, as URDF has them: YAML for the descriptions of several makers, and CSV.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::path::Path;
 
-use super::{Written, export_error, unread};
+use super::{Written, export_error, read_back, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::csv_text;
 use crate::io::model::Model;
 use crate::io::numbers::shortest;
 use crate::io::urdf::origin_values;
+use crate::io::yaml::values;
 use crate::lie::{Pose, rotation};
 use crate::robot::{JointKind, Robot};
 use crate::text::visible;
@@ -69,7 +70,12 @@ impl Flavour<'_> {
 
 pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Result<Written> {
     let mut frames = AxisFrames::of(robot)?;
-    let before = model.document()?.map_or_else(Pose::identity, |document| document.base_from_first_parent());
+    let document = model.document()?;
+    // A table of screws has no frames; that of a URDF is the flange.
+    if document.is_none() && matches!(flavour, Flavour::Ur(_) | Flavour::Xarm) {
+        frames.end_at_tip();
+    }
+    let before = document.map_or_else(Pose::identity, |document| document.base_from_first_parent());
     if let Some(first) = frames.joints.first_mut() {
         *first = before.inverse() * *first;
     }
@@ -136,7 +142,13 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
         let _ = writeln!(text, "# {}", visible(&stands));
         notes.push(stands);
     }
-    let mut again = read(&text, &keys, is_franka, &frames.last_from_tip)?;
+    let mut again = if matches!(flavour, Flavour::Names) {
+        read(&text, &keys, &frames.last_from_tip)?
+    } else {
+        let read = AxisFrames::of(&read_back(&text, "arm.yaml", None)?)?;
+        let last_from_tip = if is_franka { read.last_from_tip } else { frames.last_from_tip };
+        AxisFrames { last_from_tip, ..read }
+    };
     if let Some(first) = again.joints.first_mut() {
         *first = before * *first;
     }
@@ -208,62 +220,20 @@ pub(super) fn quoted(text: &str) -> String {
     found
 }
 
-/// Numbers by their keys, of a text as it is written here: keys by indentation.
-pub(super) fn numbers_by_path(text: &str) -> Result<BTreeMap<String, f64>> {
-    let mut path: Vec<(usize, String)> = Vec::new();
-    let mut found = BTreeMap::new();
-    for line in text.lines().filter(|line| !line.trim_start().starts_with('#') && !line.trim().is_empty()) {
-        let indent = line.len() - line.trim_start().len();
-        path.retain(|(at, _)| *at < indent);
-        let (key, value) = key_and_rest(line.trim());
-        path.push((indent, key));
-        let Some(value) = value else { continue };
-        let joined: Vec<&str> = path.iter().map(|(_, key)| key.as_str()).collect();
-        if let Ok(number) = value.parse() {
-            found.insert(joined.join("/"), number);
+/// Frames of the joints by their keys, of a text as it is written here.
+fn read(text: &str, keys: &[String], tool: &Pose) -> Result<AxisFrames> {
+    let path = Path::new("origins.yaml");
+    let values = values(text, path, "origins of joints")?;
+    let origin = |key: &String| -> Result<Pose> {
+        let mut numbers = [0.0; 6];
+        for (number, name) in numbers.iter_mut().zip(NUMBERS) {
+            let found = values.iter().find(|value| value.keys.iter().eq(["origins", key, name]));
+            *number = found.ok_or_else(|| unread(&format!("no number `{name}` of `{key}`")))?.number(path)?;
         }
-    }
-    Ok(found)
-}
-
-/// The key of a line, and what follows its colon.
-fn key_and_rest(line: &str) -> (String, Option<&str>) {
-    let mut quoted = serde_json::Deserializer::from_str(line).into_iter::<String>();
-    let (key, rest) = match quoted.next() {
-        Some(Ok(key)) => (key, line.get(quoted.byte_offset()..).unwrap_or_default()),
-        _ => {
-            let (key, _) = line.split_once(':').unwrap_or((line, ""));
-            (key.to_owned(), line.get(key.len()..).unwrap_or_default())
-        }
-    };
-    let rest = rest.strip_prefix(':').unwrap_or(rest).trim();
-    (key, Some(rest).filter(|rest| !rest.is_empty()))
-}
-
-fn read(text: &str, keys: &[String], is_franka: bool, tool: &Pose) -> Result<AxisFrames> {
-    let numbers = numbers_by_path(text)?;
-    let origin = |key: &str| -> Result<Pose> {
-        let of = |name: &str| {
-            let of_key = |(path, number): (&String, &f64)| {
-                let is_own = if is_franka {
-                    *path == format!("{key}/kinematic/{name}")
-                } else {
-                    path.split_once('/').is_some_and(|(_, rest)| rest == format!("{key}/{name}"))
-                };
-                is_own.then_some(*number)
-            };
-            numbers.iter().find_map(of_key).ok_or_else(|| unread(&format!("no number `{name}` of `{key}`")))
-        };
-        let mut values = [0.0; 6];
-        for (value, name) in values.iter_mut().zip(NUMBERS) {
-            *value = of(name)?;
-        }
-        let [x, y, z, roll, pitch, yaw] = values;
+        let [x, y, z, roll, pitch, yaw] = numbers;
         Ok(Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]))
     };
-    let joints = keys.iter().map(|key| origin(key)).collect::<Result<_>>()?;
-    let last_from_tip = if is_franka { origin("joint8")? } else { *tool };
-    Ok(AxisFrames { joints, last_from_tip })
+    Ok(AxisFrames { joints: keys.iter().map(origin).collect::<Result<_>>()?, last_from_tip: *tool })
 }
 
 /// Origins as a table.

@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
+use std::path::Path;
 
-use super::origins::{numbers_by_path, quoted};
+use super::origins::quoted;
 use super::{Written, export_error, is_same, remaining};
 use crate::error::Result;
 use crate::io::model::{Model, ModelSource};
 use crate::io::urdf::{Origin, UrdfDocument};
+use crate::io::yaml::values;
 use crate::robot::Robot;
 
 /// Ends of the keys of a joint.
@@ -37,9 +39,8 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
             }
         }
     }
-    let numbers = numbers_by_path(&text)?;
-    let again = document.with_origins(&corrected(&before, &numbers));
     let mut notes = Vec::new();
+    let again = document.with_origins(&corrected(&before, &read(&text)?));
     let remains = remaining(robot, &again);
     let mut head =
         "# Differences of the origins of the joints: metres, and radians of roll, pitch, yaw.\n".to_owned();
@@ -54,6 +55,14 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
     }
     head.push_str("robot_state_publisher:\n  geometric_calibration:\n");
     Ok(Written { text: head + &text, notes, again, remains: Some(remains) })
+}
+
+/// Numbers by their names.
+fn read(text: &str) -> Result<BTreeMap<String, f64>> {
+    let path = Path::new("master_calibration.yaml");
+    // A robot as it was has none.
+    let values = if text.is_empty() { Vec::new() } else { values(text, path, "differences of origins")? };
+    values.into_iter().map(|value| Ok((value.keys.concat(), value.number(path)?))).collect()
 }
 
 /// What is to be added to an origin; of the two forms of the same turn, by the smaller one.

@@ -3,11 +3,8 @@
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 
-use roxmltree::{Document, Node};
-
-use super::mjcf::numbers;
 use super::names::Names;
-use super::{Written, export_error, unread};
+use super::{Written, read_back};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::numbers::shortest;
@@ -55,7 +52,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
         escaped(&before),
         escaped(&names.mount)
     );
-    let again = read(&text)?.robot(robot)?;
+    let again = read_back(&text, "robot.sdf", Some((&names.base, &names.tip)))?;
     let masses = "the file has no masses and meshes, since a calibration has none: Gazebo takes 1 kg a link";
     let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
     Ok(Written { text, notes, again, remains: None })
@@ -77,45 +74,4 @@ fn push_link(text: &mut String, name: &str, before: &str, pose: &Pose) {
         escaped(name),
         escaped(before)
     );
-}
-
-/// Where a link is placed.
-fn placed<'a, 'input>(link: &Node<'a, 'input>) -> Option<Node<'a, 'input>> {
-    link.children().find(|child| child.has_tag_name("pose"))
-}
-
-fn read(text: &str) -> Result<AxisFrames> {
-    let document = Document::parse(text).map_err(|error| export_error(error.to_string()))?;
-    let pose = |node: Node<'_, '_>| -> Result<Pose> {
-        let text = node.text().unwrap_or_default();
-        match node.attribute("rotation_format") {
-            Some(_) => {
-                let [x, y, z, qx, qy, qz, qw] = numbers::<7>(text)?;
-                Ok(Pose::from_position_quaternion([x, y, z], [qx, qy, qz, qw]))
-            }
-            None => {
-                let [x, y, z, roll, pitch, yaw] = numbers::<6>(text)?;
-                Ok(Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]))
-            }
-        }
-    };
-    // By name: from each link to the one that is placed in it.
-    let links: Vec<Node<'_, '_>> = document.descendants().filter(|node| node.has_tag_name("link")).collect();
-    let mut at = links.iter().find(|link| placed(link).is_none()).and_then(|link| link.attribute("name"));
-    let mut joints: Vec<Pose> = Vec::new();
-    while let Some(before) = at {
-        let is_next =
-            |link: &&Node<'_, '_>| placed(link).is_some_and(|it| it.attribute("relative_to") == Some(before));
-        let mut next = links.iter().filter(is_next);
-        let (link, other) = (next.next(), next.next());
-        if other.is_some() || joints.len() > links.len() {
-            return Err(unread("two links of one name"));
-        }
-        at = link.and_then(|link| link.attribute("name"));
-        if let Some(place) = link.and_then(placed) {
-            joints.push(pose(place)?);
-        }
-    }
-    let last_from_tip = joints.pop().ok_or_else(|| unread("no pose"))?;
-    Ok(AxisFrames { joints, last_from_tip })
 }

@@ -54,7 +54,12 @@ impl Project<'_> {
     fn files(&self) -> Result<Vec<NewFile<'static>>> {
         let robot = &self.model.robot;
         // Copied with its comments, not written from what was read.
-        let model = source_text::read(&self.model.path, "a robot model")?;
+        let model = match &self.model.source {
+            ModelSource::Urdf(document) => document.text().to_owned(),
+            ModelSource::Toml | ModelSource::Calibration(_) => {
+                source_text::read(&self.model.path, "a robot model")?
+            }
+        };
         Ok(vec![
             NewFile::new(self.model_name(), model),
             NewFile::new("measurements.csv", template(robot, self.kind)?),

@@ -59,6 +59,7 @@ pub struct UrdfDocument {
     parts: Vec<Part>,
     /// The tip's link, then those of instruments and targets, in the robot's order.
     ends: Vec<End>,
+    made_from: Option<&'static str>,
 }
 
 impl UrdfDocument {
@@ -91,7 +92,14 @@ impl UrdfDocument {
         let chain = chain::select(&tree, selection)?;
         let name = robot_element.attribute("name").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
         let (parts, ends, robot) = parts::read(&tree, &chain, name)?;
-        Ok(UrdfDocument { text: text.to_owned(), path: path.to_path_buf(), robot, parts, ends })
+        Ok(UrdfDocument {
+            text: text.to_owned(),
+            path: path.to_path_buf(),
+            robot,
+            parts,
+            ends,
+            made_from: None,
+        })
     }
 
     /// The robot of the chain; frames and screws are in the base link.
@@ -105,6 +113,17 @@ impl UrdfDocument {
     pub fn selection(&self) -> ChainSelection {
         let links: Vec<&str> = self.ends.iter().map(|end| end.link.as_str()).collect();
         ChainSelection::of(&self.robot, &links)
+    }
+
+    /// The same, made from a file of another form.
+    pub(super) fn made_from(self, form: &'static str) -> Self {
+        UrdfDocument { made_from: Some(form), ..self }
+    }
+
+    /// The form of the file that was read: `URDF`, or the one that this text was made from.
+    #[must_use]
+    pub fn form(&self) -> &'static str {
+        self.made_from.unwrap_or("URDF")
     }
 
     /// The original text.

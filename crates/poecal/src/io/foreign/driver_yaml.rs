@@ -1,0 +1,127 @@
+//! Origins of joints by link or joint, in YAML, as Universal Robots' driver, uFactory's and Franka's descriptions have them.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+
+use super::links::{LinkJoint, LinkJointKind, Links};
+use crate::error::{Error, ErrorKind, Result};
+use crate::forms::AxisFrames;
+use crate::io::yaml::{Value, values};
+use crate::lie::Pose;
+
+const EXPECTED: &str = "the origins of an arm's joints in YAML: `kinematics` with `shoulder` … `wrist_3` (Universal Robots) or `joint1` … (uFactory), \
+                        or `joint1` … `joint8` with `kinematic` (Franka)";
+/// Numbers of an origin.
+const NUMBERS: [&str; 6] = ["x", "y", "z", "roll", "pitch", "yaw"];
+/// Links of Universal Robots' arms in their driver's file, and the joint that moves each in their description.
+const UR: [(&str, &str); 6] = [
+    ("shoulder", "shoulder_pan_joint"),
+    ("upper_arm", "shoulder_lift_joint"),
+    ("forearm", "elbow_joint"),
+    ("wrist_1", "wrist_1_joint"),
+    ("wrist_2", "wrist_2_joint"),
+    ("wrist_3", "wrist_3_joint"),
+];
+
+pub(super) fn read(text: &str, path: &Path) -> Result<Links> {
+    let values = values(text, path, EXPECTED)?;
+    let refuse = |found: String| {
+        Err(Error::new(ErrorKind::Model, format!("found {found}, expected {EXPECTED}")).in_file(path))
+    };
+    let Some(first) = values.first() else { return refuse("no values".to_owned()) };
+    // Franka's numbers lie deeper, and have nothing above.
+    let is_franka = first.keys.get(1).is_some_and(|key| key == "kinematic");
+    let own: &[&str] = if is_franka { &["kinematic"] } else { &[] };
+    let above: &[&str] = if is_franka { &[] } else { &["kinematics"] };
+    let has =
+        |key: &str| values.iter().any(|value| parts(value, above, own).is_some_and(|(it, _)| it == key));
+    let keys: Vec<String> = if UR.iter().any(|(link, _)| has(link)) {
+        UR.map(|(link, _)| link.to_owned()).to_vec()
+    } else {
+        (1..).map(|k| format!("joint{k}")).take_while(|key| has(key)).collect()
+    };
+    if keys.is_empty() {
+        return refuse(format!("`{}`", first.keys.join(".")));
+    }
+    let unknown = values.iter().find(|value| match parts(value, above, own) {
+        Some((key, _)) => !keys.iter().any(|known| known == key),
+        // Joint limits, masses and a checksum may stand beside.
+        None => false,
+    });
+    if let Some(value) = unknown {
+        let message = format!(
+            "found `{}`, expected origins of {} alone: is a joint missing?",
+            value.keys.join("."),
+            keys.join(", ")
+        );
+        return Err(value.error(path, message));
+    }
+    let mut joints =
+        keys.iter().map(|key| origin(&values, path, (above, key, own))).collect::<Result<Vec<_>>>()?;
+    if keys.first().is_some_and(|key| key == UR[0].0) {
+        return Ok(ur_arm(&AxisFrames { joints, last_from_tip: Pose::identity() }));
+    }
+    // Franka's last joint is its flange, which does not move.
+    let last_from_tip = if is_franka { joints.pop() } else { None }.unwrap_or_else(Pose::identity);
+    let base = if is_franka { "link0" } else { "link_base" };
+    let names: Vec<_> = (1..=joints.len()).map(|k| (format!("joint{k}"), format!("link{k}"))).collect();
+    let tip = if is_franka { format!("link{}", joints.len() + 1) } else { "link_eef".to_owned() };
+    Ok(serial("arm", base, &names, &tip, &AxisFrames { joints, last_from_tip }))
+}
+
+/// The key and the number's name of a value that is part of an origin.
+fn parts<'a>(value: &'a Value, above: &[&str], own: &[&str]) -> Option<(&'a str, &'a str)> {
+    let rest = strip(&value.keys, above)?;
+    let (key, rest) = rest.split_first()?;
+    let (number, none) = strip(rest, own)?.split_first()?;
+    (none.is_empty() && NUMBERS.contains(&number.as_str())).then_some((key.as_str(), number.as_str()))
+}
+
+fn strip<'a>(keys: &'a [String], first: &[&str]) -> Option<&'a [String]> {
+    let (head, rest) = keys.split_at_checked(first.len())?;
+    head.iter().eq(first).then_some(rest)
+}
+
+fn origin(values: &[Value], path: &Path, (above, key, own): (&[&str], &str, &[&str])) -> Result<Pose> {
+    let mut numbers = [0.0; 6];
+    for (number, name) in numbers.iter_mut().zip(NUMBERS) {
+        let found = values.iter().find(|value| parts(value, above, own) == Some((key, name)));
+        let Some(value) = found else {
+            let message = format!("found no `{name}` of `{key}`, expected {}", NUMBERS.join(", "));
+            return Err(Error::new(ErrorKind::Model, message).in_file(path));
+        };
+        *number = value.number(path)?;
+    }
+    let [x, y, z, roll, pitch, yaw] = numbers;
+    Ok(Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]))
+}
+
+/// An arm of Universal Robots, with the names of its description.
+pub(super) fn ur_arm(frames: &AxisFrames) -> Links {
+    let names = UR.map(|(link, joint)| (joint.to_owned(), format!("{link}_link")));
+    serial("ur", "base_link_inertia", &names, "tool0", frames)
+}
+
+/// A serial arm of joints that turn about z.
+fn serial(name: &str, base: &str, names: &[(String, String)], tip: &str, frames: &AxisFrames) -> Links {
+    let mut links = Links::new(name);
+    let mut parent = links.add(base, None);
+    for ((joint, link), frame) in names.iter().zip(&frames.joints) {
+        let child = links.add(link, None);
+        links.joints.push(LinkJoint {
+            name: joint.clone(),
+            kind: LinkJointKind::Turns,
+            parent,
+            child: child.clone(),
+            parent_from_child: *frame,
+            axis: Vector3::z_axis(),
+            limits: None,
+            mimic: None,
+        });
+        parent = child;
+    }
+    let tip = links.add(tip, None);
+    links.fix(&parent, &tip, frames.last_from_tip);
+    links
+}

@@ -1,0 +1,160 @@
+//! Links and joints, and the URDF that says them.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use nalgebra::{Unit, Vector3};
+
+use crate::io::numbers::shortest;
+use crate::io::urdf::{escaped, origin_values};
+use crate::lie::Pose;
+use crate::robot::Limits;
+
+/// A tree of links.
+#[derive(Default)]
+pub(super) struct Links {
+    name: String,
+    links: Vec<(String, Option<Inertial>)>,
+    names: BTreeSet<String>,
+    pub(super) joints: Vec<LinkJoint>,
+}
+
+/// A mass with its centre.
+#[derive(Clone, Copy)]
+pub(super) struct Inertial {
+    /// Its frame in the link.
+    pub(super) pose: Pose,
+    pub(super) kg: f64,
+}
+
+/// A joint between two links.
+pub(super) struct LinkJoint {
+    pub(super) name: String,
+    pub(super) kind: LinkJointKind,
+    pub(super) parent: String,
+    pub(super) child: String,
+    /// The child's frame in the parent's, at zero.
+    pub(super) parent_from_child: Pose,
+    pub(super) axis: Unit<Vector3<f64>>,
+    pub(super) limits: Option<Limits>,
+    pub(super) mimic: Option<Mimic>,
+}
+
+/// What a joint does, as URDF has it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum LinkJointKind {
+    Fixed,
+    Turns,
+    Slides,
+    /// More than one degree of freedom.
+    Free,
+}
+
+/// The joint that another one follows: `q = multiplier q' + offset`.
+pub(super) struct Mimic {
+    pub(super) joint: String,
+    pub(super) multiplier: f64,
+    pub(super) offset: f64,
+}
+
+impl Links {
+    pub(super) fn new(name: &str) -> Self {
+        Links { name: name.to_owned(), ..Links::default() }
+    }
+
+    /// Adds a link, with its name changed if there is one of that name already; returns the name.
+    pub(super) fn add(&mut self, wanted: &str, inertial: Option<Inertial>) -> String {
+        let mut name = wanted.to_owned();
+        while self.names.contains(&name) {
+            name.push('_');
+        }
+        self.names.insert(name.clone());
+        self.links.push((name.clone(), inertial));
+        name
+    }
+
+    /// Whether there is a link of this name.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.names.contains(name)
+    }
+
+    /// Fixes a link to another one.
+    pub(super) fn fix(&mut self, parent: &str, child: &str, parent_from_child: Pose) {
+        let mut name = format!("{child}_mount");
+        while self.joints.iter().any(|joint| joint.name == name) {
+            name.push('_');
+        }
+        self.joints.push(LinkJoint {
+            name,
+            kind: LinkJointKind::Fixed,
+            parent: parent.to_owned(),
+            child: child.to_owned(),
+            parent_from_child,
+            axis: Vector3::z_axis(),
+            limits: None,
+            mimic: None,
+        });
+    }
+
+    /// The URDF.
+    pub(super) fn urdf(&self) -> String {
+        let mut text = String::from("<?xml version=\"1.0\"?>\n");
+        let _ = writeln!(text, "<robot name=\"{}\">", escaped(&self.name));
+        for (name, inertial) in &self.links {
+            let name = escaped(name);
+            let Some(Inertial { pose, kg }) = inertial else {
+                let _ = writeln!(text, "  <link name=\"{name}\"/>");
+                continue;
+            };
+            let _ = writeln!(text, "  <link name=\"{name}\">\n    <inertial>");
+            let _ = writeln!(text, "      {}", origin(pose));
+            let _ = writeln!(text, "      <mass value=\"{}\"/>", shortest(*kg));
+            text.push_str("    </inertial>\n  </link>\n");
+        }
+        self.joints.iter().for_each(|joint| joint.push(&mut text));
+        text.push_str("</robot>\n");
+        text
+    }
+}
+
+impl LinkJoint {
+    fn push(&self, text: &mut String) {
+        let kind = match (self.kind, self.limits) {
+            (LinkJointKind::Fixed, _) => "fixed",
+            (LinkJointKind::Turns, Some(_)) => "revolute",
+            (LinkJointKind::Turns, None) => "continuous",
+            (LinkJointKind::Slides, _) => "prismatic",
+            (LinkJointKind::Free, _) => "floating",
+        };
+        let _ = writeln!(text, "  <joint name=\"{}\" type=\"{kind}\">", escaped(&self.name));
+        let _ = writeln!(text, "    <parent link=\"{}\"/>", escaped(&self.parent));
+        let _ = writeln!(text, "    <child link=\"{}\"/>", escaped(&self.child));
+        let _ = writeln!(text, "    {}", origin(&self.parent_from_child));
+        if matches!(self.kind, LinkJointKind::Turns | LinkJointKind::Slides) {
+            let [x, y, z] = <[f64; 3]>::from(self.axis.into_inner()).map(shortest);
+            let _ = writeln!(text, "    <axis xyz=\"{x} {y} {z}\"/>");
+        }
+        if let Some(Limits { lower, upper }) = self.limits {
+            let (lower, upper) = (shortest(lower), shortest(upper));
+            let _ = writeln!(
+                text,
+                "    <limit lower=\"{lower}\" upper=\"{upper}\" effort=\"0\" velocity=\"0\"/>"
+            );
+        }
+        if let Some(mimic) = &self.mimic {
+            let _ = writeln!(
+                text,
+                "    <mimic joint=\"{}\" multiplier=\"{}\" offset=\"{}\"/>",
+                escaped(&mimic.joint),
+                shortest(mimic.multiplier),
+                shortest(mimic.offset)
+            );
+        }
+        text.push_str("  </joint>\n");
+    }
+}
+
+fn origin(pose: &Pose) -> String {
+    let (xyz, rpy) = origin_values(pose);
+    format!("<origin xyz=\"{}\" rpy=\"{}\"/>", xyz.map(shortest).join(" "), rpy.map(shortest).join(" "))
+}

@@ -1,0 +1,137 @@
+//! YAML as its values, each with its keys and its place.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use granit_parser::{Event, Parser, Span};
+
+use super::numbers::LARGEST_NUMBER;
+use crate::error::{Error, ErrorKind, Result};
+use crate::text::visible;
+
+/// A value of a mapping.
+#[derive(Debug)]
+pub(super) struct Value {
+    /// The keys that lead to it.
+    pub(super) keys: Vec<String>,
+    /// Its text.
+    pub(super) text: String,
+    line: usize,
+    column: usize,
+}
+
+impl Value {
+    /// An error at the value.
+    pub(super) fn error(&self, path: &Path, message: String) -> Error {
+        Error::new(ErrorKind::Model, message).at(path, self.line, self.column)
+    }
+
+    /// Its number.
+    pub(super) fn number(&self, path: &Path) -> Result<f64> {
+        let found = |expected: &str| {
+            let message = format!("found `{}` for `{}`, expected {expected}", self.text, self.keys.join("."));
+            self.error(path, message)
+        };
+        let number: f64 = self.text.parse().map_err(|_| found("a number"))?;
+        if !number.is_finite() {
+            return Err(found("a finite number"));
+        }
+        if number.abs() > LARGEST_NUMBER {
+            return Err(found("a number of metres or radians below 1e6"));
+        }
+        Ok(number)
+    }
+}
+
+/// The values of the mappings of a text, in its order; lists have none. `expected` describes the file in messages.
+pub(super) fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Value>> {
+    let refuse = |span: &Span, found: &str| {
+        let message = format!("found {found}, expected {expected}");
+        Err(Error::new(ErrorKind::Syntax, message).at(path, span.start.line(), span.start.col() + 1))
+    };
+    let mut open: Vec<Open> = Vec::new();
+    let mut found = Vec::new();
+    let mut documents = 0;
+    for event in Parser::new_from_str(text) {
+        let (event, span) = event.map_err(|error| {
+            let place = error.marker();
+            let message = format!("found broken YAML ({}), expected {expected}", visible(&error.info()));
+            Error::new(ErrorKind::Syntax, message).at(path, place.line(), place.col() + 1)
+        })?;
+        match event {
+            Event::Scalar(text, ..) => match open.last_mut() {
+                Some(Open::Map { key: key @ None, seen }) => {
+                    if !seen.insert(text.to_string()) {
+                        return refuse(&span, &format!("the key `{}` twice", visible(&text)));
+                    }
+                    *key = Some(text.to_string());
+                }
+                Some(Open::Map { .. }) => {
+                    let keys = open.iter().filter_map(Open::key).collect();
+                    let (line, column) = (span.start.line(), span.start.col() + 1);
+                    found.push(Value { keys, text: text.to_string(), line, column });
+                    close_value(&mut open);
+                }
+                Some(Open::List) => {}
+                None => return refuse(&span, "a text alone"),
+            },
+            Event::MappingStart(..) | Event::SequenceStart(..) => {
+                if let Some(Open::Map { key: None, .. }) = open.last() {
+                    return refuse(&span, "a key that is no text");
+                }
+                if open.len() > DEEPEST {
+                    return refuse(&span, "more than 64 mappings in each other");
+                }
+                open.push(if matches!(event, Event::MappingStart(..)) {
+                    Open::Map { key: None, seen: BTreeSet::new() }
+                } else {
+                    Open::List
+                });
+            }
+            Event::MappingEnd | Event::SequenceEnd => {
+                open.pop();
+                close_value(&mut open);
+            }
+            Event::Alias(_) | Event::UnresolvedAlias(_) => {
+                return refuse(&span, "a reference to another place of the file");
+            }
+            Event::DocumentStart(..) => {
+                documents += 1;
+                if documents > 1 {
+                    return refuse(&span, "a second document");
+                }
+            }
+            Event::StreamStart | Event::StreamEnd | Event::DocumentEnd | Event::Anchor(..) | _ => {}
+        }
+    }
+    Ok(found)
+}
+
+/// Most mappings in each other.
+const DEEPEST: usize = 64;
+
+/// A mapping or list that has begun.
+enum Open {
+    Map {
+        /// The key whose value comes next.
+        key: Option<String>,
+        seen: BTreeSet<String>,
+    },
+    List,
+}
+
+impl Open {
+    fn key(&self) -> Option<String> {
+        match self {
+            Open::Map { key, .. } => key.clone(),
+            Open::List => None,
+        }
+    }
+}
+
+/// The value of the innermost key has ended.
+fn close_value(open: &mut [Open]) {
+    if let Some(Open::Map { key, .. }) = open.last_mut() {
+        *key = None;
+    }
+}

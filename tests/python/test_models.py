@@ -1,0 +1,125 @@
+"""Models in forms of simulators and makers, against readers from outside."""
+
+import json
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from program import poecal
+from test_exports import SAME, UR10E, about, assert_same, by_dh, of_rpy
+
+import poecal as package
+
+MODELS = Path(__file__).parent / "models"
+CONFIGURATIONS = 200
+
+# What a maker's calibration adds to the rows of UR10E: theta, a, d, alpha; axes that are nearly parallel meet far away.
+DELTAS = {
+    "delta_theta": [-8.1e-05, -0.1036, 0.673, -0.57, -4.5e-05, 9.7e-07],
+    "delta_a": [-1.6e-04, 3.0e-03, 0.0916, -9.6e-05, -2.9e-05, 0],
+    "delta_d": [5.0e-04, 11.198, -92.527, 81.328, -2.1e-04, -1.2e-04],
+    "delta_alpha": [-3.2e-04, -5.65e-03, -3.79e-03, -1.07e-03, 9.9e-04, 0],
+}
+
+
+def placed(robot):
+    return lambda q: robot.forward_kinematics(q)
+
+
+def test_mjcf_is_read_as_mujoco_reads_it():
+    """Units, orders of angles, classes of defaults, frames, references, joints beside their body and two in one, a follower."""
+    path = MODELS / "arm.xml"
+    robot = package.Robot.read(path)
+    assert robot.joint_names == ["lift", "pan", "tilt", "roll", "turn"]
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    at = {name: model.joint(name).qposadr[0] for name in robot.joint_names}
+    tilt, turn = at["tilt"], at["turn"]
+
+    def place(q):
+        data.qpos[[at[name] for name in robot.reading_names]] = q
+        data.qpos[turn] = model.qpos0[turn] + 0.1 - 0.5 * (data.qpos[tilt] - model.qpos0[tilt])
+        mujoco.mj_kinematics(model, data)
+        found = np.eye(4)
+        found[:3, :3], found[:3, 3] = data.site("tool").xmat.reshape(3, 3), data.site("tool").xpos
+        return found
+
+    joints = np.random.default_rng(1).uniform(-2, 2, (CONFIGURATIONS, len(robot.reading_names)))
+    assert_same("mjcf", place, (joints, robot.forward_kinematics(joints)))
+    text = json.loads(poecal("check", path, "--json"))
+    assert text["model"]["form"] == "MJCF"
+    limits = {joint["name"]: joint.get("limits") for joint in text["model"]["joints"]}
+    for name, found in limits.items():
+        expected = model.joint(name).range if model.joint(name).limited else None
+        assert (found is None) == (expected is None), name
+        if found is not None:
+            assert np.allclose([found["lower"], found["upper"]] if isinstance(found, dict) else found, expected, atol=1e-12), name
+
+
+def test_sdf_is_read_as_drake_reads_it():
+    """Configurations of pan, lift and wrist, and the tool in the world by Drake 1.51.1 of the same file (its reader is Gazebo's own)."""
+    robot = package.Robot.read(MODELS / "arm.sdf", tip_link="tool")
+    rows = np.array(json.loads((MODELS / "arm.sdf.json").read_text()))
+    joints = {name: column for name, column in zip(["pan", "lift", "wrist"], rows[:, :3].T, strict=True)}
+    found = robot.forward_kinematics(np.column_stack([joints[name] for name in robot.reading_names]))
+    worst = np.abs(found[:, :3].reshape(len(rows), 12) - rows[:, 3:]).max()
+    print(f"sdf: {worst:.1e}")
+    assert worst < SAME
+
+
+def controller_files(folder: Path, deltas=None) -> Path:
+    d, a, alpha = zip(*UR10E, strict=True)
+    lines = ["[DH]", f"a = {list(a)}", f"d = {list(d)}", f"alpha = {list(map(float, alpha))} # rad", "q_home_offset = [0, -1.57, 0, -1.57, 0, 0]"]
+    (folder / "urcontrol.conf").write_text("\n".join(lines) + "\n")
+    lines = ["[mounting]", *(f"{key} = {row}" for key, row in (deltas or DELTAS).items()), "joint_checksum = [ 0x6e0f7bf, 0xa32a713f]"]
+    path = folder / "calibration.conf"
+    path.write_text("\n".join([*lines, "calibration_status = 2 # 0 == notInitialized / 1 == notLinearised / 2 == Linearised"]) + "\n")
+    return path
+
+
+def test_files_of_a_controller(tmp_path):
+    path = controller_files(tmp_path)
+    theta, a, d, alpha = DELTAS.values()
+    rows = [
+        (theta[k], d[k] + UR10E[k][0], a[k] + UR10E[k][1], alpha[k] + UR10E[k][2])
+        for k in range(6)
+    ]
+    joints = np.random.default_rng(2).uniform(-3, 3, (CONFIGURATIONS, 6))
+    robot = package.Robot.read(path)
+    assert robot.joint_names == ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
+    assert_same("calibration.conf", placed(robot), (joints, np.array([by_dh(rows, q) for q in joints])))
+    nominal = package.Robot.read(tmp_path / "urcontrol.conf")
+    rows = [(0.0, d, a, alpha) for d, a, alpha in UR10E]
+    assert_same("urcontrol.conf", placed(nominal), (joints, np.array([by_dh(rows, q) for q in joints])))
+    # To the driver's YAML and back.
+    (tmp_path / "arm.yaml").write_text(poecal("export", path, "--format", "ur", "--hash", "calib_1"))
+    again = package.Robot.read(tmp_path / "arm.yaml")
+    assert_same("arm.yaml", placed(again), (joints, robot.forward_kinematics(joints)))
+    assert again.joint_names == robot.joint_names
+    # As truth: measurements of the calibrated arm, fitted from the nominal one, find it.
+    poecal("simulate", path, "--errors", "0deg,0mm", "--noise", "0deg,0mm", "--count", 80, "--kind", "pose", "--out", tmp_path / "sim")
+    poecal("calibrate", tmp_path / "urcontrol.conf", tmp_path / "sim/measurements.csv", "--tolerance", "wide", "--out", tmp_path / "out")
+    held_out = json.loads((tmp_path / "out/calibration.json").read_text())["accuracy"]["calibrated"]
+    print("factory calibration found from measurements:", held_out)
+
+
+def test_yaml_of_makers(tmp_path):
+    origins = [(0.1 * k, -0.02 * k, 0.3, 0.1 * k, 0.2, -0.3 * k) for k in range(1, 9)]
+    entry = lambda origin: dict(zip(["x", "y", "z", "roll", "pitch", "yaw"], origin, strict=True))  # noqa: E731
+    joints = np.random.default_rng(3).uniform(-3, 3, (CONFIGURATIONS, 7))
+
+    def place(q, count):
+        found = np.eye(4)
+        for origin, value in zip(origins, [*q[:count], 0.0], strict=False):
+            found = found @ of_rpy(origin[:3], origin[3:]) @ about(2, value)
+        return found
+
+    lines = [f"joint{k}:\n  kinematic: {json.dumps(entry(origin))}\n" for k, origin in enumerate(origins, 1)]
+    (tmp_path / "fr3.yaml").write_text("".join(lines))
+    robot = package.Robot.read(tmp_path / "fr3.yaml")
+    truth = np.array([place(q, 7) for q in joints])
+    assert_same("Franka", placed(robot), (joints, truth))
+    (tmp_path / "xarm6.yaml").write_text(json.dumps({"kinematics": {f"joint{k}": entry(origins[k - 1]) for k in range(1, 7)}}))
+    robot = package.Robot.read(tmp_path / "xarm6.yaml")
+    inverse = np.linalg.inv(of_rpy(origins[6][:3], origins[6][3:]))
+    assert_same("xArm", placed(robot), (joints[:, :6], np.array([place([*q[:6], 0.0], 6) @ inverse for q in joints])))
