@@ -33,8 +33,8 @@ pub(super) struct Comparison<'a> {
 }
 
 /// Normal equations at a state, by their eigenvalues; unknowns are counted in metres.
-struct Normal {
-    cost: f64,
+pub(super) struct Normal {
+    pub(super) cost: f64,
     gradient: Vec<f64>,
     values: Vec<f64>,
     vectors: DMatrix<f64>,
@@ -44,6 +44,13 @@ struct Normal {
 type Block = (Vector3<f64>, Matrix3x6<f64>);
 
 impl Normal {
+    /// By the upper half of the normal matrix.
+    pub(super) fn new(gram: &[f64], gradient: Vec<f64>, residuals: &[f64]) -> Self {
+        let (values, vectors) = linalg::symmetric_eigen(gram, gradient.len());
+        let cost = residuals.iter().map(|residual| residual * residual).sum();
+        Normal { cost, gradient, values, vectors }
+    }
+
     fn largest(&self) -> f64 {
         self.values.last().copied().unwrap_or(0.0)
     }
@@ -54,7 +61,7 @@ impl Normal {
     }
 
     /// The damped step, none in open directions.
-    fn step(&self, damping: f64) -> Vec<f64> {
+    pub(super) fn step(&self, damping: f64) -> Vec<f64> {
         let n = self.gradient.len();
         let mut step = vec![0.0; n];
         for (&value, vector) in self.values.iter().zip(self.vectors.column_iter()).skip(self.open()) {
@@ -282,9 +289,7 @@ impl<'a> Comparison<'a> {
         let (mut gram, mut gradient) = (vec![0.0; n * n], vec![0.0; n]);
         linalg::add_gram(&mut gram, n, &rows, 0);
         linalg::add_gradient(&mut gradient, &rows, &residuals);
-        let (values, vectors) = linalg::symmetric_eigen(&gram, n);
-        let cost = residuals.iter().map(|residual| residual * residual).sum();
-        Normal { cost, gradient, values, vectors }
+        Normal::new(&gram, gradient, &residuals)
     }
 }
 
@@ -309,7 +314,7 @@ fn norm(step: &[f64]) -> f64 {
 }
 
 /// The same angle in (-π, π]; one that is there stays as it is, to the last digit.
-fn wrapped(angle: f64) -> f64 {
+pub(super) fn wrapped(angle: f64) -> f64 {
     if angle > -PI && angle <= PI {
         return angle;
     }

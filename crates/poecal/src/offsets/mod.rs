@@ -1,10 +1,12 @@
 //! Joint offsets and the screws that are equivalent to them: a robot with offsets written without, and the offsets that explain best
 //! how one robot differs from another (theory.md §8, lou2009 equations 11 to 15).
 
+mod at_tip;
 mod fit;
 mod prediction;
 mod start;
 
+pub use at_tip::nearest_at_tip;
 pub use prediction::TipError;
 
 use crate::error::{Error, ErrorKind, Result};

@@ -47,6 +47,11 @@ impl Predictions {
         Predictions { readings, actual, tip: options.tip }
     }
 
+    /// The readings of each configuration with the actual tip.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = (&[f64], &Pose)> {
+        self.readings.iter().map(Vec::as_slice).zip(&self.actual)
+    }
+
     /// The best motion of the tip where it is free, and the errors between the tips of `robot`, moved by `base`, and the actual one.
     pub(super) fn compare(&self, robot: &Robot, base: &Pose) -> (Pose, TipError) {
         let tips: Vec<Pose> =

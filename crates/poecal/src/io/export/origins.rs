@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::{Written, export_error, read_back, unread};
+use super::{Written, export_error, is_same, read_back, remaining, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::csv_text;
 use crate::io::model::Model;
 use crate::io::numbers::shortest;
-use crate::io::urdf::origin_values;
+use crate::io::urdf::{Origin, UrdfDocument, origin_values};
 use crate::io::yaml::values;
 use crate::lie::{Pose, rotation};
 use crate::robot::{JointKind, Robot};
@@ -69,8 +69,13 @@ impl Flavour<'_> {
 }
 
 pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Result<Written> {
-    let mut frames = AxisFrames::of(robot)?;
     let document = model.document()?;
+    if let (Flavour::Names, Some(document)) = (flavour, &document)
+        && let Some(written) = write_own(document, robot, &model.path)?
+    {
+        return Ok(written);
+    }
+    let mut frames = AxisFrames::of(robot)?;
     // A table of screws has no frames; that of a URDF is the flange.
     if document.is_none() && matches!(flavour, Flavour::Ur(_) | Flavour::Xarm) {
         frames.end_at_tip();
@@ -82,7 +87,7 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     let keys = flavour.keys(robot)?;
     let mut text = format!(
         "# Origins of the joints of {}, calibrated: metres and radians, R = Rz(yaw) Ry(pitch) Rx(roll) as in URDF; each joint turns about z.\n",
-        plain_name(robot)
+        visible(&robot.name)
     );
     let mut notes = Vec::new();
     let is_franka = matches!(flavour, Flavour::Franka);
@@ -94,10 +99,10 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
         }
     };
     for (key, frame) in keys.iter().zip(&frames.joints) {
-        push_origin(&mut text, indent, &quoted(key), frame, is_franka);
+        push_origin(&mut text, indent, &quoted(key), named_numbers(frame), is_franka);
     }
     let tool = if is_franka {
-        push_origin(&mut text, indent, "joint8", &frames.last_from_tip, true);
+        push_origin(&mut text, indent, "joint8", named_numbers(&frames.last_from_tip), true);
         None
     } else {
         Some(&frames.last_from_tip).filter(|tool| !is_none(tool))
@@ -115,23 +120,7 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
         }
     }
     if let Some(tool) = tool {
-        let turn = rotation::log(&tool.rotation);
-        let _ = writeln!(
-            text,
-            "# The tip `{}` in the frame of the last joint, which this file has no place for: {}",
-            visible(&robot.tip_name),
-            stated(tool)
-        );
-        notes.push(format!(
-            "the file has no place for the tip in the last joint's frame, which is a comment in it: enter it as the tool, {:.3}, {:.3}, {:.3} mm, \
-             rotation vector {:.5}, {:.5}, {:.5} rad",
-            tool.translation.x * 1e3,
-            tool.translation.y * 1e3,
-            tool.translation.z * 1e3,
-            turn.x,
-            turn.y,
-            turn.z
-        ));
+        notes.push(push_tool(&mut text, robot, tool));
     }
     if !is_none(&before) {
         let stands = format!(
@@ -143,7 +132,8 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
         notes.push(stands);
     }
     let mut again = if matches!(flavour, Flavour::Names) {
-        read(&text, &keys, &frames.last_from_tip)?
+        let joints = read(&text, &keys)?.into_iter().map(|(xyz, rpy)| Pose::from_xyz_rpy(xyz, rpy));
+        AxisFrames { joints: joints.collect(), last_from_tip: frames.last_from_tip }
     } else {
         let read = AxisFrames::of(&read_back(&text, "arm.yaml", None)?)?;
         let last_from_tip = if is_franka { read.last_from_tip } else { frames.last_from_tip };
@@ -153,6 +143,67 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
         *first = before * *first;
     }
     Ok(Written { text, notes, again: again.robot(robot)?, remains: None })
+}
+
+/// Origins of the joints of the URDF that was calibrated, fixed ones too, with the axes that it has; none where an axis turned in its frame.
+fn write_own(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Option<Written>> {
+    if !robot.is_serial() {
+        return Ok(None);
+    }
+    let origins = corrected(document, robot, path)?;
+    let mut text = format!(
+        "# Origins of the joints of {}, calibrated: metres and radians, R = Rz(yaw) Ry(pitch) Rx(roll), for the axes of the URDF that was \
+         calibrated.\norigins:\n",
+        visible(&robot.name)
+    );
+    for origin in &origins {
+        let numbers = NUMBERS.into_iter().zip(origin.xyz.into_iter().chain(origin.rpy));
+        push_origin(&mut text, "  ", &quoted(&origin.joint), numbers, false);
+    }
+    let keys: Vec<String> = origins.iter().map(|origin| origin.joint.clone()).collect();
+    let read = keys.iter().zip(read(&text, &keys)?).map(|(joint, (xyz, rpy))| Origin {
+        joint: joint.clone(),
+        xyz,
+        rpy,
+    });
+    let mut again = document.with_origins(&read.collect::<Vec<_>>());
+    let tool = again.home.inverse() * robot.home;
+    let mut notes = Vec::new();
+    if !is_none(&tool) {
+        notes.push(push_tool(&mut text, robot, &tool));
+        again.home = robot.home;
+    }
+    let is_whole = is_same(robot, &remaining(robot, &again));
+    Ok(is_whole.then_some(Written { text, notes, again, remains: None }))
+}
+
+/// The origins of a URDF's joints after a calibration, in its order.
+pub(super) fn corrected(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Vec<Origin>> {
+    let patched = document.patched(robot)?;
+    let after = UrdfDocument::parse(&patched.text, path, &patched.selection)?.origins();
+    let of = |before: Origin| after.iter().find(|it| it.joint == before.joint).cloned().unwrap_or(before);
+    Ok(document.origins().into_iter().map(of).collect())
+}
+
+/// States the tip, which the file has no place for; returns the words of a note.
+fn push_tool(text: &mut String, robot: &Robot, tool: &Pose) -> String {
+    let turn = rotation::log(&tool.rotation);
+    let _ = writeln!(
+        text,
+        "# The tip `{}` in the frame of the last joint, which this file has no place for: {}",
+        visible(&robot.tip_name),
+        stated(tool)
+    );
+    format!(
+        "the file has no place for the tip in the last joint's frame, which is a comment in it: enter it as the tool, {:.3}, {:.3}, {:.3} mm, \
+         rotation vector {:.5}, {:.5}, {:.5} rad",
+        tool.translation.x * 1e3,
+        tool.translation.y * 1e3,
+        tool.translation.z * 1e3,
+        turn.x,
+        turn.y,
+        turn.z
+    )
 }
 
 /// The numbers of an origin with their names.
@@ -168,13 +219,19 @@ fn stated(pose: &Pose) -> String {
     parts.join(", ")
 }
 
-fn push_origin(text: &mut String, indent: &str, key: &str, frame: &Pose, is_franka: bool) {
+fn push_origin(
+    text: &mut String,
+    indent: &str,
+    key: &str,
+    numbers: impl Iterator<Item = (&'static str, f64)>,
+    is_franka: bool,
+) {
     let _ = writeln!(text, "{indent}{key}:");
     if is_franka {
         let _ = writeln!(text, "{indent}  kinematic:");
     }
     let deeper = if is_franka { "  " } else { "" };
-    for (name, number) in named_numbers(frame) {
+    for (name, number) in numbers {
         let _ = writeln!(text, "{indent}{deeper}  {name}: {}", yaml_number(number));
     }
 }
@@ -191,10 +248,6 @@ fn yaml_number(number: f64) -> String {
 
 fn is_none(tool: &Pose) -> bool {
     tool.translation.norm() < NO_TOOL && rotation::log(&tool.rotation).norm() < NO_TOOL
-}
-
-fn plain_name(robot: &Robot) -> String {
-    visible(&robot.name).into_owned()
 }
 
 /// A key or text of YAML, in quotes unless it is plain.
@@ -220,20 +273,20 @@ pub(super) fn quoted(text: &str) -> String {
     found
 }
 
-/// Frames of the joints by their keys, of a text as it is written here.
-fn read(text: &str, keys: &[String], tool: &Pose) -> Result<AxisFrames> {
+/// Place, and roll, pitch, yaw, of the joints by their keys, of a text as it is written here.
+fn read(text: &str, keys: &[String]) -> Result<Vec<([f64; 3], [f64; 3])>> {
     let path = Path::new("origins.yaml");
     let values = values(text, path, "origins of joints")?;
-    let origin = |key: &String| -> Result<Pose> {
+    let origin = |key: &String| {
         let mut numbers = [0.0; 6];
         for (number, name) in numbers.iter_mut().zip(NUMBERS) {
             let found = values.iter().find(|value| value.keys.iter().eq(["origins", key, name]));
             *number = found.ok_or_else(|| unread(&format!("no number `{name}` of `{key}`")))?.number(path)?;
         }
         let [x, y, z, roll, pitch, yaw] = numbers;
-        Ok(Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]))
+        Ok(([x, y, z], [roll, pitch, yaw]))
     };
-    Ok(AxisFrames { joints: keys.iter().map(origin).collect::<Result<_>>()?, last_from_tip: *tool })
+    keys.iter().map(origin).collect()
 }
 
 /// Origins as a table.

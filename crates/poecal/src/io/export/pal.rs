@@ -5,11 +5,11 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::origins::quoted;
+use super::origins::{self, quoted};
 use super::{Written, export_error, is_same, remaining};
 use crate::error::Result;
 use crate::io::model::{Model, ModelSource};
-use crate::io::urdf::{Origin, UrdfDocument};
+use crate::io::urdf::Origin;
 use crate::io::yaml::values;
 use crate::robot::Robot;
 
@@ -27,12 +27,9 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
         let message = "found no URDF in the calibration whose origins could be corrected, expected the calibration of a chain of one";
         return Err(export_error(message.to_owned()));
     };
-    let patched = document.patched(robot)?;
-    let again = UrdfDocument::parse(&patched.text, &model.path, &patched.selection)?;
-    let (before, after) = (document.origins(), again.origins());
+    let (before, after) = (document.origins(), origins::corrected(&document, robot, &model.path)?);
     let mut text = String::new();
-    for origin in &before {
-        let Some(after) = after.iter().find(|it| it.joint == origin.joint) else { continue };
+    for (origin, after) in before.iter().zip(&after) {
         for (end, difference) in PARTS.iter().zip(differences(origin, after)) {
             if difference.abs() > NONE {
                 let _ = writeln!(text, "    {}: {difference:?}", quoted(&format!("{}{end}", origin.joint)));
