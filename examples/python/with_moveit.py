@@ -25,8 +25,8 @@ ELBOW = Path(__file__).parents[1] / "elbow"
 
 # A session on a robot whose axes are off, of which the nominal description knows nothing.
 nominal = poecal.Robot.read(ELBOW / "robot.urdf")
-session = poecal.simulate(nominal, kind="pose", count=60, error_rotation_deg=0.1, error_position_mm=0.5, seed=3)
-calibration = poecal.calibrate(nominal, session.measurements)
+session = poecal.simulate(nominal, kind="pose", count=60, error_rotation_deg=0.1, error_position_mm=0.5, seed=3, frame="base")
+calibration = poecal.calibrate(nominal, session.measurements, frame="base")
 
 
 def source_of(urdf: str) -> str:
@@ -37,9 +37,9 @@ def source_of(urdf: str) -> str:
     robot.insert(1, xml.Element("xacro:property", name="o", value="${xacro.load_yaml('$(arg origins)')['origins']}"))
     for joint in robot.findall("joint"):
         number = lambda key, name=joint.get("name"): "${o['" + name + "']['" + key + "']}"  # noqa: E731
-        origin = joint.find("origin")
-        origin.set("xyz", " ".join(map(number, ["x", "y", "z"])))
-        origin.set("rpy", " ".join(map(number, ["roll", "pitch", "yaw"])))
+        for origin in joint.findall("origin"):
+            origin.set("xyz", " ".join(map(number, ["x", "y", "z"])))
+            origin.set("rpy", " ".join(map(number, ["roll", "pitch", "yaw"])))
     return xml.tostring(robot, encoding="unicode")
 
 
@@ -53,13 +53,13 @@ class Planner:
 
     def joints(self, goal: np.ndarray, seed: np.ndarray) -> np.ndarray:
         q, goal = seed.copy(), pinocchio.SE3(goal)
-        for _ in range(100):
+        for _ in range(300):
             pinocchio.framesForwardKinematics(self.model, self.data, q)
             error = pinocchio.log6(self.data.oMf[self.tip].actInv(goal)).vector
             if np.linalg.norm(error) < 1e-12:
                 break
             jacobian = pinocchio.computeFrameJacobian(self.model, self.data, q, self.tip)
-            q = q + jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + 1e-9 * np.eye(6), error)
+            q = q + jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + 1e-6 * np.eye(6), error)
         return q
 
 

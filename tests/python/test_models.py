@@ -1,11 +1,12 @@
 """Models in forms of simulators and makers, against readers from outside."""
 
 import json
+import subprocess
 from pathlib import Path
 
 import mujoco
 import numpy as np
-from program import poecal
+from program import ELBOW, poecal, program
 from test_exports import SAME, UR10E, about, assert_same, by_dh, of_rpy
 
 import poecal as package
@@ -123,3 +124,39 @@ def test_yaml_of_makers(tmp_path):
     robot = package.Robot.read(tmp_path / "xarm6.yaml")
     inverse = np.linalg.inv(of_rpy(origins[6][:3], origins[6][3:]))
     assert_same("xArm", placed(robot), (joints[:, :6], np.array([place([*q[:6], 0.0], 6) @ inverse for q in joints])))
+
+
+MOC = """MOC:CFG_1.0:6:0::
+#
+ARM_CALIB:
+
+      -name "rob1_1" -absacc_version 2 -error_offset_x 0.0003\\
+      -error_roll 0.0004
+
+      -name "rob1_2" -error_offset_x -0.0004 -error_pitch -0.0003
+#
+JOINT_CALIB:
+
+      -name "rob1_1"
+
+      -name "rob1_2" -Compl 1.14E-05
+"""
+
+
+def test_what_a_maker_found_is_a_tolerance(tmp_path):
+    """Sizes of ABB's calibration: root mean squares of 0.35 mm and 0.020 deg here."""
+    (tmp_path / "MOC.cfg").write_text(MOC)
+    poecal("simulate", ELBOW, "--kind", "pose", "--count", 60, "--errors", "0.02deg,0.35mm", "--out", tmp_path / "sim", "--quiet")
+    command = [program(), "calibrate", ELBOW, tmp_path / "sim/measurements.csv", "--tolerance", tmp_path / "MOC.cfg", "--out", tmp_path / "out"]
+    run = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    said = " ".join(run.stderr.split())
+    assert "tolerance 0.0203 deg, 0.3536 mm: the root mean squares of the 4 errors of axes" in said and "rob1_2 give" in said, run.stderr
+    robot = package.Robot.read(ELBOW)
+    measurements = package.Measurements.from_csv(tmp_path / "sim/measurements.csv", robot)
+    by_file = package.calibrate(robot, measurements, tolerance_deg_mm=str(tmp_path / "MOC.cfg"))
+    by_numbers = package.calibrate(robot, measurements, tolerance_deg_mm=(np.rad2deg(np.sqrt(12.5e-8)), 1e3 * np.sqrt(12.5e-8)))
+    assert np.allclose(by_file.robot.screws, by_numbers.robot.screws, atol=1e-12)
+    (tmp_path / "MOC.cfg").write_text(MOC.replace("0.0003\\", "0,0003\\"))
+    run = subprocess.run(list(map(str, command)) + ["--force"], capture_output=True, text=True)
+    assert run.returncode == 2 and "MOC.cfg:5: found `0,0003` for `-error_offset_x`" in " ".join(run.stderr.split()), run.stderr

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::names::Names;
-use super::{Written, read_back};
+use super::{Proof, Written, read_back};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::numbers::{shortest, tidy};
@@ -53,7 +53,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
     let again = read_back(&text, "robot.xml", Some((&names.base, &names.tip)))?;
     let masses = "the masses in the file are placeholders (1 kg a link), since a calibration has none; meshes are those of another file";
     let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
-    Ok(Written { text, notes, again, remains: None })
+    Ok(Written { text, notes, proof: Proof::Again(again.into()) })
 }
 
 /// Attributes of a pose.

@@ -5,11 +5,12 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Written, export_error, remaining};
+use super::{Proof, Written, export_error, remaining};
 use crate::error::{Error, ErrorKind, Result};
 use crate::io::calibration_file::PoseEntry;
 use crate::io::json_text;
 use crate::io::model::{Model, ModelSource};
+use crate::io::proof::Difference;
 use crate::lie::Pose;
 use crate::offsets::{Explanation, OffsetOptions, into_screws, nearest_at_tip};
 use crate::robot::{Joint, JointKind, Robot};
@@ -76,7 +77,7 @@ fn moved(nominal: &Robot, offsets: &[f64], base: &Pose, tool: &Pose) -> Result<R
 }
 
 pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
-    let (nominal, found) = explained(model, robot)?;
+    let (_, found) = explained(model, robot)?;
     let joints = robot.joints.iter().zip(&found.offsets).enumerate();
     let left = |error: &crate::offsets::TipError| Left {
         rms_mm: error.rms_m * 1e3,
@@ -101,10 +102,10 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
         remains: left(&found.with_offsets),
     };
     let text = json_text(&file, "offsets")?;
-    let again = moved(&nominal, &found.offsets, &found.base_motion, &found.tip_motion)?;
     let notes = vec![words(&found)];
-    let remains = Some(remaining(robot, &again));
-    Ok(Written { text, notes, again, remains })
+    let left = &found.with_offsets;
+    let remains = Difference { position_m: left.max_m, rotation_rad: left.max_rad };
+    Ok(Written { text, notes, proof: Proof::Remains(remains) })
 }
 
 fn words(found: &Explanation) -> String {
@@ -194,7 +195,7 @@ pub(super) fn write_ticks(model: &Model, robot: &Robot, motors: Option<&str>) ->
     if motors.is_none() {
         notes.push("the file begins with homing offsets of zero and the whole range: name the arm's own with --motors FILE".to_owned());
     }
-    Ok(Written { text: json_text(&file, "calibration of motors")?, notes, again, remains: Some(remains) })
+    Ok(Written { text: json_text(&file, "calibration of motors")?, notes, proof: Proof::Remains(remains) })
 }
 
 fn option(message: String) -> Error {

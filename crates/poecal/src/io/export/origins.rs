@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::{Written, export_error, is_same, read_back, remaining, unread};
+use super::{Proof, Written, export_error, is_same, read_back, remaining, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::csv_text;
@@ -142,7 +142,7 @@ pub(super) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     if let Some(first) = again.joints.first_mut() {
         *first = before * *first;
     }
-    Ok(Written { text, notes, again: again.robot(robot)?, remains: None })
+    Ok(Written { text, notes, proof: Proof::Again(again.robot(robot)?.into()) })
 }
 
 /// Origins of the joints of the URDF that was calibrated, fixed ones too, with the axes that it has; none where an axis turned in its frame.
@@ -174,7 +174,7 @@ fn write_own(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Opti
         again.home = robot.home;
     }
     let is_whole = is_same(robot, &remaining(robot, &again));
-    Ok(is_whole.then_some(Written { text, notes, again, remains: None }))
+    Ok(is_whole.then_some(Written { text, notes, proof: Proof::Again(again.into()) }))
 }
 
 /// The origins of a URDF's joints after a calibration, in its order.
@@ -314,5 +314,5 @@ pub(super) fn write_csv(robot: &Robot) -> Result<Written> {
     }
     let last_from_tip = poses.pop().ok_or_else(|| unread("no row"))?;
     let again = AxisFrames { joints: poses, last_from_tip }.robot(robot)?;
-    Ok(Written { text, notes: Vec::new(), again, remains: None })
+    Ok(Written { text, notes: Vec::new(), proof: Proof::Again(again.into()) })
 }

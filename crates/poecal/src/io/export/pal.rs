@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::origins::{self, quoted};
-use super::{Written, export_error, is_same, remaining};
+use super::{Proof, Written, export_error, is_same, remaining};
 use crate::error::Result;
 use crate::io::model::{Model, ModelSource};
 use crate::io::urdf::Origin;
@@ -51,7 +51,7 @@ pub(super) fn write(model: &Model, robot: &Robot) -> Result<Written> {
         notes.push(lost);
     }
     head.push_str("robot_state_publisher:\n  geometric_calibration:\n");
-    Ok(Written { text: head + &text, notes, again, remains: Some(remains) })
+    Ok(Written { text: head + &text, notes, proof: Proof::Remains(remains) })
 }
 
 /// Numbers by their names.

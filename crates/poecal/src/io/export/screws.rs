@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Written, unread};
+use super::{Proof, Written, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::calibration_file::{GravityEntry, PoseEntry};
@@ -51,7 +51,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
     };
     let text = json_text(&file, "product of exponentials")?;
     let again = read(&text, &plain)?;
-    Ok(Written { text, notes: Vec::new(), again, remains: None })
+    Ok(Written { text, notes: Vec::new(), proof: Proof::Again(again.into()) })
 }
 
 fn of_joint(joint: &Joint) -> JointScrew {

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;
 
 use super::names::Names;
-use super::{Written, read_back};
+use super::{Proof, Written, read_back};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::numbers::shortest;
@@ -55,7 +55,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
     let again = read_back(&text, "robot.sdf", Some((&names.base, &names.tip)))?;
     let masses = "the file has no masses and meshes, since a calibration has none: Gazebo takes 1 kg a link";
     let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
-    Ok(Written { text, notes, again, remains: None })
+    Ok(Written { text, notes, proof: Proof::Again(again.into()) })
 }
 
 fn push_link(text: &mut String, name: &str, before: &str, pose: &Pose) {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Written, unread};
+use super::{Proof, Written, unread};
 use crate::error::Result;
 use crate::forms::{DhConvention, DhEntry, DhTable};
 use crate::io::calibration_file::PoseEntry;
@@ -48,5 +48,5 @@ pub(super) fn write(robot: &Robot, convention: DhConvention) -> Result<Written> 
         rows: again.rows,
         last_from_tip: again.last_from_tip.pose()?,
     };
-    Ok(Written { text, notes: Vec::new(), again: again.frames().robot(robot)?, remains: None })
+    Ok(Written { text, notes: Vec::new(), proof: Proof::Again(again.frames().robot(robot)?.into()) })
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Written, remaining, unread};
+use super::{Proof, Written, remaining, unread};
 use crate::error::Result;
 use crate::forms::AxisFrames;
 use crate::io::numbers::shortest;
@@ -54,7 +54,7 @@ pub(super) fn write(robot: &Robot) -> Result<Written> {
         "#usda 1.0\n(\n    defaultPrim = \"robot\"\n    doc = {}\n    kilogramsPerUnit = 1\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\n",
         serde_json::Value::from(format!("Joints of a calibrated robot; {words}."))
     );
-    Ok(Written { text: head + &text, notes: vec![words], again, remains: Some(remains) })
+    Ok(Written { text: head + &text, notes: vec![words], proof: Proof::Remains(remains) })
 }
 
 fn push_body(text: &mut String, name: &str, pose: &Pose) {
