@@ -17,6 +17,7 @@ from check_dependencies import ROOT, cargo, in_tree, is_allowed
 OUT = ROOT / "THIRD-PARTY.txt"
 PROGRAMS = ("poecal-cli", "poecal-py")
 TEXTS = re.compile(r"(?i)^(licen[cs]e|copying|notice|unlicense)")
+FOLDER = ".licenses/*"
 MIT = "Permission is hereby granted, free of charge"
 # What every build contains beside crates, and what static ones do.
 TOOLCHAIN = """\
@@ -44,12 +45,14 @@ def shipped():
 
 
 def texts(package):
-    """The texts of a package's licence."""
+    """The texts of a package's licence. Where a folder of its own holds them, the text beside it says whose they are and stays."""
     folder = Path(package["manifest_path"]).parent
-    files = [path for path in sorted(folder.iterdir()) if path.is_file() and TEXTS.match(path.name)]
-    found = [path.read_text(encoding="utf-8").strip() for path in files]
+    beside = [path for path in sorted(folder.iterdir()) if path.is_file() and TEXTS.match(path.name)]
+    within = [path for path in sorted(folder.glob(FOLDER)) if path.is_file()]
+    found = [path.read_text(encoding="utf-8").strip() for path in beside + within]
     if is_allowed(package["license"], {"MIT"}):
-        found = [text for text in found if MIT in text] or found
+        whose = found[: len(beside)] if within else []
+        found = whose + [text for text in found if MIT in text and text not in whose] or found
     return ["\n".join(line.rstrip() for line in text.splitlines()) for text in found]
 
 
