@@ -80,7 +80,6 @@ pub mod gauge;
 #[cfg_attr(doc, doc(hidden))]
 pub mod io;
 mod lanes;
-pub mod lie;
 mod linalg;
 #[cfg_attr(doc, doc(hidden))]
 pub mod measurement;
@@ -124,6 +123,9 @@ pub use measurement::{
 pub use report::{calibration_page, summary};
 pub use robot::{Joint, JointKind, Limits, Reading, Robot, Tolerance};
 pub use simulate::{Kind, Simulated, Simulation};
+
+#[doc(inline)]
+pub use poecal_arm::lie;
 
 #[doc(hidden)]
 pub use error::nearest;

@@ -1,5 +1,9 @@
 //! Rotations as 3×3 matrices: exponential, logarithm, quaternions, URDF roll-pitch-yaw, shortest arc.
 
+// The functions of numbers, where there is no standard library.
+#[allow(unused_imports)]
+use nalgebra::{ComplexField as _, RealField as _};
+
 use super::{hat, series};
 use nalgebra::{Matrix3, Vector3, Vector4};
 
@@ -7,7 +11,7 @@ use nalgebra::{Matrix3, Vector3, Vector4};
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// let r = poecal::lie::rotation::exp(&Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));
+/// let r = poecal_arm::lie::rotation::exp(&Vector3::new(0.0, 0.0, core::f64::consts::FRAC_PI_2));
 /// assert!((r * Vector3::x() - Vector3::y()).norm() < 1e-15);
 /// ```
 #[must_use]
@@ -22,7 +26,7 @@ pub fn exp(w: &Vector3<f64>) -> Matrix3<f64> {
 /// ```
 /// use nalgebra::Vector3;
 /// let w = Vector3::new(0.3, -2.0, 1.1);
-/// assert!((poecal::lie::rotation::log(&poecal::lie::rotation::exp(&w)) - w).norm() < 1e-14);
+/// assert!((poecal_arm::lie::rotation::log(&poecal_arm::lie::rotation::exp(&w)) - w).norm() < 1e-14);
 /// ```
 #[must_use]
 pub fn log(r: &Matrix3<f64>) -> Vector3<f64> {
@@ -62,7 +66,7 @@ pub fn to_quaternion_xyzw(r: &Matrix3<f64>) -> Vector4<f64> {
 ///
 /// ```
 /// use nalgebra::{Matrix3, Vector4};
-/// assert_eq!(poecal::lie::rotation::from_quaternion_xyzw(&Vector4::new(0.0, 0.0, 0.0, 1.0)), Matrix3::identity());
+/// assert_eq!(poecal_arm::lie::rotation::from_quaternion_xyzw(&Vector4::new(0.0, 0.0, 0.0, 1.0)), Matrix3::identity());
 /// ```
 #[must_use]
 pub fn from_quaternion_xyzw(q: &Vector4<f64>) -> Matrix3<f64> {
@@ -95,7 +99,7 @@ pub fn about(axis: usize, angle_rad: f64) -> Matrix3<f64> {
 /// Rotation of URDF's fixed-axis angles, `R = Rz(yaw) Ry(pitch) Rx(roll)`, radians (docs/conventions.md).
 ///
 /// ```
-/// use poecal::lie::rotation::{from_rpy, to_rpy};
+/// use poecal_arm::lie::rotation::{from_rpy, to_rpy};
 /// let [roll, pitch, yaw] = to_rpy(&from_rpy(0.1, -1.2, 2.0));
 /// assert!((roll - 0.1).abs() + (pitch + 1.2).abs() + (yaw - 2.0).abs() < 1e-15);
 /// ```
@@ -121,7 +125,7 @@ pub fn to_rpy(r: &Matrix3<f64>) -> [f64; 3] {
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// let r = poecal::lie::rotation::shortest_arc(&Vector3::x(), &Vector3::y());
+/// let r = poecal_arm::lie::rotation::shortest_arc(&Vector3::x(), &Vector3::y());
 /// assert!((r * Vector3::x() - Vector3::y()).norm() < 1e-15);
 /// ```
 #[must_use]
@@ -157,7 +161,7 @@ pub fn orthonormalized(r: &Matrix3<f64>) -> Matrix3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, PI};
+    use core::f64::consts::{FRAC_PI_2, PI};
 
     #[test]
     fn logarithm_inverts_the_exponential_at_every_scale() {

@@ -10,7 +10,7 @@ use super::{hat, series};
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// let lifted: poecal::lie::TargetTwist = (Vector3::z() * 1e-3, Vector3::zeros());
+/// let lifted: poecal_arm::lie::TargetTwist = (Vector3::z() * 1e-3, Vector3::zeros());
 /// assert_eq!(lifted.1.norm(), 0.0);
 /// ```
 pub type TargetTwist = (Vector3<f64>, Vector3<f64>);
@@ -20,7 +20,7 @@ pub type TargetTwist = (Vector3<f64>, Vector3<f64>);
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use poecal::lie::Twist;
+/// use poecal_arm::lie::Twist;
 /// let a = Twist::new(Vector3::new(0.1, 0.0, 0.0), Vector3::new(0.0, 0.0, 1.0));
 /// let b = Twist::new(Vector3::new(0.0, 2.0, 0.0), Vector3::new(1.0, 0.0, 0.0));
 /// // [a, b] = ad_a b = -[b, a]

@@ -22,7 +22,7 @@ use nalgebra::{Matrix3, Matrix3x6, Vector3};
 /// ```
 /// use nalgebra::Vector3;
 /// let (a, b) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(-0.5, 0.1, 2.0));
-/// assert_eq!(poecal::lie::hat(&a) * b, a.cross(&b));
+/// assert_eq!(poecal_arm::lie::hat(&a) * b, a.cross(&b));
 /// ```
 #[must_use]
 pub fn hat(a: &Vector3<f64>) -> Matrix3<f64> {
@@ -30,14 +30,28 @@ pub fn hat(a: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// `[I, -p̂]`: a point's motion under a spatial twist.
-pub(crate) fn by_twist(point: &Vector3<f64>) -> Matrix3x6<f64> {
+///
+/// ```
+/// use nalgebra::{Vector3, Vector6};
+/// let (point, turn) = (Vector3::new(1.0, 0.0, 0.0), Vector6::new(0.0, 0.0, 0.1, 0.0, 0.0, 2.0));
+/// assert_eq!(poecal_arm::lie::by_twist(&point) * turn, Vector3::new(0.0, 2.0, 0.1));
+/// ```
+#[must_use]
+pub fn by_twist(point: &Vector3<f64>) -> Matrix3x6<f64> {
     let mut derivative = by_turn(&-hat(point), 1.0);
     derivative.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
     derivative
 }
 
 /// `[0, scale · A]`: what depends on the rotation of a spatial twist only.
-pub(crate) fn by_turn(matrix: &Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
+///
+/// ```
+/// use nalgebra::{Matrix3, Vector3, Vector6};
+/// let turn = Vector6::new(1.0, 1.0, 1.0, 0.0, 0.0, 2.0);
+/// assert_eq!(poecal_arm::lie::by_turn(&Matrix3::identity(), 3.0) * turn, Vector3::new(0.0, 0.0, 6.0));
+/// ```
+#[must_use]
+pub fn by_turn(matrix: &Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
     let mut derivative = Matrix3x6::zeros();
     derivative.fixed_view_mut::<3, 3>(0, 3).copy_from(&(matrix * scale));
     derivative

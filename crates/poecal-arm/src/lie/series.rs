@@ -3,13 +3,17 @@
 //! Each function takes the *squared* angle, switches to its Taylor series below [`SWITCH`] and is there exact to rounding:
 //! the first omitted term is below 1e-17 of the value.
 
+// The functions of numbers, where there is no standard library.
+#[allow(unused_imports)]
+use nalgebra::{ComplexField as _, RealField as _};
+
 /// Squared angle below which the Taylor series are used (an angle of 0.1 rad).
 pub const SWITCH: f64 = 1e-2;
 
 /// `sin θ / θ` of `θ²`: the first coefficient of theory.md §1 (2a).
 ///
 /// ```
-/// assert_eq!(poecal::lie::series::sinc(0.0), 1.0);
+/// assert_eq!(poecal_arm::lie::series::sinc(0.0), 1.0);
 /// ```
 #[must_use]
 pub fn sinc(angle_squared: f64) -> f64 {
@@ -27,7 +31,7 @@ pub fn sinc(angle_squared: f64) -> f64 {
 /// `(1 - cos θ) / θ²` of `θ²`: the second coefficient of theory.md §1 (2a).
 ///
 /// ```
-/// assert_eq!(poecal::lie::series::cosc(0.0), 0.5);
+/// assert_eq!(poecal_arm::lie::series::cosc(0.0), 0.5);
 /// ```
 #[must_use]
 pub fn cosc(angle_squared: f64) -> f64 {
@@ -46,7 +50,7 @@ pub fn cosc(angle_squared: f64) -> f64 {
 /// `(θ - sin θ) / θ³` of `θ²`: the third coefficient of theory.md §1 (2a).
 ///
 /// ```
-/// assert!((poecal::lie::series::sincc(0.0) - 1.0 / 6.0).abs() < 1e-16);
+/// assert!((poecal_arm::lie::series::sincc(0.0) - 1.0 / 6.0).abs() < 1e-16);
 /// ```
 #[must_use]
 pub fn sincc(angle_squared: f64) -> f64 {
@@ -69,7 +73,7 @@ pub fn sincc(angle_squared: f64) -> f64 {
 }
 
 /// The series of [`cotc`] in `θ²`.
-pub(crate) const COTC: [f64; 6] = [
+pub const COTC: [f64; 6] = [
     1.0 / 12.0,
     1.0 / 720.0,
     1.0 / 30_240.0,
@@ -79,7 +83,7 @@ pub(crate) const COTC: [f64; 6] = [
 ];
 
 /// The series of `asin(s) / s` in `s²`.
-pub(crate) const ARCSINE: [f64; 12] = arcsine();
+pub const ARCSINE: [f64; 12] = arcsine();
 
 const fn arcsine() -> [f64; 12] {
     let mut out = [1.0; 12];
@@ -95,7 +99,7 @@ const fn arcsine() -> [f64; 12] {
 /// `(1 - (θ/2) cot(θ/2)) / θ²` of `θ²`, up to θ < 2π: the coefficient of `ω̂²` in `V⁻¹`, theory.md §1 (2a).
 ///
 /// ```
-/// assert!((poecal::lie::series::cotc(0.0) - 1.0 / 12.0).abs() < 1e-16);
+/// assert!((poecal_arm::lie::series::cotc(0.0) - 1.0 / 12.0).abs() < 1e-16);
 /// ```
 #[must_use]
 pub fn cotc(angle_squared: f64) -> f64 {
@@ -110,7 +114,7 @@ pub fn cotc(angle_squared: f64) -> f64 {
 /// The coefficients c and d of `ad³` and `ad⁴` in the left Jacobian of SE(3), of `θ²` (theory.md §1 (4)).
 ///
 /// ```
-/// assert_eq!(poecal::lie::series::left_jacobian(0.0), (1.0 / 24.0, 1.0 / 120.0));
+/// assert_eq!(poecal_arm::lie::series::left_jacobian(0.0), (1.0 / 24.0, 1.0 / 120.0));
 /// ```
 #[must_use]
 pub fn left_jacobian(angle_squared: f64) -> (f64, f64) {
@@ -132,7 +136,7 @@ pub fn left_jacobian(angle_squared: f64) -> (f64, f64) {
 /// The coefficients b and d of `ad²` and `ad⁴` in the inverse left Jacobian of SE(3), of `θ²` below `(2π)²` (theory.md §1 (4a)).
 ///
 /// ```
-/// assert_eq!(poecal::lie::series::inverse_left_jacobian(0.0), (1.0 / 12.0, -1.0 / 720.0));
+/// assert_eq!(poecal_arm::lie::series::inverse_left_jacobian(0.0), (1.0 / 12.0, -1.0 / 720.0));
 /// ```
 #[must_use]
 pub fn inverse_left_jacobian(angle_squared: f64) -> (f64, f64) {

@@ -1,5 +1,9 @@
 //! Joint screws: unit twists of zero pitch (a revolute axis) or infinite pitch (a prismatic direction).
 
+// The functions of numbers, where there is no standard library.
+#[allow(unused_imports)]
+use nalgebra::{ComplexField as _, RealField as _};
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Pose, Twist, rotation};
@@ -9,12 +13,13 @@ use super::{Pose, Twist, rotation};
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use poecal::lie::Screw;
+/// use poecal_arm::lie::Screw;
 /// let axis = Screw::revolute(&Vector3::z(), &Vector3::new(1.0, 0.0, 5.0));
-/// let quarter = axis.exp(std::f64::consts::FRAC_PI_2);
+/// let quarter = axis.exp(core::f64::consts::FRAC_PI_2);
 /// assert!((quarter.act(&Vector3::zeros()) - Vector3::new(1.0, -1.0, 0.0)).norm() < 1e-15);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Screw {
     v: Vector3<f64>,
     w: Vector3<f64>,

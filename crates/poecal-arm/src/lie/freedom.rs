@@ -4,7 +4,7 @@
 /// them as they are (theory.md §5 (25a)).
 ///
 /// ```
-/// use poecal::lie::Freedom;
+/// use poecal_arm::lie::Freedom;
 /// assert_eq!((Freedom::Place.motions(), Freedom::PlaneZ.motions()), (&[0, 1, 2][..], &[2, 3, 4][..]));
 /// assert_eq!(Freedom::Place.with(Freedom::Direction), Freedom::Frame);
 /// ```

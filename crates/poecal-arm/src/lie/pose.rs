@@ -1,7 +1,7 @@
 //! Rigid motions: elements of SE(3).
 
+use core::ops::Mul;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
-use std::ops::Mul;
 
 use super::{Twist, hat, rotation, series};
 
@@ -19,12 +19,13 @@ use super::{Twist, hat, rotation, series};
 ///
 /// ```
 /// use nalgebra::Vector3;
-/// use poecal::lie::{Pose, Twist};
+/// use poecal_arm::lie::{Pose, Twist};
 /// let base_from_tool = Pose::exp(&Twist::new(Vector3::new(0.1, 0.2, 0.3), Vector3::new(0.0, 0.0, 1.0)));
 /// let identity = base_from_tool * base_from_tool.inverse();
 /// assert!(identity.log().to_vector().norm() < 1e-15);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pose {
     /// Rotation matrix.
     pub rotation: Matrix3<f64>,
@@ -46,7 +47,13 @@ impl Pose {
     }
 
     /// The pose of which `number` gives each row's three parts of directions and its part of the translation (metres).
-    pub(crate) fn from_rows(number: impl Fn(usize, usize) -> f64) -> Self {
+    ///
+    /// ```
+    /// use poecal_arm::lie::Pose;
+    /// let pose = Pose::from_rows(|row, column| if row == column { 1.0 } else { 0.0 });
+    /// assert_eq!(pose, Pose::identity());
+    /// ```
+    pub fn from_rows(number: impl Fn(usize, usize) -> f64) -> Self {
         let translation = Vector3::from_fn(|row, _| number(row, 3));
         Pose::new(Matrix3::from_fn(number), translation)
     }
@@ -143,7 +150,7 @@ impl Mul for Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::PI;
+    use core::f64::consts::PI;
 
     #[test]
     fn logarithm_inverts_the_exponential_at_every_scale() {

@@ -1,0 +1,20 @@
+//! Forward and inverse kinematics of robot arms as they are, by the product of exponentials: without the standard library, threads or
+//! files, and nothing is allocated once an arm is made.
+//!
+//! This is the lowest crate of [poecal](https://github.com/poecal/poecal), which finds the arm that is really there from measurements.
+//!
+//! | to | see |
+//! |---|---|
+//! | compute with poses | [`lie`]: poses, twists, screws |
+//!
+//! Units are metres and radians, numbers are `f64`.
+
+#![no_std]
+#![forbid(unsafe_code)]
+
+extern crate alloc;
+#[cfg(test)]
+#[macro_use]
+extern crate std;
+
+pub mod lie;
