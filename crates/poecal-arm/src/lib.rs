@@ -5,6 +5,9 @@
 //!
 //! | to | see |
 //! |---|---|
+//! | have an arm, and the pose of its tip | [`Arm`], [`Arm::forward_kinematics`] |
+//! | move the tip to a pose, from where the arm is | [`Arm::nearest`] |
+//! | know all configurations for a pose | [`AllBranches`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
 //!
 //! Units are metres and radians, numbers are `f64`.
@@ -17,4 +20,12 @@ extern crate alloc;
 #[macro_use]
 extern crate std;
 
+mod arm;
+mod branches;
 pub mod lie;
+mod newton;
+mod small;
+pub mod trig;
+
+pub use arm::{Arm, MOST_JOINTS};
+pub use branches::{AllBranches, Branches, MOST_BRANCHES};

@@ -1,0 +1,436 @@
+//! Arms of six revolute axes without any special geometry (raghavan1993).
+//!
+//! A point `p` and the direction `l` of the sixth axis are at the same place seen from both ends of the loop: `e₃e₄e₅ (p, l) =
+//! e₂⁻¹e₁⁻¹ R (p, l)`, with `eᵢ = exp(ξᵢqᵢ)` and the motion `R` that is asked for. Six equations, and eight that follow from them (p·p, p·l,
+//! p × l, (p·p) l - 2 (p·l) p), hold no more than products of cosines and sines of one angle each. Six combinations of them are free of q₁
+//! and q₂; their resultant in q₄ and q₅ is a trigonometric polynomial of degree 8 in q₃.
+
+// Rows and columns by their numbers, as equations have them.
+#![allow(clippy::needless_range_loop)]
+
+use core::f64::consts::TAU;
+
+use nalgebra::Vector3;
+
+use super::BEYOND;
+use super::axis::{Axis, back};
+use super::roots::{Angles, Trigonometric};
+use crate::lie::Pose;
+use crate::trig::cosine_and_sine;
+
+// The functions of numbers, where there is no standard library.
+#[allow(unused_imports)]
+use nalgebra::{ComplexField as _, RealField as _};
+
+/// Equations.
+const EQUATIONS: usize = 14;
+/// Unknown products of the cosines and sines of the first two angles.
+const UNKNOWN: usize = 8;
+/// Samples of a polynomial of degree 8.
+const SAMPLES: usize = 17;
+/// Zero of the fourth and fifth angle: half an angle has no tangent at π, where arms are often.
+const TURNED: [f64; 2] = [0.734, -1.187];
+
+/// Numbers of a function of two angles by 1, cos and sin of each.
+type Table = [[f64; 3]; 3];
+
+/// An arm of six axes, with what does not depend on the pose.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct General {
+    axes: [Axis; 6],
+    first: usize,
+    origin: Vector3<f64>,
+    scale: f64,
+    /// Of each equation, its numbers by 1, cos and sin of the third angle, then of the fourth and the fifth.
+    left: [[Table; 3]; EQUATIONS],
+}
+
+/// What both ends see.
+fn functions(p: &Vector3<f64>, l: &Vector3<f64>) -> [f64; EQUATIONS] {
+    let (square, product) = (p.norm_squared(), p.dot(l));
+    let moment = p.cross(l);
+    let mirrored = l * square - p * (2.0 * product);
+    [
+        p.x, p.y, p.z, l.x, l.y, l.z, square, product, moment.x, moment.y, moment.z, mirrored.x, mirrored.y,
+        mirrored.z,
+    ]
+}
+
+/// Mean and first harmonics of three samples over a turn.
+fn harmonics(samples: [f64; 3]) -> [f64; 3] {
+    const HALF_ROOT: f64 = 0.866_025_403_784_438_6;
+    let [a, b, c] = samples;
+    [(a + b + c) / 3.0, (2.0 * a - b - c) / 3.0, (b - c) * 2.0 * HALF_ROOT / 3.0]
+}
+
+fn third(k: usize) -> (f64, f64) {
+    cosine_and_sine(TAU / 3.0 * k as f64)
+}
+
+/// 1, cos and sin of an angle as polynomials of the tangent of its half, times 1 + tan².
+const HALVES: [[f64; 3]; 3] = [[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]];
+
+/// The same of a table.
+fn by_halves(table: &Table) -> Table {
+    let mut out = [[0.0; 3]; 3];
+    for (row, one) in table.iter().zip(HALVES) {
+        for (number, other) in row.iter().zip(HALVES) {
+            for (out, one) in out.iter_mut().zip(one) {
+                for (out, other) in out.iter_mut().zip(other) {
+                    *out += number * one * other;
+                }
+            }
+        }
+    }
+    out
+}
+
+/// A square matrix of the resultant.
+type Matrix = [[f64; 12]; 12];
+
+impl General {
+    /// Axes at which the loop can be opened.
+    pub(crate) const FIRST: [usize; 3] = [0, 5, 4];
+
+    /// The loop opened at an axis: `first` (0, 4, or 5) of the arm's comes first, so that the last four are fixed to each other whatever
+    /// the pose.
+    pub(crate) fn new(axes: &[Axis; 6], first: usize, reach_m: f64) -> Self {
+        let mut axes = *axes;
+        axes.rotate_left(first);
+        let [.., a3, a4, a5, a6] = &axes;
+        let origin = axes[2].point + axes[2].w * axes[2].w.dot(&(axes[1].point - axes[2].point));
+        let scale = 1.0 / reach_m;
+        let seen = |k3: usize, k4: usize, k5: usize| {
+            let turn = |k: usize, by: f64| cosine_and_sine(TAU / 3.0 * k as f64 + by);
+            let (t3, t4, t5) = (third(k3), turn(k4, TURNED[0]), turn(k5, TURNED[1]));
+            let p = a3.moved(t3, &a4.moved(t4, &a5.moved(t5, &a6.point)));
+            let l = a3.turned(t3, &a4.turned(t4, &a5.turned(t5, &a6.w)));
+            functions(&((p - origin) * scale), &l)
+        };
+        let mut left = [[[[0.0; 3]; 3]; 3]; EQUATIONS];
+        let mut samples = [[[[0.0; EQUATIONS]; 3]; 3]; 3];
+        for (k3, samples) in samples.iter_mut().enumerate() {
+            for (k4, samples) in samples.iter_mut().enumerate() {
+                for (k5, it) in samples.iter_mut().enumerate() {
+                    *it = seen(k3, k4, k5);
+                }
+            }
+        }
+        for (equation, out) in left.iter_mut().enumerate() {
+            let of = |k3: usize, k4: usize, k5: usize| samples[k3][k4][k5][equation];
+            let mut by_five = [[[0.0; 3]; 3]; 3];
+            for k3 in 0..3 {
+                for k4 in 0..3 {
+                    by_five[k3][k4] = harmonics([of(k3, k4, 0), of(k3, k4, 1), of(k3, k4, 2)]);
+                }
+            }
+            let mut by_four = [[[0.0; 3]; 3]; 3];
+            for k3 in 0..3 {
+                for h5 in 0..3 {
+                    let found = harmonics([by_five[k3][0][h5], by_five[k3][1][h5], by_five[k3][2][h5]]);
+                    for (h4, it) in found.into_iter().enumerate() {
+                        by_four[k3][h4][h5] = it;
+                    }
+                }
+            }
+            for h4 in 0..3 {
+                for h5 in 0..3 {
+                    let found = harmonics([by_four[0][h4][h5], by_four[1][h4][h5], by_four[2][h4][h5]]);
+                    for (h3, it) in found.into_iter().enumerate() {
+                        out[h3][h4][h5] = it;
+                    }
+                }
+            }
+            for table in out.iter_mut() {
+                *table = by_halves(table);
+            }
+        }
+        General { axes, first, origin, scale, left }
+    }
+
+    /// The right side by 1, cos and sin of the first two angles: eight unknown products, and what has none.
+    fn right(&self, axes: &[Axis; 6], motion: &Pose) -> ([[f64; UNKNOWN]; EQUATIONS], [f64; EQUATIONS]) {
+        let [a1, a2, .., a6] = axes;
+        let (p, l) = (motion.act(&a6.point), motion.rotation * a6.w);
+        let mut samples = [[[0.0; EQUATIONS]; 3]; 3];
+        for (k1, samples) in samples.iter_mut().enumerate() {
+            let (c, s) = third(k1);
+            let (p, l) = (a1.moved((c, -s), &p), a1.turned((c, -s), &l));
+            for (k2, it) in samples.iter_mut().enumerate() {
+                let (c, s) = third(k2);
+                let (p, l) = (a2.moved((c, -s), &p), a2.turned((c, -s), &l));
+                *it = functions(&((p - self.origin) * self.scale), &l);
+            }
+        }
+        let mut unknown = [[0.0; UNKNOWN]; EQUATIONS];
+        let mut constant = [0.0; EQUATIONS];
+        for equation in 0..EQUATIONS {
+            let mut by_two = [[0.0; 3]; 3];
+            for (out, of) in by_two.iter_mut().zip(&samples) {
+                *out = harmonics([of[0][equation], of[1][equation], of[2][equation]]);
+            }
+            for h2 in 0..3 {
+                let found = harmonics([by_two[0][h2], by_two[1][h2], by_two[2][h2]]);
+                for (h1, it) in found.into_iter().enumerate() {
+                    match 3 * h1 + h2 {
+                        0 => constant[equation] = it,
+                        index => unknown[equation][index - 1] = it,
+                    }
+                }
+            }
+        }
+        (unknown, constant)
+    }
+
+    /// Six combinations of the equations that are free of the first two angles, by 1, cos and sin of the third.
+    fn combined(&self, axes: &[Axis; 6], motion: &Pose) -> [[Table; 3]; 6] {
+        let (mut unknown, constant) = self.right(axes, motion);
+        // Reflections that make the unknown products triangular leave six rows without any.
+        let mut keep = [[0.0; EQUATIONS]; 6];
+        for (row, it) in keep.iter_mut().enumerate() {
+            it[UNKNOWN + row] = 1.0;
+        }
+        let mut reflections = [[0.0; EQUATIONS]; UNKNOWN];
+        for k in 0..UNKNOWN {
+            let norm = (k..EQUATIONS).map(|i| unknown[i][k] * unknown[i][k]).sum::<f64>().sqrt();
+            if norm == 0.0 {
+                continue;
+            }
+            let mut v = [0.0; EQUATIONS];
+            for i in k..EQUATIONS {
+                v[i] = unknown[i][k];
+            }
+            v[k] += if v[k] < 0.0 { -norm } else { norm };
+            let size = v.iter().map(|it| it * it).sum::<f64>();
+            let factor = (2.0 / size).sqrt();
+            v.iter_mut().for_each(|it| *it *= factor);
+            for column in k..UNKNOWN {
+                let product: f64 = (k..EQUATIONS).map(|i| v[i] * unknown[i][column]).sum();
+                for i in k..EQUATIONS {
+                    unknown[i][column] -= v[i] * product;
+                }
+            }
+            reflections[k] = v;
+        }
+        for v in reflections.iter().rev() {
+            for row in &mut keep {
+                let product: f64 = row.iter().zip(v).map(|(a, b)| a * b).sum();
+                row.iter_mut().zip(v).for_each(|(it, v)| *it -= v * product);
+            }
+        }
+        let mut out = [[[[0.0; 3]; 3]; 3]; 6];
+        for (out, row) in out.iter_mut().zip(&keep) {
+            let mut free = 0.0;
+            for (equation, &share) in row.iter().enumerate() {
+                free += share * constant[equation];
+                for (out, of) in
+                    out.iter_mut().flatten().flatten().zip(self.left[equation].iter().flatten().flatten())
+                {
+                    *out += share * of;
+                }
+            }
+            // A constant is 1 of every angle.
+            for (i, j) in [(0, 0), (0, 2), (2, 0), (2, 2)] {
+                out[0][i][j] -= free;
+            }
+        }
+        out
+    }
+
+    /// Joint values of all branches for a motion `exp(ξ₁q₁) … exp(ξ₆q₆)`.
+    pub(crate) fn seeds(&self, motion: &Pose, push: &mut impl FnMut([f64; 6])) {
+        let mut axes = self.axes;
+        if self.first > 0 {
+            // Seen from the base, what comes after the pose is moved by it.
+            for axis in axes.iter_mut().take(6 - self.first) {
+                *axis = Axis { w: motion.rotation * axis.w, point: motion.act(&axis.point) };
+            }
+        }
+        let equations = self.combined(&axes, motion);
+        let mut samples = [0.0; SAMPLES];
+        for (k, it) in samples.iter_mut().enumerate() {
+            let (c, s) = cosine_and_sine(TAU * k as f64 / SAMPLES as f64);
+            let mut matrix = resultant(&equations, c, s);
+            *it = determinant(&mut matrix);
+        }
+        let largest = samples.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
+        if largest == 0.0 || !largest.is_finite() {
+            return;
+        }
+        let mut coefficients = [(0.0, 0.0); 9];
+        for (harmonic, it) in coefficients.iter_mut().enumerate() {
+            let share = if harmonic == 0 { 1.0 } else { 2.0 } / SAMPLES as f64 / largest;
+            for (k, sample) in samples.iter().enumerate() {
+                let (c, s) = cosine_and_sine(TAU * (k * harmonic % SAMPLES) as f64 / SAMPLES as f64);
+                it.0 += share * sample * c;
+                it.1 += share * sample * s;
+            }
+        }
+        let roots: Angles<24> = Trigonometric { coefficients }.roots(96, 0.0, 0.3 * BEYOND);
+        for &q3 in roots.as_slice() {
+            let (c, s) = cosine_and_sine(q3);
+            let x = null_vector(&mut resultant(&equations, c, s));
+            // Products tan⁰…³ of the fourth times tan⁰…² of the fifth.
+            let ratio = |pairs: &[(usize, usize)]| {
+                let (up, down) = pairs
+                    .iter()
+                    .map(|&(up, down)| (x[up], x[down]))
+                    .max_by(|a, b| (a.0.abs() + a.1.abs()).total_cmp(&(b.0.abs() + b.1.abs())))
+                    .unwrap_or((0.0, 1.0));
+                2.0 * up.atan2(down)
+            };
+            const FIVE: [(usize, usize); 8] =
+                [(1, 0), (2, 1), (4, 3), (5, 4), (7, 6), (8, 7), (10, 9), (11, 10)];
+            const FOUR: [(usize, usize); 9] =
+                [(3, 0), (4, 1), (5, 2), (6, 3), (7, 4), (8, 5), (9, 6), (10, 7), (11, 8)];
+            let (q4, q5) = (ratio(&FOUR) + TURNED[0], ratio(&FIVE) + TURNED[1]);
+            let mut q = self.completed(&axes, motion, [q3, q4, q5]);
+            q.rotate_right(self.first);
+            push(q);
+        }
+    }
+
+    /// All six angles from the middle three: the first two bring the sixth axis to its place, the last turns about it.
+    fn completed(&self, axes: &[Axis; 6], motion: &Pose, [q3, q4, q5]: [f64; 3]) -> [f64; 6] {
+        let [a1, a2, a3, a4, a5, a6] = axes;
+        let (t3, t4, t5) = (cosine_and_sine(q3), cosine_and_sine(q4), cosine_and_sine(q5));
+        let p = a3.moved(t3, &a4.moved(t4, &a5.moved(t5, &a6.point)));
+        let l = a3.turned(t3, &a4.turned(t4, &a5.turned(t5, &a6.w)));
+        let (goal_p, goal_l) = (motion.act(&a6.point) - a1.point, motion.rotation * a6.w);
+        // What the first joint leaves as it is: heights along its axis, and the square of a length; linear in cos q₂ and sin q₂.
+        let mut normal = [[0.0; 2]; 2];
+        let mut right = [0.0; 2];
+        let mut add = |a: f64, b: f64, d: f64| {
+            normal[0][0] += a * a;
+            normal[0][1] += a * b;
+            normal[1][0] += a * b;
+            normal[1][1] += b * b;
+            right[0] += a * d;
+            right[1] += b * d;
+        };
+        let parts = |v: &Vector3<f64>| {
+            let along = a2.w * a2.w.dot(v);
+            (along, v - along, a2.w.cross(v))
+        };
+        let (l0, l1, l2) = parts(&l);
+        add(a1.w.dot(&l1), a1.w.dot(&l2), a1.w.dot(&goal_l) - a1.w.dot(&l0));
+        let (p0, p1, p2) = parts(&(p - a2.point));
+        let base = a2.point - a1.point + p0;
+        let (scale, w) = (self.scale, &a1.w);
+        add(scale * w.dot(&p1), scale * w.dot(&p2), scale * (w.dot(&goal_p) - w.dot(&base)));
+        let squares = goal_p.norm_squared() - base.norm_squared() - p1.norm_squared();
+        let square = scale * scale;
+        add(square * 2.0 * base.dot(&p1), square * 2.0 * base.dot(&p2), square * squares);
+        let gap = a2.point - a1.point;
+        let product = goal_p.dot(&goal_l) - (p - a2.point).dot(&l) - gap.dot(&l0);
+        add(scale * gap.dot(&l1), scale * gap.dot(&l2), scale * product);
+        let det = normal[0][0] * normal[1][1] - normal[0][1] * normal[1][0];
+        let c2 = (right[0] * normal[1][1] - right[1] * normal[0][1]) / det;
+        let s2 = (right[1] * normal[0][0] - right[0] * normal[1][0]) / det;
+        let q2 = if det > 0.0 { s2.atan2(c2) } else { 0.0 };
+        let t2 = cosine_and_sine(q2);
+        let (p, l) = (a2.moved(t2, &p) - a1.point, a2.turned(t2, &l));
+        let flat = |v: &Vector3<f64>| v - a1.w * a1.w.dot(v);
+        let (p, l, goal_p, goal_l) = (flat(&p) * scale, flat(&l), flat(&goal_p) * scale, flat(&goal_l));
+        let across = a1.w.dot(&(p.cross(&goal_p) + l.cross(&goal_l)));
+        let q1 = across.atan2(p.dot(&goal_p) + l.dot(&goal_l));
+        let side = crate::lie::rotation::perpendicular(&a6.w);
+        let mut turned = motion.rotation * side;
+        for (axis, q) in [(a1, q1), (a2, q2), (a3, q3), (a4, q4), (a5, q5)] {
+            turned = axis.turned(back(q), &turned);
+        }
+        [q1, q2, q3, q4, q5, a6.angle(&side, &turned)]
+    }
+}
+
+/// The matrix of the resultant at a third angle: the equations, and the equations times the tangent of half the fourth.
+fn resultant(equations: &[[Table; 3]; 6], c: f64, s: f64) -> Matrix {
+    let mut out = [[0.0; 12]; 12];
+    for (row, [one, cosine, sine]) in equations.iter().enumerate() {
+        for four in 0..3 {
+            for five in 0..3 {
+                let number = one[four][five] + c * cosine[four][five] + s * sine[four][five];
+                out[row][3 * four + five] = number;
+                out[6 + row][3 + 3 * four + five] = number;
+            }
+        }
+    }
+    out
+}
+
+/// Elimination with row pivots in place; the determinant.
+fn determinant(a: &mut Matrix) -> f64 {
+    let mut out = 1.0;
+    for k in 0..12 {
+        let mut row = k;
+        for i in k + 1..12 {
+            if a[i][k].abs() > a[row][k].abs() {
+                row = i;
+            }
+        }
+        if row != k {
+            a.swap(k, row);
+            out = -out;
+        }
+        let pivot = a[k];
+        out *= pivot[k];
+        if pivot[k] == 0.0 {
+            return 0.0;
+        }
+        let inverse = 1.0 / pivot[k];
+        for below in a.iter_mut().skip(k + 1) {
+            let factor = below[k] * inverse;
+            if factor != 0.0 {
+                for j in k + 1..12 {
+                    below[j] -= factor * pivot[j];
+                }
+            }
+        }
+    }
+    out
+}
+
+/// The vector that a singular matrix takes to zero: elimination with full pivots, and one step of inverse iteration by its triangle.
+fn null_vector(a: &mut Matrix) -> [f64; 12] {
+    let mut order = [0; 12];
+    for (k, it) in order.iter_mut().enumerate() {
+        *it = k;
+    }
+    for k in 0..11 {
+        let (mut row, mut column, mut most) = (k, k, 0.0);
+        for (i, it) in a.iter().enumerate().skip(k) {
+            for (j, number) in it.iter().enumerate().skip(k) {
+                if number.abs() > most {
+                    (row, column, most) = (i, j, number.abs());
+                }
+            }
+        }
+        if most == 0.0 {
+            break;
+        }
+        a.swap(k, row);
+        order.swap(k, column);
+        for it in a.iter_mut() {
+            it.swap(k, column);
+        }
+        let pivot = a[k];
+        let inverse = 1.0 / pivot[k];
+        for below in a.iter_mut().skip(k + 1) {
+            let factor = below[k] * inverse;
+            for j in k..12 {
+                below[j] -= factor * pivot[j];
+            }
+        }
+    }
+    let mut sorted = [0.0; 12];
+    sorted[11] = 1.0;
+    for k in (0..11).rev() {
+        let sum: f64 = (k + 1..12).map(|j| a[k][j] * sorted[j]).sum();
+        sorted[k] = if a[k][k] == 0.0 { 0.0 } else { -sum / a[k][k] };
+    }
+    let mut out = [0.0; 12];
+    for (place, value) in order.into_iter().zip(sorted) {
+        out[place] = value;
+    }
+    out
+}

@@ -1,0 +1,224 @@
+//! Newton's iteration from a configuration to one that has the tip where it should be.
+
+use nalgebra::Vector3;
+
+use crate::arm::{Arm, MOST_JOINTS, Placed};
+use crate::lie::{Pose, rotation};
+use crate::small;
+
+// The functions of numbers, where there is no standard library.
+#[allow(unused_imports)]
+use nalgebra::{ComplexField as _, RealField as _};
+
+/// Residual (lengths over reach, rad) below which a further step changes rounding only.
+const ROUNDED: f64 = 4e-15;
+/// Residual that counts as reached.
+pub(crate) const REACHED: f64 = 2e-11;
+/// Longest step of a joint (rad; m over reach) that is taken whole.
+const LONGEST_STEP: f64 = 0.5;
+
+/// What is left from the tip to where it should be: position (m) and rotation vector (rad), both in the base.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Left {
+    pub(crate) position: Vector3<f64>,
+    pub(crate) rotation: Vector3<f64>,
+}
+
+impl Left {
+    #[inline]
+    pub(crate) fn new(tip: &Pose, target: &Pose) -> Self {
+        let column = |k: usize| tip.rotation.column(k).cross(&target.rotation.column(k));
+        let sine = 0.5 * (column(0) + column(1) + column(2));
+        let trace: f64 = tip.rotation.component_mul(&target.rotation).sum();
+        let rotation = if trace > 1.0 {
+            // Below a right angle: sin φ of the direction, as an angle.
+            let squared = sine.norm_squared();
+            if squared < 1e-6 { sine * (1.0 + squared / 6.0) } else { angle_of(sine, squared) }
+        } else {
+            rotation::log(&(target.rotation * tip.rotation.transpose()))
+        };
+        Left { position: target.translation - tip.translation, rotation }
+    }
+
+    /// Its square, lengths over a reach.
+    #[inline]
+    pub(crate) fn squared(&self, reach_m: f64) -> f64 {
+        self.position.norm_squared() / (reach_m * reach_m) + self.rotation.norm_squared()
+    }
+}
+
+fn angle_of(sine: Vector3<f64>, squared: f64) -> Vector3<f64> {
+    let norm = squared.sqrt();
+    sine * (norm.min(1.0).asin() / norm)
+}
+
+/// Column of a joint: motion of the tip's point (over the reach) and its turn.
+#[inline]
+fn column(arm: &Arm, placed: &Placed, joint: usize, inverse_reach: f64) -> [f64; 6] {
+    let axis = placed.directions[joint];
+    if arm.screws()[joint].is_prismatic() {
+        // A step is counted in reaches, so that it is of the size of an angle.
+        return [axis.x, axis.y, axis.z, 0.0, 0.0, 0.0];
+    }
+    let moves = axis.cross(&(placed.tip.translation - placed.origins[joint])) * inverse_reach;
+    [moves.x, moves.y, moves.z, axis.x, axis.y, axis.z]
+}
+
+/// Undamped steps of six joints, as long as they bring the tip closer. `q` becomes the best configuration that was met;
+/// returns what is left there (lengths over reach, rad).
+pub(crate) fn newton(arm: &Arm, target: &Pose, q: &mut [f64; 6], most: u32) -> f64 {
+    let reach = arm.reach_m();
+    let inverse_reach = 1.0 / reach;
+    let mut placed = arm.placed(q);
+    let mut left = Left::new(&placed.tip, target);
+    let mut squared = left.squared(reach);
+    let mut steps = 0;
+    while steps < most && squared > ROUNDED * ROUNDED {
+        let mut a = [[0.0; 6]; 6];
+        for joint in 0..6 {
+            let moves = column(arm, &placed, joint, inverse_reach);
+            for (row, it) in a.iter_mut().zip(moves) {
+                row[joint] = it;
+            }
+        }
+        let (p, w) = (left.position * inverse_reach, left.rotation);
+        let mut step = [p.x, p.y, p.z, w.x, w.y, w.z];
+        if small::solve(&mut a, &mut step, 1e-14).is_none() {
+            break;
+        }
+        let longest = step.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
+        let mut share = if longest > LONGEST_STEP { LONGEST_STEP / longest } else { 1.0 };
+        let mut is_closer = false;
+        for _ in 0..4 {
+            let mut next = *q;
+            for (joint, (it, step)) in next.iter_mut().zip(step).enumerate() {
+                *it += share * step * if arm.screws()[joint].is_prismatic() { reach } else { 1.0 };
+            }
+            let there = arm.placed(&next);
+            let left_there = Left::new(&there.tip, target);
+            let squared_there = left_there.squared(reach);
+            if squared_there < squared {
+                (*q, placed, left, squared) = (next, there, left_there, squared_there);
+                is_closer = true;
+                break;
+            }
+            share *= 0.4;
+        }
+        steps += 1;
+        if !is_closer {
+            break;
+        }
+    }
+    squared.sqrt()
+}
+
+/// Damped steps (Levenberg and Marquardt) of any number of joints, the least motion that brings the tip closer;
+/// returns what is left.
+pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 {
+    let reach = arm.reach_m();
+    let n = arm.joints().min(q.len());
+    let mut placed = arm.placed(q);
+    let mut left = Left::new(&placed.tip, target);
+    let mut squared = left.squared(reach);
+    let mut damping = 1e-4 * squared.min(1.0);
+    let mut steps = 0;
+    while steps < most && squared > ROUNDED * ROUNDED {
+        steps += 1;
+        let mut columns = [[0.0; 6]; MOST_JOINTS];
+        for (joint, it) in columns.iter_mut().enumerate().take(n) {
+            *it = column(arm, &placed, joint, 1.0 / reach);
+        }
+        let (p, w) = (left.position / reach, left.rotation);
+        let e = [p.x, p.y, p.z, w.x, w.y, w.z];
+        let mut step = [0.0; MOST_JOINTS];
+        let is_solved = if n >= 6 {
+            // Jᵀ (J Jᵀ + λ)⁻¹ e: of all steps that do the same, the least.
+            let mut a = [[0.0; 6]; 6];
+            for (i, row) in a.iter_mut().enumerate() {
+                for (j, it) in row.iter_mut().enumerate() {
+                    *it = columns.iter().take(n).map(|column| column[i] * column[j]).sum();
+                }
+                row[i] += damping;
+            }
+            let mut x = e;
+            let is_solved = small::solve_symmetric(&mut a, &mut x, 6).is_some();
+            for (it, column) in step.iter_mut().zip(&columns).take(n) {
+                *it = column.iter().zip(x).map(|(column, x)| column * x).sum();
+            }
+            is_solved
+        } else {
+            let mut a = [[0.0; MOST_JOINTS]; MOST_JOINTS];
+            for i in 0..n {
+                for j in 0..n {
+                    a[i][j] = columns[i].iter().zip(&columns[j]).map(|(one, other)| one * other).sum();
+                }
+                a[i][i] += damping;
+                step[i] = columns[i].iter().zip(e).map(|(column, e)| column * e).sum();
+            }
+            small::solve_symmetric(&mut a, &mut step, n).is_some()
+        };
+        if !is_solved {
+            damping = (damping * 10.0).max(1e-12);
+            continue;
+        }
+        let longest = step.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
+        let share = if longest > LONGEST_STEP { LONGEST_STEP / longest } else { 1.0 };
+        let mut next = [0.0; MOST_JOINTS];
+        for (joint, (it, old)) in next.iter_mut().zip(q.iter()).enumerate().take(n) {
+            let unit = if arm.screws()[joint].is_prismatic() { reach } else { 1.0 };
+            *it = old + share * step[joint] * unit;
+        }
+        let there = arm.placed(&next[..n]);
+        let left_there = Left::new(&there.tip, target);
+        let squared_there = left_there.squared(reach);
+        if squared_there < squared {
+            q[..n].copy_from_slice(&next[..n]);
+            damping = (damping * if squared_there < 0.25 * squared { 0.01 } else { 0.3 }).max(1e-18);
+            (placed, left, squared) = (there, left_there, squared_there);
+        } else {
+            if longest < 1e-15 {
+                break;
+            }
+            damping = (damping * 8.0).max(1e-16);
+            if damping > 1e6 {
+                break;
+            }
+        }
+    }
+    squared.sqrt()
+}
+
+/// Most steps of each kind to the nearest configuration.
+const MOST_STEPS: u32 = 30;
+const MOST_DAMPED: u32 = 200;
+
+impl Arm {
+    /// Takes joint values (rad, m) to the nearest configuration that has the tip at a pose of the base, or as close to it as the iteration
+    /// comes: undamped steps, and damped ones (Levenberg and Marquardt, the least motion of more than six joints) where they fail. Returns
+    /// what is left: the length over [`Arm::reach_m`] and the angle (rad), as one root of squares; some 1e-15 where the pose is reached.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use poecal_arm::{Arm, lie::{Pose, Screw}};
+    /// let axes = [Vector3::z(), Vector3::y(), Vector3::y(), Vector3::x(), Vector3::y(), Vector3::x(), Vector3::y()];
+    /// let points = [0.0, 0.0, 0.4, 0.4, 0.8, 0.8, 0.9].map(|z| Vector3::new(0.0, 0.0, z));
+    /// let screws: Vec<Screw> = axes.iter().zip(&points).map(|(axis, point)| Screw::revolute(axis, point)).collect();
+    /// let arm = Arm::new(&screws, &Pose::from_translation(Vector3::new(0.1, 0.0, 1.0))).unwrap();
+    /// let target = arm.forward_kinematics(&[0.3, 0.2, 0.4, 0.5, 0.6, 0.7, 0.2]);
+    /// let mut q = [0.2; 7];
+    /// assert!(arm.nearest(&target, &mut q) < 1e-12);
+    /// ```
+    pub fn nearest(&self, target: &Pose, q: &mut [f64]) -> f64 {
+        if let Ok(six) = <&mut [f64; 6]>::try_from(&mut *q)
+            && self.joints() == 6
+        {
+            let mut undamped = *six;
+            let left = newton(self, target, &mut undamped, MOST_STEPS);
+            if left < REACHED {
+                *six = undamped;
+                return left;
+            }
+        }
+        damped(self, target, q, MOST_DAMPED)
+    }
+}

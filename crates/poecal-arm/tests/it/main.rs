@@ -1,0 +1,9 @@
+//! Arms beside the screws' own exponentials, and all branches beside a search.
+
+#![allow(clippy::unwrap_used)]
+
+mod branches;
+mod calibrated;
+mod kinematics;
+mod nearest;
+mod numbers;
